@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/geometry.h"
+#include "calib/sensor_model.h"
+#include "proto/error.h"
+#include "proto/run_status.h"
+
+/// The result of a run: an immutable value that is complete in itself. Its id is the hash of its content, so that two
+/// calibrations with one id are the same calibration; every streamed sample names the one it used.
+namespace mgtd::calib {
+
+inline constexpr int kArrayParameters = kSensors * kSensorParameters;  // 48
+using ArrayCovariance = Eigen::Matrix<double, kArrayParameters, kArrayParameters>;
+/// One number per sensor (row) and axis (column), nT.
+using AxisNoise = Eigen::Matrix<double, kSensors, 3, Eigen::RowMajor>;
+
+/// The conditions under which the parameters hold.
+struct Reference {
+  std::array<std::optional<double>, kSensors> T_degC;  ///< mean head temperature during the run
+  std::string t_utc;                                   ///< start of the run; empty when unknown
+  std::optional<double> f_nT;                          ///< mean total field
+};
+
+struct Calibration {
+  std::string id;      ///< "c" and 12 hex digits; set by seal()
+  std::string method;  ///< "simplified", "two-step", "joint"
+  std::array<SensorModel, kSensors> sensors;
+  ArrayCovariance covariance{ArrayCovariance::Zero()};  ///< of the parameters in kParameterNames order, sensor by sensor
+  Geometry geometry;
+  AxisNoise sample_noise_nT{AxisNoise::Zero()};  ///< of one sample, for the stream's standard deviations; 0 unknown
+  AxisNoise pose_noise_nT{AxisNoise::Zero()};    ///< of a pose mean, as the fit weighted it
+  std::string gauge;                             ///< which common rotation was fixed, how, and how well it is known
+  Reference reference;
+  std::string data_hash;  ///< of the poses it was fitted to
+  int poses{0};
+  bool accepted_by_checks{false};
+  std::vector<Check> verdict;  ///< every named check with measured value and limit
+  std::string software;
+
+  /// Fills `id` from everything else.
+  void seal();
+};
+
+/// Text form (JSON, CAL.json). Numbers round-trip bit for bit.
+[[nodiscard]] std::string to_json_text(const Calibration& calibration);
+/// Refuses a file whose id is not the hash of its content, an unknown schema, or a missing key, by name.
+[[nodiscard]] Result<Calibration> calibration_from_json_text(std::string_view text);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/sensor_model.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace mgtd::calib {
+
+Eigen::Matrix3d rotation_x(double a) {
+  Eigen::Matrix3d r;
+  r << 1, 0, 0, 0, std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a);
+  return r;
+}
+
+Eigen::Matrix3d rotation_y(double b) {
+  Eigen::Matrix3d r;
+  r << std::cos(b), 0, -std::sin(b), 0, 1, 0, std::sin(b), 0, std::cos(b);
+  return r;
+}
+
+Eigen::Matrix3d rotation_z(double g) {
+  Eigen::Matrix3d r;
+  r << std::cos(g), std::sin(g), 0, -std::sin(g), std::cos(g), 0, 0, 0, 1;
+  return r;
+}
+
+Eigen::Matrix3d SensorModel::response() const {
+  Eigen::Matrix3d a;
+  a << std::cos(theta_rad) * std::cos(phi_rad), std::sin(theta_rad) * std::cos(phi_rad), std::sin(phi_rad),
+      0, std::cos(psi_rad), std::sin(psi_rad),
+      0, 0, 1;
+  return scale.asDiagonal() * a;
+}
+
+Eigen::Matrix3d SensorModel::R_PS() const {
+  return rotation_z(gamma_rad) * rotation_y(beta_rad) * rotation_x(alpha_rad) * mounting;
+}
+
+Eigen::Vector3d SensorModel::predict(const Eigen::Vector3d& b_P_nT) const {
+  return response() * (R_PS().transpose() * b_P_nT) + offset_nT;
+}
+
+Eigen::Vector3d SensorModel::correct(const Eigen::Vector3d& y_nT) const {
+  return R_PS() * response().triangularView<Eigen::Upper>().solve(y_nT - offset_nT);
+}
+
+ParameterVector SensorModel::parameters() const {
+  ParameterVector p;
+  p << theta_rad, phi_rad, psi_rad, scale, offset_nT, alpha_rad, beta_rad, gamma_rad;
+  return p;
+}
+
+SensorModel SensorModel::from_parameters(const ParameterVector& p, const Eigen::Matrix3d& mounting) {
+  return {.theta_rad = p[theta], .phi_rad = p[phi], .psi_rad = p[psi],
+          .scale = p.segment<3>(cx), .offset_nT = p.segment<3>(ix),
+          .alpha_rad = p[alpha], .beta_rad = p[beta], .gamma_rad = p[gamma],
+          .mounting = mounting};
+}
+
+}  // namespace mgtd::calib

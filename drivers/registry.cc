@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/registry.h"
+
+#include <algorithm>
+#include <array>
+
+namespace mgtd::drivers {
+namespace {
+
+constexpr std::array<DriverEntry, 0> kDrivers{};
+
+}  // namespace
+
+std::span<const DriverEntry> drivers() { return kDrivers; }
+
+const DriverEntry* find_driver(std::string_view name) {
+  const auto found = std::find_if(kDrivers.begin(), kDrivers.end(), [&](const auto& d) { return d.name == name; });
+  return found == kDrivers.end() ? nullptr : found;
+}
+
+}  // namespace mgtd::drivers

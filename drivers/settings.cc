@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace mgtd::drivers {
+namespace {
+
+/// Levenshtein distance, for "did you mean".
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0U);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+int Settings::line_of(std::string_view key) const {
+  const auto found = entries_.find(key);
+  return found == entries_.end() ? line_ : found->second.line;
+}
+
+Settings::Entry* Settings::find(std::string_view key) {
+  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return nullptr;
+  found->second.used = true;
+  return &found->second;
+}
+
+void Settings::wrong_type(std::string_view key, std::string_view expected) {
+  errors_.push_back({line_of(key), fmt::format("{}: '{}' must be {}", section_, key, expected)});
+}
+
+void Settings::missing(std::string_view key) {
+  errors_.push_back({line_, fmt::format("{}: '{}' is missing", section_, key)});
+}
+
+void Settings::object(std::string_view key, std::string message) {
+  errors_.push_back({line_of(key), fmt::format("{}: '{}': {}", section_, key, message)});
+}
+
+double Settings::number(std::string_view key, double fallback) {
+  const Entry* const entry = find(key);
+  if (entry == nullptr) return fallback;
+  if (const auto* d = std::get_if<double>(&entry->value)) return *d;
+  if (const auto* i = std::get_if<std::int64_t>(&entry->value)) return static_cast<double>(*i);
+  wrong_type(key, "a number");
+  return fallback;
+}
+
+std::int64_t Settings::integer(std::string_view key, std::int64_t fallback) {
+  const Entry* const entry = find(key);
+  if (entry == nullptr) return fallback;
+  if (const auto* i = std::get_if<std::int64_t>(&entry->value)) return *i;
+  wrong_type(key, "a whole number");
+  return fallback;
+}
+
+bool Settings::boolean(std::string_view key, bool fallback) {
+  const Entry* const entry = find(key);
+  if (entry == nullptr) return fallback;
+  if (const auto* b = std::get_if<bool>(&entry->value)) return *b;
+  wrong_type(key, "true or false");
+  return fallback;
+}
+
+std::string Settings::text(std::string_view key, std::string_view fallback) {
+  const Entry* const entry = find(key);
+  if (entry == nullptr) return std::string(fallback);
+  if (const auto* s = std::get_if<std::string>(&entry->value)) return *s;
+  wrong_type(key, "a text in quotes");
+  return std::string(fallback);
+}
+
+std::vector<double> Settings::numbers(std::string_view key, std::size_t count, std::vector<double> fallback) {
+  const Entry* const entry = find(key);
+  if (entry == nullptr) return fallback;
+  const auto* list = std::get_if<std::vector<double>>(&entry->value);
+  if (list == nullptr || list->size() != count) {
+    wrong_type(key, fmt::format("a list of {} numbers", count));
+    return fallback;
+  }
+  return *list;
+}
+
+double Settings::required_number(std::string_view key) {
+  if (!has(key)) missing(key);
+  return number(key, 0.0);
+}
+
+std::string Settings::required_text(std::string_view key) {
+  if (!has(key)) missing(key);
+  return text(key, "");
+}
+
+void Settings::refuse_unknown() {
+  for (const auto& [key, entry] : entries_) {
+    if (entry.used) continue;
+    std::string message = fmt::format("{}: unknown key '{}'", section_, key);
+    const auto nearest = std::min_element(asked_.begin(), asked_.end(), [&](const auto& a, const auto& b) {
+      return distance(a, key) < distance(b, key);
+    });
+    if (nearest != asked_.end() && distance(*nearest, key) <= 3) message += fmt::format(", did you mean '{}'?", *nearest);
+    errors_.push_back({entry.line, std::move(message)});
+  }
+}
+
+}  // namespace mgtd::drivers

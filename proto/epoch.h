@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <variant>
+
+#include "proto/flags.h"
+#include "proto/reading.h"
+#include "proto/time.h"
+
+/// Four readings at one instant, or the honest absence of them.
+namespace mgtd {
+
+struct Epoch {
+  std::uint64_t seq{0};  ///< counts epochs of the stream, gaps included
+  Stamp t;               ///< when the field was what it was (device latency removed as far as known)
+  std::array<Eigen::Vector3d, kSensors> y_nT{};
+  std::array<double, kSensors> T_degC{  ///< latest head temperature; NaN where never measured
+      std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+      std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  double skew_bound_s{0};  ///< no two of the four samples differ in true time by more than this
+  Flags flags;
+};
+
+/// Epochs from_seq .. to_seq, both included, were not measured.
+struct Gap {
+  std::uint64_t from_seq{0};
+  std::uint64_t to_seq{0};
+  Stamp at;
+  std::string why;
+};
+
+using EpochOrGap = std::variant<Epoch, Gap>;
+
+}  // namespace mgtd

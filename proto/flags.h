@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+/// What a reader must know about a sample beside its numbers. A set of bits; names as in the stream.
+namespace mgtd {
+
+enum class Flag : std::uint16_t {
+  saturated = 1U << 0U,     ///< a channel at the end of its range
+  interpolated = 1U << 1U,  ///< a sensor was interpolated to the epoch between two real samples
+  calibrating = 1U << 2U,   ///< a calibration run has the table
+  uncalibrated = 1U << 3U,  ///< no active calibration: the numbers are raw readings
+  suspect = 1U << 4U,       ///< the closure test fails
+  clock_unsettled = 1U << 5U,  ///< the clock model of a device is still being learnt
+};
+
+class Flags {
+ public:
+  constexpr Flags() = default;
+  constexpr Flags(Flag f) : bits_(static_cast<std::uint16_t>(f)) {}  // NOLINT: a flag is a set of one
+  constexpr Flags& operator|=(Flags o) {
+    bits_ = static_cast<std::uint16_t>(bits_ | o.bits_);
+    return *this;
+  }
+  friend constexpr Flags operator|(Flags a, Flags b) { return a |= b; }
+  [[nodiscard]] constexpr bool has(Flag f) const { return (bits_ & static_cast<std::uint16_t>(f)) != 0; }
+  [[nodiscard]] constexpr bool any() const { return bits_ != 0; }
+  [[nodiscard]] constexpr std::uint16_t bits() const { return bits_; }
+  constexpr bool operator==(const Flags&) const = default;
+
+ private:
+  std::uint16_t bits_{0};
+};
+
+/// The flags that are set, by name, in the order of their bits.
+[[nodiscard]] std::vector<std::string_view> names(Flags flags);
+
+}  // namespace mgtd

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proto/time.h"
+
+/// How a link to a device is doing, counted. The books balance at every moment:
+///   bytes_in = bytes_in_frames + bytes_rejected + bytes_resync + bytes_pending.
+namespace mgtd {
+
+/// Why a candidate frame was thrown away.
+enum class Reject : std::uint8_t { length, framing, checksum, number, range, sequence };
+inline constexpr std::size_t kRejects = 6;
+inline constexpr std::array<std::string_view, kRejects> kRejectNames{"length",   "framing", "checksum",
+                                                                     "number",   "range",   "sequence"};
+
+/// Life of a link, as shown to the operator.
+enum class LinkState : std::uint8_t { absent, opening, probing, live, silent, failed };
+inline constexpr std::array<std::string_view, 6> kLinkStateNames{"absent", "opening", "probing",
+                                                                 "live",   "silent",  "failed"};
+
+struct LinkHealth {
+  LinkState state{LinkState::absent};
+  std::string detail;    ///< why it is not live, and what to do; or what was identified
+  std::string identity;  ///< as the device named itself
+  std::uint64_t bytes_in{0}, bytes_in_frames{0}, bytes_rejected{0}, bytes_resync{0}, bytes_pending{0};
+  std::uint64_t bytes_out{0};
+  std::uint64_t frames{0};
+  std::array<std::uint64_t, kRejects> rejected{};  ///< frames by reason
+  std::uint64_t opens{0}, closes{0};
+  std::optional<Instant> last_frame;
+
+  void reject(Reject why, std::size_t bytes) {
+    ++rejected[static_cast<std::size_t>(why)];
+    bytes_rejected += bytes;
+  }
+  [[nodiscard]] bool balanced() const {
+    return bytes_in == bytes_in_frames + bytes_rejected + bytes_resync + bytes_pending;
+  }
+};
+
+}  // namespace mgtd

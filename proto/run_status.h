@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// One object that answers "is a run going on, how far, how did it end": never three calls that race.
+namespace mgtd {
+
+enum class RunState : std::uint8_t {
+  idle,       ///< no run, or the last one was acknowledged
+  preflight,  ///< checking rates, noise, saturation, field
+  homing,
+  moving,
+  settling,
+  dwelling,
+  paused,
+  solving,
+  aborting,
+  done,      ///< a calibration is proposed
+  rejected,  ///< measured and solved, but a check failed: nothing proposed
+  aborted,
+  failed,
+  interrupted,  ///< the daemon died during the run; it can be resumed
+};
+[[nodiscard]] std::string_view name(RunState state);
+/// True while a run has the table.
+[[nodiscard]] bool is_active(RunState state);
+
+/// A named check with its measured value, its limit and what to do when it fails.
+struct Check {
+  std::string name;
+  bool passed{false};
+  std::string measured;
+  std::string limit;
+  std::string remedy;
+};
+
+struct RunStatus {
+  std::string run_id;
+  RunState state{RunState::idle};
+  std::string set;              ///< of the pose under way
+  int pose{0};                  ///< poses finished
+  int poses{0};                 ///< poses in the plan
+  int retries{0};               ///< poses measured again because a check failed
+  double elapsed_s{0};
+  double remaining_s{0};        ///< estimate
+  std::string message;          ///< one sentence for the operator: what is happening, or why it ended and what to do
+  std::string proposed;         ///< calibration id when done
+  std::vector<Check> checks;    ///< of preflight and verdict
+};
+
+}  // namespace mgtd
