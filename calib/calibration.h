@@ -12,8 +12,8 @@
 #include "proto/error.h"
 #include "proto/run_status.h"
 
-/// The result of a run: an immutable value that is complete in itself. Its id is the hash of its content, so that two
-/// calibrations with one id are the same calibration; every streamed sample names the one it used.
+/// The result of a run: an immutable value that is complete in itself. Its id is the hash of its content, so
+/// that two calibrations with one id are the same calibration; every streamed sample names the one it used.
 namespace mgtd::calib {
 
 inline constexpr int kArrayParameters = kSensors * kSensorParameters;  // 48
@@ -32,11 +32,13 @@ struct Calibration {
   std::string id;      ///< "c" and 12 hex digits; set by seal()
   std::string method;  ///< "simplified", "two-step", "joint"
   std::array<SensorModel, kSensors> sensors;
-  ArrayCovariance covariance{ArrayCovariance::Zero()};  ///< of the parameters in kParameterNames order, sensor by sensor
+  ArrayCovariance covariance{
+      ArrayCovariance::Zero()};  ///< of the parameters in kParameterNames order, sensor by sensor
   Geometry geometry;
-  AxisNoise sample_noise_nT{AxisNoise::Zero()};  ///< of one sample, for the stream's standard deviations; 0 unknown
-  AxisNoise pose_noise_nT{AxisNoise::Zero()};    ///< of a pose mean, as the fit weighted it
-  std::string gauge;                             ///< which common rotation was fixed, how, and how well it is known
+  AxisNoise sample_noise_nT{
+      AxisNoise::Zero()};  ///< of one sample, for the stream's standard deviations; 0 unknown
+  AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< of a pose mean, as the fit weighted it
+  std::string gauge;  ///< which common rotation was fixed, how, and how well it is known
   Reference reference;
   std::string data_hash;  ///< of the poses it was fitted to
   int poses{0};

@@ -14,7 +14,8 @@ struct Geometry {
 
   [[nodiscard]] std::array<Eigen::Vector3d, kSensors> positions_P_m() const {
     const double h = baseline_m / 2;
-    return {Eigen::Vector3d{h, 0, 0}, Eigen::Vector3d{0, h, 0}, Eigen::Vector3d{-h, 0, 0}, Eigen::Vector3d{0, -h, 0}};
+    return {Eigen::Vector3d{h, 0, 0}, Eigen::Vector3d{0, h, 0}, Eigen::Vector3d{-h, 0, 0},
+            Eigen::Vector3d{0, -h, 0}};
   }
 };
 

@@ -26,9 +26,8 @@ Eigen::Matrix3d rotation_z(double g) {
 
 Eigen::Matrix3d SensorModel::response() const {
   Eigen::Matrix3d a;
-  a << std::cos(theta_rad) * std::cos(phi_rad), std::sin(theta_rad) * std::cos(phi_rad), std::sin(phi_rad),
-      0, std::cos(psi_rad), std::sin(psi_rad),
-      0, 0, 1;
+  a << std::cos(theta_rad) * std::cos(phi_rad), std::sin(theta_rad) * std::cos(phi_rad), std::sin(phi_rad), 0,
+      std::cos(psi_rad), std::sin(psi_rad), 0, 0, 1;
   return scale.asDiagonal() * a;
 }
 
@@ -51,9 +50,14 @@ ParameterVector SensorModel::parameters() const {
 }
 
 SensorModel SensorModel::from_parameters(const ParameterVector& p, const Eigen::Matrix3d& mounting) {
-  return {.theta_rad = p[theta], .phi_rad = p[phi], .psi_rad = p[psi],
-          .scale = p.segment<3>(cx), .offset_nT = p.segment<3>(ix),
-          .alpha_rad = p[alpha], .beta_rad = p[beta], .gamma_rad = p[gamma],
+  return {.theta_rad = p[theta],
+          .phi_rad = p[phi],
+          .psi_rad = p[psi],
+          .scale = p.segment<3>(cx),
+          .offset_nT = p.segment<3>(ix),
+          .alpha_rad = p[alpha],
+          .beta_rad = p[beta],
+          .gamma_rad = p[gamma],
           .mounting = mounting};
 }
 

@@ -27,15 +27,17 @@ struct FieldAndGradient {
 [[nodiscard]] FieldAndGradient field_and_gradient(const std::array<Eigen::Vector3d, kSensors>& b_P_nT,
                                                   const Geometry& geometry);
 
-/// The stream's arithmetic for one calibration: everything that does not depend on the sample is computed once, so that
-/// a sample costs four 3x3 products and a few sums, and allocates nothing.
+/// The stream's arithmetic for one calibration: everything that does not depend on the sample is computed
+/// once, so that a sample costs four 3x3 products and a few sums, and allocates nothing.
 class TensorPipeline {
  public:
-  /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2 are NaN.
+  /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
+  /// are NaN.
   explicit TensorPipeline(Geometry geometry);
   explicit TensorPipeline(std::shared_ptr<const Calibration> calibration);
 
-  /// g_sd holds sample noise and calibration covariance together, the latter at the field of this very sample.
+  /// g_sd holds sample noise and calibration covariance together, the latter at the field of this very
+  /// sample.
   [[nodiscard]] TensorSample apply(const Epoch& epoch) const;
   [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const { return calibration_; }
 
@@ -43,7 +45,7 @@ class TensorPipeline {
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
   Geometry geometry_;
-  std::array<Eigen::Matrix3d, kSensors> gain_;     ///< R_PS (C A)^-1
+  std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R_PS (C A)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
 };
 

@@ -14,7 +14,8 @@ constexpr std::array<DriverEntry, 0> kDrivers{};
 std::span<const DriverEntry> drivers() { return kDrivers; }
 
 const DriverEntry* find_driver(std::string_view name) {
-  const auto found = std::find_if(kDrivers.begin(), kDrivers.end(), [&](const auto& d) { return d.name == name; });
+  const auto found =
+      std::find_if(kDrivers.begin(), kDrivers.end(), [&](const auto& d) { return d.name == name; });
   return found == kDrivers.end() ? nullptr : found;
 }
 

@@ -7,7 +7,8 @@
 #include "drivers/device.h"
 #include "drivers/settings.h"
 
-/// Every driver by the name the configuration uses. A new protocol is a pair of files and one line in registry.cc.
+/// Every driver by the name the configuration uses. A new protocol is a pair of files and one line in
+/// registry.cc.
 namespace mgtd::drivers {
 
 enum class Role { sensor, table, scalar };
@@ -16,7 +17,8 @@ struct DriverEntry {
   std::string_view name;
   Role role;
   std::string_view summary;
-  /// Reads its settings; objections are left in `settings`. `slot` is the sensor's number (0 based), else ignored.
+  /// Reads its settings; objections are left in `settings`. `slot` is the sensor's number (0 based), else
+  /// ignored.
   std::unique_ptr<Device> (*make)(int slot, Settings& settings);
 };
 

@@ -112,7 +112,8 @@ void Settings::refuse_unknown() {
     const auto nearest = std::min_element(asked_.begin(), asked_.end(), [&](const auto& a, const auto& b) {
       return distance(a, key) < distance(b, key);
     });
-    if (nearest != asked_.end() && distance(*nearest, key) <= 3) message += fmt::format(", did you mean '{}'?", *nearest);
+    if (nearest != asked_.end() && distance(*nearest, key) <= 3)
+      message += fmt::format(", did you mean '{}'?", *nearest);
     errors_.push_back({entry.line, std::move(message)});
   }
 }

@@ -8,8 +8,10 @@
 #include <variant>
 #include <vector>
 
-/// The part of the configuration that belongs to one device, as a driver reads it. Nested tables are flattened
-/// ("axes.azimuth"). Mistakes are collected with their line, not thrown: the operator sees all of them at once.
+/// The part of the configuration that belongs to one device, as a driver reads it. Nested tables are
+/// flattened
+/// ("axes.azimuth"). Mistakes are collected with their line, not thrown: the operator sees all of them at
+/// once.
 namespace mgtd::drivers {
 
 struct SettingError {
@@ -19,23 +21,28 @@ struct SettingError {
 
 class Settings {
  public:
-  using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
+  using Value =
+      std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
 
   Settings() = default;
   /// `section` names the part in messages, e.g. "sensor s1"; `line` is where it starts.
   Settings(std::string section, int line) : section_(std::move(section)), line_(line) {}
 
-  void set(std::string key, Value value, int line) { entries_[std::move(key)] = Entry{std::move(value), line, false}; }
+  void set(std::string key, Value value, int line) {
+    entries_[std::move(key)] = Entry{std::move(value), line, false};
+  }
   [[nodiscard]] bool has(std::string_view key) const { return entries_.find(key) != entries_.end(); }
   [[nodiscard]] const std::string& section() const { return section_; }
   [[nodiscard]] int line_of(std::string_view key) const;
 
-  /// Each returns the value, or the fallback when the key is absent; a wrong type is an error and the fallback.
+  /// Each returns the value, or the fallback when the key is absent; a wrong type is an error and the
+  /// fallback.
   [[nodiscard]] double number(std::string_view key, double fallback);
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback);
   [[nodiscard]] bool boolean(std::string_view key, bool fallback);
   [[nodiscard]] std::string text(std::string_view key, std::string_view fallback);
-  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, std::vector<double> fallback);
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,
+                                            std::vector<double> fallback);
   /// As above, but absence is an error.
   [[nodiscard]] double required_number(std::string_view key);
   [[nodiscard]] std::string required_text(std::string_view key);

@@ -9,14 +9,14 @@
 namespace mgtd {
 
 enum class ErrorCode {
-  usage,         ///< the caller asked for something that does not exist
-  bad_input,     ///< a file, line or value cannot be read; position is in the message
-  refused,       ///< the data do not allow what was asked (rank, coverage, plausibility)
-  io,            ///< the operating system said no
-  unreachable,   ///< daemon or instrument does not answer
-  protocol,      ///< an instrument answered what its protocol does not allow
-  state,         ///< not possible in the present state (a run is active, nothing to accept, ...)
-  internal,      ///< our bug
+  usage,        ///< the caller asked for something that does not exist
+  bad_input,    ///< a file, line or value cannot be read; position is in the message
+  refused,      ///< the data do not allow what was asked (rank, coverage, plausibility)
+  io,           ///< the operating system said no
+  unreachable,  ///< daemon or instrument does not answer
+  protocol,     ///< an instrument answered what its protocol does not allow
+  state,        ///< not possible in the present state (a run is active, nothing to accept, ...)
+  internal,     ///< our bug
 };
 
 struct Error {
@@ -31,17 +31,21 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::string remedy = {}) {
+[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message,
+                                                std::string remedy = {}) {
   return tl::unexpected<Error>(Error{code, std::move(message), std::move(remedy)});
 }
 
 /// Exit code of `mgt` for an error: 1 answered "no", 2 usage or unreadable input, 3 not reachable.
 [[nodiscard]] constexpr int exit_code(ErrorCode code) {
   switch (code) {
-    case ErrorCode::unreachable: return 3;
+    case ErrorCode::unreachable:
+      return 3;
     case ErrorCode::refused:
-    case ErrorCode::state: return 1;
-    default: return 2;
+    case ErrorCode::state:
+      return 1;
+    default:
+      return 2;
   }
 }
 

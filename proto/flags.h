@@ -8,11 +8,11 @@
 namespace mgtd {
 
 enum class Flag : std::uint16_t {
-  saturated = 1U << 0U,     ///< a channel at the end of its range
-  interpolated = 1U << 1U,  ///< a sensor was interpolated to the epoch between two real samples
-  calibrating = 1U << 2U,   ///< a calibration run has the table
-  uncalibrated = 1U << 3U,  ///< no active calibration: the numbers are raw readings
-  suspect = 1U << 4U,       ///< the closure test fails
+  saturated = 1U << 0U,        ///< a channel at the end of its range
+  interpolated = 1U << 1U,     ///< a sensor was interpolated to the epoch between two real samples
+  calibrating = 1U << 2U,      ///< a calibration run has the table
+  uncalibrated = 1U << 3U,     ///< no active calibration: the numbers are raw readings
+  suspect = 1U << 4U,          ///< the closure test fails
   clock_unsettled = 1U << 5U,  ///< the clock model of a device is still being learnt
 };
 

@@ -15,8 +15,8 @@ namespace mgtd {
 /// Why a candidate frame was thrown away.
 enum class Reject : std::uint8_t { length, framing, checksum, number, range, sequence };
 inline constexpr std::size_t kRejects = 6;
-inline constexpr std::array<std::string_view, kRejects> kRejectNames{"length",   "framing", "checksum",
-                                                                     "number",   "range",   "sequence"};
+inline constexpr std::array<std::string_view, kRejects> kRejectNames{"length", "framing", "checksum",
+                                                                     "number", "range",   "sequence"};
 
 /// Life of a link, as shown to the operator.
 enum class LinkState : std::uint8_t { absent, opening, probing, live, silent, failed };

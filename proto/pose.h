@@ -16,7 +16,7 @@ namespace mgtd {
 
 struct Pose {
   int number{0};
-  std::string set;  ///< "standard" (used by step 2), "random", "check" (never fitted), or any word
+  std::string set;            ///< "standard" (used by step 2), "random", "check" (never fitted), or any word
   std::optional<double> t_s;  ///< middle of the dwell since the run's start
   std::optional<WallTime> t_utc;
   std::optional<double> azimuth_rad, pitch_rad, roll_rad;

@@ -7,7 +7,7 @@ namespace mgtd {
 
 std::string_view name(RunState state) {
   static constexpr std::array<std::string_view, 14> kNames{
-      "idle",   "preflight", "homing", "moving",   "settling", "dwelling", "paused",
+      "idle",    "preflight", "homing", "moving",   "settling", "dwelling", "paused",
       "solving", "aborting",  "done",   "rejected", "aborted",  "failed",   "interrupted"};
   return kNames.at(static_cast<std::size_t>(state));
 }
@@ -21,8 +21,10 @@ bool is_active(RunState state) {
     case RunState::dwelling:
     case RunState::paused:
     case RunState::solving:
-    case RunState::aborting: return true;
-    default: return false;
+    case RunState::aborting:
+      return true;
+    default:
+      return false;
   }
 }
 

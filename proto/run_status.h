@@ -40,15 +40,15 @@ struct Check {
 struct RunStatus {
   std::string run_id;
   RunState state{RunState::idle};
-  std::string set;              ///< of the pose under way
-  int pose{0};                  ///< poses finished
-  int poses{0};                 ///< poses in the plan
-  int retries{0};               ///< poses measured again because a check failed
+  std::string set;  ///< of the pose under way
+  int pose{0};      ///< poses finished
+  int poses{0};     ///< poses in the plan
+  int retries{0};   ///< poses measured again because a check failed
   double elapsed_s{0};
-  double remaining_s{0};        ///< estimate
-  std::string message;          ///< one sentence for the operator: what is happening, or why it ended and what to do
-  std::string proposed;         ///< calibration id when done
-  std::vector<Check> checks;    ///< of preflight and verdict
+  double remaining_s{0};  ///< estimate
+  std::string message;   ///< one sentence for the operator: what is happening, or why it ended and what to do
+  std::string proposed;  ///< calibration id when done
+  std::vector<Check> checks;  ///< of preflight and verdict
 };
 
 }  // namespace mgtd

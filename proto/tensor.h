@@ -11,17 +11,17 @@
 /// Field and gradient at the centre of the cross, platform frame.
 namespace mgtd {
 
-/// The six components in the order of the stream: xx, yy, zz, xy, xz, yz. Symmetric and traceless by construction:
-/// zz = -(xx + yy); G(i,j) = dB_i/dx_j.
+/// The six components in the order of the stream: xx, yy, zz, xy, xz, yz. Symmetric and traceless by
+/// construction: zz = -(xx + yy); G(i,j) = dB_i/dx_j.
 struct Gradient {
   double xx{0}, yy{0}, zz{0}, xy{0}, xz{0}, yz{0};
 };
 
 /// Four quantities that vanish for a uniform field plus a constant source-free gradient (method, section 1).
 struct Closure {
-  double curl_nT_per_m{0};                                ///< Bxy - Byx
-  Eigen::Vector3d center_nT{Eigen::Vector3d::Zero()};     ///< (B1+B3)/2 - (B2+B4)/2
-  double chi2{0};                                         ///< of the four, 4 degrees of freedom; NaN when no noise is known
+  double curl_nT_per_m{0};                             ///< Bxy - Byx
+  Eigen::Vector3d center_nT{Eigen::Vector3d::Zero()};  ///< (B1+B3)/2 - (B2+B4)/2
+  double chi2{0};  ///< of the four, 4 degrees of freedom; NaN when no noise is known
 };
 
 struct TensorSample {

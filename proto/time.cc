@@ -12,7 +12,6 @@ namespace {
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kSecondsPerDay = 86'400;
 
-
 std::optional<int> digits(std::string_view text, std::size_t at, std::size_t count) {
   int value = 0;
   const char* const first = text.data() + at;
@@ -30,7 +29,8 @@ std::string format_utc(WallTime t) {
     ns += kNsPerSecond;
     --seconds;
   }
-  const auto day = std::chrono::floor<std::chrono::days>(std::chrono::sys_seconds{std::chrono::seconds{seconds}});
+  const auto day =
+      std::chrono::floor<std::chrono::days>(std::chrono::sys_seconds{std::chrono::seconds{seconds}});
   const std::chrono::year_month_day date{day};
   const std::int64_t in_day = seconds - day.time_since_epoch().count() * kSecondsPerDay;
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", static_cast<int>(date.year()),

@@ -9,9 +9,14 @@ namespace mgtd::calib {
 namespace {
 
 SensorModel table3_sensor1() {
-  return {.theta_rad = to_rad(-1.9), .phi_rad = to_rad(1.6), .psi_rad = to_rad(2.3),
-          .scale = {0.988, 1.105, 1.054}, .offset_nT = {234, 114, -218},
-          .alpha_rad = to_rad(2.5), .beta_rad = to_rad(-2.2), .gamma_rad = to_rad(1.7)};
+  return {.theta_rad = to_rad(-1.9),
+          .phi_rad = to_rad(1.6),
+          .psi_rad = to_rad(2.3),
+          .scale = {0.988, 1.105, 1.054},
+          .offset_nT = {234, 114, -218},
+          .alpha_rad = to_rad(2.5),
+          .beta_rad = to_rad(-2.2),
+          .gamma_rad = to_rad(1.7)};
 }
 
 TEST(SensorModel, CorrectInvertsPredict) {

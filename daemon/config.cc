@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "daemon/toml_settings.h"
+#include "drivers/registry.h"
+
+namespace mgtd::daemon {
+namespace {
+
+using drivers::Role;
+using drivers::Settings;
+
+/// Collects the mistakes of every section.
+class Reader {
+ public:
+  explicit Reader(Config& config) : config_(config) {}
+
+  void read(const toml::table& root);
+  [[nodiscard]] std::vector<drivers::SettingError> take_errors();
+
+ private:
+  Settings section(const toml::table& root, std::string_view name);
+  void close(Settings& settings);
+  void read_rig(const toml::table& root);
+  void read_site(const toml::table& root);
+  void read_run(const toml::table& root);
+  void read_service(const toml::table& root);
+  void read_sensors(const toml::table& root);
+  DeviceConfig read_device(Settings settings, std::string name, Role role, int slot);
+  void refuse_unknown_sections(const toml::table& root);
+  void complain(int line, std::string message) { errors_.push_back({line, std::move(message)}); }
+
+  Config& config_;
+  std::vector<drivers::SettingError> errors_;
+  std::map<std::string, int> port_lines_;
+};
+
+constexpr std::array<std::string_view, 10> kSections{"rig", "sensor", "table",  "scalar",  "site",
+                                                     "run", "store",  "stream", "control", "daemon"};
+
+Settings Reader::section(const toml::table& root, std::string_view name) {
+  const toml::node* const node = root.get(name);
+  if (node == nullptr) return Settings(fmt::format("[{}]", name), 1);
+  if (const toml::table* table = node->as_table()) return to_settings(*table, fmt::format("[{}]", name));
+  complain(static_cast<int>(node->source().begin.line), fmt::format("'{0}' must be a section [{0}]", name));
+  return Settings(fmt::format("[{}]", name), 1);
+}
+
+void Reader::close(Settings& settings) {
+  settings.refuse_unknown();
+  errors_.insert(errors_.end(), settings.errors().begin(), settings.errors().end());
+}
+
+void require(Settings& s, std::string_view key, bool ok, std::string_view rule) {
+  if (!ok) s.object(key, fmt::format("must be {}", rule));
+}
+
+void Reader::read_rig(const toml::table& root) {
+  Settings s = section(root, "rig");
+  config_.rig_name = s.text("name", config_.rig_name);
+  config_.baseline_m = s.number("baseline_m", config_.baseline_m);
+  require(s, "baseline_m", config_.baseline_m >= 0.05 && config_.baseline_m <= 10, "between 0.05 and 10 m");
+  config_.rate_hz = s.number("rate_hz", config_.rate_hz);
+  require(s, "rate_hz", config_.rate_hz > 0 && config_.rate_hz <= 1000, "above 0 and at most 1000 Hz");
+  close(s);
+}
+
+std::optional<double> optional_number(Settings& s, std::string_view key) {
+  const double value = s.number(key, 0.0);
+  return s.has(key) ? std::optional(value) : std::nullopt;
+}
+
+void Reader::read_site(const toml::table& root) {
+  Settings s = section(root, "site");
+  config_.field_nT = optional_number(s, "field_nT");
+  require(s, "field_nT", !config_.field_nT || (*config_.field_nT > 1000 && *config_.field_nT < 200'000),
+          "a total field in nT, 1000 to 200000");
+  config_.field_sd_nT = s.number("field_sd_nT", config_.field_sd_nT);
+  require(s, "field_sd_nT", config_.field_sd_nT >= 0, "0 nT or more");
+  config_.inclination_deg = optional_number(s, "inclination_deg");
+  require(s, "inclination_deg", !config_.inclination_deg || std::abs(*config_.inclination_deg) <= 90,
+          "-90 to 90 deg");
+  config_.declination_deg = optional_number(s, "declination_deg");
+  config_.table_sd_deg = s.number("table_sd_deg", config_.table_sd_deg);
+  require(s, "table_sd_deg", config_.table_sd_deg > 0 && config_.table_sd_deg < 10,
+          "above 0 and below 10 deg");
+  close(s);
+}
+
+void Reader::read_run(const toml::table& root) {
+  Settings s = section(root, "run");
+  RunDefaults& r = config_.run;
+  r.step_deg = s.number("step_deg", r.step_deg);
+  require(s, "step_deg", r.step_deg == 10 || r.step_deg == 20, "10 or 20 deg");
+  r.random = static_cast<int>(s.integer("random", r.random));
+  require(s, "random", r.random >= 0 && r.random <= 100'000, "0 to 100000 poses");
+  r.revisits = static_cast<int>(s.integer("revisits", r.revisits));
+  require(s, "revisits", r.revisits >= 0 && 2 * r.revisits <= std::max(r.random, 0),
+          "at most half of 'random'");
+  const std::vector<double> dwell = s.numbers("dwell_s", 2, {r.dwell_short_s, r.dwell_long_s});
+  r.dwell_short_s = dwell[0];
+  r.dwell_long_s = dwell[1];
+  require(s, "dwell_s", dwell[0] > 0 && dwell[1] >= dwell[0], "two lengths in s, the short one first");
+  r.settle_min_s = s.number("settle_min_s", r.settle_min_s);
+  r.settle_max_s = s.number("settle_max_s", r.settle_max_s);
+  require(s, "settle_max_s", r.settle_min_s >= 0 && r.settle_max_s > r.settle_min_s,
+          "longer than settle_min_s");
+  r.preflight_s = s.number("preflight_s", r.preflight_s);
+  require(s, "preflight_s", r.preflight_s >= 1, "1 s or more");
+  r.retries = static_cast<int>(s.integer("retries", r.retries));
+  require(s, "retries", r.retries >= 0, "0 or more");
+  r.seed = static_cast<std::uint64_t>(s.integer("seed", static_cast<std::int64_t>(r.seed)));
+  close(s);
+}
+
+void Reader::read_service(const toml::table& root) {
+  Settings store = section(root, "store");
+  config_.store_dir = store.text("dir", config_.store_dir);
+  config_.journal = store.boolean("journal", config_.journal);
+  close(store);
+  Settings stream = section(root, "stream");
+  config_.stream_tcp = stream.text("tcp", config_.stream_tcp);
+  config_.stream_unix = stream.text("unix", config_.stream_unix);
+  close(stream);
+  Settings control = section(root, "control");
+  config_.control_unix = control.text("unix", config_.control_unix);
+  const std::string mode = control.text("mode", "0660");
+  const bool octal =
+      mode.size() <= 4 && !mode.empty() && mode.find_first_not_of("01234567") == std::string::npos;
+  require(control, "mode", octal, "file permissions in octal, like \"0660\"");
+  if (octal) config_.control_mode = static_cast<int>(std::strtol(mode.c_str(), nullptr, 8));
+  close(control);
+  Settings daemon = section(root, "daemon");
+  config_.log_level = daemon.text("log_level", config_.log_level);
+  static constexpr std::array<std::string_view, 4> kLevels{"debug", "info", "warn", "error"};
+  require(daemon, "log_level", std::find(kLevels.begin(), kLevels.end(), config_.log_level) != kLevels.end(),
+          "debug, info, warn or error");
+  config_.speed_up = daemon.number("speed_up", config_.speed_up);
+  require(daemon, "speed_up", config_.speed_up >= 1 && config_.speed_up <= 1000, "1 (real time) to 1000");
+  close(daemon);
+}
+
+std::string driver_names(Role role) {
+  std::string names;
+  for (const auto& entry : drivers::drivers()) {
+    if (entry.role == role) names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return names;
+}
+
+DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int slot) {
+  DeviceConfig device;
+  device.name = std::move(name);
+  device.driver = s.required_text("driver");
+  device.port = s.required_text("port");
+  device.latency_s = s.number("latency_s", 0.0);
+  if (!device.port.empty()) {
+    const auto [where, fresh] = port_lines_.emplace(device.port, s.line_of("port"));
+    if (!fresh) s.object("port", fmt::format("'{}' is already used in line {}", device.port, where->second));
+  }
+  const drivers::DriverEntry* const entry = drivers::find_driver(device.driver);
+  if (entry == nullptr || entry->role != role) {
+    if (s.has("driver")) {
+      s.object("driver",
+               fmt::format("no such driver here: '{}'; there are: {}", device.driver, driver_names(role)));
+    }
+    errors_.insert(errors_.end(), s.errors().begin(), s.errors().end());
+    return device;
+  }
+  device.device = entry->make(slot, s);
+  device.baud = static_cast<int>(s.integer("baud", 0));
+  close(s);
+  return device;
+}
+
+void Reader::read_sensors(const toml::table& root) {
+  const toml::array* const list = root.get("sensor") == nullptr ? nullptr : root.get("sensor")->as_array();
+  const std::size_t count = list == nullptr ? 0 : list->size();
+  if (count != kSensors) {
+    complain(list == nullptr ? 1 : static_cast<int>(list->source().begin.line),
+             fmt::format("four [[sensor]] sections are needed, s1 to s4 in this order; found {}", count));
+    if (count == 0) return;
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(count, kSensors); ++i) {
+    const toml::table* const table = list->get(i)->as_table();
+    const std::string name = fmt::format("s{}", i + 1);
+    if (table == nullptr) {
+      complain(static_cast<int>(list->get(i)->source().begin.line), "a [[sensor]] must be a section");
+      continue;
+    }
+    config_.sensors.at(i) =
+        read_device(to_settings(*table, "[[sensor]] " + name), name, Role::sensor, static_cast<int>(i));
+  }
+}
+
+void Reader::refuse_unknown_sections(const toml::table& root) {
+  for (const auto& [key, node] : root) {
+    if (std::find(kSections.begin(), kSections.end(), key.str()) == kSections.end()) {
+      complain(static_cast<int>(key.source().begin.line),
+               fmt::format("unknown section '{}'; there are: {}", key.str(), fmt::join(kSections, ", ")));
+    }
+  }
+}
+
+void Reader::read(const toml::table& root) {
+  refuse_unknown_sections(root);
+  read_rig(root);
+  read_sensors(root);
+  if (const toml::node* table = root.get("table"); table != nullptr && table->is_table()) {
+    config_.table = read_device(to_settings(*table->as_table(), "[table]"), "table", Role::table, 0);
+  } else {
+    complain(1, "the [table] section is missing: which turntable, on which port?");
+  }
+  if (const toml::node* scalar = root.get("scalar"); scalar != nullptr && scalar->is_table()) {
+    config_.scalar = read_device(to_settings(*scalar->as_table(), "[scalar]"), "scalar", Role::scalar, 0);
+  }
+  read_site(root);
+  read_run(root);
+  read_service(root);
+}
+
+std::vector<drivers::SettingError> Reader::take_errors() {
+  std::stable_sort(errors_.begin(), errors_.end(),
+                   [](const auto& a, const auto& b) { return a.line < b.line; });
+  return std::move(errors_);
+}
+
+}  // namespace
+
+tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file) {
+  Config config;
+  config.file = file;
+  toml::table root;
+  try {
+    root = toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    return tl::unexpected(ConfigErrors{{fmt::format("{}:{}:{}: {}", file, error.source().begin.line,
+                                                    error.source().begin.column, error.description())}});
+  }
+  config.text = std::move(text);
+  Reader reader(config);
+  reader.read(root);
+  ConfigErrors errors;
+  for (const auto& [line, message] : reader.take_errors()) {
+    errors.lines.push_back(fmt::format("{}:{}: {}", file, line, message));
+  }
+  if (!errors.lines.empty()) return tl::unexpected(std::move(errors));
+  return config;
+}
+
+tl::expected<Config, ConfigErrors> load_config(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) {
+    return tl::unexpected(ConfigErrors{{fmt::format(
+        "{}: cannot be read; name a configuration with --config (a commented one is systemd/mgtd.toml)",
+        path)}});
+  }
+  return parse_config(text.str(), path);
+}
+
+}  // namespace mgtd::daemon

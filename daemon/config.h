@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/device.h"
+#include "drivers/settings.h"
+#include "proto/error.h"
+#include "proto/reading.h"
+
+/// What mgtd.toml says. The file is read once at start; every mistake in it is reported at once, with file
+/// and line, and a file with a mistake starts nothing. systemd/mgtd.toml lists every key with its unit and
+/// default.
+namespace mgtd::daemon {
+
+/// A serial port and the device behind it. The device has read and checked its own settings.
+struct DeviceConfig {
+  std::string name;  ///< "s1" .. "s4", "table", "scalar"
+  std::string driver;
+  std::string port;
+  int baud{0};
+  double latency_s{0};  ///< fixed delay between the field and the last byte, beyond the wire time
+  std::shared_ptr<drivers::Device> device;
+};
+
+struct RunDefaults {
+  double step_deg{10};
+  int random{121};
+  int revisits{24};
+  double dwell_short_s{4};
+  double dwell_long_s{8};
+  double settle_min_s{0.5};
+  double settle_max_s{30};
+  double preflight_s{5};
+  int retries{3};
+  std::uint64_t seed{1};
+};
+
+struct Config {
+  std::string file;
+  std::string text;  ///< as read: kept in every run file
+  std::string rig_name{"rig"};
+  double baseline_m{0.4};
+  double rate_hz{50};  ///< of the epochs; every sensor must deliver it
+  std::array<DeviceConfig, kSensors> sensors;
+  DeviceConfig table;
+  std::optional<DeviceConfig> scalar;
+
+  std::optional<double> field_nT;  ///< when no scalar reference is there
+  double field_sd_nT{0};
+  double table_sd_deg{0.1};
+  std::optional<double> inclination_deg, declination_deg;
+
+  RunDefaults run;
+  std::string store_dir{"/var/lib/mgtd"};
+  bool journal{true};
+  std::string stream_tcp{"127.0.0.1:7450"};
+  std::string stream_unix{"/run/mgtd/stream.sock"};
+  std::string control_unix{"/run/mgtd/control.sock"};
+  int control_mode{0660};
+  std::string log_level{"info"};
+  double speed_up{1};
+};
+
+/// All mistakes of a configuration, in the order of their lines, ready to print: "mgtd.toml:12: ...".
+struct ConfigErrors {
+  std::vector<std::string> lines;
+};
+
+[[nodiscard]] tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file);
+[[nodiscard]] tl::expected<Config, ConfigErrors> load_config(const std::string& path);
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <toml++/toml.h>
+#include <string>
+
+#include "drivers/settings.h"
+
+/// One TOML table as Settings: nested tables flattened with dots, every value with its line.
+namespace mgtd::daemon {
+
+/// Values that Settings has no type for (dates, mixed lists, tables in lists) are objected to by name.
+[[nodiscard]] drivers::Settings to_settings(const toml::table& table, std::string section);
+
+}  // namespace mgtd::daemon
