@@ -1,9 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
+#include "daemon/cli/command.h"
+
+namespace {
+
+constexpr const char* kDescription =
+    "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
+    "Live (talks to mgtd):     status, watch, run, calibrations\n"
+    "Offline (files):          fit, apply, import, export, check-config\n\n"
+    "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
+    "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
+    "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"mgt: the operator's tool"};
+  using namespace mgtd::cli;
+  CLI::App app{kDescription, "mgt"};
   app.set_version_flag("--version", MGTD_VERSION);
-  CLI11_PARSE(app, argc, argv);
-  return 0;
+  app.require_subcommand(1);
+  app.fallthrough();
+  Session session;
+  session.control_socket = "/run/mgtd/control.sock";
+  app.add_option("--socket", session.control_socket, "control socket of the daemon")
+      ->envname("MGTD_CONTROL")
+      ->capture_default_str();
+  add_check_config(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  }
+  return session.exit_code;
 }

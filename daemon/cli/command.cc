@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace mgtd::cli {
+namespace {
+
+constexpr std::string_view kind(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::usage:
+      return "usage";
+    case ErrorCode::bad_input:
+      return "bad_input";
+    case ErrorCode::refused:
+      return "refused";
+    case ErrorCode::io:
+      return "io";
+    case ErrorCode::unreachable:
+      return "unreachable";
+    case ErrorCode::protocol:
+      return "protocol";
+    case ErrorCode::state:
+      return "state";
+    case ErrorCode::internal:
+      return "internal";
+  }
+  return "internal";
+}
+
+}  // namespace
+
+void print_json(const nlohmann::json& object) { fmt::print("{}\n", object.dump()); }
+
+int report(const Session& session, const Error& error) {
+  fmt::print(stderr, "mgt: {}\n", error.message);
+  if (!error.remedy.empty()) fmt::print(stderr, "     {}\n", error.remedy);
+  if (session.json) {
+    print_json(
+        {{"error", {{"code", kind(error.code)}, {"message", error.message}, {"remedy", error.remedy}}}});
+  }
+  return exit_code(error.code);
+}
+
+Result<std::string> read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf()))) {
+    return fail(ErrorCode::bad_input, fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
+  }
+  return text.str();
+}
+
+Result<void> write_file(const std::string& path, const std::string& content) {
+  const std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
+  {
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    if (!(out << content << std::flush)) {
+      const std::string why = std::strerror(errno);
+      std::remove(temporary.c_str());
+      return fail(ErrorCode::io, fmt::format("{} cannot be written: {}", path, why),
+                  "choose another place with -o");
+    }
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    const std::string why = std::strerror(errno);
+    std::remove(temporary.c_str());
+    return fail(ErrorCode::io, fmt::format("{} cannot be written: {}", path, why),
+                "choose another place with -o");
+  }
+  return {};
+}
+
+CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,
+                      std::function<int()> body) {
+  CLI::App* const command = app.add_subcommand(name, summary);
+  command->add_flag("--json", session.json, "one JSON object on stdout, messages on stderr");
+  command->callback([&session, body = std::move(body)] { session.exit_code = body(); });
+  return command;
+}
+
+}  // namespace mgtd::cli

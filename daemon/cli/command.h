@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "proto/error.h"
+
+/// What every command of `mgt` shares: the --json switch, the control socket, and how results and errors
+/// leave. Results go to stdout, everything else to stderr; with --json stdout carries exactly one JSON
+/// object.
+namespace mgtd::cli {
+
+struct Session {
+  bool json{false};
+  std::string control_socket;
+  int exit_code{0};
+};
+
+/// Prints the error with its remedy on stderr (with --json also {"error":{...}} on stdout); returns the exit
+/// code of its kind.
+int report(const Session& session, const Error& error);
+
+/// One JSON object on stdout.
+void print_json(const nlohmann::json& object);
+
+/// Writes a whole file by way of a temporary one, so that a failure leaves the old file untouched.
+[[nodiscard]] Result<void> write_file(const std::string& path, const std::string& content);
+[[nodiscard]] Result<std::string> read_file(const std::string& path);
+
+/// Adds a subcommand whose body runs after parsing; its return value is the exit code.
+CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,
+                      std::function<int()> body);
+
+void add_apply(CLI::App& app, Session& session);
+void add_calibrations(CLI::App& app, Session& session);
+void add_check_config(CLI::App& app, Session& session);
+void add_export(CLI::App& app, Session& session);
+void add_fit(CLI::App& app, Session& session);
+void add_import(CLI::App& app, Session& session);
+void add_run(CLI::App& app, Session& session);
+void add_status(CLI::App& app, Session& session);
+void add_watch(CLI::App& app, Session& session);
+
+}  // namespace mgtd::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/progress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mgtd::cli {
+
+std::string duration_text(double seconds) {
+  const auto total = std::llround(std::max(0.0, seconds));
+  if (total < 60) return fmt::format("{} s", total);
+  if (total < 3600) return fmt::format("{} min {:02} s", total / 60, total % 60);
+  return fmt::format("{} h {:02} min", total / 3600, total % 3600 / 60);
+}
+
+std::string progress_line(const RunStatus& status, int width) {
+  constexpr int kBar = 24;
+  const double share = status.poses > 0 ? static_cast<double>(status.pose) / status.poses : 0.0;
+  const int filled = static_cast<int>(std::lround(share * kBar));
+  std::string line =
+      fmt::format("[{:#<{}}{:.<{}}] {:>4}/{}", "", filled, "", kBar - filled, status.pose, status.poses);
+  if (!status.set.empty()) line += fmt::format("  {}", status.set);
+  line += fmt::format("  {}", name(status.state));
+  if (status.retries > 0) line += fmt::format("  {} repeated", status.retries);
+  if (is_active(status.state)) line += fmt::format("  {} left", duration_text(status.remaining_s));
+  if (static_cast<int>(line.size()) > width) line.resize(static_cast<std::size_t>(std::max(width, 0)));
+  return line;
+}
+
+}  // namespace mgtd::cli

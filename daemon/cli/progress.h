@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "proto/run_status.h"
+
+/// How a run looks to someone who waits for it.
+namespace mgtd::cli {
+
+/// One line of at most `width` characters: bar, counts, time left, what is happening now.
+///   [#########...........]  70/157  random  dwelling   4 min 10 s left
+[[nodiscard]] std::string progress_line(const RunStatus& status, int width);
+
+/// "4 min 10 s", "12 s", "1 h 03 min".
+[[nodiscard]] std::string duration_text(double seconds);
+
+}  // namespace mgtd::cli
