@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "proto/epoch.h"
+#include "proto/error.h"
+#include "proto/pose.h"
+#include "proto/time.h"
+
+/// One dwell: epochs while the table stood still, in; one row of the pose table, out.
+///
+/// mean and sd of one sample per axis over the n epochs whose time lies in the dwell;
+///     n_eff = n (1 - r) / (1 + r),   r the lag-1 autocorrelation pooled over the 12 axes (AR(1)), not below
+///     0;
+/// scalar: mean of the good readings, f_sd = standard uncertainty of that mean; temperatures: means.
+/// What makes a pose unusable is an Error of pose(): too many gaps, saturation, a sensor whose value stands
+/// still.
+namespace mgtd::daemon {
+
+struct DwellConfig {
+  double length_s{5};
+  double rate_hz{50};         ///< epochs expected per second
+  double max_gap_share{0.2};  ///< of the expected epochs
+  double max_saturated_share{0};
+  bool frozen_check{true};  ///< off for instruments whose resolution is coarser than their noise
+  double scalar_sd_nT{kDefaultScalarSd_nT};  ///< of one scalar reading, until its own scatter says otherwise
+};
+
+/// Where and when the dwell is, as the run knows it.
+struct DwellPlace {
+  int number{0};
+  std::string set;
+  std::optional<TableAngles> angles;
+  Stamp run_start;                 ///< origin of t_s
+  std::optional<Instant> stopped;  ///< when the table came to rest
+  std::optional<int> mount, sense;
+};
+
+/// Progress and quality, for the operator.
+struct DwellQuality {
+  std::size_t epochs{0};
+  std::size_t missing{0};  ///< of those expected so far
+  std::size_t saturated{0};
+  std::array<std::size_t, kSensors>
+      repeats{};  ///< successive epochs with all three axes of a sensor exactly equal
+  double gap_share{0};
+};
+
+class Dwell {
+ public:
+  Dwell(DwellConfig config, Instant begin);
+
+  /// Epochs and readings before begin or after the end are ignored.
+  void add(const EpochOrGap& item);
+  void add(const ScalarReading& reading);
+  /// The epochs of the whole dwell are in, or will not come (`grace` after its end).
+  [[nodiscard]] bool complete(Instant now, Duration grace = std::chrono::seconds{3}) const;
+  [[nodiscard]] Instant begin() const { return begin_; }
+  [[nodiscard]] Instant end() const { return end_; }
+
+  [[nodiscard]] DwellQuality quality() const;
+  /// The row, or why there is none (ErrorCode::refused): the pose is to be measured again.
+  [[nodiscard]] Result<Pose> pose(const DwellPlace& place) const;
+
+ private:
+  using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
+  [[nodiscard]] bool inside(Instant t) const { return t >= begin_ && t < end_; }
+  [[nodiscard]] Result<void> acceptable() const;
+  void fill_readings(Pose& pose) const;
+  void fill_scalar(Pose& pose) const;
+
+  DwellConfig config_;
+  Instant begin_, end_;
+  std::vector<Sample> y_nT_;
+  std::vector<std::uint64_t> seq_;
+  std::vector<double> f_nT_;
+  std::array<double, kSensors> T_sum_degC_{};
+  std::array<std::size_t, kSensors> T_count_{};
+  std::array<std::size_t, kSensors> repeats_{};
+  std::size_t saturated_{0};
+  bool past_end_{false};
+  std::optional<Stamp> first_;  ///< relates monotonic and wall time
+};
+
+}  // namespace mgtd::daemon

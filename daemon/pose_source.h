@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "daemon/run_header.h"
+#include "proto/error.h"
+#include "proto/pose.h"
+
+/// The RUN argument of every offline command: a run file or a pose table in CSV, told apart by content.
+namespace mgtd::daemon {
+
+struct PoseSource {
+  PoseTable table;
+  std::optional<RunHeader> header;  ///< of a run file
+};
+
+[[nodiscard]] Result<PoseSource> read_run(const std::filesystem::path& path);
+[[nodiscard]] Result<PoseTable> read_poses(const std::filesystem::path& path);
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "proto/reading.h"
+#include "proto/time.h"
+
+/// What a run file says about itself before the first pose; never changed afterwards.
+namespace mgtd::daemon {
+
+/// What a later fit of the same file must know to give the same answer. Empty: not stated.
+struct RunOptions {
+  double baseline_m{0.4};
+  std::optional<double> field_nT, field_sd_nT;  ///< of the site, when no scalar reference is in the poses
+  std::optional<double> inclination_rad, declination_rad;
+  std::optional<double> table_sd_rad;
+  std::array<std::string, kSensors> sensor_names{"s1", "s2", "s3", "s4"};
+};
+
+struct RunHeader {
+  std::string run_id;  ///< made by the caller; also the stem of the file's name
+  std::string rig;
+  WallTime started_utc;  ///< origin of t_s
+  std::string software;  ///< "mgtd 0.1.0"
+  std::string config;    ///< text of the configuration as read; empty for an import
+  std::string plan;      ///< JSON
+  std::uint64_t seed{0};
+  std::string source;  ///< "measured", or the file it was imported from
+  RunOptions options;
+};
+
+}  // namespace mgtd::daemon

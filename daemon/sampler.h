@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/clock_model.h"
+#include "proto/epoch.h"
+#include "proto/reading.h"
+#include "proto/time.h"
+
+/// Four free-running streams of readings to epochs on one clock.
+///
+/// The grid is the samples of the reference sensor (s1). Each other sensor is interpolated linearly between
+/// its two real neighbouring samples, on sample times from its own clock model; where it lies closer to one
+/// sample than matters, that sample is taken as it is. Interpolation halves white noise at worst (weights f,
+/// 1-f) and correlates neighbours. An epoch leaves with the last sample it needs. Where a needed sample was
+/// lost, rejected or never came, the epoch is a Gap that says whose and why: nothing is extrapolated, nothing
+/// bridged. Epochs and gaps tile the sequence without hole or overlap.
+///
+/// skew_bound_s = what the two worst clock models may be off + the largest shift left uninterpolated.
+/// Constant delays (filter group delay, wire time) must be configured; no software sees them.
+namespace mgtd::daemon {
+
+struct SamplerConfig {
+  double rate_hz{50};
+  std::array<double, kSensors> latency_s{};  ///< sample instant to first byte: filter group delay, conversion
+  std::array<double, kSensors> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
+  double silence_s{
+      1.0};  ///< a sensor that sent nothing for so long is silent; multiply by a simulation's speed-up
+  double clock_window_s{120};
+  double max_drift{2e-3};  ///< of a device's rate against rate_hz, relative
+  std::uint64_t settle_samples{100};
+  double negligible_shift{2e-3};  ///< of a period: no interpolation below it (nor below the clock bound)
+};
+
+struct SensorStreamHealth {
+  std::uint64_t samples{0};
+  std::uint64_t lost{0};          ///< frames missing in the device's own count, or found missing by time
+  std::uint64_t duplicates{0};    ///< dropped: number not above the last one
+  std::uint64_t reopened{0};      ///< counter restarted
+  std::uint64_t clock_breaks{0};  ///< the sample times jumped against the host clock; the model starts over
+  std::uint64_t gaps{0};          ///< epochs not measured because of this sensor
+  ClockState clock;
+};
+
+struct SamplerHealth {
+  std::uint64_t epochs{0};
+  std::uint64_t gaps{0};  ///< epochs not measured
+  std::array<SensorStreamHealth, kSensors> sensors;
+};
+
+class Sampler {
+ public:
+  explicit Sampler(SamplerConfig config);
+
+  /// Appends to `out` whatever became complete. Readings of one sensor come in order of arrival.
+  void push(const FieldReading& reading, std::vector<EpochOrGap>& out);
+  /// Remembered and attached to later epochs.
+  void push(const TemperatureReading& reading);
+  /// The device was opened again: its counter and clock start over, its epochs continue in time.
+  void reopened(int slot);
+  /// Time passes: epochs whose samples can no longer come become gaps. Call every 20-50 ms.
+  void advance(Instant now, std::vector<EpochOrGap>& out);
+
+  [[nodiscard]] SamplerHealth health() const;
+  /// Number of the next epoch.
+  [[nodiscard]] std::uint64_t next_seq() const { return next_seq_; }
+
+ private:
+  struct Sample {
+    std::int64_t k{-1};
+    Eigen::Vector3d y_nT;
+    Flags flags;
+  };
+  struct Stream {
+    explicit Stream(ClockModel::Config clock_config, std::size_t capacity)
+        : clock(clock_config), ring(capacity) {}
+    ClockModel clock;
+    std::vector<Sample> ring;  ///< by k modulo its size, a power of two
+    std::int64_t first_k{0};   ///< of this opening
+    std::int64_t last_k{-1};
+    std::uint64_t last_seq{0};
+    std::optional<double> last_device_time_s;
+    double last_arrival_s{0};
+    double late_since_s{
+        0};  ///< arrival of the first of the samples that all came more than half a period late
+    std::uint64_t late{0};
+    double late_least_s{0};
+    bool live{false};  ///< has delivered since it was opened
+    bool restarted{false};
+    SensorStreamHealth health;
+
+    [[nodiscard]] const Sample* find(std::int64_t k) const;
+  };
+  enum class Need { ready, wait, lost };
+  struct Pick {
+    Eigen::Vector3d y_nT;
+    Flags flags;
+    double shift_s{0};
+  };
+
+  [[nodiscard]] double seconds(Instant t) const { return to_seconds(t - *origin_); }
+  [[nodiscard]] std::int64_t number(Stream& s, const FieldReading& r, double sample_s);
+  [[nodiscard]] std::int64_t claimed_step(const Stream& s, const FieldReading& r) const;
+  void restart(Stream& s, double sample_s);
+  void watch_lateness(Stream& s, double arrival_s, double sample_s);
+  void settle_pending(std::vector<EpochOrGap>& out);
+  Need pick(int slot, double t_s, Pick& to) const;
+  [[nodiscard]] bool assemble(std::int64_t k, std::vector<EpochOrGap>& out);
+  void fill_reference(double until_s, std::vector<EpochOrGap>& out);
+  void gap(std::int64_t from_k, std::int64_t to_k, int slot, const char* why, std::vector<EpochOrGap>& out);
+  void flush_gap(std::vector<EpochOrGap>& out);
+  [[nodiscard]] Stamp stamp(double t_s) const;
+
+  SamplerConfig config_;
+  std::vector<Stream> streams_;
+  std::array<double, kSensors> T_degC_;
+  std::optional<Instant> origin_;
+  WallTime origin_wall_{};  ///< wall clock at origin_, by the newest stamp
+  double now_s_{0};         ///< latest time known
+  std::int64_t next_k_{0};  ///< reference index of the next epoch to leave
+  std::uint64_t next_seq_{0};
+  std::optional<Gap> open_gap_;
+  double open_gap_since_s_{0};
+  SamplerHealth health_;
+};
+
+}  // namespace mgtd::daemon
