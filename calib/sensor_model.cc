@@ -2,34 +2,16 @@
 #include "calib/sensor_model.h"
 
 #include <Eigen/LU>
-#include <cmath>
+
+#include "calib/sensor_equations.h"
 
 namespace mgtd::calib {
 
-Eigen::Matrix3d rotation_x(double a) {
-  Eigen::Matrix3d r;
-  r << 1, 0, 0, 0, std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a);
-  return r;
-}
+Eigen::Matrix3d rotation_x(double alpha_rad) { return turn_x(alpha_rad); }
+Eigen::Matrix3d rotation_y(double beta_rad) { return turn_y(beta_rad); }
+Eigen::Matrix3d rotation_z(double gamma_rad) { return turn_z(gamma_rad); }
 
-Eigen::Matrix3d rotation_y(double b) {
-  Eigen::Matrix3d r;
-  r << std::cos(b), 0, -std::sin(b), 0, 1, 0, std::sin(b), 0, std::cos(b);
-  return r;
-}
-
-Eigen::Matrix3d rotation_z(double g) {
-  Eigen::Matrix3d r;
-  r << std::cos(g), std::sin(g), 0, -std::sin(g), std::cos(g), 0, 0, 0, 1;
-  return r;
-}
-
-Eigen::Matrix3d SensorModel::response() const {
-  Eigen::Matrix3d a;
-  a << std::cos(theta_rad) * std::cos(phi_rad), std::sin(theta_rad) * std::cos(phi_rad), std::sin(phi_rad), 0,
-      std::cos(psi_rad), std::sin(psi_rad), 0, 0, 1;
-  return scale.asDiagonal() * a;
-}
+Eigen::Matrix3d SensorModel::response() const { return response_matrix(theta_rad, phi_rad, psi_rad, scale); }
 
 Eigen::Matrix3d SensorModel::R_PS() const {
   return rotation_z(gamma_rad) * rotation_y(beta_rad) * rotation_x(alpha_rad) * mounting;

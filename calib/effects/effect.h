@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/dual.h"
+#include "proto/error.h"
+#include "proto/pose.h"
+
+/// One physical effect: an exact term with named coefficients, acting at exactly one level of the measurement model.
+///
+///     site      B(x)  = B0 + sum term(x)              x = R' r_i, metres from the array's centre, site frame; nT
+///     table     state = angles + sum term(state)      azimuth, pitch, roll, tilt_x, tilt_y of the azimuth axis; rad
+///     platform  b_i   = R B(R' r_i) + sum term(b, g)  g = unit gravity in the platform frame; nT
+///     sensor    v_i   = C_i A_i R_i' b_i              (sensor_model.h; has no terms of its own)
+///     axis      y_i   = v_i + I_i + sum term(v)       nT at nominal scale
+///
+/// Terms of one level see the same input and add up. Derivatives come from dual numbers: an effect writes its equation
+/// once, templated on the scalar, and derives from EffectOf. With all coefficients zero a term must vanish.
+namespace mgtd::calib {
+
+enum class Level { site, table, platform, axis };
+[[nodiscard]] std::string_view to_string(Level level);
+
+/// Inputs a level hands to its effects, and outputs it takes from them.
+[[nodiscard]] constexpr int inputs_of(Level level) {
+  return level == Level::platform ? 6 : level == Level::table ? 5 : 3;
+}
+[[nodiscard]] constexpr int outputs_of(Level level) { return level == Level::table ? 5 : 3; }
+
+struct Coefficient {
+  std::string name;  ///< "Gxx", "s3.z", ...
+  std::string unit;  ///< as printed: "nT/m", "nT/degC"
+  double typical{1}; ///< size that occurs in practice, same unit: scale of steps and differences, never a limit
+  double prior_sd{0};  ///< of a Gaussian prior about zero; 0: no prior
+};
+
+/// What is known of the pose at which a term is evaluated.
+struct Conditions {
+  const Pose& pose;
+  double t_h{0};  ///< middle of the dwell since the run's start, hours
+  const Pose* previous{nullptr};  ///< the pose before it; null for the first
+};
+
+inline constexpr int kJetSlots = 20;  ///< inputs of a level (at most 6) and coefficients at one sensor (at most 14)
+using Jet = Dual<kJetSlots>;
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual Level level() const = 0;
+  [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
+  /// Indices of the coefficients that act at sensor `sensor`, in the order `c` has in term().
+  [[nodiscard]] virtual std::span<const int> at(int sensor) const = 0;
+  /// What the term needs of the poses is there; refuses with what is missing.
+  [[nodiscard]] virtual Result<void> check(const PoseTable& table) const = 0;
+  virtual void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
+                    std::span<double> out) const = 0;
+  virtual void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,
+                    std::span<Jet> out) const = 0;
+};
+
+/// Derive as `class Mine : public EffectOf<Mine>` and write
+///     template <class S> void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
+///                                      std::span<S> out) const;
+/// which assigns every element of `out`.
+template <class Self>
+class EffectOf : public Effect {
+ public:
+  void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
+            std::span<double> out) const final {
+    static_cast<const Self&>(*this).template equation<double>(at, sensor, in, c, out);
+  }
+  void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,
+            std::span<Jet> out) const final {
+    static_cast<const Self&>(*this).template equation<Jet>(at, sensor, in, c, out);
+  }
+};
+
+}  // namespace mgtd::calib

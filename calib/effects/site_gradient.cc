@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effects/site_gradient.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace mgtd::calib {
+namespace {
+constexpr double kTypical_nT_per_m = 20;  // geology and buildings within tens of metres
+constexpr std::array<int, 5> kAll{0, 1, 2, 3, 4};
+}  // namespace
+
+SiteGradient::SiteGradient() {
+  for (const char* name : {"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"}) {
+    coefficients_.push_back({.name = name, .unit = "nT/m", .typical = kTypical_nT_per_m});
+  }
+}
+
+std::span<const int> SiteGradient::at(int) const { return kAll; }
+
+Result<void> SiteGradient::check(const PoseTable& table) const {
+  for (const Pose& pose : table.poses) {
+    if (!pose.angles()) {
+      return fail(ErrorCode::refused,
+                  fmt::format("site.gradient turns with the table, but pose {} has no complete table angles", pose.number),
+                  "give azimuth_deg, pitch_deg and roll_deg of every pose, or fit without site.gradient");
+    }
+  }
+  return {};
+}
+
+}  // namespace mgtd::calib

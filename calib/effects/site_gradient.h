@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/effects/effect.h"
+
+/// `site.gradient`: the field of the site is not uniform over the cross.
+///
+///     B(x) = B0 + G x,   G symmetric and traceless (no currents, no divergence), site frame
+///     coefficients Gxx, Gyy, Gxy, Gxz, Gyz in nT/m;  Gzz = -(Gxx + Gyy)
+///
+/// Constant in time. Needs the attitude, hence the table angles, of every pose it acts on.
+namespace mgtd::calib {
+
+class SiteGradient final : public EffectOf<SiteGradient> {
+ public:
+  SiteGradient();
+  [[nodiscard]] std::string_view name() const override { return "site.gradient"; }
+  [[nodiscard]] Level level() const override { return Level::site; }
+  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] std::span<const int> at(int sensor) const override;
+  [[nodiscard]] Result<void> check(const PoseTable& table) const override;
+
+  template <class S>
+  void equation(const Conditions&, int, std::span<const S> x, std::span<const S> g, std::span<S> out) const {
+    out[0] = g[0] * x[0] + g[2] * x[1] + g[3] * x[2];
+    out[1] = g[2] * x[0] + g[1] * x[1] + g[4] * x[2];
+    out[2] = g[3] * x[0] + g[4] * x[1] - (g[0] + g[1]) * x[2];
+  }
+
+ private:
+  std::vector<Coefficient> coefficients_;
+};
+
+}  // namespace mgtd::calib

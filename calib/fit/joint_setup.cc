@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/sensor_equations.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kMinPoses = 12;
+/// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
+constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
+
+double hours_of(const Pose& pose) { return pose.t_s.value_or(0) / 3600; }
+
+JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field) {
+  JointPose out;
+  out.pose = &pose;
+  out.t_h = hours_of(pose);
+  for (int i = 0; i < kSensors; ++i) out.y_nT.segment<3>(3 * i) = pose.y_nT[static_cast<std::size_t>(i)];
+  out.weight.setConstant(1 / kStartNoise_nT);
+  if (common_field) {
+    out.f_weight = 1 / kCommonFieldSpread_nT;
+  } else {
+    out.f_nT = *pose.f_nT;
+    out.f_weight = 1 / pose.f_sd_nT.value_or(kDefaultScalarSd_nT);
+  }
+  if (const auto angles = pose.angles()) {
+    out.has_angles = true;
+    out.T = table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
+    out.attitude_weight = 1 / options.table_sd_rad;
+  }
+  return out;
+}
+
+LinearPrior mean_of(const JointProblem& problem, std::initializer_list<int> parameters, double target, double weight) {
+  LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = weight};
+  const double share = 1.0 / (kSensors * static_cast<double>(parameters.size()));
+  for (int i = 0; i < kSensors; ++i) {
+    for (const int p : parameters) prior.row[kSensorParameters * i + p] = share;
+  }
+  return prior;
+}
+
+LinearPrior about_slot(const JointProblem& problem, int slot, double target, double sd) {
+  LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = 1 / sd};
+  prior.row[slot] = 1;
+  return prior;
+}
+
+void add_coefficient_priors(JointProblem& problem) {
+  int slot = kEffectSlot;
+  for (const EffectPtr& effect : problem.effects) {
+    for (const Coefficient& c : effect->coefficients()) {
+      if (c.prior_sd > 0) problem.priors.push_back(about_slot(problem, slot, 0, c.prior_sd));
+      ++slot;
+    }
+  }
+}
+
+}  // namespace
+
+Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options) {
+  JointProblem problem;
+  problem.geometry = options.geometry;
+  problem.effects = options.effects;
+  for (const EffectPtr& effect : options.effects) {
+    if (const auto ok = effect->check(table); !ok) return tl::unexpected(ok.error());
+  }
+  const auto fitted = [](const Pose& pose) { return pose.set != "check"; };
+  const auto total = std::count_if(table.poses.begin(), table.poses.end(), fitted);
+  const auto with_f = std::count_if(table.poses.begin(), table.poses.end(), [&](const Pose& p) { return fitted(p) && p.f_nT; });
+  if (total < kMinPoses) {
+    return fail(ErrorCode::refused, fmt::format("{} poses to fit; the joint fit needs at least {}", total, kMinPoses),
+                "measure at least 12 poses in general position, better 60");
+  }
+  if (with_f != 0 && with_f != total) {
+    return fail(ErrorCode::refused, fmt::format("{} of {} poses have a scalar reference f_nT", with_f, total),
+                "give f_nT for every pose, or leave the column out and give the field with --field");
+  }
+  problem.common_field = with_f == 0;
+  const Pose* previous = nullptr;
+  for (const Pose& pose : table.poses) {
+    if (fitted(pose)) {
+      problem.poses.push_back(joint_pose(pose, options, problem.common_field));
+      problem.poses.back().previous = previous;
+      problem.has_angles = problem.has_angles || problem.poses.back().has_angles;
+    }
+    previous = &pose;
+  }
+  return problem;
+}
+
+Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
+  Gauge gauge{.angles = angle_coverage(problem), .direction_known = options.inclination_rad && options.declination_rad,
+              .scale_known = !problem.common_field || options.field_nT.has_value(), .constraints = 0};
+  add_coefficient_priors(problem);
+  if (gauge.direction_known) {
+    const double i = *options.inclination_rad, d = *options.declination_rad;
+    problem.known_direction = Eigen::Vector3d{std::cos(i) * std::cos(d), std::cos(i) * std::sin(d), std::sin(i)};
+    problem.direction_weight = 1 / options.table_sd_rad;
+  }
+  if (gauge.angles == AngleCoverage::none) {
+    for (const int p : {alpha, beta, gamma}) problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
+    gauge.constraints += 3;
+  } else if (gauge.angles == AngleCoverage::one_axis && !gauge.direction_known) {
+    problem.priors.push_back(mean_of(problem, {gamma}, 0, kAngleConstraint));
+    gauge.constraints += 1;
+  }
+  if (!gauge.scale_known) {
+    problem.priors.push_back(mean_of(problem, {cx, cy, cz}, 1, kScaleConstraint));
+    gauge.constraints += 1;
+  } else if (problem.common_field) {
+    problem.priors.push_back(about_slot(problem, kFieldSlot, *options.field_nT, options.field_sd_nT.value_or(kCommonFieldSpread_nT)));
+  }
+  return gauge;
+}
+
+double start_field_nT(const JointProblem& problem, const JointOptions& options) {
+  if (problem.common_field && options.field_nT) return *options.field_nT;
+  double sum = 0;
+  if (!problem.common_field) {
+    for (const JointPose& pose : problem.poses) sum += pose.f_nT;
+    return sum / static_cast<double>(problem.poses.size());
+  }
+  // Readings of unit scale on a sphere about their centre: the spread of all directions together is the radius.
+  Channels mean = Channels::Zero();
+  for (const JointPose& pose : problem.poses) mean += pose.y_nT / static_cast<double>(problem.poses.size());
+  for (const JointPose& pose : problem.poses) sum += (pose.y_nT - mean).squaredNorm() / kSensors;
+  return std::sqrt(sum / static_cast<double>(problem.poses.size()));
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint_start.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <numbers>
+
+#include "calib/fit/ellipsoid.h"
+#include "calib/fit/joint_solver.h"
+#include "calib/fit/orientation.h"
+#include "calib/sensor_equations.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+/// Relative turns within this of one axis leave the origin of the turn about it undecided.
+const double kOneAxis = std::sin(to_rad(1.0));
+
+struct Aligned {
+  std::array<Ellipsoid, kCount> ellipsoids;
+  std::array<Eigen::Matrix3d, kCount> to_first;  ///< sensor frame to the frame of sensor 1, reflections allowed
+  std::vector<Eigen::Vector3d> u;                ///< field of each pose in the frame of sensor 1, mean of the sensors
+};
+
+/// Orthogonal matrix nearest to H; det = +1 when `proper`.
+Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d d = Eigen::Vector3d::Ones();
+  if (proper) d[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * d.asDiagonal() * svd.matrixV().transpose();
+}
+
+Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
+  Aligned out;
+  std::array<std::vector<Eigen::Vector3d>, kCount> b_S_nT;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    std::vector<Eigen::Vector3d> y;
+    for (const JointPose& pose : problem.poses) y.push_back(pose.y_nT.segment<3>(3 * static_cast<int>(i)));
+    const auto fitted = fit_ellipsoid(y, f_nT);
+    if (!fitted) return fail(fitted.error().code, fmt::format("sensor {}: {}", i + 1, fitted.error().message), fitted.error().remedy);
+    out.ellipsoids[i] = *fitted;
+    for (const Eigen::Vector3d& reading : y) b_S_nT[i].push_back(fitted->K * (reading - fitted->offset_nT));
+  }
+  out.u.assign(problem.poses.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < kCount; ++i) {
+    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < out.u.size(); ++k) H += b_S_nT[0][k] * b_S_nT[i][k].transpose();
+    out.to_first[i] = nearest_orthogonal(H, false);
+    for (std::size_t k = 0; k < out.u.size(); ++k) out.u[k] += out.to_first[i] * b_S_nT[i][k] / kSensors;
+  }
+  return out;
+}
+
+/// +1 when the majority of the sensors has the handedness of sensor 1 (ties: sensor 1 decides), else -1.
+double handedness(const Aligned& aligned) {
+  double sum = 0;
+  for (const Eigen::Matrix3d& Q : aligned.to_first) sum += Q.determinant();
+  return sum < -0.5 ? -1 : 1;
+}
+
+struct Placement {
+  Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};  ///< frame of sensor 1 (made right-handed) to the platform, proper
+  Eigen::Vector3d n{0, 0, 1};
+};
+
+/// Maximises tr(Q' sum T_k n u_k'), linear in n and in Q: n is searched on a Fibonacci sphere, then both alternate.
+Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+  std::array<Eigen::Matrix3d, 3> H{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    if (!problem.poses[k].has_angles) continue;
+    for (int j = 0; j < 3; ++j) H[static_cast<std::size_t>(j)] += problem.poses[k].T.col(j) * u[k].normalized().transpose();
+  }
+  const auto best_turn = [&](const Eigen::Vector3d& n) { return nearest_orthogonal(n[0] * H[0] + n[1] * H[1] + n[2] * H[2], true); };
+  const auto pull = [&](const Eigen::Matrix3d& Q) {
+    return Eigen::Vector3d{Q.cwiseProduct(H[0]).sum(), Q.cwiseProduct(H[1]).sum(), Q.cwiseProduct(H[2]).sum()};
+  };
+  if (problem.known_direction) return {best_turn(*problem.known_direction), *problem.known_direction};
+  constexpr int kPoints = 200, kAlternations = 100;
+  Placement best;
+  double best_gain = -1;
+  for (int i = 0; i < kPoints; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kPoints, turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double h = std::sqrt(1 - z * z);
+    const Eigen::Vector3d n{h * std::cos(turn), h * std::sin(turn), z};
+    const Eigen::Matrix3d Q = best_turn(n);
+    if (pull(Q).dot(n) > best_gain) {
+      best_gain = pull(Q).dot(n);
+      best = {Q, n};
+    }
+  }
+  for (int i = 0; i < kAlternations; ++i) {
+    best.n = pull(best.Q).normalized();
+    best.Q = best_turn(best.n);
+  }
+  return best;
+}
+
+/// The axis of the relative turns between poses, and how far they leave it.
+struct TurnAxis {
+  Eigen::Vector3d axis_P{0, 0, 1};
+  double off_axis{0};
+  int poses{0};
+};
+
+TurnAxis turn_axis(const JointProblem& problem) {
+  TurnAxis out;
+  std::optional<Eigen::Matrix3d> first;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  std::vector<Eigen::Vector3d> turns;
+  for (const JointPose& pose : problem.poses) {
+    if (!pose.has_angles) continue;
+    ++out.poses;
+    if (!first) first = pose.T;
+    const Eigen::Quaterniond q(Eigen::Matrix3d(pose.T * first->transpose()));
+    turns.push_back(q.vec());
+    scatter += q.vec() * q.vec().transpose();
+  }
+  out.axis_P = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  for (const Eigen::Vector3d& t : turns) out.off_axis = std::max(out.off_axis, (t - t.dot(out.axis_P) * out.axis_P).norm());
+  return out;
+}
+
+/// Turns the placement about the axis that the angles leave open until sensor 1 stands as upright as it can.
+void turn_upright(const JointProblem& problem, Placement& p) {
+  const TurnAxis turn = turn_axis(problem);
+  const auto about = [&](double a) { return Eigen::AngleAxisd(a, turn.axis_P).toRotationMatrix(); };
+  const double c = (p.Q - turn.axis_P * turn.axis_P.transpose() * p.Q).trace();
+  double s = 0;
+  for (int j = 0; j < 3; ++j) s += Eigen::Vector3d::Unit(j).dot(turn.axis_P.cross(Eigen::Vector3d(p.Q.col(j))));
+  const Eigen::Matrix3d Z = about(std::atan2(s, c));
+  // T n = T' (Z n') must hold with T T_1' about the axis: n moves by T_1' Z T_1.
+  for (const JointPose& pose : problem.poses) {
+    if (!pose.has_angles) continue;
+    p.n = pose.T.transpose() * Z * pose.T * p.n;
+    break;
+  }
+  p.Q = Z * p.Q;
+}
+
+}  // namespace
+
+AngleCoverage angle_coverage(const JointProblem& problem) {
+  const TurnAxis turn = turn_axis(problem);
+  if (turn.poses < 3) return AngleCoverage::none;
+  return turn.off_axis < kOneAxis ? AngleCoverage::one_axis : AngleCoverage::full;
+}
+
+JointState joint_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
+                       const Eigen::Vector3d& direction, double f_nT) {
+  JointState state{.sensors = sensors, .direction = direction, .f_nT = f_nT,
+                   .coefficients = Eigen::VectorXd::Zero(problem.coefficients()), .nuisances = {}};
+  for (const JointPose& pose : problem.poses) {
+    Nuisance x = Nuisance::Zero();
+    if (pose.has_angles) {
+      x[3] = pose.f_weight > 0 && !problem.common_field ? pose.f_nT : f_nT;
+    } else {
+      for (int i = 0; i < kSensors; ++i) x.head<3>() += sensors[static_cast<std::size_t>(i)].correct(pose.y_nT.segment<3>(3 * i)) / kSensors;
+    }
+    state.nuisances.push_back(x);
+  }
+  refit_nuisances(problem, state);
+  return state;
+}
+
+Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
+  auto aligned = align_sensors(problem, f_nT);
+  if (!aligned) return tl::unexpected(aligned.error());
+  const double hand = handedness(*aligned);
+  for (Eigen::Vector3d& u : aligned->u) u *= hand;
+  Placement p;
+  const AngleCoverage coverage = angle_coverage(problem);
+  if (coverage != AngleCoverage::none) p = place(problem, aligned->u);
+  if (coverage == AngleCoverage::one_axis && !problem.known_direction) turn_upright(problem, p);
+  std::array<SensorModel, kSensors> sensors;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    sensors[i] = sensor_from(aligned->ellipsoids[i].K, aligned->ellipsoids[i].offset_nT, p.Q * hand * aligned->to_first[i]);
+  }
+  return joint_state(problem, sensors, p.n, f_nT);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "calib/fit/joint_setup.h"
+
+namespace mgtd::calib {
+namespace {
+/// Below this no fluxgate and no digitiser reads, and weights stay finite on noise-free data.
+constexpr double kNoiseFloor_nT = 1e-4;
+
+void set_weight(double& weight, double sd_nT) {
+  if (weight > 0) weight = 1 / std::max(sd_nT, kNoiseFloor_nT);
+}
+}  // namespace
+
+std::optional<AxisNoise> pooled_sample_noise(const PoseTable& table) {
+  AxisNoise sum = AxisNoise::Zero();
+  double count = 0;
+  for (const Pose& pose : table.poses) {
+    if (!pose.n && !pose.n_eff) return std::nullopt;
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (!pose.sd_nT[i][a]) return std::nullopt;
+        sum(static_cast<int>(i), static_cast<int>(a)) += *pose.sd_nT[i][a] * *pose.sd_nT[i][a];
+      }
+    }
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return AxisNoise((sum / count).cwiseSqrt());
+}
+
+void weight_by_samples(JointProblem& problem, const AxisNoise& sample) {
+  for (JointPose& pose : problem.poses) {
+    const double n = pose.pose->n_eff ? *pose.pose->n_eff : pose.pose->n.value_or(1);
+    for (int c = 0; c < kChannels; ++c) set_weight(pose.weight[c], sample(c / 3, c % 3) / std::sqrt(n));
+  }
+}
+
+void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean) {
+  for (JointPose& pose : problem.poses) {
+    for (int c = 0; c < kChannels; ++c) set_weight(pose.weight[c], pose_mean(c / 3, c % 3));
+  }
+}
+
+}  // namespace mgtd::calib

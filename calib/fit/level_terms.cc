@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/level_terms.h"
+
+#include <array>
+
+namespace mgtd::calib {
+
+LevelTerms::LevelTerms(const std::vector<EffectPtr>& effects, Level level) : level_(level) {
+  int first = 0;
+  for (const EffectPtr& effect : effects) {
+    if (effect->level() == level) entries_.push_back({effect.get(), first});
+    first += static_cast<int>(effect->coefficients().size());
+  }
+}
+
+TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double> in,
+                        const Eigen::VectorXd& coefficients) const {
+  const int inputs = inputs_of(level_), outputs = outputs_of(level_);
+  TermSum total;
+  total.value.setZero(outputs);
+  total.d_input.setZero(outputs, inputs);
+  total.d_coefficient.setZero(outputs, coefficients.size());
+
+  std::array<Jet, TermSum::kMaxInputs> x;
+  for (int i = 0; i < inputs; ++i) x[static_cast<std::size_t>(i)] = Jet::variable(in[static_cast<std::size_t>(i)], i);
+  for (const Entry& entry : entries_) {
+    const std::span<const int> active = entry.effect->at(sensor);
+    std::array<Jet, kJetSlots> c;
+    std::array<Jet, TermSum::kMaxOutputs> out;
+    for (std::size_t j = 0; j < active.size(); ++j) {
+      c[j] = Jet::variable(coefficients[entry.first + active[j]], inputs + static_cast<int>(j));
+    }
+    entry.effect->term(at, sensor, std::span<const Jet>(x.data(), static_cast<std::size_t>(inputs)),
+                       std::span<const Jet>(c.data(), active.size()),
+                       std::span<Jet>(out.data(), static_cast<std::size_t>(outputs)));
+    for (int o = 0; o < outputs; ++o) {
+      const Jet& y = out[static_cast<std::size_t>(o)];
+      total.value[o] += y.v;
+      total.d_input.row(o) += y.d.head(inputs).matrix().transpose();
+      for (std::size_t j = 0; j < active.size(); ++j) {
+        total.d_coefficient(o, entry.first + active[j]) += y.d[inputs + static_cast<int>(j)];
+      }
+    }
+  }
+  return total;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/effects/library.h"
+
+/// The terms of all effects of one level, summed, with their derivatives.
+namespace mgtd::calib {
+
+struct TermSum {
+  static constexpr int kMaxInputs = 6, kMaxOutputs = 5;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxOutputs, 1> value;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs, kMaxInputs> d_input;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs> d_coefficient;  ///< one column per coefficient of the model
+};
+
+/// Effects of a model by level. Coefficients of all effects stand in one vector, in the order of the effects.
+class LevelTerms {
+ public:
+  LevelTerms(const std::vector<EffectPtr>& effects, Level level);
+  [[nodiscard]] bool empty() const { return entries_.empty(); }
+  [[nodiscard]] TermSum sum(const Conditions& at, int sensor, std::span<const double> in,
+                            const Eigen::VectorXd& coefficients) const;
+
+ private:
+  struct Entry {
+    const Effect* effect;
+    int first;  ///< of its coefficients in the vector of all
+  };
+  Level level_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace mgtd::calib

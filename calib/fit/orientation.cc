@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/orientation.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+/// alpha, beta, gamma of A_gamma A_beta A_alpha (eqs. 13-14); beta within 90 degrees.
+Eigen::Vector3d angles_of(const Eigen::Matrix3d& A) {
+  return {std::atan2(-A(2, 1), A(2, 2)), std::asin(std::clamp(A(2, 0), -1.0, 1.0)), std::atan2(-A(1, 0), A(0, 0))};
+}
+
+}  // namespace
+
+Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R) {
+  constexpr std::array<std::array<int, 3>, 6> kRows{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
+  double best_trace = -1;
+  for (const auto& rows : kRows) {
+    Eigen::Matrix3d m = Eigen::Matrix3d::Zero();
+    for (int j = 0; j < 3; ++j) {
+      const int i = rows[static_cast<std::size_t>(j)];
+      m(i, j) = R(i, j) < 0 ? -1 : 1;
+    }
+    const double trace = m.cwiseProduct(R).sum();
+    if (trace > best_trace) {
+      best_trace = trace;
+      best = m;
+    }
+  }
+  return best;
+}
+
+SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT, const Eigen::Matrix3d& R) {
+  const Eigen::Matrix3d M = K.inverse();  // C A, upper triangular
+  SensorModel s;
+  s.scale = {M.row(0).norm(), M.row(1).norm(), M(2, 2)};
+  s.theta_rad = std::atan2(M(0, 1), M(0, 0));
+  s.phi_rad = std::atan2(M(0, 2), std::hypot(M(0, 0), M(0, 1)));
+  s.psi_rad = std::atan2(M(1, 2), M(1, 1));
+  s.offset_nT = offset_nT;
+  s.mounting = nearest_signed_permutation(R);
+  const Eigen::Vector3d a = angles_of(R * s.mounting.transpose());
+  s.alpha_rad = a[0];
+  s.beta_rad = a[1];
+  s.gamma_rad = a[2];
+  return s;
+}
+
+SensorModel turned(const SensorModel& sensor, const Eigen::Matrix3d& Q) {
+  return sensor_from(sensor.response().inverse(), sensor.offset_nT, Q * sensor.R_PS());
+}
+
+}  // namespace mgtd::calib
