@@ -8,7 +8,8 @@
 ///     f(v + sum d_i e_i) = f(v) + f'(v) sum d_i e_i,   e_i e_j = 0
 ///
 /// Works as an Eigen scalar, so that one templated equation gives values (double) and Jacobians (Dual<N>).
-/// Comparisons look at the value only: a branch is differentiated as if it were taken everywhere near the point.
+/// Comparisons look at the value only: a branch is differentiated as if it were taken everywhere near the
+/// point.
 namespace mgtd::calib {
 
 template <int N>
@@ -27,10 +28,26 @@ struct Dual {
     return x;
   }
 
-  Dual& operator+=(const Dual& o) { v += o.v; d += o.d; return *this; }
-  Dual& operator-=(const Dual& o) { v -= o.v; d -= o.d; return *this; }
-  Dual& operator*=(const Dual& o) { d = d * o.v + v * o.d; v *= o.v; return *this; }
-  Dual& operator/=(const Dual& o) { v /= o.v; d = (d - v * o.d) / o.v; return *this; }
+  Dual& operator+=(const Dual& o) {
+    v += o.v;
+    d += o.d;
+    return *this;
+  }
+  Dual& operator-=(const Dual& o) {
+    v -= o.v;
+    d -= o.d;
+    return *this;
+  }
+  Dual& operator*=(const Dual& o) {
+    d = d * o.v + v * o.d;
+    v *= o.v;
+    return *this;
+  }
+  Dual& operator/=(const Dual& o) {
+    v /= o.v;
+    d = (d - v * o.d) / o.v;
+    return *this;
+  }
 
   friend Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
   friend Dual operator+(Dual a, const Dual& b) { return a += b; }
@@ -45,16 +62,24 @@ struct Dual {
 
   friend Dual sin(const Dual& a) { return {std::sin(a.v), std::cos(a.v) * a.d}; }
   friend Dual cos(const Dual& a) { return {std::cos(a.v), -std::sin(a.v) * a.d}; }
-  friend Dual exp(const Dual& a) { const double e = std::exp(a.v); return {e, e * a.d}; }
+  friend Dual exp(const Dual& a) {
+    const double e = std::exp(a.v);
+    return {e, e * a.d};
+  }
   friend Dual log(const Dual& a) { return {std::log(a.v), a.d / a.v}; }
-  friend Dual sqrt(const Dual& a) { const double s = std::sqrt(a.v); return {s, a.d / (2 * s)}; }
+  friend Dual sqrt(const Dual& a) {
+    const double s = std::sqrt(a.v);
+    return {s, a.d / (2 * s)};
+  }
   friend Dual abs(const Dual& a) { return a.v < 0 ? -a : a; }
 };
 
 /// The number without its derivatives, for either scalar.
 [[nodiscard]] inline double value_of(double x) { return x; }
 template <int N>
-[[nodiscard]] double value_of(const Dual<N>& x) { return x.v; }
+[[nodiscard]] double value_of(const Dual<N>& x) {
+  return x.v;
+}
 
 }  // namespace mgtd::calib
 
@@ -64,10 +89,22 @@ struct NumTraits<mgtd::calib::Dual<N>> : NumTraits<double> {
   using Real = mgtd::calib::Dual<N>;
   using NonInteger = Real;
   using Nested = Real;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = N, AddCost = N, MulCost = 2 * N };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = N,
+    AddCost = N,
+    MulCost = 2 * N
+  };
 };
 template <int N, class Op>
-struct ScalarBinaryOpTraits<mgtd::calib::Dual<N>, double, Op> { using ReturnType = mgtd::calib::Dual<N>; };
+struct ScalarBinaryOpTraits<mgtd::calib::Dual<N>, double, Op> {
+  using ReturnType = mgtd::calib::Dual<N>;
+};
 template <int N, class Op>
-struct ScalarBinaryOpTraits<double, mgtd::calib::Dual<N>, Op> { using ReturnType = mgtd::calib::Dual<N>; };
+struct ScalarBinaryOpTraits<double, mgtd::calib::Dual<N>, Op> {
+  using ReturnType = mgtd::calib::Dual<N>;
+};
 }  // namespace Eigen

@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
-/// The equations of sensor_model.h and of the table, written once for values (double) and for derivatives (Dual<N>).
+/// The equations of sensor_model.h and of the table, written once for values (double) and for derivatives
+/// (Dual<N>).
 namespace mgtd::calib {
 
 template <class S>
@@ -45,14 +46,13 @@ template <class S>
   using std::cos, std::sin;
   const S cos_phi = cos(phi);
   Matrix3<S> a;
-  a << c[0] * cos(theta) * cos_phi, c[0] * sin(theta) * cos_phi, c[0] * sin(phi),
-      S(0), c[1] * cos(psi), c[1] * sin(psi),
-      S(0), S(0), c[2];
+  a << c[0] * cos(theta) * cos_phi, c[0] * sin(theta) * cos_phi, c[0] * sin(phi), S(0), c[1] * cos(psi),
+      c[1] * sin(psi), S(0), S(0), c[2];
   return a;
 }
 
-/// A small rotation by the vector w (rad), passive like turn_x(w[0]) to first order and an exact rotation for any w:
-/// the Cayley form, rational and without a singularity at zero. Turns by 2 atan(|w|/2).
+/// A small rotation by the vector w (rad), passive like turn_x(w[0]) to first order and an exact rotation for
+/// any w: the Cayley form, rational and without a singularity at zero. Turns by 2 atan(|w|/2).
 template <class S>
 [[nodiscard]] Matrix3<S> turn_by(const Vector3<S>& w) {
   const S x = w[0] * 0.5, y = w[1] * 0.5, z = w[2] * 0.5;
@@ -64,10 +64,11 @@ template <class S>
   return r;
 }
 
-/// Site frame to platform frame: Rz(azimuth) tilt Ry(pitch) Rx(roll). `tilt` is the wobble of the azimuth axis, zero on
-/// a perfect table.
+/// Site frame to platform frame: Rz(azimuth) tilt Ry(pitch) Rx(roll). `tilt` is the wobble of the azimuth
+/// axis, zero on a perfect table.
 template <class S>
-[[nodiscard]] Matrix3<S> table_rotation(const S& azimuth, const S& pitch, const S& roll, const S& tilt_x, const S& tilt_y) {
+[[nodiscard]] Matrix3<S> table_rotation(const S& azimuth, const S& pitch, const S& roll, const S& tilt_x,
+                                        const S& tilt_y) {
   const Matrix3<S> tilted = turn_by<S>({tilt_x, tilt_y, S(0)}) * turn_y(pitch);
   return turn_z(azimuth) * tilted * turn_x(roll);
 }

@@ -9,16 +9,18 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// One physical effect: an exact term with named coefficients, acting at exactly one level of the measurement model.
+/// One physical effect: an exact term with named coefficients, acting at exactly one level of the measurement
+/// model.
 ///
-///     site      B(x)  = B0 + sum term(x)              x = R' r_i, metres from the array's centre, site frame; nT
-///     table     state = angles + sum term(state)      azimuth, pitch, roll, tilt_x, tilt_y of the azimuth axis; rad
-///     platform  b_i   = R B(R' r_i) + sum term(b, g)  g = unit gravity in the platform frame; nT
-///     sensor    v_i   = C_i A_i R_i' b_i              (sensor_model.h; has no terms of its own)
+///     site      B(x)  = B0 + sum term(x)              x = R' r_i, metres from the array's centre, site
+///     frame; nT table     state = angles + sum term(state)      azimuth, pitch, roll, tilt_x, tilt_y of the
+///     azimuth axis; rad platform  b_i   = R B(R' r_i) + sum term(b, g)  g = unit gravity in the platform
+///     frame; nT sensor    v_i   = C_i A_i R_i' b_i              (sensor_model.h; has no terms of its own)
 ///     axis      y_i   = v_i + I_i + sum term(v)       nT at nominal scale
 ///
-/// Terms of one level see the same input and add up. Derivatives come from dual numbers: an effect writes its equation
-/// once, templated on the scalar, and derives from EffectOf. With all coefficients zero a term must vanish.
+/// Terms of one level see the same input and add up. Derivatives come from dual numbers: an effect writes its
+/// equation once, templated on the scalar, and derives from EffectOf. With all coefficients zero a term must
+/// vanish.
 namespace mgtd::calib {
 
 enum class Level { site, table, platform, axis };
@@ -33,18 +35,20 @@ enum class Level { site, table, platform, axis };
 struct Coefficient {
   std::string name;  ///< "Gxx", "s3.z", ...
   std::string unit;  ///< as printed: "nT/m", "nT/degC"
-  double typical{1}; ///< size that occurs in practice, same unit: scale of steps and differences, never a limit
+  double typical{
+      1};  ///< size that occurs in practice, same unit: scale of steps and differences, never a limit
   double prior_sd{0};  ///< of a Gaussian prior about zero; 0: no prior
 };
 
 /// What is known of the pose at which a term is evaluated.
 struct Conditions {
   const Pose& pose;
-  double t_h{0};  ///< middle of the dwell since the run's start, hours
+  double t_h{0};                  ///< middle of the dwell since the run's start, hours
   const Pose* previous{nullptr};  ///< the pose before it; null for the first
 };
 
-inline constexpr int kJetSlots = 20;  ///< inputs of a level (at most 6) and coefficients at one sensor (at most 14)
+inline constexpr int kJetSlots =
+    20;  ///< inputs of a level (at most 6) and coefficients at one sensor (at most 14)
 using Jet = Dual<kJetSlots>;
 
 class Effect {
@@ -64,7 +68,8 @@ class Effect {
 };
 
 /// Derive as `class Mine : public EffectOf<Mine>` and write
-///     template <class S> void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
+///     template <class S> void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const
+///     S> c,
 ///                                      std::span<S> out) const;
 /// which assigns every element of `out`.
 template <class Self>

@@ -18,7 +18,9 @@ struct Entry {
 };
 
 template <class E>
-EffectPtr make() { return std::make_shared<const E>(); }
+EffectPtr make() {
+  return std::make_shared<const E>();
+}
 
 constexpr std::array kLibrary{Entry{"site.gradient", &make<SiteGradient>}};
 
@@ -31,7 +33,8 @@ std::vector<std::string_view> effect_names() {
 }
 
 Result<EffectPtr> make_effect(std::string_view name) {
-  const auto* found = std::find_if(kLibrary.begin(), kLibrary.end(), [&](const Entry& e) { return e.name == name; });
+  const auto* found =
+      std::find_if(kLibrary.begin(), kLibrary.end(), [&](const Entry& e) { return e.name == name; });
   if (found != kLibrary.end()) return found->make();
   return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", name),
               fmt::format("known effects: {}", fmt::join(effect_names(), ", ")));

@@ -23,7 +23,8 @@ Result<void> SiteGradient::check(const PoseTable& table) const {
   for (const Pose& pose : table.poses) {
     if (!pose.angles()) {
       return fail(ErrorCode::refused,
-                  fmt::format("site.gradient turns with the table, but pose {} has no complete table angles", pose.number),
+                  fmt::format("site.gradient turns with the table, but pose {} has no complete table angles",
+                              pose.number),
                   "give azimuth_deg, pitch_deg and roll_deg of every pose, or fit without site.gradient");
     }
   }

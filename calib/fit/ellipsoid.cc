@@ -12,16 +12,21 @@ namespace {
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 constexpr int kMinPoses = 9;
-/// Smallest spread over largest, over all directions: readings on a plane within this leave the quadric undetermined.
-constexpr double kFlat = 1e-3;
+/// Smallest spread over largest, over all directions: readings on a plane within this leave the quadric
+/// undetermined. One axis of a table that wobbles by 0.1 degree reaches 0.004, tilts of 5 degrees 0.1.
+constexpr double kFlat = 0.02;
 /// Axis ratio beyond which a fitted "ellipsoid" is no fluxgate.
 constexpr double kMaxAxisRatio = 5;
 
 std::optional<Ellipsoid> quadric(const Points& z) {
   Eigen::Matrix<double, Eigen::Dynamic, 9> d(z.rows(), 9);
   const auto x = z.col(0).array(), y = z.col(1).array(), w = z.col(2).array();
-  d.col(0) = x * x; d.col(1) = y * y; d.col(2) = w * w;
-  d.col(3) = 2 * x * y; d.col(4) = 2 * x * w; d.col(5) = 2 * y * w;
+  d.col(0) = x * x;
+  d.col(1) = y * y;
+  d.col(2) = w * w;
+  d.col(3) = 2 * x * y;
+  d.col(4) = 2 * x * w;
+  d.col(5) = 2 * y * w;
   d.rightCols<3>() = z;
   const Eigen::Matrix<double, 9, 1> p = d.householderQr().solve(Eigen::VectorXd::Ones(z.rows()));
   Eigen::Matrix3d q;
@@ -56,11 +61,17 @@ Result<Ellipsoid> fit_ellipsoid(const std::vector<Eigen::Vector3d>& y_nT, double
   for (Eigen::Index k = 0; k < n; ++k) y.row(k) = y_nT[static_cast<std::size_t>(k)];
   const Eigen::RowVector3d mean = y.colwise().mean();
   y.rowwise() -= mean;
-  const Eigen::Vector3d spread = (y.transpose() * y / static_cast<double>(n)).selfadjointView<Eigen::Lower>().eigenvalues().cwiseMax(0).cwiseSqrt();
+  const Eigen::Vector3d spread = (y.transpose() * y / static_cast<double>(n))
+                                     .selfadjointView<Eigen::Lower>()
+                                     .eigenvalues()
+                                     .cwiseMax(0)
+                                     .cwiseSqrt();
   if (!(spread[0] > kFlat * spread[2])) {
-    return fail(ErrorCode::refused,
-                fmt::format("the readings lie on a plane: spread {:.3g} nT across it, {:.3g} nT along it", spread[0], spread[2]),
-                "poses about one axis only do not determine a sensor; turn the rig about a second axis as well");
+    return fail(
+        ErrorCode::refused,
+        fmt::format("the readings lie on a plane: spread {:.3g} nT across it, {:.3g} nT along it", spread[0],
+                    spread[2]),
+        "poses about one axis only do not determine a sensor; turn the rig about a second axis as well");
   }
   const double scale = spread[2];
   const Points z = y / scale;

@@ -9,10 +9,10 @@
 ///
 ///     |K (y - I)| = F,   K upper triangular (eq. 6)
 ///
-/// Linear fit of the quadric z' Q z + l' z = 1 to *centred and scaled* readings z = (y - mean) / spread: the mean of
-/// points on an ellipsoid lies inside it, so the right-hand side keeps its sign however large the offset is. Where the
-/// quadric is not an ellipsoid (poor coverage, outliers), the best sphere is returned and `is_sphere` says so.
-/// A start, not an estimate: noise enters squared and F is taken as constant.
+/// Linear fit of the quadric z' Q z + l' z = 1 to *centred and scaled* readings z = (y - mean) / spread: the
+/// mean of points on an ellipsoid lies inside it, so the right-hand side keeps its sign however large the
+/// offset is. Where the quadric is not an ellipsoid (poor coverage, outliers), the best sphere is returned
+/// and `is_sphere` says so. A start, not an estimate: noise enters squared and F is taken as constant.
 namespace mgtd::calib {
 
 struct Ellipsoid {

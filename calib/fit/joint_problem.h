@@ -9,6 +9,7 @@
 #include "calib/geometry.h"
 #include "calib/sensor_model.h"
 #include "proto/pose.h"
+#include "proto/units.h"
 
 /// What the joint fit observes and what it solves for (method, section 5).
 ///
@@ -16,9 +17,9 @@
 ///     12 readings  y_i = axis(C_i A_i R_i' b_i) + I_i,   b_i = platform(R_k B(R_k' r_i))
 ///      1 scalar    F_k = |B(0)|; without a scalar reference F_k = F, one unknown for all poses
 ///      3 attitude  R_k = turn_by(w_k) T(table angles of k), w_k near 0
-/// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of effects)
-/// and four nuisances a pose: w_k (3) and F_k where B(0) = F_k n; or, for a pose without table angles, the field b_k (3)
-/// itself in the platform frame and one idle slot.
+/// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of
+/// effects) and four nuisances a pose: w_k (3) and F_k where B(0) = F_k n; or, for a pose without table
+/// angles, the field b_k (3) itself in the platform frame and one idle slot.
 namespace mgtd::calib {
 
 inline constexpr int kChannels = 3 * kSensors;
@@ -30,6 +31,9 @@ inline constexpr int kGlobals = kEffectSlot - kSensorBlock;  ///< of every model
 
 using Channels = Eigen::Matrix<double, kChannels, 1>;
 using Nuisance = Eigen::Matrix<double, kNuisances, 1>;
+
+/// Weight of an attitude that is not believed: 30 degrees, enough to keep the turn about the field defined.
+inline constexpr double kLooseAttitude_per_rad = 1 / to_rad(30);
 
 struct JointPose {
   const Pose* pose{nullptr};
@@ -54,9 +58,9 @@ struct JointProblem {
   Geometry geometry;
   std::vector<EffectPtr> effects;
   std::vector<JointPose> poses;
-  bool common_field{false};              ///< no scalar reference: F_k is F within 1/f_weight
-  bool has_angles{false};                ///< at least one pose has table angles
-  std::vector<LinearPrior> priors;       ///< gauge, coefficients, known field
+  bool common_field{false};                        ///< no scalar reference: F_k is F within 1/f_weight
+  bool has_angles{false};                          ///< at least one pose has table angles
+  std::vector<LinearPrior> priors;                 ///< gauge, coefficients, known field
   std::optional<Eigen::Vector3d> known_direction;  ///< of the site's field, from the operator
   double direction_weight{0};                      ///< 1/rad
 

@@ -6,7 +6,8 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kBatch = 32;  ///< poses eliminated per rank update: enough for a blocked product, small enough for the cache
+constexpr int kBatch =
+    32;  ///< poses eliminated per rank update: enough for a blocked product, small enough for the cache
 
 /// Slots that no observation reaches are held by a unit information.
 void hold_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
@@ -24,7 +25,8 @@ void add_priors(const JointProblem& problem, const JointState& state, Reduced& o
   }
   if (!problem.known_direction || !problem.has_angles) return;
   const double w = problem.direction_weight;
-  const Eigen::Vector2d r = w * tangents(state.direction).transpose() * (*problem.known_direction - state.direction);
+  const Eigen::Vector2d r =
+      w * tangents(state.direction).transpose() * (*problem.known_direction - state.direction);
   out.S.block<2, 2>(kSiteSlot, kSiteSlot).diagonal().array() += w * w;
   out.g.segment<2>(kSiteSlot) += w * r;
   out.cost.priors += r.squaredNorm();
@@ -37,7 +39,8 @@ struct ScalarRow {
   Eigen::RowVectorXd global;
 };
 
-ScalarRow scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose, const PoseLinear& linear) {
+ScalarRow scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose,
+                     const PoseLinear& linear) {
   const double w = pose.f_weight;
   const double observed = problem.common_field ? state.f_nT : pose.f_nT;
   ScalarRow row{w * (observed - linear.f_nT), w * linear.f_nuisance, w * linear.f_global};
@@ -45,7 +48,8 @@ ScalarRow scalar_row(const JointProblem& problem, const JointState& state, const
   return row;
 }
 
-/// Adds J' J and J' r of the fixed block, reading rows then scalar row, using that a reading sees one sensor only.
+/// Adds J' J and J' r of the fixed block, reading rows then scalar row, using that a reading sees one sensor
+/// only.
 void add_fixed(const PoseBlocks& b, const JointPose& pose, const ScalarRow& scalar, Reduced& out) {
   const Eigen::Index globals = b.linear.d_global.cols();
   auto corner = out.S.bottomRightCorner(globals, globals);

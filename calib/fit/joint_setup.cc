@@ -37,7 +37,8 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   return out;
 }
 
-LinearPrior mean_of(const JointProblem& problem, std::initializer_list<int> parameters, double target, double weight) {
+LinearPrior mean_of(const JointProblem& problem, std::initializer_list<int> parameters, double target,
+                    double weight) {
   LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = weight};
   const double share = 1.0 / (kSensors * static_cast<double>(parameters.size()));
   for (int i = 0; i < kSensors; ++i) {
@@ -73,9 +74,11 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   }
   const auto fitted = [](const Pose& pose) { return pose.set != "check"; };
   const auto total = std::count_if(table.poses.begin(), table.poses.end(), fitted);
-  const auto with_f = std::count_if(table.poses.begin(), table.poses.end(), [&](const Pose& p) { return fitted(p) && p.f_nT; });
+  const auto with_f = std::count_if(table.poses.begin(), table.poses.end(),
+                                    [&](const Pose& p) { return fitted(p) && p.f_nT; });
   if (total < kMinPoses) {
-    return fail(ErrorCode::refused, fmt::format("{} poses to fit; the joint fit needs at least {}", total, kMinPoses),
+    return fail(ErrorCode::refused,
+                fmt::format("{} poses to fit; the joint fit needs at least {}", total, kMinPoses),
                 "measure at least 12 poses in general position, better 60");
   }
   if (with_f != 0 && with_f != total) {
@@ -96,16 +99,20 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
 }
 
 Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
-  Gauge gauge{.angles = angle_coverage(problem), .direction_known = options.inclination_rad && options.declination_rad,
-              .scale_known = !problem.common_field || options.field_nT.has_value(), .constraints = 0};
+  Gauge gauge{.angles = angle_coverage(problem),
+              .direction_known = options.inclination_rad && options.declination_rad,
+              .scale_known = !problem.common_field || options.field_nT.has_value(),
+              .constraints = 0};
   add_coefficient_priors(problem);
   if (gauge.direction_known) {
     const double i = *options.inclination_rad, d = *options.declination_rad;
-    problem.known_direction = Eigen::Vector3d{std::cos(i) * std::cos(d), std::cos(i) * std::sin(d), std::sin(i)};
+    problem.known_direction =
+        Eigen::Vector3d{std::cos(i) * std::cos(d), std::cos(i) * std::sin(d), std::sin(i)};
     problem.direction_weight = 1 / options.table_sd_rad;
   }
   if (gauge.angles == AngleCoverage::none) {
-    for (const int p : {alpha, beta, gamma}) problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
+    for (const int p : {alpha, beta, gamma})
+      problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
     gauge.constraints += 3;
   } else if (gauge.angles == AngleCoverage::one_axis && !gauge.direction_known) {
     problem.priors.push_back(mean_of(problem, {gamma}, 0, kAngleConstraint));
@@ -115,7 +122,8 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
     problem.priors.push_back(mean_of(problem, {cx, cy, cz}, 1, kScaleConstraint));
     gauge.constraints += 1;
   } else if (problem.common_field) {
-    problem.priors.push_back(about_slot(problem, kFieldSlot, *options.field_nT, options.field_sd_nT.value_or(kCommonFieldSpread_nT)));
+    problem.priors.push_back(about_slot(problem, kFieldSlot, *options.field_nT,
+                                        options.field_sd_nT.value_or(kCommonFieldSpread_nT)));
   }
   return gauge;
 }
@@ -127,7 +135,8 @@ double start_field_nT(const JointProblem& problem, const JointOptions& options) 
     for (const JointPose& pose : problem.poses) sum += pose.f_nT;
     return sum / static_cast<double>(problem.poses.size());
   }
-  // Readings of unit scale on a sphere about their centre: the spread of all directions together is the radius.
+  // Readings of unit scale on a sphere about their centre: the spread of all directions together is the
+  // radius.
   Channels mean = Channels::Zero();
   for (const JointPose& pose : problem.poses) mean += pose.y_nT / static_cast<double>(problem.poses.size());
   for (const JointPose& pose : problem.poses) sum += (pose.y_nT - mean).squaredNorm() / kSensors;

@@ -9,16 +9,18 @@
 #include "calib/fit/joint_start.h"
 #include "proto/units.h"
 
-/// From a pose table to the joint problem: which poses take part, what each observation weighs, which gauge holds.
+/// From a pose table to the joint problem: which poses take part, what each observation weighs, which gauge
+/// holds.
 namespace mgtd::calib {
 
 struct JointOptions {
   Geometry geometry;
   std::vector<EffectPtr> effects;
-  std::optional<double> field_nT;     ///< known field where no scalar reference is in the data
-  std::optional<double> field_sd_nT;  ///< of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT
+  std::optional<double> field_nT;  ///< known field where no scalar reference is in the data
+  std::optional<double>
+      field_sd_nT;  ///< of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT
   std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
-  double table_sd_rad{to_rad(0.1)};   ///< start value, estimated
+  double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
 };
 
 /// Spread of the true field from pose to pose that is allowed for when no scalar reference follows it.
@@ -26,8 +28,8 @@ inline constexpr double kCommonFieldSpread_nT = 0.05;
 /// Noise of a pose mean until something better is known.
 inline constexpr double kStartNoise_nT = 1.0;
 
-/// Poses of set "check" are left out. Refuses too few poses, a scalar reference in only part of the poses, and effects
-/// whose needs the poses do not meet. Keeps pointers into `table`.
+/// Poses of set "check" are left out. Refuses too few poses, a scalar reference in only part of the poses,
+/// and effects whose needs the poses do not meet. Keeps pointers into `table`.
 [[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options);
 
 /// What holds the freedoms that the data leave.
@@ -40,13 +42,16 @@ struct Gauge {
 /// Adds the constraints to `problem`.
 Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
 
-/// Noise of a pose mean per axis from the spread within dwells, pooled over poses; empty unless every pose has spreads and counts.
+/// Noise of a pose mean per axis from the spread within dwells, pooled over poses; empty unless every pose
+/// has spreads and counts.
 [[nodiscard]] std::optional<AxisNoise> pooled_sample_noise(const PoseTable& table);
-/// Sets the reading weights: `sample` noise by each pose's effective count, or `pose_mean` noise for all alike. Keeps zero weights.
+/// Sets the reading weights: `sample` noise by each pose's effective count, or `pose_mean` noise for all
+/// alike. Keeps zero weights.
 void weight_by_samples(JointProblem& problem, const AxisNoise& sample);
 void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean);
 
-/// Field to start from: mean scalar reference, or the given field, or the mean size of the readings' variation.
+/// Field to start from: mean scalar reference, or the given field, or the mean size of the readings'
+/// variation.
 [[nodiscard]] double start_field_nT(const JointProblem& problem, const JointOptions& options);
 
 }  // namespace mgtd::calib

@@ -23,8 +23,8 @@ std::optional<Eigen::VectorXd> scaled_solve(const Eigen::MatrixXd& S, const Eige
 }
 
 /// Each pose's own step, given the step of the fixed block.
-void move_nuisances(const JointProblem& problem, const JointState& from, const Eigen::VectorXd& step, double damping,
-                    JointState& to) {
+void move_nuisances(const JointProblem& problem, const JointState& from, const Eigen::VectorXd& step,
+                    double damping, JointState& to) {
   const PoseModel model(problem, from);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
@@ -64,14 +64,16 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start) {
     if (damping > kMaxDamping) break;
     best.reduced = reduce(problem, best.state, damping);
   }
-  return fail(ErrorCode::refused,
-              fmt::format("the joint fit did not settle in {} iterations: chi-square {:.6g} with {} poses", best.iterations,
-                          best.reduced.cost.total(), problem.poses.size()),
-              "turn the rig through more attitudes on at least two axes, and look for poses with wrong readings");
+  return fail(
+      ErrorCode::refused,
+      fmt::format("the joint fit did not settle in {} iterations: chi-square {:.6g} with {} poses",
+                  best.iterations, best.reduced.cost.total(), problem.poses.size()),
+      "turn the rig through more attitudes on at least two axes, and look for poses with wrong readings");
 }
 
 void refit_nuisances(const JointProblem& problem, JointState& state) {
-  constexpr int kSteps = 8;  // the field enters almost linearly: two steps settle it, the rest costs nothing when settled
+  constexpr int kSteps =
+      8;  // the field enters almost linearly: two steps settle it, the rest costs nothing when settled
   const PoseModel model(problem, state);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {

@@ -8,9 +8,9 @@
 
 /// Least squares of a JointProblem: Gauss-Newton, damped (Levenberg-Marquardt) only where a step fails.
 ///
-/// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block of 51 + m and a 4x4 block per pose. Each
-/// pose is eliminated as it is met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear in the poses and
-/// nothing per pose is kept but its four nuisances.
+/// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block of 51 + m and a 4x4 block per
+/// pose. Each pose is eliminated as it is met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear
+/// in the poses and nothing per pose is kept but its four nuisances.
 namespace mgtd::calib {
 
 /// Chi-squares, kept apart: readings and scalar reference decide about the model, attitude about the table.
@@ -22,11 +22,11 @@ struct JointCost {
 /// One pose's share of the normal equations, residuals whitened.
 struct PoseBlocks {
   PoseLinear linear;
-  Channels residual;                                        ///< w (measured - predicted)
+  Channels residual;  ///< w (measured - predicted)
   double f_residual{0};
-  Eigen::Matrix<double, kNuisances, kNuisances> H;          ///< of the nuisances
-  Nuisance g;                                               ///< descent direction times H: J_n' w^2 (y - y(x))
-  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;      ///< fixed by nuisances
+  Eigen::Matrix<double, kNuisances, kNuisances> H;      ///< of the nuisances
+  Nuisance g;                                           ///< descent direction times H: J_n' w^2 (y - y(x))
+  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;  ///< fixed by nuisances
   JointCost cost;
 };
 
@@ -35,7 +35,7 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
               bool with_border, PoseBlocks& out);
 
 struct Reduced {
-  Eigen::MatrixXd S;   ///< information of the fixed block, nuisances eliminated; symmetric
+  Eigen::MatrixXd S;  ///< information of the fixed block, nuisances eliminated; symmetric
   Eigen::VectorXd g;
   JointCost cost;
   double predicted_decrease{0};  ///< of the cost by the nuisances alone; the fixed block adds g' S^-1 g
@@ -45,11 +45,12 @@ struct Reduced {
 
 struct JointSolution {
   JointState state;
-  Reduced reduced;     ///< at `state`, undamped
+  Reduced reduced;  ///< at `state`, undamped
   int iterations{0};
 };
 
-/// Refuses when it does not converge, or when the information is not positive definite (names nothing: see weakness.h).
+/// Refuses when it does not converge, or when the information is not positive definite (names nothing: see
+/// weakness.h).
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start);
 
 /// Best nuisances for a fixed block that stays as it is: what a new pose says about its own field.

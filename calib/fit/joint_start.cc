@@ -21,8 +21,9 @@ const double kOneAxis = std::sin(to_rad(1.0));
 
 struct Aligned {
   std::array<Ellipsoid, kCount> ellipsoids;
-  std::array<Eigen::Matrix3d, kCount> to_first;  ///< sensor frame to the frame of sensor 1, reflections allowed
-  std::vector<Eigen::Vector3d> u;                ///< field of each pose in the frame of sensor 1, mean of the sensors
+  std::array<Eigen::Matrix3d, kCount>
+      to_first;                    ///< sensor frame to the frame of sensor 1, reflections allowed
+  std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
 };
 
 /// Orthogonal matrix nearest to H; det = +1 when `proper`.
@@ -40,7 +41,9 @@ Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
     std::vector<Eigen::Vector3d> y;
     for (const JointPose& pose : problem.poses) y.push_back(pose.y_nT.segment<3>(3 * static_cast<int>(i)));
     const auto fitted = fit_ellipsoid(y, f_nT);
-    if (!fitted) return fail(fitted.error().code, fmt::format("sensor {}: {}", i + 1, fitted.error().message), fitted.error().remedy);
+    if (!fitted)
+      return fail(fitted.error().code, fmt::format("sensor {}: {}", i + 1, fitted.error().message),
+                  fitted.error().remedy);
     out.ellipsoids[i] = *fitted;
     for (const Eigen::Vector3d& reading : y) b_S_nT[i].push_back(fitted->K * (reading - fitted->offset_nT));
   }
@@ -62,20 +65,26 @@ double handedness(const Aligned& aligned) {
 }
 
 struct Placement {
-  Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};  ///< frame of sensor 1 (made right-handed) to the platform, proper
+  Eigen::Matrix3d Q{
+      Eigen::Matrix3d::Identity()};  ///< frame of sensor 1 (made right-handed) to the platform, proper
   Eigen::Vector3d n{0, 0, 1};
 };
 
-/// Maximises tr(Q' sum T_k n u_k'), linear in n and in Q: n is searched on a Fibonacci sphere, then both alternate.
+/// Maximises tr(Q' sum T_k n u_k'), linear in n and in Q: n is searched on a Fibonacci sphere, then both
+/// alternate.
 Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
   std::array<Eigen::Matrix3d, 3> H{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
   for (std::size_t k = 0; k < u.size(); ++k) {
     if (!problem.poses[k].has_angles) continue;
-    for (int j = 0; j < 3; ++j) H[static_cast<std::size_t>(j)] += problem.poses[k].T.col(j) * u[k].normalized().transpose();
+    for (int j = 0; j < 3; ++j)
+      H[static_cast<std::size_t>(j)] += problem.poses[k].T.col(j) * u[k].normalized().transpose();
   }
-  const auto best_turn = [&](const Eigen::Vector3d& n) { return nearest_orthogonal(n[0] * H[0] + n[1] * H[1] + n[2] * H[2], true); };
+  const auto best_turn = [&](const Eigen::Vector3d& n) {
+    return nearest_orthogonal(n[0] * H[0] + n[1] * H[1] + n[2] * H[2], true);
+  };
   const auto pull = [&](const Eigen::Matrix3d& Q) {
-    return Eigen::Vector3d{Q.cwiseProduct(H[0]).sum(), Q.cwiseProduct(H[1]).sum(), Q.cwiseProduct(H[2]).sum()};
+    return Eigen::Vector3d{Q.cwiseProduct(H[0]).sum(), Q.cwiseProduct(H[1]).sum(),
+                           Q.cwiseProduct(H[2]).sum()};
   };
   if (problem.known_direction) return {best_turn(*problem.known_direction), *problem.known_direction};
   constexpr int kPoints = 200, kAlternations = 100;
@@ -119,7 +128,8 @@ TurnAxis turn_axis(const JointProblem& problem) {
     scatter += q.vec() * q.vec().transpose();
   }
   out.axis_P = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
-  for (const Eigen::Vector3d& t : turns) out.off_axis = std::max(out.off_axis, (t - t.dot(out.axis_P) * out.axis_P).norm());
+  for (const Eigen::Vector3d& t : turns)
+    out.off_axis = std::max(out.off_axis, (t - t.dot(out.axis_P) * out.axis_P).norm());
   return out;
 }
 
@@ -129,7 +139,8 @@ void turn_upright(const JointProblem& problem, Placement& p) {
   const auto about = [&](double a) { return Eigen::AngleAxisd(a, turn.axis_P).toRotationMatrix(); };
   const double c = (p.Q - turn.axis_P * turn.axis_P.transpose() * p.Q).trace();
   double s = 0;
-  for (int j = 0; j < 3; ++j) s += Eigen::Vector3d::Unit(j).dot(turn.axis_P.cross(Eigen::Vector3d(p.Q.col(j))));
+  for (int j = 0; j < 3; ++j)
+    s += Eigen::Vector3d::Unit(j).dot(turn.axis_P.cross(Eigen::Vector3d(p.Q.col(j))));
   const Eigen::Matrix3d Z = about(std::atan2(s, c));
   // T n = T' (Z n') must hold with T T_1' about the axis: n moves by T_1' Z T_1.
   for (const JointPose& pose : problem.poses) {
@@ -150,14 +161,18 @@ AngleCoverage angle_coverage(const JointProblem& problem) {
 
 JointState joint_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
                        const Eigen::Vector3d& direction, double f_nT) {
-  JointState state{.sensors = sensors, .direction = direction, .f_nT = f_nT,
-                   .coefficients = Eigen::VectorXd::Zero(problem.coefficients()), .nuisances = {}};
+  JointState state{.sensors = sensors,
+                   .direction = direction,
+                   .f_nT = f_nT,
+                   .coefficients = Eigen::VectorXd::Zero(problem.coefficients()),
+                   .nuisances = {}};
   for (const JointPose& pose : problem.poses) {
     Nuisance x = Nuisance::Zero();
     if (pose.has_angles) {
       x[3] = pose.f_weight > 0 && !problem.common_field ? pose.f_nT : f_nT;
     } else {
-      for (int i = 0; i < kSensors; ++i) x.head<3>() += sensors[static_cast<std::size_t>(i)].correct(pose.y_nT.segment<3>(3 * i)) / kSensors;
+      for (int i = 0; i < kSensors; ++i)
+        x.head<3>() += sensors[static_cast<std::size_t>(i)].correct(pose.y_nT.segment<3>(3 * i)) / kSensors;
     }
     state.nuisances.push_back(x);
   }
@@ -176,7 +191,8 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   if (coverage == AngleCoverage::one_axis && !problem.known_direction) turn_upright(problem, p);
   std::array<SensorModel, kSensors> sensors;
   for (std::size_t i = 0; i < kCount; ++i) {
-    sensors[i] = sensor_from(aligned->ellipsoids[i].K, aligned->ellipsoids[i].offset_nT, p.Q * hand * aligned->to_first[i]);
+    sensors[i] = sensor_from(aligned->ellipsoids[i].K, aligned->ellipsoids[i].offset_nT,
+                             p.Q * hand * aligned->to_first[i]);
   }
   return joint_state(problem, sensors, p.n, f_nT);
 }

@@ -6,20 +6,24 @@
 /// A start for the joint fit from the poses alone, for any mounting, handedness and offset:
 ///   1. each sensor by itself: linear ellipsoid (ellipsoid.h);
 ///   2. sensors to each other: Procrustes over all poses, reflections allowed;
-///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n, n searched over the
+///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n, n
+///   searched over the
 ///      whole sphere. (Q, n) and (-Q, -n) fit equally: the majority of the sensors is taken as right-handed.
-/// Without table angles, or with angles about one axis only, the freedom that is left is spent on turning sensor 1 upright.
+/// Without table angles, or with angles about one axis only, the freedom that is left is spent on turning
+/// sensor 1 upright.
 namespace mgtd::calib {
 
 /// How much of the common rotation the table angles decide.
 enum class AngleCoverage { none, one_axis, full };
 [[nodiscard]] AngleCoverage angle_coverage(const JointProblem& problem);
 
-/// Fills sensors, direction, F and nuisances; the coefficients of effects start at zero. `f_nT` is the field where a pose has none.
+/// Fills sensors, direction, F and nuisances; the coefficients of effects start at zero. `f_nT` is the field
+/// where a pose has none.
 [[nodiscard]] Result<JointState> joint_start(const JointProblem& problem, double f_nT);
 
 /// A state around given sensors (a two-step result, an earlier calibration, another fold's fit).
-[[nodiscard]] JointState joint_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
+[[nodiscard]] JointState joint_state(const JointProblem& problem,
+                                     const std::array<SensorModel, kSensors>& sensors,
                                      const Eigen::Vector3d& direction, double f_nT);
 
 }  // namespace mgtd::calib

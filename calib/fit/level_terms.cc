@@ -22,7 +22,8 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
   total.d_coefficient.setZero(outputs, coefficients.size());
 
   std::array<Jet, TermSum::kMaxInputs> x;
-  for (int i = 0; i < inputs; ++i) x[static_cast<std::size_t>(i)] = Jet::variable(in[static_cast<std::size_t>(i)], i);
+  for (int i = 0; i < inputs; ++i)
+    x[static_cast<std::size_t>(i)] = Jet::variable(in[static_cast<std::size_t>(i)], i);
   for (const Entry& entry : entries_) {
     const std::span<const int> active = entry.effect->at(sensor);
     std::array<Jet, kJetSlots> c;

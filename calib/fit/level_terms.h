@@ -12,7 +12,8 @@ struct TermSum {
   static constexpr int kMaxInputs = 6, kMaxOutputs = 5;
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxOutputs, 1> value;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs, kMaxInputs> d_input;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs> d_coefficient;  ///< one column per coefficient of the model
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs>
+      d_coefficient;  ///< one column per coefficient of the model
 };
 
 /// Effects of a model by level. Coefficients of all effects stand in one vector, in the order of the effects.

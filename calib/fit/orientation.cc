@@ -10,13 +10,15 @@ namespace {
 
 /// alpha, beta, gamma of A_gamma A_beta A_alpha (eqs. 13-14); beta within 90 degrees.
 Eigen::Vector3d angles_of(const Eigen::Matrix3d& A) {
-  return {std::atan2(-A(2, 1), A(2, 2)), std::asin(std::clamp(A(2, 0), -1.0, 1.0)), std::atan2(-A(1, 0), A(0, 0))};
+  return {std::atan2(-A(2, 1), A(2, 2)), std::asin(std::clamp(A(2, 0), -1.0, 1.0)),
+          std::atan2(-A(1, 0), A(0, 0))};
 }
 
 }  // namespace
 
 Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R) {
-  constexpr std::array<std::array<int, 3>, 6> kRows{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  constexpr std::array<std::array<int, 3>, 6> kRows{
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
   double best_trace = -1;
   for (const auto& rows : kRows) {
@@ -34,7 +36,8 @@ Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R) {
   return best;
 }
 
-SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT, const Eigen::Matrix3d& R) {
+SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,
+                        const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d M = K.inverse();  // C A, upper triangular
   SensorModel s;
   s.scale = {M.row(0).norm(), M.row(1).norm(), M(2, 2)};

@@ -10,8 +10,10 @@ namespace mgtd::calib {
 /// The nearest of the 48 signed permutations to an orthogonal matrix.
 [[nodiscard]] Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R);
 
-/// The sensor with b_P = R K (y - offset): K upper triangular with positive diagonal, R orthogonal (det -1: mirrored).
-[[nodiscard]] SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT, const Eigen::Matrix3d& R);
+/// The sensor with b_P = R K (y - offset): K upper triangular with positive diagonal, R orthogonal (det -1:
+/// mirrored).
+[[nodiscard]] SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,
+                                      const Eigen::Matrix3d& R);
 
 /// The same sensor with the platform frame turned by Q: R becomes Q R, the mounting is found anew.
 [[nodiscard]] SensorModel turned(const SensorModel& sensor, const Eigen::Matrix3d& Q);

@@ -11,7 +11,9 @@ namespace {
 /// Parameters that act through the gain, in the order of SensorGain::d_gain.
 constexpr std::array<int, 9> kGainParameters{theta, phi, psi, cx, cy, cz, alpha, beta, gamma};
 
-Eigen::Matrix3d values(const auto& m) { return m.unaryExpr([](const auto& x) { return x.v; }).template cast<double>(); }
+Eigen::Matrix3d values(const auto& m) {
+  return m.unaryExpr([](const auto& x) { return x.v; }).template cast<double>();
+}
 
 Eigen::Matrix3d derivatives(const auto& m, int slot) {
   return m.unaryExpr([slot](const auto& x) { return x.d[slot]; }).template cast<double>();
@@ -37,10 +39,14 @@ struct PoseModel::Field {
 };
 
 PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
-    : problem_(problem), state_(state),
-      table_(problem.effects, Level::table), site_(problem.effects, Level::site),
-      platform_(problem.effects, Level::platform), axis_(problem.effects, Level::axis),
-      positions_P_m_(problem.geometry.positions_P_m()), tangents_(tangents(state.direction)),
+    : problem_(problem),
+      state_(state),
+      table_(problem.effects, Level::table),
+      site_(problem.effects, Level::site),
+      platform_(problem.effects, Level::platform),
+      axis_(problem.effects, Level::axis),
+      positions_P_m_(problem.geometry.positions_P_m()),
+      tangents_(tangents(state.direction)),
       globals_(kGlobals + problem.coefficients()) {
   for (std::size_t i = 0; i < kSensors; ++i) gains_[i] = gain_of(state.sensors[i]);
 }
@@ -65,7 +71,8 @@ void PoseModel::set_attitude(const JointPose& pose, const Nuisance& nuisance, At
   }
   a.f_nT = nuisance[3];
   using W = Dual<3>;
-  const Matrix3<W> error = turn_by<W>({W::variable(nuisance[0], 0), W::variable(nuisance[1], 1), W::variable(nuisance[2], 2)});
+  const Matrix3<W> error =
+      turn_by<W>({W::variable(nuisance[0], 0), W::variable(nuisance[1], 1), W::variable(nuisance[2], 2)});
   const Eigen::Matrix3d E = values(error);
   Eigen::Matrix3d T = pose.T;
   if (!table_.empty()) {
@@ -98,7 +105,8 @@ void PoseModel::add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, 
   field.d_global.leftCols<2>() = a.f_nT * a.R * tangents_;
   if (table_.empty()) return;
   for (int j = 0; j < Attitude::kTable; ++j) {
-    field.d_global.rightCols(globals_ - kGlobals) += column(static_cast<std::size_t>(3 + j)) * a.state_d_coefficient.row(j);
+    field.d_global.rightCols(globals_ - kGlobals) +=
+        column(static_cast<std::size_t>(3 + j)) * a.state_d_coefficient.row(j);
   }
 }
 
@@ -115,7 +123,8 @@ void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, F
   Eigen::Matrix3d dB_dx = Eigen::Matrix3d::Zero();
   if (!site_.empty()) {
     const Eigen::Vector3d x_S_m = a.R.transpose() * r_P_m;
-    const TermSum terms = site_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {x_S_m.data(), 3}, state_.coefficients);
+    const TermSum terms =
+        site_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {x_S_m.data(), 3}, state_.coefficients);
     B_S += terms.value;
     dB_dx = terms.d_input;
     field.d_global.rightCols(globals_ - kGlobals) += a.R * terms.d_coefficient;
@@ -129,7 +138,8 @@ void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int senso
   Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
   in.head<3>() = field.b_P_nT;
   if (a.known) in.tail<3>() = a.R.col(2);
-  const TermSum terms = platform_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {in.data(), 6}, state_.coefficients);
+  const TermSum terms =
+      platform_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {in.data(), 6}, state_.coefficients);
   const Eigen::Matrix3d by_b = Eigen::Matrix3d::Identity() + terms.d_input.leftCols<3>();
   const Eigen::Matrix3d by_g = terms.d_input.rightCols<3>();
   field.b_P_nT += terms.value;
@@ -155,7 +165,8 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
   Eigen::Vector3d B_S = a.f_nT * state_.direction;
   if (!site_.empty()) {
     const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    const TermSum terms = site_.sum({*pose.pose, pose.t_h, pose.previous}, 0, {centre.data(), 3}, state_.coefficients);
+    const TermSum terms =
+        site_.sum({*pose.pose, pose.t_h, pose.previous}, 0, {centre.data(), 3}, state_.coefficients);
     B_S += terms.value;
     out.f_global.tail(globals_ - kGlobals) = B_S.transpose() / B_S.norm() * terms.d_coefficient;
   }
@@ -170,12 +181,14 @@ void PoseModel::read(const JointPose& pose, int sensor, const Field& field, Pose
   const SensorGain& g = gains_[i];
   const Eigen::Vector3d v_nT = g.gain * field.b_P_nT;
   auto d_sensor = out.d_sensor.middleRows<3>(row);
-  for (std::size_t j = 0; j < kGainParameters.size(); ++j) d_sensor.col(kGainParameters[j]) = g.d_gain[j] * field.b_P_nT;
+  for (std::size_t j = 0; j < kGainParameters.size(); ++j)
+    d_sensor.col(kGainParameters[j]) = g.d_gain[j] * field.b_P_nT;
   out.y_nT.segment<3>(row) = v_nT + state_.sensors[i].offset_nT;
   out.d_nuisance.middleRows<3>(row) = g.gain * field.d_nuisance;
   out.d_global.middleRows<3>(row).noalias() = g.gain * field.d_global;
   if (!axis_.empty()) {
-    const TermSum terms = axis_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {v_nT.data(), 3}, state_.coefficients);
+    const TermSum terms =
+        axis_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {v_nT.data(), 3}, state_.coefficients);
     const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
     out.y_nT.segment<3>(row) += terms.value;
     d_sensor = (by_v * d_sensor).eval();

@@ -6,20 +6,23 @@
 #include "calib/fit/joint_problem.h"
 #include "calib/fit/level_terms.h"
 
-/// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform, sensor, axis.
+/// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform,
+/// sensor, axis.
 namespace mgtd::calib {
 
 struct PoseLinear {
-  Channels y_nT;                                       ///< predicted readings
-  Eigen::Matrix<double, kChannels, kSensorParameters> d_sensor;  ///< rows of sensor i by the parameters of sensor i
+  Channels y_nT;  ///< predicted readings
+  Eigen::Matrix<double, kChannels, kSensorParameters>
+      d_sensor;  ///< rows of sensor i by the parameters of sensor i
   Eigen::Matrix<double, kChannels, kNuisances> d_nuisance;
-  Eigen::Matrix<double, kChannels, Eigen::Dynamic> d_global;     ///< by slots kSiteSlot .. of the fixed block
-  double f_nT{0};                                      ///< predicted |B(0)|
+  Eigen::Matrix<double, kChannels, Eigen::Dynamic> d_global;  ///< by slots kSiteSlot .. of the fixed block
+  double f_nT{0};                                             ///< predicted |B(0)|
   Eigen::Matrix<double, 1, kNuisances> f_nuisance;
   Eigen::RowVectorXd f_global;
 };
 
-/// Holds everything that depends on the fixed block only; one is made per iteration. Keeps references to both arguments.
+/// Holds everything that depends on the fixed block only; one is made per iteration. Keeps references to both
+/// arguments.
 class PoseModel {
  public:
   PoseModel(const JointProblem& problem, const JointState& state);
@@ -29,8 +32,8 @@ class PoseModel {
   struct Attitude;
   struct Field;
   struct SensorGain {
-    Eigen::Matrix3d gain;                           ///< C A R'
-    std::array<Eigen::Matrix3d, 9> d_gain;          ///< by theta, phi, psi, cx, cy, cz, alpha, beta, gamma
+    Eigen::Matrix3d gain;                   ///< C A R'
+    std::array<Eigen::Matrix3d, 9> d_gain;  ///< by theta, phi, psi, cx, cy, cz, alpha, beta, gamma
   };
   [[nodiscard]] static SensorGain gain_of(const SensorModel& sensor);
   void set_attitude(const JointPose& pose, const Nuisance& nuisance, Attitude& a) const;

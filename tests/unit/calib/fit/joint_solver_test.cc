@@ -26,7 +26,8 @@ TEST(JointSolver, NoiseFreePosesGiveTheTruthBack) {
   for (std::size_t i = 0; i < kSensors; ++i) {
     const ParameterVector error = solution->state.sensors[i].parameters() - sim.rig[i].parameters();
     // Rounding of 5e4 nT readings through a condition of about 1e4.
-    EXPECT_LT(error.head<3>().norm() + error.segment<3>(cx).norm() + error.tail<3>().norm(), 1e-8) << "sensor " << i + 1;
+    EXPECT_LT(error.head<3>().norm() + error.segment<3>(cx).norm() + error.tail<3>().norm(), 1e-8)
+        << "sensor " << i + 1;
     EXPECT_LT(error.segment<3>(ix).norm(), 1e-4) << "sensor " << i + 1;
   }
   EXPECT_LE(solution->iterations, 6);

@@ -12,18 +12,21 @@ namespace {
 
 using testing::Simulation;
 
-/// One effect per level, each with a genuine dependence on its input, to try the chain rule through every level.
+/// One effect per level, each with a genuine dependence on its input, to try the chain rule through every
+/// level.
 template <Level kLevel>
 class Probe final : public EffectOf<Probe<kLevel>> {
  public:
-  explicit Probe(double planted_error = 0) : planted_(planted_error), coefficients_(2, {.name = "c", .unit = "1"}) {}
+  explicit Probe(double planted_error = 0)
+      : planted_(planted_error), coefficients_(2, {.name = "c", .unit = "1"}) {}
   [[nodiscard]] std::string_view name() const override { return "probe"; }
   [[nodiscard]] Level level() const override { return kLevel; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
   [[nodiscard]] std::span<const int> at(int) const override { return at_; }
   [[nodiscard]] Result<void> check(const PoseTable&) const override { return {}; }
   template <class S>
-  void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c, std::span<S> out) const {
+  void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
+                std::span<S> out) const {
     for (std::size_t o = 0; o < out.size(); ++o) {
       const S& a = in[o % in.size()];
       const S& b = in[(o + 1) % in.size()];
@@ -68,7 +71,8 @@ Channels predict(const Case& c, const JointState& state, const Nuisance& nuisanc
   return out.y_nT;
 }
 
-/// Steps tried for each variable: rounding and curvature leave different ones usable for radians, nanotesla and nT/m.
+/// Steps tried for each variable: rounding and curvature leave different ones usable for radians, nanotesla
+/// and nT/m.
 constexpr std::array kSteps{1.0, 1e-2, 1e-3, 1e-4, 1e-5};
 // At the best step truncation (h^2) and rounding (1e-16 * 5e4 nT / (h * column)) meet near 1e-8 relative.
 constexpr double kTolerance = 1e-7;
@@ -78,7 +82,8 @@ struct Column {
   double f{0};
 };
 
-/// Difference between a Jacobian column and central differences at the best step, relative to the column's size.
+/// Difference between a Jacobian column and central differences at the best step, relative to the column's
+/// size.
 template <class Move>
 double derivative_error(const Case& c, const Column& column, const Move& move) {
   double best = std::numeric_limits<double>::infinity();
@@ -86,10 +91,12 @@ double derivative_error(const Case& c, const Column& column, const Move& move) {
     double f_up = 0, f_down = 0;
     const auto [state_up, x_up] = move(h);
     const auto [state_down, x_down] = move(-h);
-    const Channels difference = (predict(c, state_up, x_up, f_up) - predict(c, state_down, x_down, f_down)) / (2 * h);
+    const Channels difference =
+        (predict(c, state_up, x_up, f_up) - predict(c, state_down, x_down, f_down)) / (2 * h);
     const double f_difference = (f_up - f_down) / (2 * h);
     const double scale = std::max({difference.norm(), std::abs(f_difference), column.y.norm(), 1e-3});
-    best = std::min(best, std::max((column.y - difference).norm(), std::abs(column.f - f_difference)) / scale);
+    best =
+        std::min(best, std::max((column.y - difference).norm(), std::abs(column.f - f_difference)) / scale);
   }
   return best;
 }
@@ -113,13 +120,17 @@ double worst_derivative(const Case& c) {
   }
   for (int j = 0; j < kNuisances; ++j) {
     const Column column{linear.d_nuisance.col(j), linear.f_nuisance[j]};
-    worst = std::max(worst, derivative_error(c, column, [&](double h) { return std::pair(c.state, Nuisance(x + h * Nuisance::Unit(j))); }));
+    worst = std::max(worst, derivative_error(c, column, [&](double h) {
+                       return std::pair(c.state, Nuisance(x + h * Nuisance::Unit(j)));
+                     }));
   }
   return worst;
 }
 
 template <Level kLevel>
-EffectPtr probe(double planted = 0) { return std::make_shared<const Probe<kLevel>>(planted); }
+EffectPtr probe(double planted = 0) {
+  return std::make_shared<const Probe<kLevel>>(planted);
+}
 
 TEST(PoseModel, DerivativesAreThoseOfTheModel) {
   EXPECT_LT(worst_derivative(make_case({}, true)), kTolerance);
@@ -132,7 +143,10 @@ TEST(PoseModel, DerivativesHoldThroughEveryLevel) {
   EXPECT_LT(worst_derivative(make_case({probe<Level::table>()}, true)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({probe<Level::platform>()}, true)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({probe<Level::axis>()}, true)), kTolerance);
-  EXPECT_LT(worst_derivative(make_case({probe<Level::axis>(), probe<Level::table>(), probe<Level::site>(), probe<Level::platform>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case(
+                {probe<Level::axis>(), probe<Level::table>(), probe<Level::site>(), probe<Level::platform>()},
+                true)),
+            kTolerance);
   EXPECT_LT(worst_derivative(make_case({probe<Level::platform>(), probe<Level::axis>()}, false)), kTolerance);
 }
 

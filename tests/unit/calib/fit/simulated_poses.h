@@ -9,16 +9,22 @@
 #include "proto/pose.h"
 #include "proto/units.h"
 
-/// Pose tables with a known truth for the tests of the fits. The rotations are written with Eigen's AngleAxis, not with
-/// the code under test.
+/// Pose tables with a known truth for the tests of the fits. The rotations are written with Eigen's
+/// AngleAxis, not with the code under test.
 namespace mgtd::calib::testing {
 
 using Rig = std::array<SensorModel, kSensors>;
 
-inline SensorModel sensor(double theta_deg, double phi_deg, double psi_deg, Eigen::Vector3d c, Eigen::Vector3d i_nT,
-                          double alpha_deg, double beta_deg, double gamma_deg) {
-  return {.theta_rad = to_rad(theta_deg), .phi_rad = to_rad(phi_deg), .psi_rad = to_rad(psi_deg), .scale = c, .offset_nT = i_nT,
-          .alpha_rad = to_rad(alpha_deg), .beta_rad = to_rad(beta_deg), .gamma_rad = to_rad(gamma_deg)};
+inline SensorModel sensor(double theta_deg, double phi_deg, double psi_deg, Eigen::Vector3d c,
+                          Eigen::Vector3d i_nT, double alpha_deg, double beta_deg, double gamma_deg) {
+  return {.theta_rad = to_rad(theta_deg),
+          .phi_rad = to_rad(phi_deg),
+          .psi_rad = to_rad(psi_deg),
+          .scale = c,
+          .offset_nT = i_nT,
+          .alpha_rad = to_rad(alpha_deg),
+          .beta_rad = to_rad(beta_deg),
+          .gamma_rad = to_rad(gamma_deg)};
 }
 
 /// The paper's Table 3: the simulated rig.
@@ -31,10 +37,11 @@ inline Rig table3_rig() {
 
 /// The paper's Table 6, first site: the real rig.
 inline Rig table6_rig() {
-  return {sensor(-0.252, -3.478, 0.865, {0.999, 1.003, 0.992}, {351.9, -170.9, -123.7}, 0.682, -0.882, -2.177),
-          sensor(0.705, 3.077, 0.900, {1.008, 1.002, 0.999}, {363.4, 412.6, -139.4}, -0.899, 0.241, 1.644),
-          sensor(-0.126, -3.146, -1.719, {0.995, 1.003, 0.998}, {-87.4, 79.1, -102.9}, -0.487, 0.785, -1.381),
-          sensor(0.814, 3.174, 2.515, {1.006, 1.004, 0.999}, {-301.0, -298.8, -29.7}, 0.693, -0.160, 1.902)};
+  return {
+      sensor(-0.252, -3.478, 0.865, {0.999, 1.003, 0.992}, {351.9, -170.9, -123.7}, 0.682, -0.882, -2.177),
+      sensor(0.705, 3.077, 0.900, {1.008, 1.002, 0.999}, {363.4, 412.6, -139.4}, -0.899, 0.241, 1.644),
+      sensor(-0.126, -3.146, -1.719, {0.995, 1.003, 0.998}, {-87.4, 79.1, -102.9}, -0.487, 0.785, -1.381),
+      sensor(0.814, 3.174, 2.515, {1.006, 1.004, 0.999}, {-301.0, -298.8, -29.7}, 0.693, -0.160, 1.902)};
 }
 
 struct Simulation {
@@ -42,10 +49,10 @@ struct Simulation {
   double f_nT = 53907.7;
   double inclination_rad = to_rad(60), declination_rad = to_rad(-5);
   double noise_nT = 1;
-  double table_sd_rad = 0;                                   ///< true attitude minus recorded angles
-  double f_sd_nT = 0;                                        ///< error of the scalar reference
-  double f_drift_nT = 0;                                     ///< amplitude of the field's change over the run
-  Eigen::Matrix3d G_nT_per_m = Eigen::Matrix3d::Zero();      ///< site gradient
+  double table_sd_rad = 0;                               ///< true attitude minus recorded angles
+  double f_sd_nT = 0;                                    ///< error of the scalar reference
+  double f_drift_nT = 0;                                 ///< amplitude of the field's change over the run
+  Eigen::Matrix3d G_nT_per_m = Eigen::Matrix3d::Zero();  ///< site gradient
   Geometry geometry{};
   bool with_angles = true, with_f = true;
 };
@@ -65,15 +72,17 @@ inline Eigen::Matrix3d gradient_50() {
   return g;
 }
 
-inline Pose measure(const Simulation& sim, const TableAngles& angles, int number, double phase, std::mt19937_64& rng) {
+inline Pose measure(const Simulation& sim, const TableAngles& angles, int number, double phase,
+                    std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
   Pose pose;
   pose.number = number;
   pose.t_s = 30.0 * number;
   const double f = sim.f_nT + sim.f_drift_nT * std::sin(2 * std::numbers::pi * phase);
   const double ci = std::cos(sim.inclination_rad);
-  const Eigen::Vector3d B_S = f * Eigen::Vector3d{ci * std::cos(sim.declination_rad), ci * std::sin(sim.declination_rad),
-                                                 std::sin(sim.inclination_rad)};
+  const Eigen::Vector3d B_S =
+      f * Eigen::Vector3d{ci * std::cos(sim.declination_rad), ci * std::sin(sim.declination_rad),
+                          std::sin(sim.inclination_rad)};
   const Eigen::Vector3d w = sim.table_sd_rad * Eigen::Vector3d{normal(rng), normal(rng), normal(rng)};
   Eigen::Matrix3d R = attitude(angles);
   if (w.norm() > 0) R = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * R;
@@ -102,7 +111,8 @@ inline PoseTable simulate(const Simulation& sim, int standard, int random, std::
   for (int k = 0; k < standard + random; ++k) {
     const TableAngles level{2 * std::numbers::pi * k / standard, 0, 0};
     const TableAngles any{turn(rng), std::asin(z(rng)), turn(rng)};
-    table.poses.push_back(measure(sim, k < standard ? level : any, k + 1, static_cast<double>(k) / (standard + random), rng));
+    table.poses.push_back(
+        measure(sim, k < standard ? level : any, k + 1, static_cast<double>(k) / (standard + random), rng));
     table.poses.back().set = k < standard ? "standard" : "random";
   }
   return table;

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kMaxRounds = 30;
+constexpr double kSettled = 0.01;  ///< relative change of a noise estimate that no longer matters
+constexpr double kNoiseFloor_nT = 1e-4;
+const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
+
+struct Noise {
+  AxisNoise pose_nT{AxisNoise::Constant(kStartNoise_nT)};
+  std::optional<AxisNoise> sample_nT;
+  double table_sd_rad{0};
+};
+
+void apply(const Noise& noise, JointProblem& problem) {
+  if (noise.sample_nT) {
+    weight_by_samples(problem, *noise.sample_nT);
+  } else {
+    weight_by_pose(problem, noise.pose_nT);
+  }
+  for (JointPose& pose : problem.poses) {
+    // Loosened attitudes stay loose.
+    if (pose.has_angles && pose.attitude_weight > 1 / kTableCeiling_rad)
+      pose.attitude_weight = 1 / noise.table_sd_rad;
+  }
+}
+
+/// Returns whether anything moved enough to fit again.
+bool update(const PoseResiduals& residuals, const JointProblem& problem, Noise& noise) {
+  bool moved = false;
+  if (!noise.sample_nT) {
+    noise.pose_nT = noise.pose_nT.cwiseProduct(residuals.noise_ratio).cwiseMax(kNoiseFloor_nT);
+    moved = (residuals.noise_ratio.array() - 1).abs().maxCoeff() > kSettled &&
+            noise.pose_nT.maxCoeff() > kNoiseFloor_nT;
+  }
+  if (problem.has_angles) {
+    const double before = noise.table_sd_rad;
+    noise.table_sd_rad = std::clamp(before * residuals.table_ratio, kTableFloor_rad, kTableCeiling_rad);
+    moved = moved || std::abs(noise.table_sd_rad / before - 1) > kSettled;
+  }
+  return moved;
+}
+
+Result<void> plausible(const JointState& state) {
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const double gain = std::abs(state.sensors[i].response().determinant());
+    if (gain > 0.125 && gain < 8) continue;  // each axis within a factor of two of nominal scale
+    return fail(
+        ErrorCode::refused,
+        fmt::format("sensor {}: the fit wants a volume gain of {:.3g}, a fluxgate at nominal scale has 1 "
+                    "(limit 1/8 to 8)",
+                    i + 1, gain),
+        "check the volts-to-nT scale of this sensor, the known field, and that the poses cover the sphere");
+  }
+  return {};
+}
+
+void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, JointFit& fit) {
+  const JointProblem& problem = fit.problem;
+  fit.chi2 = reduced.cost.readings + reduced.cost.scalar;
+  fit.chi2_table = reduced.cost.attitude;
+  fit.dof_table = residuals.attitude_freedom;
+  double unknowns =
+      kSensorBlock + problem.coefficients() + (problem.common_field ? 1 : 0) + (problem.has_angles ? 2 : 0);
+  double observed = residuals.readings + residuals.scalars + fit.gauge.constraints;
+  for (const JointPose& pose : problem.poses) {
+    unknowns += pose.has_angles ? 4 : 3;
+    observed += (pose.has_angles ? 3 : 0) + (problem.common_field ? 1 : 0);
+  }
+  fit.dof = observed - unknowns - fit.dof_table;
+  // Three standard deviations of a chi-square: wider than noise alone would make it, so the uncertainties
+  // follow.
+  if (fit.dof > 0 && fit.chi2 > fit.dof + 3 * std::sqrt(2 * fit.dof))
+    fit.spread = std::sqrt(fit.chi2 / fit.dof);
+}
+
+std::string describe_gauge(const JointFit& fit) {
+  const auto sd_deg = [&](int parameter) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(fit.covariance.rows());
+    for (int i = 0; i < kSensors; ++i) row[kSensorParameters * i + parameter] = 1.0 / kSensors;
+    return to_deg(std::sqrt(row.dot(fit.covariance * row)));
+  };
+  std::string text;
+  if (fit.gauge.angles == AngleCoverage::none) {
+    text =
+        "no table angles: mean alpha = mean beta = mean gamma = 0 of the four sensors, relative to their "
+        "mountings; the "
+        "common rotation against the platform is unknown";
+  } else {
+    const bool convention = fit.gauge.angles == AngleCoverage::one_axis && !fit.gauge.direction_known;
+    text = fmt::format(
+        "table angles (sd {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, {:.2g} "
+        "about Y",
+        to_deg(fit.table_sd_rad), sd_deg(alpha), sd_deg(beta));
+    text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
+                       : fmt::format(", {:.2g} about Z", sd_deg(gamma));
+    if (fit.gauge.direction_known) text += "; inclination and declination as given";
+  }
+  if (!fit.gauge.scale_known)
+    text += "; no field is known: mean scale factor of the twelve axes = 1, the overall scale is free";
+  return text;
+}
+
+Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near) {
+  auto problem = joint_problem(table, options);
+  if (!problem) return tl::unexpected(problem.error());
+  JointFit fit;
+  fit.problem = std::move(*problem);
+  fit.gauge = fix_gauge(fit.problem, options);
+  const double f_nT = start_field_nT(fit.problem, options);
+  Result<JointState> state = near != nullptr
+                                 ? joint_state(fit.problem, near->sensors, near->direction, near->f_nT)
+                                 : joint_start(fit.problem, f_nT);
+  if (!state) return tl::unexpected(state.error());
+  if (near != nullptr && near->coefficients.size() == state->coefficients.size())
+    state->coefficients = near->coefficients;
+
+  Noise noise;
+  noise.sample_nT = pooled_sample_noise(table);
+  noise.table_sd_rad = options.table_sd_rad;
+  Outliers outliers;
+  Result<JointSolution> solution = JointSolution{};
+  PoseResiduals residuals;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    apply(noise, fit.problem);
+    solution = solve(fit.problem, std::move(*state));
+    if (!solution) return tl::unexpected(solution.error());
+    if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
+    fit.iterations += solution->iterations;
+    residuals = pose_residuals(fit.problem, solution->state);
+    const bool excluded = outliers.exclude(fit.problem, residuals);
+    const bool moved = update(residuals, fit.problem, noise);
+    if (!excluded && !moved && !outliers.restore(fit.problem, solution->state)) break;
+    state = std::move(solution->state);
+  }
+  fit.state = std::move(solution->state);
+  fit.outliers = outliers.nodes(fit.problem, fit.state);
+  auto covariance = covariance_of(solution->reduced.S);
+  if (!covariance) return tl::unexpected(covariance.error());
+  fit.pose_noise_nT = noise.pose_nT;
+  fit.sample_noise_nT = noise.sample_nT;
+  fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
+  fill_statistics(residuals, solution->reduced, fit);
+  fit.covariance = *covariance * fit.spread * fit.spread;
+  fit.gauge_text = describe_gauge(fit);
+  return fit;
+}
+
+}  // namespace
+
+double JointFit::noise_nT() const { return std::sqrt(pose_noise_nT.array().square().mean()); }
+
+Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options) {
+  return run(table, options, nullptr);
+}
+
+Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options, const JointState& near) {
+  return run(table, options, &near);
+}
+
+Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {
+  const Eigen::VectorXd d = S.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * S * d.asDiagonal());
+  if (!d.allFinite() || llt.info() != Eigen::Success) {
+    return fail(ErrorCode::refused, "the poses leave at least one combination of parameters undetermined",
+                "turn the rig about a second and a third axis");
+  }
+  const Eigen::MatrixXd C = llt.solve(Eigen::MatrixXd::Identity(S.rows(), S.cols()));
+  return Eigen::MatrixXd(d.asDiagonal() * C * d.asDiagonal());
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/fit/joint_setup.h"
+#include "calib/fit/joint_solver.h"
+#include "calib/fit/outliers.h"
+
+/// Joint maximum likelihood over all poses and sensors (method, section 5).
+///
+/// Noise: from the spreads within the dwells where every pose has them, else from the residuals, iterated;
+/// pooled per axis either way. The standard deviation of the table angles is estimated. Observations that the
+/// rest contradicts become outlier nodes. Trivial solutions cannot win: residuals are those of raw readings,
+/// in nT, and a sensor whose gain collapses or explodes is refused by its determinant. Does not decide
+/// whether a calibration is acceptable.
+namespace mgtd::calib {
+
+struct JointFit {
+  JointProblem problem;  ///< final weights; points into the pose table
+  JointState state;
+  Eigen::MatrixXd
+      covariance;  ///< of the fixed block, gauge constraints included; widened by `spread` squared
+  AxisNoise pose_noise_nT{AxisNoise::Zero()};
+  std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
+  double table_sd_rad{0};                    ///< estimated; 0 without angles
+  double chi2{0}, dof{0};                    ///< readings and scalar reference
+  double chi2_table{0}, dof_table{0};
+  double spread{1};  ///< sqrt(chi2/dof) where significantly above one, else 1
+  int iterations{0};
+  Gauge gauge;
+  std::string gauge_text;
+  std::vector<OutlierNode> outliers;
+
+  [[nodiscard]] double noise_nT() const;  ///< rms of a pose mean over the axes
+};
+
+[[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options);
+/// The same from a state that is already near (another fold, the run before the last pose). Nuisances are
+/// refitted.
+[[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options,
+                                         const JointState& near);
+
+/// (S)^-1 of the information of the fixed block; refuses when it is not positive definite.
+[[nodiscard]] Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/outliers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kLimit = 6;     ///< robust spreads: one false node in 10^8 Gaussian observations
+constexpr double kTakeBack = 4;  ///< spreads below which an observation fits after all
+constexpr double kWithWorst =
+    0.2;  ///< smaller than this share of the worst may be its shadow: wait for the next round
+constexpr double kMaxShare = 0.1;  ///< of the poses
+constexpr double kMadToSd = 1.4826;
+
+using Spreads = Eigen::Array<double, kObservations, 1>;
+
+/// Robust spread of t over the poses, by kind of observation, at least the nominal one.
+Spreads spreads(const PoseResiduals& residuals) {
+  Spreads spread = Spreads::Ones();
+  for (int row = 0; row < kObservations; ++row) {
+    std::vector<float> values;
+    for (const float t : residuals.t.row(row)) {
+      if (t > 0) values.push_back(t);
+    }
+    if (values.empty()) continue;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    spread[row] = std::max(1.0, kMadToSd * static_cast<double>(*middle));
+  }
+  return spread;
+}
+
+double& weight_of(JointPose& pose, int row) {
+  if (row == kScalarRow) return pose.f_weight;
+  return row == kAttitudeRow ? pose.attitude_weight : pose.weight[row];
+}
+
+}  // namespace
+
+std::vector<Outliers::Suspect> Outliers::find(const PoseResiduals& residuals) const {
+  const Spreads spread = spreads(residuals);
+  std::vector<Suspect> found;
+  double worst = 0;
+  for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
+    Spreads t = residuals.t.col(k).cast<double>().array() / spread;
+    for (const Suspect& s : taken_back_) {
+      if (static_cast<Eigen::Index>(s.pose) == k) t[s.row] = 0;
+    }
+    Eigen::Index row = 0;
+    const double largest = t.maxCoeff(&row);
+    if (largest > kLimit)
+      found.push_back({.pose = static_cast<std::size_t>(k), .row = static_cast<int>(row), .t = largest});
+    worst = std::max(worst, largest);
+  }
+  std::erase_if(found, [&](const Suspect& s) { return s.t < kWithWorst * worst; });
+  return found;
+}
+
+bool Outliers::exclude(JointProblem& problem, const PoseResiduals& residuals) {
+  auto found = find(residuals);
+  if (static_cast<double>(found.size() + left_out_.size()) >
+      kMaxShare * static_cast<double>(problem.poses.size()))
+    return false;
+  for (Suspect& s : found) {
+    double& weight = weight_of(problem.poses[s.pose], s.row);
+    s.weight = weight;
+    weight = s.row == kAttitudeRow ? kLooseAttitude_per_rad : 0;
+    left_out_.push_back(s);
+  }
+  return !found.empty();
+}
+
+bool Outliers::restore(JointProblem& problem, const JointState& state) {
+  const PoseModel model(problem, state);
+  PoseLinear linear;
+  const auto fits = [&](const Suspect& s) {
+    if (s.row == kAttitudeRow)
+      return false;  // the pose's own attitude follows its readings: nothing new was learnt
+    const JointPose& pose = problem.poses[s.pose];
+    model.linearise(pose, state.nuisances[s.pose], linear);
+    const double shift =
+        s.row == kScalarRow ? pose.f_nT - linear.f_nT : pose.y_nT[s.row] - linear.y_nT[s.row];
+    // The scalar's prediction carries the readings' noise, its own is smaller.
+    const double weight = s.row == kScalarRow ? std::min(s.weight, pose.weight.maxCoeff()) : s.weight;
+    return std::abs(shift) * weight < kTakeBack;
+  };
+  const auto gone =
+      std::stable_partition(left_out_.begin(), left_out_.end(), [&](const Suspect& s) { return !fits(s); });
+  const bool any = gone != left_out_.end();
+  for (auto s = gone; s != left_out_.end(); ++s) {
+    weight_of(problem.poses[s->pose], s->row) = s->weight;
+    taken_back_.push_back(*s);
+  }
+  left_out_.erase(gone, left_out_.end());
+  return any;
+}
+
+std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const JointState& state) const {
+  const PoseModel model(problem, state);
+  std::vector<OutlierNode> out;
+  for (const Suspect& s : left_out_) {
+    const JointPose& pose = problem.poses[s.pose];
+    OutlierNode node{.pose = pose.pose->number, .where = {}, .shift = 0, .unit = "nT", .sigmas = s.t};
+    PoseLinear linear;
+    model.linearise(pose, state.nuisances[s.pose], linear);
+    if (s.row == kScalarRow) {
+      node.where = "scalar";
+      node.shift = pose.f_nT - linear.f_nT;
+    } else if (s.row == kAttitudeRow) {
+      node.where = "angles";
+      node.unit = "deg";
+      node.shift = to_deg(2 * std::atan(state.nuisances[s.pose].head<3>().norm() / 2));
+    } else {
+      node.where = fmt::format("s{}.{}", s.row / 3 + 1, "xyz"[s.row % 3]);
+      node.shift = pose.y_nT[s.row] - linear.y_nT[s.row];
+    }
+    out.push_back(std::move(node));
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib
