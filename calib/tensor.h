@@ -18,17 +18,29 @@
 /// Does not remove site effects: a gradient of the site is real field.
 namespace mgtd::calib {
 
+inline constexpr int kChannels = 3 * kSensors;
+/// The corrected components, sensor by sensor, nT.
+using FieldVector = Eigen::Matrix<double, kChannels, 1>;
+
 struct FieldAndGradient {
   Eigen::Vector3d b_P_nT;
   Gradient g_nT_per_m;
   Closure closure;  ///< chi2 is left NaN here: it needs the noise
 };
 
-[[nodiscard]] FieldAndGradient field_and_gradient(const std::array<Eigen::Vector3d, kSensors>& b_P_nT,
-                                                  const Geometry& geometry);
+[[nodiscard]] FieldAndGradient field_and_gradient(const FieldVector& b_P_nT, const Geometry& geometry);
 
-/// The stream's arithmetic for one calibration: everything that does not depend on the sample is computed
-/// once, so that a sample costs four 3x3 products and a few sums, and allocates nothing.
+/// The six gradient components (xx, yy, zz, xy, xz, yz) and the four closure quantities (curl, centre x, y,
+/// z) as linear functions of the corrected components.
+[[nodiscard]] Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry);
+[[nodiscard]] Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry);
+
+/// The stream's arithmetic for one calibration. Everything that does not depend on the sample is computed
+/// once; a sample allocates nothing.
+///
+/// Uncertainty. An error dp of the parameters shifts the corrected field of sensor i by -R (CA)^-1 dy(dp; b),
+/// linear in (1, b): so the variance of any linear function of the corrected fields is a quadratic form q' Q
+/// q in q = (1, b_P), with Q a constant 4x4 matrix per function. The noise of one sample adds a constant.
 class TensorPipeline {
  public:
   /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
@@ -37,16 +49,33 @@ class TensorPipeline {
   explicit TensorPipeline(std::shared_ptr<const Calibration> calibration);
 
   /// g_sd holds sample noise and calibration covariance together, the latter at the field of this very
-  /// sample.
-  [[nodiscard]] TensorSample apply(const Epoch& epoch) const;
+  /// sample. `samples` is the number of samples averaged into the readings.
+  [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1) const;
+  /// The corrected field at each sensor, platform frame.
+  [[nodiscard]] FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
   [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const { return calibration_; }
 
  private:
+  /// Variance of a linear function of the corrected fields: noise + q' Q q.
+  struct Variance {
+    double noise{0};
+    Eigen::Matrix4d Q{Eigen::Matrix4d::Zero()};
+    [[nodiscard]] double at(const Eigen::Vector4d& q, double samples) const {
+      return noise / samples + q.dot(Q * q);
+    }
+  };
+
+  void prepare_uncertainty();
+
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
   Geometry geometry_;
   std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R_PS (C A)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
+  bool noise_known_{false};
+  std::array<Variance, 6> gradient_variance_;
+  /// Covariance of each pair of closure quantities, upper triangle by rows.
+  std::array<Variance, 10> closure_covariance_;
 };
 
 }  // namespace mgtd::calib

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration_json.h"
+
+#include <fmt/format.h>
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+constexpr const char* kSchema = "mgt.cal/1";
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+json rows(const AxisNoise& noise) {
+  json out = json::array();
+  for (int i = 0; i < kSensors; ++i) out.push_back({noise(i, 0), noise(i, 1), noise(i, 2)});
+  return out;
+}
+
+AxisNoise noise_from(const json& object) {
+  AxisNoise noise;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t a = 0; a < 3; ++a)
+      noise(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = object.at(i).at(a);
+  }
+  return noise;
+}
+
+json sensor_json(const SensorModel& s) {
+  const ParameterVector p = s.parameters();
+  json out;
+  for (int k = 0; k < kSensorParameters; ++k) {
+    const std::string name(kParameterNames[static_cast<std::size_t>(k)]);
+    const bool is_scale = k >= cx && k <= cz;
+    const bool is_offset = k >= ix && k <= iz;
+    out[name + (is_scale ? "" : is_offset ? "_nT" : "_rad")] = p[k];
+  }
+  json mounting = json::array();
+  for (int i = 0; i < 3; ++i) mounting.push_back({s.mounting(i, 0), s.mounting(i, 1), s.mounting(i, 2)});
+  out["mounting"] = std::move(mounting);
+  return out;
+}
+
+SensorModel sensor_from_json(const json& object) {
+  ParameterVector p;
+  for (int k = 0; k < kSensorParameters; ++k) {
+    const std::string name(kParameterNames[static_cast<std::size_t>(k)]);
+    const bool is_scale = k >= cx && k <= cz;
+    const bool is_offset = k >= ix && k <= iz;
+    p[k] = object.at(name + (is_scale ? "" : is_offset ? "_nT" : "_rad"));
+  }
+  Eigen::Matrix3d mounting;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      mounting(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          object.at("mounting").at(i).at(j);
+    }
+  }
+  return SensorModel::from_parameters(p, mounting);
+}
+
+json triangle(const ArrayCovariance& c) {
+  json out = json::array();
+  for (int i = 0; i < kArrayParameters; ++i) {
+    for (int j = i; j < kArrayParameters; ++j) out.push_back(c(i, j));
+  }
+  return out;
+}
+
+ArrayCovariance covariance_from(const json& list) {
+  ArrayCovariance c;
+  std::size_t k = 0;
+  for (int i = 0; i < kArrayParameters; ++i) {
+    for (int j = i; j < kArrayParameters; ++j) c(i, j) = c(j, i) = list.at(k++).get<double>();
+  }
+  return c;
+}
+
+json reference_json(const Reference& r) {
+  json T = json::array();
+  for (const auto& t : r.T_degC) T.push_back(t ? json(*t) : json());
+  return {{"T_degC", T},
+          {"t_utc", r.t_utc},
+          {"F_nT", r.f_nT ? json(*r.f_nT) : json()},
+          {"currents", json::object()}};
+}
+
+Reference reference_from(const json& object) {
+  Reference r;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (const json& t = object.at("T_degC").at(i); !t.is_null()) r.T_degC.at(i) = t.get<double>();
+  }
+  r.t_utc = object.at("t_utc");
+  if (const json& f = object.at("F_nT"); !f.is_null()) r.f_nT = f.get<double>();
+  return r;
+}
+
+std::vector<Check> checks_from(const json& list) {
+  std::vector<Check> out;
+  for (const json& c : list) {
+    out.push_back({c.at("name"), c.at("passed"), c.at("measured"), c.at("limit"), c.at("remedy")});
+  }
+  return out;
+}
+
+}  // namespace
+
+json to_json(const std::vector<Check>& checks) {
+  json out = json::array();
+  for (const Check& c : checks) {
+    out.push_back({{"name", c.name},
+                   {"passed", c.passed},
+                   {"measured", c.measured},
+                   {"limit", c.limit},
+                   {"remedy", c.remedy}});
+  }
+  return out;
+}
+
+json to_json(const Calibration& c) {
+  json sensors = json::array();
+  for (const SensorModel& s : c.sensors) sensors.push_back(sensor_json(s));
+  return {{"schema", kSchema},
+          {"id", c.id},
+          {"method", c.method},
+          {"model", "y = C A R' b + I (12 parameters a sensor)"},
+          {"sensors", std::move(sensors)},
+          {"covariance", triangle(c.covariance)},
+          {"effects", json::array()},
+          {"baseline_m", c.geometry.baseline_m},
+          {"sample_noise_nT", rows(c.sample_noise_nT)},
+          {"pose_noise_nT", rows(c.pose_noise_nT)},
+          {"gauge", c.gauge},
+          {"reference", reference_json(c.reference)},
+          {"data_hash", c.data_hash},
+          {"poses", c.poses},
+          {"accepted", c.accepted_by_checks},
+          {"verdict", to_json(c.verdict)},
+          {"software", c.software}};
+}
+
+Result<Calibration> calibration_from_json(const json& object) {
+  Calibration c;
+  try {
+    if (const std::string schema = object.at("schema"); schema != kSchema) {
+      return fail(ErrorCode::bad_input, fmt::format("schema '{}' is not '{}'", schema, kSchema),
+                  "use the version of mgt that wrote it");
+    }
+    c.id = object.at("id");
+    c.method = object.at("method");
+    for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
+    c.covariance = covariance_from(object.at("covariance"));
+    c.geometry.baseline_m = object.at("baseline_m");
+    c.sample_noise_nT = noise_from(object.at("sample_noise_nT"));
+    c.pose_noise_nT = noise_from(object.at("pose_noise_nT"));
+    c.gauge = object.at("gauge");
+    c.reference = reference_from(object.at("reference"));
+    c.data_hash = object.at("data_hash");
+    c.poses = object.at("poses");
+    c.accepted_by_checks = object.at("accepted");
+    c.verdict = checks_from(object.at("verdict"));
+    c.software = object.at("software");
+  } catch (const json::exception& error) {
+    return fail(ErrorCode::bad_input, fmt::format("not a calibration: {}", error.what()),
+                "give a CAL.json written by mgt fit -o");
+  }
+  const std::string written = c.id;
+  c.seal();
+  if (c.id != written) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("the content was changed: it hashes to {}, the file says {}", c.id, written),
+                "a calibration is never edited; fit again instead");
+  }
+  return c;
+}
+
+std::string to_json_text(const Calibration& calibration) { return to_json(calibration).dump(1) + "\n"; }
+
+Result<Calibration> calibration_from_json_text(std::string_view text) {
+  const json object = json::parse(text, nullptr, false);
+  if (object.is_discarded() || !object.is_object()) {
+    return fail(ErrorCode::bad_input, "not a JSON object", "give a CAL.json written by mgt fit -o");
+  }
+  return calibration_from_json(object);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "calib/calibration.h"
+
+/// CAL.json, schema "mgt.cal/1". Every key names its unit; angles are radians here, since degrees would
+/// cost the last bit. Covariance in the same units, upper triangle by rows. Reading gives the same bits back.
+namespace mgtd::calib {
+
+[[nodiscard]] nlohmann::json to_json(const Calibration& calibration);
+[[nodiscard]] nlohmann::json to_json(const std::vector<Check>& checks);
+[[nodiscard]] Result<Calibration> calibration_from_json(const nlohmann::json& object);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/calibration.h"
+#include "proto/error.h"
+#include "proto/pose.h"
+#include "proto/tensor.h"
+#include "proto/units.h"
+
+/// From a pose table to a calibration and everything an operator must know about it.
+namespace mgtd::calib {
+
+enum class Method { simplified, two_step };
+[[nodiscard]] std::string_view name(Method method);
+[[nodiscard]] std::optional<Method> method_from(std::string_view name);
+
+struct FitOptions {
+  Method method{Method::two_step};
+  std::optional<double> field_nT;  ///< total field of every pose that has no f_nT
+  double field_sd_nT{0};           ///< its standard uncertainty, common to those poses
+  /// Direction of the field in the platform frame when all table angles are zero: inclination positive
+  /// towards +Z, declination from X towards Y. Not given: both are estimated (gauge: see Calibration::gauge).
+  std::optional<double> inclination_rad, declination_rad;
+  double baseline_m{0.4};
+  double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
+  std::uint64_t seed{1};             ///< of the bootstrap that gives the standard errors
+};
+
+/// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a
+/// uniform field is zero, so its rms is the error.
+struct ErrorSummary {
+  std::array<double, kSensors> total_field_rmse_nT{};
+  Gradient tensor_rmse_nT_per_m;
+};
+
+/// Step 2 from the odd and from the even poses of the standard set, in the order they were measured.
+struct HalvesComparison {
+  ErrorSummary odd, even;
+  /// Largest difference between the halves of alpha, beta and gamma over the sensors, gamma less its common
+  /// part.
+  double angle_difference_rad{0};
+};
+
+/// The field of the site in the platform frame at zero table angles.
+struct SiteField {
+  double f_nT{0};
+  double inclination_rad{0}, declination_rad{0};
+  double inclination_sd_rad{0}, declination_sd_rad{0};
+};
+
+struct FitReport {
+  Calibration calibration;
+  double chi2{0};  ///< of |b| against F, all sensors, pose-mean noise
+  double dof{0};
+  double noise_nT{0};  ///< of a pose mean, rms over the axes
+  std::vector<std::string>
+      reasons;  ///< sentences for the operator: what failed, what was recognised, what is left over
+  SiteField site;
+  ErrorSummary before, after_step1, after;
+  std::optional<ErrorSummary> simplified;  ///< the baseline method beside a two-step fit
+  std::optional<ErrorSummary>
+      held_out;  ///< folds contiguous in time; empty when a fold cannot be fitted without its poses
+  std::optional<HalvesComparison> halves;
+};
+
+/// Refuses (ErrorCode::refused), with what was measured and what to do: no field known, fewer than nine
+/// poses, poses about one axis only, no or too few "standard" poses, field along platform Z or at right
+/// angles to it. Poses of the set "check" are not used. A result that is not refused can still fail a check:
+/// see calibration.accepted_by_checks.
+[[nodiscard]] Result<FitReport> fit(const PoseTable& table, const FitOptions& options);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/readings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+/// Mean square over poses of sd^2 / weight(pose), per axis; zero where nothing is known.
+template <class Weight>
+AxisNoise pooled(const PoseTable& table, Weight weight) {
+  AxisNoise sum = AxisNoise::Zero(), count = AxisNoise::Zero();
+  for (const Pose& pose : table.poses) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto& sd = pose.sd_nT[i][a];
+        if (!sd) continue;
+        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(a);
+        sum(row, column) += *sd * *sd / weight(pose);
+        count(row, column) += 1;
+      }
+    }
+  }
+  return (count.array() > 0).select(sum.array() / count.array().max(1), 0.0).sqrt();
+}
+
+}  // namespace
+
+AxisNoise pooled_sample_noise(const PoseTable& table) {
+  return pooled(table, [](const Pose&) { return 1.0; });
+}
+
+Readings Readings::subset(const std::vector<Eigen::Index>& which) const {
+  Readings out;
+  for (std::size_t i = 0; i < kCount; ++i) out.y_nT[i] = y_nT[i](Eigen::all, which);
+  out.f_nT = f_nT(which);
+  out.f_sd_nT = f_sd_nT(which);
+  out.pose_noise_nT = pose_noise_nT;
+  for (const Eigen::Index k : which) {
+    out.angles.push_back(angles[static_cast<std::size_t>(k)]);
+    out.standard.push_back(standard[static_cast<std::size_t>(k)]);
+  }
+  return out;
+}
+
+Result<Readings> readings_of(const PoseTable& table, const FitOptions& options) {
+  std::vector<const Pose*> used;
+  for (const Pose& pose : table.poses) {
+    if (pose.set != "check") used.push_back(&pose);
+  }
+  Readings out;
+  const auto n = static_cast<Eigen::Index>(used.size());
+  for (auto& y : out.y_nT) y.resize(3, n);
+  out.f_nT.resize(n);
+  out.f_sd_nT.resize(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Pose& pose = *used[static_cast<std::size_t>(k)];
+    if (!pose.f_nT && !options.field_nT) {
+      return fail(
+          ErrorCode::refused, fmt::format("pose {} has no f_nT and no field is given", pose.number),
+          "give the total field of the site with --field NT, or measure it with a scalar magnetometer");
+    }
+    out.f_nT[k] = pose.f_nT.value_or(options.field_nT.value_or(0));
+    out.f_sd_nT[k] = pose.f_nT ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT) : 0.0;
+    if (!(out.f_nT[k] > 1000 && out.f_nT[k] < 200'000)) {
+      return fail(ErrorCode::refused,
+                  fmt::format("pose {}: a total field of {} nT", pose.number, out.f_nT[k]),
+                  "it must be in nT, between 1000 and 200000; check f_nT or --field");
+    }
+    for (std::size_t i = 0; i < kCount; ++i) out.y_nT[i].col(k) = pose.y_nT[i];
+    out.angles.push_back(pose.angles());
+    out.standard.push_back(pose.set == "standard");
+  }
+  out.pose_noise_nT = pooled(table, [](const Pose& p) { return p.n_eff.value_or(p.n.value_or(1.0)); });
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "calib/calibration.h"
+#include "calib/fit/fit.h"
+
+/// The poses of a table as the fits want them: one column per pose.
+namespace mgtd::calib {
+
+struct Readings {
+  std::array<Eigen::Matrix3Xd, kSensors> y_nT;
+  Eigen::VectorXd f_nT;
+  Eigen::VectorXd f_sd_nT;
+  std::vector<std::optional<TableAngles>> angles;
+  std::vector<bool> standard;
+  AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< of a pose mean; zero when the table has no spreads
+
+  [[nodiscard]] Eigen::Index poses() const { return f_nT.size(); }
+  [[nodiscard]] double mean_f_nT() const { return f_nT.mean(); }
+  /// The poses with these indices, in this order.
+  [[nodiscard]] Readings subset(const std::vector<Eigen::Index>& which) const;
+};
+
+/// Every pose but those of the set "check". Refuses when a pose has no field and none is given.
+[[nodiscard]] Result<Readings> readings_of(const PoseTable& table, const FitOptions& options);
+
+/// Noise of one sample per axis, pooled over the poses (root mean square of their spreads); zero where no
+/// pose tells.
+[[nodiscard]] AxisNoise pooled_sample_noise(const PoseTable& table);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/pose.h"
+
+/// The numeric columns of a pose table that have a meaning of their own, each with its way into a Pose and
+/// out of it.
+namespace mgtd::calib {
+
+struct PoseColumn {
+  std::string name;
+  bool required{false};
+  std::function<void(Pose&, double)> set;
+  std::function<std::optional<double>(const Pose&)> get;
+};
+
+/// In the order they are written. `pose`, `set` and `t_utc` are not numbers of this kind and stand before
+/// them.
+[[nodiscard]] const std::vector<PoseColumn>& pose_columns();
+
+}  // namespace mgtd::calib

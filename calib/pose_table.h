@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "proto/error.h"
+#include "proto/pose.h"
+
+/// The pose table as text (CSV, '.' decimal point, header row, empty cell = not measured). Columns are
+/// described in docs/pose-table.md. Readings of all four sensors are required; every other column is
+/// optional; a numeric column with a name of its own is a covariate.
+namespace mgtd::calib {
+
+/// Tolerates CRLF, a byte order mark, blank lines, '#' comments and spaces around cells. Refuses, with
+/// file:line:column and what to do: a missing column, a column named twice, a row of another length, text
+/// where a number belongs, nan, inf, an unreadable time, a pose number twice, a table without a row. `file`
+/// is for the messages.
+[[nodiscard]] Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file);
+
+/// Every number in the shortest form that reads back to the same bits; columns nobody filled are left out.
+[[nodiscard]] std::string format_pose_table(const PoseTable& table);
+
+/// SHA-256 of the canonical text: what a calibration was fitted to.
+[[nodiscard]] std::string data_hash(const PoseTable& table);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/tensor.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+/// d(corrected field of one sensor)/d(its 12 parameters), at b_P: 3 x 12.
+/// b_P = R (CA)^-1 (y - I) with y fixed: -R (CA)^-1 d(CA) R' b - R (CA)^-1 dI + dR R' b.
+using FieldDerivative = Eigen::Matrix<double, 3, kSensorParameters>;
+
+FieldDerivative field_derivative(const SensorModel& m, const Eigen::Vector3d& b_P_nT) {
+  FieldDerivative d;
+  const Eigen::Matrix3d R = m.R_PS();
+  const Eigen::Vector3d b_S = R.transpose() * b_P_nT;
+  const Eigen::Matrix3d gain = R * m.response().inverse();
+  const double st = std::sin(m.theta_rad), ct = std::cos(m.theta_rad);
+  const double sf = std::sin(m.phi_rad), cf = std::cos(m.phi_rad);
+  const double sp = std::sin(m.psi_rad), cp = std::cos(m.psi_rad);
+  const auto& c = m.scale;
+  const Eigen::Vector3d along_scale = m.response() * b_S;
+  d.col(theta) = -gain.col(0) * c[0] * (-st * cf * b_S[0] + ct * cf * b_S[1]);
+  d.col(phi) = -gain.col(0) * c[0] * (-ct * sf * b_S[0] - st * sf * b_S[1] + cf * b_S[2]);
+  d.col(psi) = -gain.col(1) * c[1] * (-sp * b_S[1] + cp * b_S[2]);
+  for (int a = 0; a < 3; ++a) {
+    d.col(cx + a) = -gain.col(a) * along_scale[a] / c[a];
+    d.col(ix + a) = -gain.col(a);
+  }
+  // A passive rotation by a about unit e: d/da (A v) = -(e x A v).
+  const Eigen::Vector3d inner = m.mounting * b_S;
+  const Eigen::Matrix3d Ax = rotation_x(m.alpha_rad), Ay = rotation_y(m.beta_rad),
+                        Az = rotation_z(m.gamma_rad);
+  d.col(alpha) = -(Az * Ay * Eigen::Vector3d::UnitX().cross(Ax * inner));
+  d.col(beta) = -(Az * Eigen::Vector3d::UnitY().cross(Ay * (Ax * inner)));
+  d.col(gamma) = -Eigen::Vector3d::UnitZ().cross(b_P_nT);
+  return d;
+}
+
+FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
+  FieldVector out;
+  for (std::size_t i = 0; i < kCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
+  return out;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry) {
+  const double g = 1 / geometry.baseline_m;
+  Eigen::Matrix<double, 6, kChannels> m = Eigen::Matrix<double, 6, kChannels>::Zero();
+  const auto difference = [&](int row, int axis, int plus, int minus, double weight) {
+    m(row, 3 * plus + axis) += weight;
+    m(row, 3 * minus + axis) -= weight;
+  };
+  difference(0, 0, 0, 2, g);  // Bxx
+  difference(1, 1, 1, 3, g);  // Byy
+  m.row(2) = -m.row(0) - m.row(1);
+  difference(3, 0, 1, 3, g / 2);  // Bxy
+  difference(3, 1, 0, 2, g / 2);  // Byx
+  difference(4, 2, 0, 2, g);      // Bzx
+  difference(5, 2, 1, 3, g);      // Bzy
+  return m;
+}
+
+Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry) {
+  const double g = 1 / geometry.baseline_m;
+  Eigen::Matrix<double, 4, kChannels> m = Eigen::Matrix<double, 4, kChannels>::Zero();
+  m(0, 3 * 1) = g, m(0, 3 * 3) = -g;  // Bxy
+  m(0, 1) = -g, m(0, 3 * 2 + 1) = g;  // -Byx
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < kSensors; ++i) m(1 + axis, 3 * i + axis) = i % 2 == 0 ? 0.5 : -0.5;
+  }
+  return m;
+}
+
+FieldAndGradient field_and_gradient(const FieldVector& b, const Geometry& geometry) {
+  const auto b1 = b.segment<3>(0), b2 = b.segment<3>(3), b3 = b.segment<3>(6), b4 = b.segment<3>(9);
+  const double d = geometry.baseline_m;
+  const Eigen::Vector3d along_x = (b1 - b3) / d, along_y = (b2 - b4) / d;
+  FieldAndGradient out;
+  out.b_P_nT = (b1 + b2 + b3 + b4) / 4;
+  out.g_nT_per_m = {.xx = along_x[0],
+                    .yy = along_y[1],
+                    .zz = -(along_x[0] + along_y[1]),
+                    .xy = (along_y[0] + along_x[1]) / 2,
+                    .xz = along_x[2],
+                    .yz = along_y[2]};
+  out.closure.curl_nT_per_m = along_y[0] - along_x[1];
+  out.closure.center_nT = (b1 + b3 - b2 - b4) / 2;
+  out.closure.chi2 = kNaN;
+  return out;
+}
+
+TensorPipeline::TensorPipeline(Geometry geometry) : geometry_(geometry) {
+  gain_.fill(Eigen::Matrix3d::Identity());
+  offset_nT_.fill(Eigen::Vector3d::Zero());
+}
+
+TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration)
+    : calibration_(std::move(calibration)),
+      id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
+      geometry_(calibration_->geometry) {
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const SensorModel& sensor = calibration_->sensors[i];
+    gain_[i] = sensor.R_PS() * sensor.response().inverse();
+    offset_nT_[i] = sensor.offset_nT;
+  }
+  noise_known_ = (calibration_->sample_noise_nT.array() > 0).all();
+  prepare_uncertainty();
+}
+
+void TensorPipeline::prepare_uncertainty() {
+  // The derivative of the corrected fields is linear in q = (1, b): evaluate it at the four unit values of q.
+  using ParameterRows = Eigen::Matrix<double, 4, kArrayParameters>;  // rows: q components
+  const auto rows_of = [&](const Eigen::Matrix<double, 1, kChannels>& w) {
+    ParameterRows rows;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const auto weight = w.segment<3>(3 * at);
+      const auto constant =
+          (weight * field_derivative(calibration_->sensors[i], Eigen::Vector3d::Zero())).eval();
+      rows.block<1, kSensorParameters>(0, at * kSensorParameters) = constant;
+      for (int a = 0; a < 3; ++a) {
+        rows.block<1, kSensorParameters>(1 + a, at * kSensorParameters) =
+            weight * field_derivative(calibration_->sensors[i], Eigen::Vector3d::Unit(a)) - constant;
+      }
+    }
+    return rows;
+  };
+  Eigen::Matrix<double, kChannels, kChannels> noise = Eigen::Matrix<double, kChannels, kChannels>::Zero();
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    noise.block<3, 3>(3 * at, 3 * at) =
+        gain_[i] * calibration_->sample_noise_nT.row(at).array().square().matrix().asDiagonal() *
+        gain_[i].transpose();
+  }
+  const auto covariance = [&](const Eigen::Matrix<double, 1, kChannels>& u,
+                              const Eigen::Matrix<double, 1, kChannels>& v) {
+    const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
+    return Variance{u.dot(noise * v.transpose()), 0.5 * (Q + Q.transpose())};
+  };
+  const auto G = gradient_rows(geometry_);
+  for (Eigen::Index i = 0; i < 6; ++i)
+    gradient_variance_[static_cast<std::size_t>(i)] = covariance(G.row(i), G.row(i));
+  const auto C = closure_rows(geometry_);
+  std::size_t pair = 0;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    for (Eigen::Index j = i; j < 4; ++j) closure_covariance_[pair++] = covariance(C.row(i), C.row(j));
+  }
+}
+
+FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const {
+  std::array<Eigen::Vector3d, kSensors> b;
+  for (std::size_t i = 0; i < kCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
+  return stacked(b);
+}
+
+TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
+  const FieldAndGradient computed = field_and_gradient(correct(epoch.y_nT), geometry_);
+  TensorSample out{.seq = epoch.seq,
+                   .t = epoch.t,
+                   .calibration_id = id_,
+                   .b_P_nT = computed.b_P_nT,
+                   .f_nT = computed.b_P_nT.norm(),
+                   .g_nT_per_m = computed.g_nT_per_m,
+                   .g_sd_nT_per_m = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN},
+                   .closure = computed.closure,
+                   .skew_bound_s = epoch.skew_bound_s,
+                   .flags = epoch.flags};
+  if (calibration_ == nullptr) out.flags |= Flag::uncalibrated;
+  if (calibration_ == nullptr || !noise_known_) return out;
+  Eigen::Vector4d q;
+  q << 1, out.b_P_nT;
+  std::array<double, 6> sd{};
+  for (std::size_t i = 0; i < sd.size(); ++i) sd[i] = std::sqrt(gradient_variance_[i].at(q, samples));
+  out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+  Eigen::Matrix4d S;
+  std::size_t pair = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i; j < 4; ++j) S(i, j) = S(j, i) = closure_covariance_[pair++].at(q, samples);
+  }
+  Eigen::Vector4d closure;
+  closure << out.closure.curl_nT_per_m, out.closure.center_nT;
+  out.closure.chi2 = closure.dot(S.llt().solve(closure));
+  return out;
+}
+
+}  // namespace mgtd::calib
