@@ -31,7 +31,7 @@ class ClockModel {
  public:
   struct Config {
     double period_s{0.02};   ///< nominal
-    double window_s{120};    ///< of the regression
+    double window_s{600};    ///< of the regression
     double max_drift{2e-3};  ///< |b / period - 1|
     std::uint64_t settle_samples{100};
   };
@@ -42,8 +42,6 @@ class ClockModel {
   void reset();
   /// Sample `k` arrived at `arrival_s` (latency already subtracted). `k` rises strictly.
   void add(std::int64_t k, double arrival_s);
-  /// Shifts the numbering: what was sample k is now sample k + by (frames turned out to be lost or not).
-  void renumber(std::int64_t by);
 
   [[nodiscard]] bool empty() const { return samples_ == 0; }
   [[nodiscard]] bool settled() const { return samples_ >= config_.settle_samples; }

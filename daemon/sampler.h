@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +30,7 @@ struct SamplerConfig {
   std::array<double, kSensors> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
   double silence_s{
       1.0};  ///< a sensor that sent nothing for so long is silent; multiply by a simulation's speed-up
-  double clock_window_s{120};
+  double clock_window_s{600};
   double max_drift{2e-3};  ///< of a device's rate against rate_hz, relative
   std::uint64_t settle_samples{100};
   double negligible_shift{2e-3};  ///< of a period: no interpolation below it (nor below the clock bound)
@@ -73,60 +72,77 @@ class Sampler {
  private:
   struct Sample {
     std::int64_t k{-1};
+    double arrival_s{0};
     Eigen::Vector3d y_nT;
     Flags flags;
   };
+  /// Samples that all come more than a period late: frames were lost unseen, or delivery stalls.
+  struct Lateness {
+    std::uint64_t samples{0};
+    double since_s{0}, least_s{0}, span_s{0};
+  };
   struct Stream {
-    explicit Stream(ClockModel::Config clock_config, std::size_t capacity)
-        : clock(clock_config), ring(capacity) {}
     ClockModel clock;
     std::vector<Sample> ring;  ///< by k modulo its size, a power of two
     std::int64_t first_k{0};   ///< of this opening
     std::int64_t last_k{-1};
-    std::uint64_t last_seq{0};
-    std::optional<double> last_device_time_s;
-    double last_arrival_s{0};
-    double late_since_s{
-        0};  ///< arrival of the first of the samples that all came more than half a period late
-    std::uint64_t late{0};
-    double late_least_s{0};
-    bool live{false};  ///< has delivered since it was opened
-    bool restarted{false};
+    double last_arrival_s{0};          ///< or when the sampler began
+    std::optional<FieldReading> last;  ///< empty after reopening
+    Lateness late;
     SensorStreamHealth health;
 
     [[nodiscard]] const Sample* find(std::int64_t k) const;
+    [[nodiscard]] bool suspect(double period_s) const;
   };
-  enum class Need { ready, wait, lost };
+  /// Where the reference sensor's samples lie while it has no clock model.
+  struct Grid {
+    double k{0}, t_s{0}, period_s{0};
+  };
+  enum class Need : std::uint8_t { ready, wait, lost, not_yet };
+  enum class Why : std::uint8_t { lost, silent, not_yet, clock };
   struct Pick {
+    Need need{Need::wait};
+    double shift_s{0};  ///< left uninterpolated
+    bool interpolated{false};
     Eigen::Vector3d y_nT;
     Flags flags;
-    double shift_s{0};
   };
 
-  [[nodiscard]] double seconds(Instant t) const { return to_seconds(t - *origin_); }
-  [[nodiscard]] std::int64_t number(Stream& s, const FieldReading& r, double sample_s);
-  [[nodiscard]] std::int64_t claimed_step(const Stream& s, const FieldReading& r) const;
-  void restart(Stream& s, double sample_s);
-  void watch_lateness(Stream& s, double arrival_s, double sample_s);
-  void settle_pending(std::vector<EpochOrGap>& out);
-  Need pick(int slot, double t_s, Pick& to) const;
-  [[nodiscard]] bool assemble(std::int64_t k, std::vector<EpochOrGap>& out);
-  void fill_reference(double until_s, std::vector<EpochOrGap>& out);
-  void gap(std::int64_t from_k, std::int64_t to_k, int slot, const char* why, std::vector<EpochOrGap>& out);
+  void begin(const Stamp& stamp);
+  [[nodiscard]] double seconds(Instant t) const { return to_seconds(t - origin_); }
+  [[nodiscard]] std::int64_t number(int slot, const FieldReading& reading, double sample_s);
+  [[nodiscard]] std::int64_t step(const Stream& s, const FieldReading& reading, double sample_s) const;
+  void restart(int slot);
+  [[nodiscard]] std::int64_t first_number(int slot, double sample_s) const;
+  void watch_lateness(Stream& s, double arrival_s, double delay_s);
+  [[nodiscard]] double grid_index(double t_s) const;
+  [[nodiscard]] double grid_time(std::int64_t k) const;
+  void emit_ready(std::vector<EpochOrGap>& out);
+  void emit_silent_reference(std::vector<EpochOrGap>& out);
+  [[nodiscard]] Pick pick(int slot, double t_s) const;
+  [[nodiscard]] bool emit_next(std::vector<EpochOrGap>& out);
+  void emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, std::vector<EpochOrGap>& out);
+  void emit_gap(std::int64_t count, int slot, Why why, std::vector<EpochOrGap>& out);
   void flush_gap(std::vector<EpochOrGap>& out);
   [[nodiscard]] Stamp stamp(double t_s) const;
 
   SamplerConfig config_;
+  double period_s_;
   std::vector<Stream> streams_;
   std::array<double, kSensors> T_degC_;
-  std::optional<Instant> origin_;
-  WallTime origin_wall_{};  ///< wall clock at origin_, by the newest stamp
-  double now_s_{0};         ///< latest time known
-  std::int64_t next_k_{0};  ///< reference index of the next epoch to leave
+  bool begun_{false};
+  Instant origin_{};
+  std::int64_t origin_wall_ns_{0};  ///< wall clock at origin_, by the newest stamp
+  double now_s_{0};                 ///< latest time known
+  Grid grid_;
+  std::int64_t next_k_{0};  ///< number of the next epoch in the reference sensor's count
   std::uint64_t next_seq_{0};
-  std::optional<Gap> open_gap_;
-  double open_gap_since_s_{0};
-  SamplerHealth health_;
+  double last_t_s_{0};           ///< of the last epoch
+  std::optional<Gap> open_gap_;  ///< held back to be merged, at most a second
+  double open_since_s_{0};
+  int open_slot_{0};
+  Why open_why_{Why::lost};
+  std::uint64_t epochs_{0}, gaps_{0};
 };
 
 }  // namespace mgtd::daemon

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/sampler.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr int kReference = 0;
+constexpr double kImpossiblyEarly = 0.5;    // periods before the model's sample time
+constexpr double kLate = 0.75;              // periods behind it
+constexpr std::uint64_t kLateSamples = 16;  // all late, and spread in time: frames were lost unseen
+constexpr double kHoldGap_s = 1.0;          // before a gap is told, so that a long one is one record
+constexpr double kRing_s = 16.0;            // of samples kept: a stalled host delivers so much at once
+
+std::int64_t whole(double x) { return static_cast<std::int64_t>(std::llround(x)); }
+
+}  // namespace
+
+const Sampler::Sample* Sampler::Stream::find(std::int64_t k) const {
+  if (k < first_k || k > last_k) return nullptr;
+  const Sample& sample = ring[static_cast<std::size_t>(k) & (ring.size() - 1)];
+  return sample.k == k ? &sample : nullptr;
+}
+
+/// Late samples from one stalled delivery share their arrival; only a lasting delay makes the numbering
+/// suspect.
+bool Sampler::Stream::suspect(double period_s) const {
+  return late.samples >= 8 && late.span_s > 2 * period_s;
+}
+
+Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.rate_hz) {
+  const double kept = std::max(kRing_s, 4 * config.silence_s) * config.rate_hz + 64;
+  const std::size_t capacity = std::bit_ceil(static_cast<std::size_t>(kept));
+  const ClockModel::Config clock{period_s_, config.clock_window_s, config.max_drift, config.settle_samples};
+  for (int slot = 0; slot < kSensors; ++slot) {
+    streams_.push_back(Stream{ClockModel(clock), std::vector<Sample>(capacity), 0, -1, 0, {}, {}, {}});
+  }
+  T_degC_.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+void Sampler::begin(const Stamp& stamp) {
+  if (!begun_) {
+    begun_ = true;
+    origin_ = stamp.mono;
+    grid_ = {0, 0, period_s_};
+    last_t_s_ = -std::numeric_limits<double>::infinity();
+  }
+  now_s_ = std::max(now_s_, seconds(stamp.mono));
+}
+
+void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
+  const auto slot = static_cast<std::size_t>(reading.slot);
+  if (slot >= streams_.size()) return;
+  begin(reading.arrival);
+  origin_wall_ns_ = reading.arrival.wall.ns - (reading.arrival.mono - origin_).count();
+  Stream& s = streams_[slot];
+  const double arrival_s = seconds(reading.arrival.mono);
+  const double sample_s = arrival_s - config_.wire_s[slot] - config_.latency_s[slot];
+  if (s.last && reading.seq == s.last->seq) {
+    ++s.health.duplicates;
+    return;
+  }
+  const std::int64_t k = number(reading.slot, reading, sample_s);
+  s.clock.add(k, sample_s);
+  if (reading.y_nT.allFinite()) {
+    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, reading.flags};
+  }
+  s.last_k = k;
+  s.last = reading;
+  s.last_arrival_s = arrival_s;
+  ++s.health.samples;
+  watch_lateness(s, arrival_s, sample_s - s.clock.time_of(static_cast<double>(k)));
+  emit_ready(out);
+}
+
+void Sampler::push(const TemperatureReading& reading) {
+  const auto slot = static_cast<std::size_t>(reading.slot);
+  if (slot < streams_.size() && reading.sensor_degC) T_degC_[slot] = *reading.sensor_degC;
+}
+
+void Sampler::reopened(int slot) {
+  const auto i = static_cast<std::size_t>(slot);
+  if (i >= streams_.size() || !streams_[i].last) return;
+  ++streams_[i].health.reopened;
+  restart(slot);
+}
+
+/// The count starts over. The reference keeps its place in time: epochs lost meanwhile are counted by the
+/// clock.
+void Sampler::restart(int slot) {
+  Stream& s = streams_[static_cast<std::size_t>(slot)];
+  if (slot == kReference && !s.clock.empty()) {
+    const auto k = static_cast<double>(s.last_k);
+    grid_ = {k, s.clock.time_of(k), s.clock.period_s()};
+  }
+  s.clock.reset();
+  s.last.reset();
+  s.late = {};
+}
+
+std::int64_t Sampler::first_number(int slot, double sample_s) const {
+  const Stream& s = streams_[static_cast<std::size_t>(slot)];
+  if (slot != kReference) return s.last_k + 1;
+  return std::max({s.last_k + 1, next_k_, whole(grid_.k + (sample_s - grid_.t_s) / grid_.period_s)});
+}
+
+/// Number of this sample in its stream; frames lost before it are counted.
+std::int64_t Sampler::number(int slot, const FieldReading& reading, double sample_s) {
+  Stream& s = streams_[static_cast<std::size_t>(slot)];
+  if (s.last && reading.seq < s.last->seq) {
+    ++s.health.reopened;
+    restart(slot);
+  }
+  if (s.last) {
+    const std::int64_t by = step(s, reading, sample_s);
+    if (by > 0) {
+      s.health.lost += static_cast<std::uint64_t>(by - 1);
+      return s.last_k + by;
+    }
+    ++s.health.clock_breaks;
+    restart(slot);
+  }
+  s.first_k = first_number(slot, sample_s);
+  return s.first_k;
+}
+
+/// By how much the number rises: as the device's clock or count says, as long as the sample does not then
+/// arrive before it was taken. 0: not even by one; host clock or device clock jumped.
+std::int64_t Sampler::step(const Stream& s, const FieldReading& reading, double sample_s) const {
+  const auto counted = static_cast<std::int64_t>(reading.seq - s.last->seq);
+  std::int64_t timed = 0;
+  if (reading.device_time_s && s.last->device_time_s) {
+    timed = whole((*reading.device_time_s - *s.last->device_time_s) / period_s_);
+  }
+  const double slack_s = kImpossiblyEarly * period_s_ + (s.clock.settled() ? 0 : config_.silence_s);
+  const auto possible = [&](std::int64_t by) {
+    return by > 0 && sample_s - s.clock.time_of(static_cast<double>(s.last_k + by)) > -slack_s;
+  };
+  for (const std::int64_t by :
+       {std::max(counted, timed), std::min(counted, timed), counted, std::int64_t{1}}) {
+    if (possible(by)) return by;
+  }
+  return 0;
+}
+
+/// Frames lost before the driver saw them leave no trace but time: from then on every sample is whole periods
+/// late.
+void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
+  Lateness& late = s.late;
+  if (!s.clock.settled() || delay_s < kLate * period_s_) {
+    late.samples = 0;
+    return;
+  }
+  if (late.samples == 0) late = {0, arrival_s, delay_s, 0};
+  ++late.samples;
+  late.least_s = std::min(late.least_s, delay_s);
+  late.span_s = arrival_s - late.since_s;
+  if (late.samples < kLateSamples || late.span_s < config_.silence_s / 2) return;
+  const std::int64_t lost = std::max<std::int64_t>(1, whole(late.least_s / period_s_));
+  s.last_k += lost;
+  s.health.lost += static_cast<std::uint64_t>(lost);
+  late = {};
+}
+
+double Sampler::grid_index(double t_s) const {
+  const ClockModel& clock = streams_[kReference].clock;
+  return clock.empty() ? grid_.k + (t_s - grid_.t_s) / grid_.period_s : clock.index_of(t_s);
+}
+
+double Sampler::grid_time(std::int64_t k) const {
+  const ClockModel& clock = streams_[kReference].clock;
+  const auto at = static_cast<double>(k);
+  return clock.empty() ? grid_.t_s + (at - grid_.k) * grid_.period_s : clock.time_of(at);
+}
+
+void Sampler::advance(Instant now, std::vector<EpochOrGap>& out) {
+  if (!begun_) return;
+  now_s_ = std::max(now_s_, seconds(now));
+  emit_ready(out);
+  emit_silent_reference(out);
+  if (open_gap_ && now_s_ - open_since_s_ > kHoldGap_s) flush_gap(out);
+}
+
+SamplerHealth Sampler::health() const {
+  SamplerHealth health{epochs_, gaps_, {}};
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    health.sensors[i] = streams_[i].health;
+    health.sensors[i].clock = streams_[i].clock.state();
+  }
+  return health;
+}
+
+}  // namespace mgtd::daemon
