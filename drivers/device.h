@@ -30,6 +30,11 @@ class Device {
   virtual void on_tick(Stamp now) = 0;
   /// The port is gone. Nothing may be sent until the next on_open.
   virtual void on_close(Stamp now) = 0;
+  /// The program ends while the port is still open: the last bytes to send, if any (a table stops).
+  virtual void on_shutdown(Stamp /*now*/) {}
+
+  /// Line speed the device's settings ask for.
+  [[nodiscard]] virtual int baud() const = 0;
 
   /// True when the device should be closed and opened again (it stopped answering).
   [[nodiscard]] virtual bool wants_reopen() const { return false; }
@@ -70,6 +75,7 @@ class Turntable : public Device {
   virtual void move_to(TableAngles target) = 0;
   /// At once, in any state; also sent by on_open so that a table left moving by a dead program stops.
   virtual void stop() = 0;
+  void on_shutdown(Stamp /*now*/) override { stop(); }
   [[nodiscard]] virtual const TableLimits& limits() const = 0;
 };
 

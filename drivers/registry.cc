@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/obsdaq_driver.h"
+
 namespace mgtd::drivers {
 namespace {
 
-constexpr std::array<DriverEntry, 0> kDrivers{};
+constexpr std::array kDrivers{
+    DriverEntry{"obsdaq", Role::sensor, "Mingeo ObsDAQ digitiser, direct or behind a PalmAcq time-stamper",
+                &obsdaq::ObsdaqDriver::make},
+};
 
 }  // namespace
 

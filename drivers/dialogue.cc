@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/dialogue.h"
+
+namespace mgtd::drivers {
+namespace {
+
+bool matches(std::string_view line, std::string_view expected) {
+  if (!expected.ends_with('*')) return line == expected;
+  expected.remove_suffix(1);
+  return line.starts_with(expected) && line.size() > expected.size();
+}
+
+}  // namespace
+
+void Dialogue::start(Instant now) {
+  outcome_ = Outcome::running;
+  identity_.clear();
+  heard_.clear();
+  enter(0, now);
+}
+
+void Dialogue::enter(std::size_t at, Instant now) {
+  if (at >= steps_.size()) {
+    outcome_ = Outcome::done;
+    return;
+  }
+  at_ = at;
+  attempts_ = 0;
+  limit_.set(now, kDrainLimit_s);
+  say(now);
+}
+
+void Dialogue::say(Instant now) {
+  ++attempts_;
+  to_send_ += step().send;
+  resend_.set(now, 1.0);
+  deadline_.set(now, step().seconds, step().kind == Step::Kind::tell ? 1 : Deadline::kFairTicks);
+}
+
+void Dialogue::on_line(std::string_view line, Instant now) {
+  if (outcome_ != Outcome::running || step().kind != Step::Kind::ask) return;
+  if (!matches(line, step().reply)) {
+    heard_ = line;
+    return;
+  }
+  if (step().reply.ends_with('*')) identity_ = line;
+  heard_.clear();
+  enter(at_ + 1, now);
+}
+
+void Dialogue::on_tick(Instant now, std::uint64_t bytes_in) {
+  if (outcome_ != Outcome::running) return;
+  switch (step().kind) {
+    case Step::Kind::tell:
+      if (deadline_.passed(now)) enter(at_ + 1, now);
+      break;
+    case Step::Kind::ask:
+      tick_ask(now);
+      break;
+    case Step::Kind::drain:
+      tick_drain(now, bytes_in);
+      break;
+  }
+}
+
+void Dialogue::tick_ask(Instant now) {
+  if (!deadline_.passed(now)) return;
+  if (attempts_ < kAttempts) {
+    say(now);
+  } else if (step().tolerant) {
+    enter(at_ + 1, now);
+  } else {
+    outcome_ = heard_.empty() ? Outcome::no_answer : Outcome::wrong_answer;
+  }
+}
+
+void Dialogue::tick_drain(Instant now, std::uint64_t bytes_in) {
+  const bool over = limit_.passed(now);
+  const bool resend = resend_.passed(now);
+  if (std::exchange(bytes_seen_, bytes_in) != bytes_in) {
+    deadline_.set(now, step().seconds);
+    if (over) {
+      outcome_ = Outcome::never_silent;
+    } else if (resend) {
+      to_send_ += step().send;
+      resend_.set(now, 1.0);
+    }
+  } else if (deadline_.passed(now)) {
+    enter(at_ + 1, now);
+  }
+}
+
+}  // namespace mgtd::drivers

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "drivers/deadline.h"
+
+/// A start-up conversation as a list of steps, carried out in virtual or real time alike.
+///
+///   tell   send, then let `seconds` pass; what comes in is of no interest
+///   drain  send, and again every second while bytes still come, until none came for `seconds`
+///   ask    send, and wait up to `seconds` for the reply; asked kAttempts times
+///
+/// The owner feeds lines and ticks, sends what take_send() gives, and reads the outcome.
+namespace mgtd::drivers {
+
+struct Step {
+  enum class Kind { tell, drain, ask } kind{Kind::tell};
+  std::string send;
+  std::string reply;  ///< ask: the whole line expected; ends in '*': any line that starts so and is longer
+  double seconds{0};
+  bool tolerant{false};  ///< ask: go on when no reply came
+};
+
+class Dialogue {
+ public:
+  static constexpr int kAttempts = 3;
+  static constexpr double kDrainLimit_s = 10.0;
+
+  enum class Outcome { running, done, no_answer, wrong_answer, never_silent };
+
+  explicit Dialogue(std::vector<Step> steps = {}) : steps_(std::move(steps)) {}
+
+  void start(Instant now);
+  void on_line(std::string_view line, Instant now);
+  /// `bytes_in` counts all bytes ever received: how drain sees that the line is not yet silent.
+  void on_tick(Instant now, std::uint64_t bytes_in);
+
+  [[nodiscard]] Outcome outcome() const { return outcome_; }
+  [[nodiscard]] std::string take_send() { return std::exchange(to_send_, {}); }
+  /// Where it stands or ended.
+  [[nodiscard]] const Step& step() const { return steps_.at(at_); }
+  /// The last line that was not the expected one; empty when nothing came.
+  [[nodiscard]] const std::string& heard() const { return heard_; }
+  /// The reply to an ask whose reply ends in '*'.
+  [[nodiscard]] const std::string& identity() const { return identity_; }
+
+ private:
+  void enter(std::size_t at, Instant now);
+  void say(Instant now);
+  void tick_ask(Instant now);
+  void tick_drain(Instant now, std::uint64_t bytes_in);
+
+  std::vector<Step> steps_;
+  std::size_t at_{0};
+  Outcome outcome_{Outcome::running};
+  std::string to_send_, heard_, identity_;
+  Deadline deadline_, resend_, limit_;
+  int attempts_{0};
+  std::uint64_t bytes_seen_{0};
+};
+
+}  // namespace mgtd::drivers

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/obsdaq_driver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace mgtd::drivers::obsdaq {
+namespace {
+
+constexpr std::size_t kLongestLine = 128;
+constexpr double kSilence_s = 0.3;  ///< that ends a drain
+constexpr double kReply_s = 2.0;
+constexpr double kRetry_s = 10.0;
+constexpr double kDead_s = 10.0;  ///< without a single byte, before the port is opened again
+
+using Kind = Step::Kind;
+
+Step ask(const Exchange& exchange) { return {Kind::ask, exchange.command, exchange.reply, kReply_s}; }
+
+/// Leaves whatever mode a PalmAcq was left in and connects through to the ObsDAQ.
+void enter_transparent(std::vector<Step>& steps) {
+  steps.push_back({Kind::tell, std::string("\x00\x1B", 2), "", 0.2});
+  steps.push_back({Kind::tell, "SM:CMD\r", "", 0.3});
+  steps.push_back({Kind::drain, "SF:-\r", "", kSilence_s});
+  steps.push_back({Kind::tell, "SP:R:19200,8,n,1,1\r", "", 0.3});
+  steps.push_back({Kind::tell, "ST:R\r", "", 0.3});
+  steps.push_back({Kind::ask, "SM:TRP\r", "AM:TRP,001B", kReply_s, true});
+}
+
+void enter_forwarding(std::vector<Step>& steps) {
+  steps.push_back({Kind::tell, std::string("\x00\x1B", 2), "", 0.2});
+  steps.push_back({Kind::tell, "SM:CMD\r", "", 0.3});
+  steps.push_back({Kind::tell, "SF:R\r", "", 0.2});
+}
+
+std::vector<Step> start_up(const ObsdaqSettings& s) {
+  std::vector<Step> steps;
+  if (s.palmacq) enter_transparent(steps);
+  steps.push_back({Kind::drain, quick_stop(), "", kSilence_s});
+  steps.push_back({Kind::tell, stop(s.address), "", 0.2});
+  steps.push_back({Kind::ask, identify(s.address), fmt::format("!{}*", s.address), kReply_s});
+  steps.push_back(ask(trigger(s.address, 0, 0)));
+  steps.push_back({Kind::tell, "", "", 1.0});
+  for (int channel = 0; channel < 3; ++channel)
+    steps.push_back(ask(configure(s.address, channel, s.range.code, s.timing.rate_code)));
+  steps.push_back(ask(trigger(s.address, s.timing.period, s.timing.low)));
+  steps.push_back(ask(start(s.address)));
+  if (s.palmacq) enter_forwarding(steps);
+  return steps;
+}
+
+std::string without_cr(std::string text) {
+  std::erase(text, '\r');
+  return text.starts_with('|') ? "||||" : text;
+}
+
+bool is_obsdaq(std::string identity) {
+  std::transform(identity.begin(), identity.end(), identity.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return identity.find("obsdaq") != std::string::npos;
+}
+
+}  // namespace
+
+ObsdaqDriver::ObsdaqDriver(int slot, ObsdaqSettings settings)
+    : LineDevice(Ending::cr, kLongestLine, settings.baud),
+      slot_(slot),
+      settings_(std::move(settings)),
+      dialogue_(start_up(settings_)) {}
+
+std::unique_ptr<Device> ObsdaqDriver::make(int slot, Settings& settings) {
+  return std::make_unique<ObsdaqDriver>(slot, read_obsdaq_settings(settings));
+}
+
+void ObsdaqDriver::on_open(Stamp now) {
+  LineDevice::on_open(now);
+  wants_reopen_ = false;
+  dead_.set(now.mono, kDead_s);
+  start(now);
+}
+
+void ObsdaqDriver::on_close(Stamp now) {
+  LineDevice::on_close(now);
+  phase_ = Phase::closed;
+  wants_reopen_ = false;
+}
+
+void ObsdaqDriver::on_shutdown(Stamp /*now*/) {
+  if (phase_ == Phase::streaming && !settings_.palmacq) send(stop(settings_.address));
+}
+
+void ObsdaqDriver::start(Stamp now) {
+  phase_ = Phase::starting;
+  dialogue_.start(now.mono);
+  send(dialogue_.take_send());
+}
+
+void ObsdaqDriver::on_tick(Stamp now) {
+  if (phase_ == Phase::closed) return;
+  if (std::exchange(bytes_seen_, health_.bytes_in) != health_.bytes_in) {
+    dead_.set(now.mono, kDead_s);
+  } else if (dead_.passed(now.mono)) {
+    wants_reopen_ = true;
+  }
+  if (phase_ == Phase::starting) {
+    dialogue_.on_tick(now.mono, health_.bytes_in);
+    pump(now);
+  } else if (phase_ == Phase::streaming) {
+    watch_silence(now);
+  } else if (retry_.passed(now.mono)) {
+    start(now);
+  }
+}
+
+void ObsdaqDriver::pump(Stamp now) {
+  send(dialogue_.take_send());
+  const std::string& identity = dialogue_.identity();
+  if (!identity.empty() && health_.identity != identity.substr(3)) {
+    if (!is_obsdaq(identity)) {
+      refuse(now, fmt::format("the device calls itself '{}', not an ObsDAQ", identity.substr(3)),
+             "check which device is on this port");
+      return;
+    }
+    health_.identity = identity.substr(3);
+    emit(DeviceNote{now, "identified as " + health_.identity});
+  }
+  if (dialogue_.outcome() == Dialogue::Outcome::done) {
+    go_live(now);
+  } else if (dialogue_.outcome() != Dialogue::Outcome::running) {
+    give_up(now);
+  }
+}
+
+void ObsdaqDriver::go_live(Stamp now) {
+  phase_ = Phase::streaming;
+  seq_ = 0;
+  any_good_line_ = false;
+  bytes_at_good_line_ = health_.bytes_in;
+  last_fault_.clear();
+  silence_.set(now.mono, silence_s());
+  set_state(LinkState::live,
+            fmt::format("{} at {:.2f} Hz, +-{} V{}", settings_.sensor, settings_.timing.rate_hz(),
+                        settings_.range.volts, settings_.palmacq ? ", time-stamped by PalmAcq" : ""));
+}
+
+void ObsdaqDriver::give_up(Stamp now) {
+  const std::string asked = without_cr(dialogue_.step().send);
+  switch (dialogue_.outcome()) {
+    case Dialogue::Outcome::no_answer:
+      phase_ = Phase::waiting;
+      retry_.set(now.mono, kReply_s);
+      set_state(LinkState::silent,
+                fmt::format("no answer to '{}' in {} attempts at {} Bd; check power, cable, baud and address "
+                            "{}{}",
+                            asked, Dialogue::kAttempts, settings_.baud, settings_.address,
+                            settings_.palmacq ? "" : ", and palmacq = true if a PalmAcq stands between"));
+      return;
+    case Dialogue::Outcome::never_silent:
+      refuse(now, fmt::format("bytes keep coming {} s after '{}'", Dialogue::kDrainLimit_s, asked),
+             "check which device is on this port and its baud");
+      return;
+    default:
+      refuse(now,
+             fmt::format("'{}' was answered by '{}' instead of '{}'", asked, dialogue_.heard(),
+                         dialogue_.step().reply),
+             "check which device is on this port, its address and its firmware");
+  }
+}
+
+void ObsdaqDriver::refuse(Stamp now, std::string what, std::string remedy) {
+  phase_ = Phase::waiting;
+  retry_.set(now.mono, kRetry_s);
+  set_state(LinkState::failed, what + "; " + remedy);
+  if (std::exchange(last_fault_, what) != what) emit(DeviceFault{now, std::move(what), std::move(remedy)});
+}
+
+double ObsdaqDriver::silence_s() const { return std::max(2.0, 10.0 / settings_.timing.rate_hz()); }
+
+void ObsdaqDriver::watch_silence(Stamp now) {
+  if (!silence_.passed(now.mono)) return;
+  const bool mute = health_.bytes_in == bytes_at_good_line_;
+  set_state(LinkState::silent,
+            fmt::format("{} for {:.1f} s; starting the digitiser again",
+                        mute ? "nothing came" : "bytes came but no valid line (check baud and cabling)",
+                        silence_s()));
+  emit(DeviceNote{now, health_.detail});
+  start(now);
+}
+
+Verdict ObsdaqDriver::on_line(std::string_view line, Stamp arrival) {
+  if (phase_ == Phase::streaming) return on_stream_line(line, arrival);
+  if (phase_ != Phase::starting || line.empty()) return Verdict::resync();
+  if (line.starts_with('*') || line.starts_with(":R,")) {  // still streaming from before, or already again
+    return Verdict::resync();
+  }
+  dialogue_.on_line(line, arrival.mono);
+  pump(arrival);
+  return Verdict::accepted();
+}
+
+Verdict ObsdaqDriver::on_stream_line(std::string_view line, Stamp arrival) {
+  const auto sample = parse_data_line(line);
+  if (!sample || sample->time_stamped != settings_.palmacq) {
+    if (!any_good_line_) return Verdict::resync();
+    ++seq_;
+    return Verdict::rejected(sample ? Reject::framing : sample.error());
+  }
+  any_good_line_ = true;
+  bytes_at_good_line_ = health_.bytes_in;
+  silence_.set(arrival.mono, silence_s());
+  emit_sample(*sample, arrival);
+  return Verdict::accepted();
+}
+
+void ObsdaqDriver::emit_sample(const Sample& sample, Stamp arrival) {
+  FieldReading reading;
+  reading.slot = slot_;
+  reading.seq = seq_++;
+  reading.arrival = arrival;
+  reading.device_time_s = sample.device_time_s;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    reading.y_nT[axis] = volts(sample.counts[i], settings_.range.volts) * settings_.scale_nT_per_V[axis] +
+                         settings_.offset_nT[axis];
+  }
+  if (sample.saturated()) reading.flags |= Flag::saturated;
+  emit(reading);
+  if (sample.time_stamped && !sample.device_time_s && !std::exchange(impossible_date_noted_, true))
+    emit(DeviceNote{arrival, "the PalmAcq sends a date that does not exist: samples go without device time"});
+  if (!sample.supplement) return;
+  TemperatureReading temperature{slot_, arrival, std::nullopt, sample.supplement->electronics_degC,
+                                 sample.supplement->supply_V};
+  if (const auto& probe = settings_.thermometer)
+    temperature.sensor_degC =
+        sample.supplement->aux_V.at(probe->input) * probe->degC_per_V + probe->degC_at_0V;
+  emit(temperature);
+}
+
+}  // namespace mgtd::drivers::obsdaq

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "drivers/deadline.h"
+#include "drivers/dialogue.h"
+#include "drivers/line_device.h"
+#include "drivers/obsdaq_settings.h"
+
+/// One fluxgate behind an ObsDAQ: started, verified and kept streaming.
+///
+///   probing    quick stop, silence, identity, trigger off, three channels, trigger, start; each echo checked
+///   live       FieldReading per line, TemperatureReading once a second
+///   silent     no answer, or no valid line for 2 s (10 periods when slower): started over; the port is
+///   opened
+///              again when nothing at all came for 10 s
+///   failed     the port answers with something else: DeviceFault, tried again every 10 s
+///
+/// y_nT = volts * scale_nT_per_V + offset_nT, per axis. seq counts from the start of the acquisition; a line
+/// that had to be rejected counts one, lines that never came are not known. Lost time is seen by the sampler.
+namespace mgtd::drivers::obsdaq {
+
+class ObsdaqDriver final : public LineDevice {
+ public:
+  ObsdaqDriver(int slot, ObsdaqSettings settings);
+  [[nodiscard]] static std::unique_ptr<Device> make(int slot, Settings& settings);
+
+  void on_open(Stamp now) override;
+  void on_tick(Stamp now) override;
+  void on_close(Stamp now) override;
+  void on_shutdown(Stamp now) override;
+  [[nodiscard]] bool wants_reopen() const override { return wants_reopen_; }
+
+ protected:
+  Verdict on_line(std::string_view line, Stamp arrival) override;
+
+ private:
+  enum class Phase { closed, starting, streaming, waiting };
+
+  void start(Stamp now);
+  void pump(Stamp now);
+  void go_live(Stamp now);
+  void give_up(Stamp now);
+  void refuse(Stamp now, std::string what, std::string remedy);
+  void watch_silence(Stamp now);
+  Verdict on_stream_line(std::string_view line, Stamp arrival);
+  void emit_sample(const Sample& sample, Stamp arrival);
+  [[nodiscard]] double silence_s() const;
+
+  int slot_;
+  ObsdaqSettings settings_;
+  Phase phase_{Phase::closed};
+  Dialogue dialogue_;
+  Deadline silence_, retry_, dead_;
+  std::uint64_t seq_{0};
+  std::uint64_t bytes_seen_{0}, bytes_at_good_line_{0};
+  bool any_good_line_{false};
+  bool impossible_date_noted_{false};
+  bool wants_reopen_{false};
+  std::string last_fault_;
+};
+
+}  // namespace mgtd::drivers::obsdaq

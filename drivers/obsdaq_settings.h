@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "drivers/obsdaq_protocol.h"
+#include "drivers/settings.h"
+
+/// What the configuration says about one ObsDAQ and the fluxgate behind it:
+///
+///   port, baud, address = "01"
+///   palmacq = false             behind a PalmAcq time-stamper: 57600 Bd instead of 19200
+///   rate_hz = 50
+///   range_V = 10                10, 5 or 2.5
+///   profile = "mag-13-100"      mag-03-R or mag-13-R, R = 70, 100, 250, 500, 1000 uT for +-10 V; or
+///   scale_nT_per_V = [x, y, z]
+///   offset_nT = [0, 0, 0]       added after scaling
+///   temperature = "none"        auxiliary input of the sensor's thermometer: "p", "q", "r"
+///   degC_per_V, degC_at_0V      its line; both needed with an input
+///
+/// Profiles are nominal figures of the sensor family; what a sensor really does is the calibration's affair.
+namespace mgtd::drivers::obsdaq {
+
+struct Thermometer {
+  std::size_t input{0};  ///< 0, 1, 2 = p, q, r
+  double degC_per_V{0};
+  double degC_at_0V{0};
+};
+
+struct ObsdaqSettings {
+  std::string address{"01"};
+  int baud{kDirectBaud};
+  bool palmacq{false};
+  double rate_hz{50};
+  Timing timing;
+  Range range{kRanges[0]};
+  std::string sensor;  ///< profile name, or "own scale"
+  Eigen::Vector3d scale_nT_per_V{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d offset_nT{Eigen::Vector3d::Zero()};
+  std::optional<Thermometer> thermometer;
+};
+
+/// Mistakes are left in `settings`.
+[[nodiscard]] ObsdaqSettings read_obsdaq_settings(Settings& settings);
+
+}  // namespace mgtd::drivers::obsdaq

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/framer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace mgtd::drivers {
+namespace {
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+struct Taken {
+  std::vector<std::string> frames;
+  LinkHealth health;
+};
+
+/// Feeds `text` in pieces that end at the given places; the books must balance after every piece.
+Taken run(Ending ending, std::string_view text, std::vector<std::size_t> cuts = {},
+          std::size_t longest = 64) {
+  Framer framer(ending, longest);
+  Taken taken;
+  cuts.push_back(text.size());
+  std::size_t from = 0;
+  for (const std::size_t to : cuts) {
+    framer.feed(bytes_of(text.substr(from, to - from)), taken.health, [&](const Frame& frame) {
+      taken.frames.emplace_back(frame.text);
+      if (frame.text.starts_with('?')) return Verdict::rejected(Reject::number);
+      if (frame.text.empty()) return Verdict::resync();
+      return Verdict::accepted();
+    });
+    EXPECT_TRUE(taken.health.balanced());
+    from = to;
+  }
+  return taken;
+}
+
+TEST(Framer, CutsAtCarriageReturns) {
+  const Taken taken = run(Ending::cr, "*abc\r!01\r\n?x\rrest");
+  EXPECT_EQ(taken.frames, (std::vector<std::string>{"*abc", "!01", "?x"}));
+  EXPECT_EQ(taken.health.frames, 2U);
+  EXPECT_EQ(taken.health.bytes_in_frames, 9U);
+  EXPECT_EQ(taken.health.bytes_rejected, 4U);  // the LF in front belongs to the line it precedes
+  EXPECT_EQ(taken.health.bytes_pending, 4U);
+  EXPECT_EQ(taken.health.rejected[static_cast<std::size_t>(Reject::number)], 1U);
+}
+
+TEST(Framer, CutsAtLineFeedsAndDropsTheCarriageReturn) {
+  EXPECT_EQ(run(Ending::lf, "115014.0  48484.12 99\r\nx\n").frames,
+            (std::vector<std::string>{"115014.0  48484.12 99", "x"}));
+}
+
+TEST(Framer, KeepsAReplyOfSeveralLinesTogether) {
+  EXPECT_EQ(run(Ending::gcs, "1=1.0 \n2=2.0 \n3=3.0\n0\n").frames,
+            (std::vector<std::string>{"1=1.0 \n2=2.0 \n3=3.0", "0"}));
+}
+
+TEST(Framer, TakesAStatusByteAsAFrame) {
+  EXPECT_EQ(run(Ending::gcs, "\xB1\n1=1\n").frames, (std::vector<std::string>{"\xB1", "", "1=1"}));
+  EXPECT_EQ(run(Ending::gcs, "\xB1").frames.size(), 1U);  // with or without a line feed
+}
+
+TEST(Framer, RefusesWhatIsTooLongAndFindsTheNextLine) {
+  const Taken taken = run(Ending::cr, std::string(200, 'x') + "\rok\r");
+  EXPECT_EQ(taken.frames, std::vector<std::string>{"ok"});
+  EXPECT_EQ(taken.health.rejected[static_cast<std::size_t>(Reject::length)], 1U);
+  EXPECT_EQ(taken.health.bytes_rejected, 64U);
+  EXPECT_EQ(taken.health.bytes_resync, 137U);
+}
+
+TEST(Framer, RefusesBytesNoLineContains) {
+  const Taken taken = run(Ending::cr, "a\x01z\rok\r");
+  EXPECT_EQ(taken.frames, std::vector<std::string>{"ok"});
+  EXPECT_EQ(taken.health.rejected[static_cast<std::size_t>(Reject::framing)], 1U);
+}
+
+TEST(Framer, GivesUpAnUnfinishedFrame) {
+  Framer framer(Ending::cr, 64);
+  LinkHealth health;
+  std::vector<std::string> frames;
+  const auto take = [&](const Frame& frame) {
+    frames.emplace_back(frame.text);
+    return Verdict::accepted();
+  };
+  framer.feed(bytes_of("half a li"), health, take);
+  framer.drop(health);
+  EXPECT_TRUE(health.balanced());
+  EXPECT_EQ(health.bytes_resync, 9U);
+  framer.feed(bytes_of("whole\r"), health, take);
+  EXPECT_EQ(frames, std::vector<std::string>{"whole"});
+}
+
+TEST(Framer, SaysHowManyBytesCameBehind) {
+  Framer framer(Ending::cr, 64);
+  LinkHealth health;
+  std::vector<std::size_t> behind;
+  framer.feed(bytes_of("ab\rcd\re"), health, [&](const Frame& frame) {
+    behind.push_back(frame.bytes_after);
+    return Verdict::accepted();
+  });
+  EXPECT_EQ(behind, (std::vector<std::size_t>{4, 1}));
+}
+
+/// Garbage with a good share of endings, spaces, status bytes and printable text.
+std::string random_stream(std::mt19937_64& random, std::size_t size) {
+  static constexpr std::string_view kLikely = "\r\n \n*!01=ABCDEF?\xB1\x07";
+  std::uniform_int_distribution<int> any(0, 255);
+  std::uniform_int_distribution<std::size_t> likely(0, kLikely.size() - 1);
+  std::string out;
+  for (std::size_t i = 0; i < size; ++i)
+    out += any(random) < 200 ? kLikely[likely(random)] : static_cast<char>(any(random));
+  return out;
+}
+
+TEST(Framer, AnySplitGivesTheSameFramesAndBooks) {
+  std::mt19937_64 random(20261121);
+  for (int round = 0; round < 400; ++round) {
+    const std::string text = random_stream(random, 300);
+    std::uniform_int_distribution<std::size_t> place(0, text.size());
+    std::vector<std::size_t> cuts(8);
+    for (std::size_t& cut : cuts) cut = place(random);
+    std::sort(cuts.begin(), cuts.end());
+    for (const Ending ending : {Ending::cr, Ending::lf, Ending::gcs}) {
+      const Taken whole = run(ending, text, {}, 32);
+      const Taken split = run(ending, text, cuts, 32);
+      EXPECT_EQ(whole.frames, split.frames);
+      EXPECT_EQ(whole.health.rejected, split.health.rejected);
+      EXPECT_EQ(whole.health.bytes_in_frames, split.health.bytes_in_frames);
+      EXPECT_EQ(whole.health.bytes_resync, split.health.bytes_resync);
+      EXPECT_EQ(whole.health.bytes_pending, split.health.bytes_pending);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mgtd::drivers

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/port_link.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "drivers/line_device.h"
+#include "drivers/serial_port.h"
+#include "tests/support/child_process.h"
+#include "tests/support/pty.h"
+
+namespace mgtd::drivers {
+namespace {
+
+using mgtd::testing::PtyMaster;
+
+/// Greets on opening, notes every line, says goodbye.
+class Parrot final : public LineDevice {
+ public:
+  Parrot() : LineDevice(Ending::lf, 100, 115200) {}
+  void on_open(Stamp now) override {
+    LineDevice::on_open(now);
+    send("hello\n");
+  }
+  void on_tick(Stamp /*now*/) override { ++ticks; }
+  void on_shutdown(Stamp /*now*/) override { send("bye\n"); }
+  [[nodiscard]] bool wants_reopen() const override { return reopen; }
+  void say(std::string_view text) { send(text); }
+  int ticks{0};
+  bool reopen{false};
+
+ protected:
+  Verdict on_line(std::string_view line, Stamp arrival) override {
+    set_state(LinkState::live, "talking");
+    emit(DeviceNote{arrival, std::string(line)});
+    return Verdict::accepted();
+  }
+};
+
+class PortLinkTest : public ::testing::Test {
+ protected:
+  /// Runs the loop until the condition holds.
+  bool until(const std::function<bool()>& condition) {
+    return mgtd::testing::eventually([&] {
+      io_.restart();
+      io_.run_for(std::chrono::milliseconds(1));
+      return condition();
+    });
+  }
+  std::unique_ptr<PortLink> link(const std::string& path) {
+    device_ = std::make_shared<Parrot>();
+    return std::make_unique<PortLink>(
+        io_, clock_, PortSettings{path, 0}, device_,
+        PortCallbacks{[this](const std::vector<DeviceEvent>& events) {
+                        for (const auto& event : events) lines_.push_back(std::get<DeviceNote>(event).what);
+                      },
+                      [this](Direction direction, std::span<const std::byte> bytes, Stamp) {
+                        (direction == Direction::in ? raw_in_ : raw_out_)
+                            .append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+                      },
+                      [this](const LinkHealth& health) { states_.push_back(health); }});
+  }
+
+  mgtd::testing::TemporaryDirectory directory_;
+  std::string path_{directory_ / "port"};
+  boost::asio::io_context io_;
+  Clock clock_;
+  std::shared_ptr<Parrot> device_;
+  std::vector<std::string> lines_;
+  std::vector<LinkHealth> states_;
+  std::string raw_in_, raw_out_;
+};
+
+TEST_F(PortLinkTest, CarriesBytesBothWaysAndJournalsThem) {
+  PtyMaster master(path_);
+  auto port = link(path_);
+  port->start();
+  ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
+  master.write("one\ntw");
+  ASSERT_TRUE(until([&] { return lines_.size() == 1; }));
+  master.write("o\n");
+  ASSERT_TRUE(until([&] { return lines_ == std::vector<std::string>{"one", "two"}; }));
+  EXPECT_EQ(raw_in_, "one\ntwo\n");
+  EXPECT_EQ(raw_out_, "hello\n");
+  EXPECT_EQ(port->health().state, LinkState::live);
+  EXPECT_TRUE(port->health().balanced());
+  EXPECT_TRUE(until([&] { return device_->ticks > 3; }));
+}
+
+TEST_F(PortLinkTest, FlushSendsWhatWasAskedOfTheDevice) {
+  PtyMaster master(path_);
+  auto port = link(path_);
+  port->start();
+  const std::string much(100'000, 'x');  // more than a pty holds: the write queue must wait, in order
+  device_->say(much);
+  device_->say("end\n");
+  port->flush();
+  ASSERT_TRUE(until([&] { return master.received() == "hello\n" + much + "end\n"; }));
+}
+
+TEST_F(PortLinkTest, APortThatIsNotThereIsAwaited) {
+  auto port = link(path_);
+  port->start();
+  ASSERT_TRUE(until([&] { return !states_.empty(); }));
+  EXPECT_EQ(states_.back().state, LinkState::absent);
+  EXPECT_NE(states_.back().detail.find("there is no such port"), std::string::npos);
+  PtyMaster master(path_);
+  ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
+}
+
+TEST_F(PortLinkTest, UnplugAndReplugStartOver) {
+  std::optional<PtyMaster> master(path_);
+  auto port = link(path_);
+  port->start();
+  ASSERT_TRUE(until([&] { return master->received() == "hello\n"; }));
+  master->write("half a li");
+  ASSERT_TRUE(until([&] { return port->health().bytes_in == 9; }));
+  master.reset();
+  ASSERT_TRUE(until([&] { return port->health().state == LinkState::absent; }));
+  EXPECT_TRUE(port->health().balanced());
+  EXPECT_EQ(port->health().closes, 1U);
+  master.emplace(path_);
+  ASSERT_TRUE(until([&] { return master->received() == "hello\n"; }));
+  EXPECT_EQ(port->health().opens, 2U);
+  master->write("ne\n");
+  ASSERT_TRUE(until([&] { return lines_ == std::vector<std::string>{"ne"}; }));
+}
+
+TEST_F(PortLinkTest, ADeviceThatAsksForItIsOpenedAgain) {
+  PtyMaster master(path_);
+  auto port = link(path_);
+  port->start();
+  ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
+  device_->reopen = true;
+  ASSERT_TRUE(until([&] { return port->health().closes == 1; }));
+  device_->reopen = false;
+  ASSERT_TRUE(until([&] { return master.received() == "hello\nhello\n"; }));
+}
+
+TEST_F(PortLinkTest, LastWordsAreSent) {
+  PtyMaster master(path_);
+  auto port = link(path_);
+  port->start();
+  ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
+  port->shutdown();
+  EXPECT_EQ(port->health().state, LinkState::absent);
+  ASSERT_TRUE(until([&] { return master.received() == "hello\nbye\n"; }));
+  EXPECT_EQ(raw_out_, "hello\nbye\n");
+}
+
+TEST_F(PortLinkTest, AnOccupiedPortSaysWhatToDo) {
+  PtyMaster master(path_);
+  {
+    const auto mine = SerialPort::open(path_, 9600);
+    ASSERT_TRUE(mine) << mine.error().text();
+    const auto second = SerialPort::open(path_, 9600);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("in use by another program"), std::string::npos);
+    EXPECT_NE(second.error().remedy.find("fuser"), std::string::npos);
+  }
+  EXPECT_TRUE(SerialPort::open(path_, 9600)) << "released with the port";
+}
+
+TEST_F(PortLinkTest, ASpeedThatDoesNotExistIsRefused) {
+  PtyMaster master(path_);
+  const auto port = SerialPort::open(path_, 12345);
+  ASSERT_FALSE(port);
+  EXPECT_NE(port.error().message.find("12345"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mgtd::drivers
