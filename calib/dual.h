@@ -15,11 +15,13 @@ namespace mgtd::calib {
 template <int N>
 struct Dual {
   using Derivatives = Eigen::Array<double, N, 1>;
-  double v{0};
-  Derivatives d{Derivatives::Zero()};
+  double v;
+  Derivatives d;
 
-  Dual() = default;
-  Dual(double value) : v(value) {}  // NOLINT(google-explicit-constructor): constants mix with variables
+  Dual() {}  // NOLINT(modernize-use-equals-default): like a double, not initialised
+  Dual(double value)
+      : v(value),
+        d(Derivatives::Zero()) {}  // NOLINT(google-explicit-constructor): constants mix with variables
   Dual(double value, const Derivatives& derivatives) : v(value), d(derivatives) {}
   /// The variable that owns derivative slot `slot`.
   [[nodiscard]] static Dual variable(double value, int slot) {

@@ -47,8 +47,8 @@ struct Conditions {
   const Pose* previous{nullptr};  ///< the pose before it; null for the first
 };
 
-inline constexpr int kJetSlots =
-    20;  ///< inputs of a level (at most 6) and coefficients at one sensor (at most 14)
+/// Slots: inputs of a level (at most 6), then the coefficients that act at one sensor (at most 10).
+inline constexpr int kJetSlots = 16;
 using Jet = Dual<kJetSlots>;
 
 class Effect {

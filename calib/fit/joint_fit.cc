@@ -124,21 +124,26 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
     state->coefficients = near->coefficients;
 
   Noise noise;
-  noise.sample_nT = pooled_sample_noise(table);
+  noise.sample_nT = sample_noise(table);
   noise.table_sd_rad = options.table_sd_rad;
   Outliers outliers;
   Result<JointSolution> solution = JointSolution{};
   PoseResiduals residuals;
+  // While weights still move the fit need not be exact.
+  double enough = kNearlyConverged;
   for (int round = 0; round < kMaxRounds; ++round) {
     apply(noise, fit.problem);
-    solution = solve(fit.problem, std::move(*state));
+    solution = solve(fit.problem, std::move(*state), enough);
     if (!solution) return tl::unexpected(solution.error());
     if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
     fit.iterations += solution->iterations;
     residuals = pose_residuals(fit.problem, solution->state);
     const bool excluded = outliers.exclude(fit.problem, residuals);
     const bool moved = update(residuals, fit.problem, noise);
-    if (!excluded && !moved && !outliers.restore(fit.problem, solution->state)) break;
+    if (!excluded && !moved && !outliers.restore(fit.problem, solution->state)) {
+      if (enough == kConverged) break;
+      enough = kConverged;
+    }
     state = std::move(solution->state);
   }
   fit.state = std::move(solution->state);

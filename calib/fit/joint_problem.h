@@ -8,6 +8,7 @@
 #include "calib/effects/library.h"
 #include "calib/geometry.h"
 #include "calib/sensor_model.h"
+#include "calib/tensor.h"
 #include "proto/pose.h"
 #include "proto/units.h"
 
@@ -22,7 +23,6 @@
 /// angles, the field b_k (3) itself in the platform frame and one idle slot.
 namespace mgtd::calib {
 
-inline constexpr int kChannels = 3 * kSensors;
 inline constexpr int kNuisances = 4;
 inline constexpr int kSensorBlock = kSensors * kSensorParameters;
 /// Slots of the fixed block after the sensors: two tangents of n, F, then the effects.

@@ -32,25 +32,19 @@ void add_priors(const JointProblem& problem, const JointState& state, Reduced& o
   out.cost.priors += r.squaredNorm();
 }
 
-/// The scalar observation: of its own magnetometer, or of the field F common to all poses.
-struct ScalarRow {
-  double residual;
-  Eigen::Matrix<double, 1, kNuisances> nuisance;
-  Eigen::RowVectorXd global;
-};
-
-ScalarRow scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose,
-                     const PoseLinear& linear) {
+void scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose,
+                const PoseLinear& linear, ScalarRow& row) {
   const double w = pose.f_weight;
   const double observed = problem.common_field ? state.f_nT : pose.f_nT;
-  ScalarRow row{w * (observed - linear.f_nT), w * linear.f_nuisance, w * linear.f_global};
+  row.residual = w * (observed - linear.f_nT);
+  row.nuisance = w * linear.f_nuisance;
+  row.global = w * linear.f_global;
   if (problem.common_field) row.global[kFieldSlot - kSensorBlock] -= w;
-  return row;
 }
 
 /// Adds J' J and J' r of the fixed block, reading rows then scalar row, using that a reading sees one sensor
 /// only.
-void add_fixed(const PoseBlocks& b, const JointPose& pose, const ScalarRow& scalar, Reduced& out) {
+void add_fixed(const PoseBlocks& b, const JointPose& pose, Reduced& out) {
   const Eigen::Index globals = b.linear.d_global.cols();
   auto corner = out.S.bottomRightCorner(globals, globals);
   for (int i = 0; i < kSensors; ++i) {
@@ -58,14 +52,15 @@ void add_fixed(const PoseBlocks& b, const JointPose& pose, const ScalarRow& scal
     const Eigen::Matrix<double, 3, kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
     const Eigen::Matrix<double, 3, Eigen::Dynamic> G = w * b.linear.d_global.middleRows<3>(3 * i);
     const int at = kSensorParameters * i;
-    out.S.block<kSensorParameters, kSensorParameters>(at, at).noalias() += A.transpose() * A;
-    out.S.bottomRows(globals).middleCols<kSensorParameters>(at).noalias() += G.transpose() * A;
-    corner.noalias() += G.transpose() * G;
-    out.g.segment<kSensorParameters>(at).noalias() += A.transpose() * b.residual.segment<3>(3 * i);
-    out.g.tail(globals).noalias() += G.transpose() * b.residual.segment<3>(3 * i);
+    // lazyProduct: these are too small for blocking to pay.
+    out.S.block<kSensorParameters, kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
+    out.S.bottomRows(globals).middleCols<kSensorParameters>(at) += G.transpose().lazyProduct(A);
+    corner += G.transpose().lazyProduct(G);
+    out.g.segment<kSensorParameters>(at) += A.transpose().lazyProduct(b.residual.segment<3>(3 * i));
+    out.g.tail(globals) += G.transpose().lazyProduct(b.residual.segment<3>(3 * i));
   }
-  corner.noalias() += scalar.global.transpose() * scalar.global;
-  out.g.tail(globals) += scalar.residual * scalar.global.transpose();
+  corner += b.scalar.global.transpose().lazyProduct(b.scalar.global);
+  out.g.tail(globals) += b.scalar.residual * b.scalar.global.transpose();
 }
 
 }  // namespace
@@ -75,14 +70,13 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   const JointPose& pose = problem.poses[k];
   model.linearise(pose, state.nuisances[k], out.linear);
   out.residual = pose.weight.cwiseProduct(pose.y_nT - out.linear.y_nT);
-  const ScalarRow scalar = scalar_row(problem, state, pose, out.linear);
-  out.f_residual = scalar.residual;
-  const Eigen::Matrix<double, kChannels, kNuisances> N = pose.weight.asDiagonal() * out.linear.d_nuisance;
-  out.H.noalias() = N.transpose() * N;
-  out.H.noalias() += scalar.nuisance.transpose() * scalar.nuisance;
-  out.g.noalias() = N.transpose() * out.residual;
-  out.g += scalar.residual * scalar.nuisance.transpose();
-  out.cost = {.readings = out.residual.squaredNorm(), .scalar = scalar.residual * scalar.residual};
+  scalar_row(problem, state, pose, out.linear, out.scalar);
+  out.N = pose.weight.asDiagonal() * out.linear.d_nuisance;
+  out.H = out.N.transpose().lazyProduct(out.N);
+  out.H += out.scalar.nuisance.transpose() * out.scalar.nuisance;
+  out.g = out.N.transpose().lazyProduct(out.residual);
+  out.g += out.scalar.residual * out.scalar.nuisance.transpose();
+  out.cost = {.readings = out.residual.squaredNorm(), .scalar = out.scalar.residual * out.scalar.residual};
   if (pose.has_angles) {
     const double w2 = pose.attitude_weight * pose.attitude_weight;
     out.H.diagonal().head<3>().array() += w2;
@@ -95,12 +89,14 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   const Eigen::Index globals = out.linear.d_global.cols();
   out.U.resize(kSensorBlock + globals, kNuisances);
   for (int i = 0; i < kSensors; ++i) {
-    const auto w = pose.weight.segment<3>(3 * i).asDiagonal();
-    out.U.middleRows<kSensorParameters>(kSensorParameters * i).noalias() =
-        (w * out.linear.d_sensor.middleRows<3>(3 * i)).transpose() * N.middleRows<3>(3 * i);
+    const Eigen::Matrix<double, 3, kNuisances> wN =
+        pose.weight.segment<3>(3 * i).asDiagonal() * out.N.middleRows<3>(3 * i);
+    out.U.middleRows<kSensorParameters>(kSensorParameters * i) =
+        out.linear.d_sensor.middleRows<3>(3 * i).transpose().lazyProduct(wN);
   }
-  out.U.bottomRows(globals).noalias() = (pose.weight.asDiagonal() * out.linear.d_global).transpose() * N;
-  out.U.bottomRows(globals).noalias() += scalar.global.transpose() * scalar.nuisance;
+  const Eigen::Matrix<double, kChannels, kNuisances> wN = pose.weight.asDiagonal() * out.N;
+  out.U.bottomRows(globals) = out.linear.d_global.transpose().lazyProduct(wN);
+  out.U.bottomRows(globals) += out.scalar.global.transpose().lazyProduct(out.scalar.nuisance);
 }
 
 Reduced reduce(const JointProblem& problem, const JointState& state, double damping) {
@@ -111,12 +107,13 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   Eigen::MatrixXd batch(p, kBatch * kNuisances);
   int filled = 0;
   const auto flush = [&] {
+    if (filled == 0) return;  // Eigen divides by the size
     out.S.selfadjointView<Eigen::Lower>().rankUpdate(batch.leftCols(filled * kNuisances), -1);
     filled = 0;
   };
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, true, b);
-    add_fixed(b, problem.poses[k], scalar_row(problem, state, problem.poses[k], b.linear), out);
+    add_fixed(b, problem.poses[k], out);
     out.cost.readings += b.cost.readings;
     out.cost.scalar += b.cost.scalar;
     out.cost.attitude += b.cost.attitude;

@@ -42,9 +42,9 @@ struct Gauge {
 /// Adds the constraints to `problem`.
 Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
 
-/// Noise of a pose mean per axis from the spread within dwells, pooled over poses; empty unless every pose
-/// has spreads and counts.
-[[nodiscard]] std::optional<AxisNoise> pooled_sample_noise(const PoseTable& table);
+/// Noise of one sample per axis, pooled over the dwells; empty unless every axis has a spread and every pose
+/// a count.
+[[nodiscard]] std::optional<AxisNoise> sample_noise(const PoseTable& table);
 /// Sets the reading weights: `sample` noise by each pose's effective count, or `pose_mean` noise for all
 /// alike. Keeps zero weights.
 void weight_by_samples(JointProblem& problem, const AxisNoise& sample);

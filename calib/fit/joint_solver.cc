@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxIterations = 60;
 /// A predicted fall of the chi-square below this share of it is rounding, not progress.
-constexpr double kRelativeDecrease = 1e-11, kAbsoluteDecrease = 1e-9;
+constexpr double kRelativeDecrease = 1e-11;
 constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
 
 /// S^-1 g with the diagonal scaled to one, which takes out the units.
@@ -22,21 +22,29 @@ std::optional<Eigen::VectorXd> scaled_solve(const Eigen::MatrixXd& S, const Eige
   return d.cwiseProduct(llt.solve(d.cwiseProduct(g)));
 }
 
-/// Each pose's own step, given the step of the fixed block.
+/// Each pose's own step, given the step of the fixed block: its residuals move by J_f step first.
 void move_nuisances(const JointProblem& problem, const JointState& from, const Eigen::VectorXd& step,
                     double damping, JointState& to) {
   const PoseModel model(problem, from);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, from, k, true, b);
+    assemble(problem, model, from, k, false, b);
+    const auto globals = step.tail(b.linear.d_global.cols());
+    Channels moved = b.linear.d_global.lazyProduct(globals);
+    for (int i = 0; i < kSensors; ++i) {
+      moved.segment<3>(3 * i) +=
+          b.linear.d_sensor.middleRows<3>(3 * i) * step.segment<kSensorParameters>(kSensorParameters * i);
+    }
+    b.g -= b.N.transpose() * problem.poses[k].weight.cwiseProduct(moved);
+    b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
     b.H.diagonal() *= 1 + damping;
-    to.nuisances[k] += b.H.llt().solve(b.g - b.U.transpose() * step);
+    to.nuisances[k] += b.H.llt().solve(b.g);
   }
 }
 
 }  // namespace
 
-Result<JointSolution> solve(const JointProblem& problem, JointState start) {
+Result<JointSolution> solve(const JointProblem& problem, JointState start, double enough) {
   JointSolution best{.state = std::move(start), .reduced = {}, .iterations = 0};
   double damping = 0;
   best.reduced = reduce(problem, best.state, damping);
@@ -44,7 +52,7 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start) {
     const auto step = scaled_solve(best.reduced.S, best.reduced.g);
     if (step) {
       const double decrease = best.reduced.predicted_decrease + step->dot(best.reduced.g);
-      if (decrease < kAbsoluteDecrease + kRelativeDecrease * best.reduced.cost.total()) {
+      if (decrease < enough + kRelativeDecrease * best.reduced.cost.total()) {
         if (damping == 0) return best;
         damping = 0;  // a damped step is short by nature: ask again without
         best.reduced = reduce(problem, best.state, damping);
@@ -81,7 +89,7 @@ void refit_nuisances(const JointProblem& problem, JointState& state) {
       assemble(problem, model, state, k, false, b);
       const Nuisance step = b.H.llt().solve(b.g);
       state.nuisances[k] += step;
-      if (step.dot(b.g) < kAbsoluteDecrease) break;
+      if (step.dot(b.g) < kConverged) break;
     }
   }
 }

@@ -19,11 +19,20 @@ struct JointCost {
   [[nodiscard]] double total() const { return readings + scalar + attitude + priors; }
 };
 
+/// The scalar observation of a pose, whitened: of its own magnetometer, or of the field F common to all
+/// poses.
+struct ScalarRow {
+  double residual{0};
+  Eigen::Matrix<double, 1, kNuisances> nuisance;
+  Eigen::RowVectorXd global;
+};
+
 /// One pose's share of the normal equations, residuals whitened.
 struct PoseBlocks {
   PoseLinear linear;
   Channels residual;  ///< w (measured - predicted)
-  double f_residual{0};
+  ScalarRow scalar;
+  Eigen::Matrix<double, kChannels, kNuisances> N;       ///< w dy/d(nuisances)
   Eigen::Matrix<double, kNuisances, kNuisances> H;      ///< of the nuisances
   Nuisance g;                                           ///< descent direction times H: J_n' w^2 (y - y(x))
   Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;  ///< fixed by nuisances
@@ -51,7 +60,10 @@ struct JointSolution {
 
 /// Refuses when it does not converge, or when the information is not positive definite (names nothing: see
 /// weakness.h).
-[[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start);
+/// Stops when the next step is predicted to lower the chi-square by less than `enough`.
+inline constexpr double kConverged = 1e-9, kNearlyConverged = 0.1;
+[[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
+                                          double enough = kConverged);
 
 /// Best nuisances for a fixed block that stays as it is: what a new pose says about its own field.
 void refit_nuisances(const JointProblem& problem, JointState& state);

@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <numbers>
 
-#include "calib/fit/ellipsoid.h"
 #include "calib/fit/joint_solver.h"
 #include "calib/fit/orientation.h"
+#include "calib/fit/sensor_start.h"
 #include "calib/sensor_equations.h"
 #include "proto/units.h"
 
@@ -20,7 +20,7 @@ constexpr auto kCount = static_cast<std::size_t>(kSensors);
 const double kOneAxis = std::sin(to_rad(1.0));
 
 struct Aligned {
-  std::array<Ellipsoid, kCount> ellipsoids;
+  std::array<ScalarCalibration, kCount> alone;
   std::array<Eigen::Matrix3d, kCount>
       to_first;                    ///< sensor frame to the frame of sensor 1, reflections allowed
   std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
@@ -35,25 +35,30 @@ Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
 }
 
 Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
+  const auto poses = static_cast<Eigen::Index>(problem.poses.size());
+  Eigen::VectorXd f = Eigen::VectorXd::Constant(poses, f_nT);
+  Eigen::Matrix<double, kChannels, Eigen::Dynamic> y(kChannels, poses);
+  for (Eigen::Index k = 0; k < poses; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    y.col(k) = pose.y_nT;
+    if (!problem.common_field) f[k] = pose.f_nT;
+  }
   Aligned out;
-  std::array<std::vector<Eigen::Vector3d>, kCount> b_S_nT;
+  std::array<Eigen::Matrix3Xd, kCount> b_S_nT;
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, poses);
   for (std::size_t i = 0; i < kCount; ++i) {
-    std::vector<Eigen::Vector3d> y;
-    for (const JointPose& pose : problem.poses) y.push_back(pose.y_nT.segment<3>(3 * static_cast<int>(i)));
-    const auto fitted = fit_ellipsoid(y, f_nT);
-    if (!fitted)
+    const Eigen::Matrix3Xd own = y.middleRows<3>(3 * static_cast<int>(i));
+    const auto fitted = sensor_start(own, f);
+    if (!fitted) {
       return fail(fitted.error().code, fmt::format("sensor {}: {}", i + 1, fitted.error().message),
                   fitted.error().remedy);
-    out.ellipsoids[i] = *fitted;
-    for (const Eigen::Vector3d& reading : y) b_S_nT[i].push_back(fitted->K * (reading - fitted->offset_nT));
+    }
+    out.alone[i] = *fitted;
+    b_S_nT[i] = fitted->correct(own);
+    out.to_first[i] = nearest_orthogonal(b_S_nT[0] * b_S_nT[i].transpose(), false);
+    sum += out.to_first[i] * b_S_nT[i] / kSensors;
   }
-  out.u.assign(problem.poses.size(), Eigen::Vector3d::Zero());
-  for (std::size_t i = 0; i < kCount; ++i) {
-    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < out.u.size(); ++k) H += b_S_nT[0][k] * b_S_nT[i][k].transpose();
-    out.to_first[i] = nearest_orthogonal(H, false);
-    for (std::size_t k = 0; k < out.u.size(); ++k) out.u[k] += out.to_first[i] * b_S_nT[i][k] / kSensors;
-  }
+  for (Eigen::Index k = 0; k < poses; ++k) out.u.emplace_back(sum.col(k));
   return out;
 }
 
@@ -191,8 +196,8 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   if (coverage == AngleCoverage::one_axis && !problem.known_direction) turn_upright(problem, p);
   std::array<SensorModel, kSensors> sensors;
   for (std::size_t i = 0; i < kCount; ++i) {
-    sensors[i] = sensor_from(aligned->ellipsoids[i].K, aligned->ellipsoids[i].offset_nT,
-                             p.Q * hand * aligned->to_first[i]);
+    sensors[i] =
+        sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
   }
   return joint_state(problem, sensors, p.n, f_nT);
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "calib/fit/joint_setup.h"
+#include "calib/fit/readings.h"
 
 namespace mgtd::calib {
 namespace {
@@ -13,21 +14,13 @@ void set_weight(double& weight, double sd_nT) {
 }
 }  // namespace
 
-std::optional<AxisNoise> pooled_sample_noise(const PoseTable& table) {
-  AxisNoise sum = AxisNoise::Zero();
-  double count = 0;
+std::optional<AxisNoise> sample_noise(const PoseTable& table) {
   for (const Pose& pose : table.poses) {
     if (!pose.n && !pose.n_eff) return std::nullopt;
-    for (std::size_t i = 0; i < kSensors; ++i) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (!pose.sd_nT[i][a]) return std::nullopt;
-        sum(static_cast<int>(i), static_cast<int>(a)) += *pose.sd_nT[i][a] * *pose.sd_nT[i][a];
-      }
-    }
-    ++count;
   }
-  if (count == 0) return std::nullopt;
-  return AxisNoise((sum / count).cwiseSqrt());
+  const AxisNoise pooled = pooled_sample_noise(table);
+  if (!(pooled.minCoeff() > 0)) return std::nullopt;
+  return pooled;
 }
 
 void weight_by_samples(JointProblem& problem, const AxisNoise& sample) {

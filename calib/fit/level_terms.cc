@@ -4,6 +4,20 @@
 #include <array>
 
 namespace mgtd::calib {
+namespace {
+
+/// unit()[i] has derivative one in slot i; copied, because setting a jet to zero costs more than the
+/// equations.
+const std::array<Jet, kJetSlots>& unit() {
+  static const std::array<Jet, kJetSlots> jets = [] {
+    std::array<Jet, kJetSlots> made;
+    for (int i = 0; i < kJetSlots; ++i) made[static_cast<std::size_t>(i)] = Jet::variable(0, i);
+    return made;
+  }();
+  return jets;
+}
+
+}  // namespace
 
 LevelTerms::LevelTerms(const std::vector<EffectPtr>& effects, Level level) : level_(level) {
   int first = 0;
@@ -21,15 +35,19 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
   total.d_input.setZero(outputs, inputs);
   total.d_coefficient.setZero(outputs, coefficients.size());
 
+  const auto& one = unit();
   std::array<Jet, TermSum::kMaxInputs> x;
-  for (int i = 0; i < inputs; ++i)
-    x[static_cast<std::size_t>(i)] = Jet::variable(in[static_cast<std::size_t>(i)], i);
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    x[i] = one[i];
+    x[i].v = in[i];
+  }
   for (const Entry& entry : entries_) {
     const std::span<const int> active = entry.effect->at(sensor);
     std::array<Jet, kJetSlots> c;
     std::array<Jet, TermSum::kMaxOutputs> out;
     for (std::size_t j = 0; j < active.size(); ++j) {
-      c[j] = Jet::variable(coefficients[entry.first + active[j]], inputs + static_cast<int>(j));
+      c[j] = one[in.size() + j];
+      c[j].v = coefficients[entry.first + active[j]];
     }
     entry.effect->term(at, sensor, std::span<const Jet>(x.data(), static_cast<std::size_t>(inputs)),
                        std::span<const Jet>(c.data(), active.size()),

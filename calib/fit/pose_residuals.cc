@@ -26,7 +26,7 @@ void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::L
                       Eigen::Index k, Sums& sums, PoseResiduals& out) {
   for (int c = 0; c < kChannels; ++c) {
     if (!(pose.weight[c] > 0)) continue;
-    const double free = freedom(pose.weight[c] * b.linear.d_nuisance.row(c), H);
+    const double free = freedom(b.N.row(c), H);
     sums.squares(c / 3, c % 3) += b.residual[c] * b.residual[c];
     sums.freedom(c / 3, c % 3) += free;
     ++out.readings;
@@ -38,8 +38,9 @@ void observe_scalar(const JointProblem& problem, const JointPose& pose, const Po
                     const Eigen::LLT<Eigen::Matrix4d>& H, Eigen::Index k, PoseResiduals& out) {
   if (!(pose.f_weight > 0) || problem.common_field) return;
   ++out.scalars;
-  const double free = freedom(pose.f_weight * b.linear.f_nuisance, H);
-  if (free > kNothing) out.t(kScalarRow, k) = static_cast<float>(std::abs(b.f_residual) / std::sqrt(free));
+  const double free = freedom(b.scalar.nuisance, H);
+  if (free > kNothing)
+    out.t(kScalarRow, k) = static_cast<float>(std::abs(b.scalar.residual) / std::sqrt(free));
 }
 
 void observe_attitude(const JointPose& pose, const Nuisance& x, const Eigen::LLT<Eigen::Matrix4d>& H,

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cost of the joint fit against the number of poses, covariance included.
+#include <benchmark/benchmark.h>
+
+#include "calib/fit/joint_fit.h"
+#include "tests/unit/calib/fit/simulated_poses.h"
+
+namespace mgtd::calib {
+namespace {
+
+PoseTable poses(int count, bool with_gradient) {
+  testing::Simulation sim{.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05, .f_drift_nT = 30};
+  if (with_gradient) sim.G_nT_per_m = testing::gradient_50();
+  return simulate(sim, count * 36 / 157, count - count * 36 / 157, 1);
+}
+
+/// Everything: start, noise, table, outliers, covariance.
+void joint(benchmark::State& state) {
+  const bool with_gradient = state.range(1) != 0;
+  const PoseTable table = poses(static_cast<int>(state.range(0)), with_gradient);
+  JointOptions options;
+  if (with_gradient) options.effects = {*make_effect("site.gradient")};
+  int iterations = 0;
+  for (auto _ : state) {
+    const auto fit = fit_joint(table, options);
+    if (!fit) return state.SkipWithError(fit.error().text().c_str());
+    iterations = fit->iterations;
+  }
+  state.counters["iterations"] = iterations;
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(joint)
+    ->ArgNames({"poses", "gradient"})
+    ->ArgsProduct({{157, 500, 5832, 100'000}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity();
+
+}  // namespace
+}  // namespace mgtd::calib
