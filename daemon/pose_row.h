@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+
+#include "proto/pose.h"
+
+/// The numeric columns of a pose in the run file: names as in the pose table, angles in rad.
+namespace mgtd::daemon {
+
+struct PoseColumn {
+  std::string name;
+  std::optional<double> (*get)(const Pose&, int index){nullptr};
+  void (*set)(Pose&, int index, double value){nullptr};
+  int index{0};  ///< which of a family (sensor and axis)
+  bool required{false};
+};
+
+/// `number`, `set`, `t_utc` and covariates are not among them.
+[[nodiscard]] std::span<const PoseColumn> pose_columns();
+
+}  // namespace mgtd::daemon
