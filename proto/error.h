@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
 
@@ -18,6 +19,11 @@ enum class ErrorCode {
   state,        ///< not possible in the present state (a run is active, nothing to accept, ...)
   internal,     ///< our bug
 };
+
+/// As in JSON: "usage", "bad_input", ...
+[[nodiscard]] std::string_view name(ErrorCode code);
+/// `internal` for a name that is none.
+[[nodiscard]] ErrorCode error_code_from_name(std::string_view name);
 
 struct Error {
   ErrorCode code{ErrorCode::internal};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// What a reader must know about a sample beside its numbers. A set of bits; names as in the stream.
@@ -33,6 +35,23 @@ class Flags {
  private:
   std::uint16_t bits_{0};
 };
+
+inline constexpr std::array<std::pair<Flag, std::string_view>, 6> kFlagNames{{
+    {Flag::saturated, "saturated"},
+    {Flag::interpolated, "interpolated"},
+    {Flag::calibrating, "calibrating"},
+    {Flag::uncalibrated, "uncalibrated"},
+    {Flag::suspect, "suspect"},
+    {Flag::clock_unsettled, "clock_unsettled"},
+}};
+
+/// Calls use(std::string_view) with the name of every flag that is set, in the order of their bits.
+template <class Use>
+void for_each_name(Flags flags, Use&& use) {
+  for (const auto& [flag, name] : kFlagNames) {
+    if (flags.has(flag)) use(name);
+  }
+}
 
 /// The flags that are set, by name, in the order of their bits.
 [[nodiscard]] std::vector<std::string_view> names(Flags flags);

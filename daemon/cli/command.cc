@@ -12,32 +12,6 @@
 #include <utility>
 
 namespace mgtd::cli {
-namespace {
-
-constexpr std::string_view kind(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::usage:
-      return "usage";
-    case ErrorCode::bad_input:
-      return "bad_input";
-    case ErrorCode::refused:
-      return "refused";
-    case ErrorCode::io:
-      return "io";
-    case ErrorCode::unreachable:
-      return "unreachable";
-    case ErrorCode::protocol:
-      return "protocol";
-    case ErrorCode::state:
-      return "state";
-    case ErrorCode::internal:
-      return "internal";
-  }
-  return "internal";
-}
-
-}  // namespace
-
 void print_json(const nlohmann::json& object) { fmt::print("{}\n", object.dump()); }
 
 int report(const Session& session, const Error& error) {
@@ -45,7 +19,7 @@ int report(const Session& session, const Error& error) {
   if (!error.remedy.empty()) fmt::print(stderr, "     {}\n", error.remedy);
   if (session.json) {
     print_json(
-        {{"error", {{"code", kind(error.code)}, {"message", error.message}, {"remedy", error.remedy}}}});
+        {{"error", {{"code", name(error.code)}, {"message", error.message}, {"remedy", error.remedy}}}});
   }
   return exit_code(error.code);
 }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <utility>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <string_view>
+
+#include "proto/error.h"
+
+/// TCP addresses as the configuration and the command line write them.
+namespace mgtd::daemon {
+
+/// "127.0.0.1:7450", "[::1]:7450", "localhost:7450" (the IPv4 loopback). Other names are not looked up.
+[[nodiscard]] Result<boost::asio::ip::tcp::endpoint> parse_tcp_address(std::string_view text);
+
+}  // namespace mgtd::daemon

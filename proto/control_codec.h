@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "proto/error.h"
+
+/// The control socket's language: one JSON object per line, one answer per request, in their order.
+///
+///   {"cmd":"run.start","args":{"step_deg":10,"random":121},"id":7}
+///   {"ok":true,"id":7,"result":{...}}
+///   {"ok":false,"id":7,"error":{"code":"state","message":"..","remedy":".."}}
+///
+/// `args` may be left out; `id` is the client's own (number, text or absent) and comes back as it was.
+///
+///   version              {"software","rig","protocol":{"major","minor"},"stream_tcp","stream_unix"}
+///   status               STATUS (status_codec.h)
+///   run.start            args: run_request.h            -> RUN
+///   run.dry-run          args: run_request.h            -> {"poses","minutes","list":[...]}
+///   run.pause, run.resume, run.abort, run.status       -> RUN
+///   calibrations.list                                  -> {"calibrations":[{"id","state","since","origin"}]}
+///   calibrations.show, calibrations.accept  args: {"id":".."}
+///   calibrations.rollback
+namespace mgtd {
+
+inline constexpr int kControlProtocolMajor = 1;
+inline constexpr int kControlProtocolMinor = 0;
+inline constexpr std::size_t kControlLineLimit = 65'536;
+
+enum class ControlCommand : std::uint8_t {
+  version,
+  status,
+  run_start,
+  run_dry_run,
+  run_pause,
+  run_resume,
+  run_abort,
+  run_status,
+  calibrations_list,
+  calibrations_show,
+  calibrations_accept,
+  calibrations_rollback,
+};
+inline constexpr std::array<std::string_view, 12> kControlCommandNames{"version",
+                                                                       "status",
+                                                                       "run.start",
+                                                                       "run.dry-run",
+                                                                       "run.pause",
+                                                                       "run.resume",
+                                                                       "run.abort",
+                                                                       "run.status",
+                                                                       "calibrations.list",
+                                                                       "calibrations.show",
+                                                                       "calibrations.accept",
+                                                                       "calibrations.rollback"};
+[[nodiscard]] std::string_view name(ControlCommand command);
+
+struct ControlRequest {
+  ControlCommand command{ControlCommand::version};
+  nlohmann::json args = nlohmann::json::object();  ///< always an object
+  nlohmann::json id;                               ///< null when the client sent none
+};
+
+/// A request that could not be read, with the id to answer under as far as it could be told.
+struct ControlRefusal {
+  Error error;
+  nlohmann::json id;
+};
+
+[[nodiscard]] tl::expected<ControlRequest, ControlRefusal> parse_control(std::string_view line);
+
+/// Lines without the line end.
+[[nodiscard]] std::string encode(const ControlRequest& request);
+[[nodiscard]] std::string encode_reply(const nlohmann::json& id,
+                                       const Result<nlohmann::ordered_json>& result);
+
+/// What a reply says: its result, or the error the daemon reported. A line that is no reply is an error too.
+struct ControlReply {
+  nlohmann::json id;
+  Result<nlohmann::json> result;
+};
+[[nodiscard]] Result<ControlReply> parse_reply(std::string_view line);
+
+}  // namespace mgtd

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "proto/error.h"
+
+/// One line of a peer that may be anything, read as a JSON object.
+namespace mgtd {
+
+/// Broken JSON is refused with the position; so is JSON that is no object. `example` is a line that would do.
+[[nodiscard]] Result<nlohmann::json> parse_json_object(std::string_view line, std::string_view example);
+
+/// The start of a peer's text for a message: at most 40 characters, unprintable bytes replaced.
+[[nodiscard]] std::string excerpt(std::string_view text);
+
+}  // namespace mgtd

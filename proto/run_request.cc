@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/run_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "proto/json_line.h"
+
+namespace mgtd {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Reads each key once and remembers the first objection.
+class Arguments {
+ public:
+  explicit Arguments(const Json& args) : args_(args) {}
+
+  void number(const char* key, double low, double high, std::optional<double>& out) {
+    const Json* const value = take(key);
+    if (value == nullptr) return;
+    if (value->is_number() && value->get<double>() >= low && value->get<double>() <= high) {
+      out = value->get<double>();
+    } else {
+      object(key, *value, fmt::format("a number from {} to {}", low, high));
+    }
+  }
+  void whole(const char* key, std::int64_t low, std::int64_t high, std::optional<int>& out) {
+    const Json* const value = take(key);
+    if (value == nullptr) return;
+    if (value->is_number_integer() && value->get<double>() >= static_cast<double>(low) &&
+        value->get<double>() <= static_cast<double>(high)) {
+      out = value->get<int>();
+    } else {
+      object(key, *value, fmt::format("a whole number from {} to {}", low, high));
+    }
+  }
+  void seed(const char* key, std::optional<std::uint64_t>& out) {
+    const Json* const value = take(key);
+    if (value == nullptr) return;
+    if (value->is_number_unsigned()) {
+      out = value->get<std::uint64_t>();
+    } else {
+      object(key, *value, "a whole number from 0 on");
+    }
+  }
+  [[nodiscard]] std::optional<Error> objection() const {
+    if (objection_) return objection_;
+    for (const auto& [key, value] : args_.items()) {
+      if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+        return Error{ErrorCode::usage, fmt::format("a run has no argument '{}'", excerpt(key)),
+                     fmt::format("its arguments are {}", fmt::join(known_, ", "))};
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const Json* take(const char* key) {
+    known_.emplace_back(key);
+    const auto entry = args_.find(key);
+    return entry == args_.end() || entry->is_null() ? nullptr : &*entry;
+  }
+  void object(const char* key, const Json& value, const std::string& expected) {
+    if (objection_) return;
+    const std::string found = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    objection_ = Error{ErrorCode::usage, fmt::format("{} is {}, not {}", key, excerpt(found), expected),
+                       "leave it out to use the configuration's value"};
+  }
+
+  const Json& args_;
+  std::vector<std::string_view> known_;
+  std::optional<Error> objection_;
+};
+
+}  // namespace
+
+Result<RunRequest> parse_run_request(const Json& args) {
+  RunRequest request;
+  Arguments arguments(args);
+  arguments.number("step_deg", 1, 120, request.step_deg);
+  arguments.whole("random", 0, 100'000, request.random);
+  arguments.whole("revisits", 0, 100'000, request.revisits);
+  arguments.whole("retries", 0, 100, request.retries);
+  arguments.number("dwell_short_s", 0.05, 3600, request.dwell_short_s);
+  arguments.number("dwell_long_s", 0.05, 3600, request.dwell_long_s);
+  arguments.seed("seed", request.seed);
+  if (auto objection = arguments.objection()) return tl::unexpected(std::move(*objection));
+  return request;
+}
+
+Json to_json(const RunRequest& request) {
+  Json args = Json::object();
+  const auto put = [&](const char* key, const auto& value) {
+    if (value) args[key] = *value;
+  };
+  put("step_deg", request.step_deg);
+  put("random", request.random);
+  put("revisits", request.revisits);
+  put("retries", request.retries);
+  put("dwell_short_s", request.dwell_short_s);
+  put("dwell_long_s", request.dwell_long_s);
+  put("seed", request.seed);
+  return args;
+}
+
+Result<std::string> parse_calibration_id(const Json& args) {
+  const auto id = args.find("id");
+  if (id == args.end() || !id->is_string() || id->get_ref<const std::string&>().empty()) {
+    return fail(ErrorCode::usage, "no calibration is named", "mgt calibrations list shows their ids");
+  }
+  return id->get<std::string>();
+}
+
+}  // namespace mgtd

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "proto/error.h"
+
+/// Arguments of the control commands that take any.
+namespace mgtd {
+
+/// What the operator wants otherwise than the configuration says, for run.start and run.dry-run.
+struct RunRequest {
+  std::optional<double> step_deg;
+  std::optional<int> random, revisits, retries;
+  std::optional<double> dwell_short_s, dwell_long_s;
+  std::optional<std::uint64_t> seed;
+  bool operator==(const RunRequest&) const = default;
+};
+
+/// Refuses an unknown key, a wrong type and a value outside its limits, by name.
+[[nodiscard]] Result<RunRequest> parse_run_request(const nlohmann::json& args);
+[[nodiscard]] nlohmann::json to_json(const RunRequest& request);
+
+/// The "id" of calibrations.show and calibrations.accept.
+[[nodiscard]] Result<std::string> parse_calibration_id(const nlohmann::json& args);
+
+}  // namespace mgtd

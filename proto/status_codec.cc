@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/status_codec.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mgtd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+template <class T>
+Json optional(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json rejected(const LinkHealth& health) {
+  Json counts = Json::object();
+  for (std::size_t i = 0; i < kRejects; ++i) counts[std::string(kRejectNames[i])] = health.rejected[i];
+  return counts;
+}
+
+Json to_json(const DeviceStatus& device, Instant now) {
+  const LinkHealth& h = device.health;
+  return {{"name", device.name},
+          {"driver", device.driver},
+          {"port", device.port},
+          {"state", kLinkStateNames.at(static_cast<std::size_t>(h.state))},
+          {"detail", h.detail},
+          {"identity", h.identity},
+          {"bytes_in", h.bytes_in},
+          {"bytes_in_frames", h.bytes_in_frames},
+          {"bytes_rejected", h.bytes_rejected},
+          {"bytes_resync", h.bytes_resync},
+          {"bytes_pending", h.bytes_pending},
+          {"bytes_out", h.bytes_out},
+          {"frames", h.frames},
+          {"rejected", rejected(h)},
+          {"opens", h.opens},
+          {"closes", h.closes},
+          {"balanced", h.balanced()},
+          {"last_frame_age_s", h.last_frame ? Json(to_seconds(now - *h.last_frame)) : Json(nullptr)}};
+}
+
+Json to_json(const Check& check) {
+  return {{"name", check.name},
+          {"passed", check.passed},
+          {"measured", check.measured},
+          {"limit", check.limit},
+          {"remedy", check.remedy}};
+}
+
+/// Reads typed keys one after the other and remembers the first that is missing or of another type.
+class Reader {
+ public:
+  explicit Reader(const nlohmann::json& object) : object_(object) {}
+
+  void read(const char* key, std::string& out) { take(key, "text", &nlohmann::json::is_string, out); }
+  void read(const char* key, bool& out) { take(key, "true or false", &nlohmann::json::is_boolean, out); }
+  void read(const char* key, int& out) {
+    take(key, "a whole number", &nlohmann::json::is_number_integer, out);
+  }
+  void read(const char* key, double& out) { take(key, "a number", &nlohmann::json::is_number, out); }
+  [[nodiscard]] const std::string& objection() const { return objection_; }
+
+ private:
+  template <class T>
+  void take(const char* key, const char* expected, bool (nlohmann::json::*is)() const noexcept, T& out) {
+    const auto entry = object_.find(key);
+    if (entry == object_.end()) {
+      if (objection_.empty()) objection_ = fmt::format("'{}' is missing", key);
+    } else if (!((*entry).*is)()) {
+      if (objection_.empty()) objection_ = fmt::format("'{}' is not {}", key, expected);
+    } else {
+      out = entry->get<T>();
+    }
+  }
+
+  const nlohmann::json& object_;
+  std::string objection_;
+};
+
+tl::unexpected<Error> not_a_status(std::string_view why) {
+  return fail(ErrorCode::protocol, fmt::format("the answer is no run status: {}", why),
+              "use mgt and mgtd of the same version");
+}
+
+Result<RunState> state_from_name(std::string_view text) {
+  for (std::uint8_t i = 0; i <= static_cast<std::uint8_t>(RunState::interrupted); ++i) {
+    if (name(static_cast<RunState>(i)) == text) return static_cast<RunState>(i);
+  }
+  return not_a_status(fmt::format("state '{}' is unknown", text));
+}
+
+}  // namespace
+
+Json to_json(const RunStatus& run) {
+  Json checks = Json::array();
+  for (const Check& check : run.checks) checks.push_back(to_json(check));
+  return {{"run_id", run.run_id},
+          {"state", name(run.state)},
+          {"set", run.set},
+          {"pose", run.pose},
+          {"poses", run.poses},
+          {"retries", run.retries},
+          {"elapsed_s", number(run.elapsed_s)},
+          {"remaining_s", number(run.remaining_s)},
+          {"message", run.message},
+          {"proposed", run.proposed.empty() ? Json(nullptr) : Json(run.proposed)},
+          {"checks", std::move(checks)}};
+}
+
+Json to_json(const StatusReport& report) {
+  Json devices = Json::array();
+  for (const DeviceStatus& device : report.devices) devices.push_back(to_json(device, report.at.mono));
+  return {{"t", format_utc(report.at.wall)},
+          {"t_ns", report.at.wall.ns},
+          {"uptime_s", report.uptime_s},
+          {"software", report.software},
+          {"rig", report.rig},
+          {"speed_up", report.speed_up},
+          {"cal", optional(report.calibration)},
+          {"devices", std::move(devices)},
+          {"sampler",
+           {{"epochs", report.sampler.epochs},
+            {"gaps", report.sampler.gaps},
+            {"rate_hz", optional(report.sampler.rate_hz)},
+            {"skew_bound_s", optional(report.sampler.skew_bound_s)}}},
+          {"stream",
+           {{"clients", report.stream.clients},
+            {"accepted", report.stream.accepted},
+            {"refused", report.stream.refused},
+            {"gaps", report.stream.gaps},
+            {"dropped", report.stream.dropped}}},
+          {"journal", {{"state", report.journal.state}, {"bytes", report.journal.bytes}}},
+          {"disk_free_bytes", optional(report.disk_free_bytes)},
+          {"run", to_json(report.run)}};
+}
+
+Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
+  if (!object.is_object()) return not_a_status("it is no object");
+  RunStatus run;
+  std::string state;
+  Reader reader(object);
+  reader.read("run_id", run.run_id);
+  reader.read("state", state);
+  reader.read("set", run.set);
+  reader.read("pose", run.pose);
+  reader.read("poses", run.poses);
+  reader.read("retries", run.retries);
+  reader.read("elapsed_s", run.elapsed_s);
+  if (object.contains("remaining_s") && !object["remaining_s"].is_null()) {
+    reader.read("remaining_s", run.remaining_s);
+  }
+  reader.read("message", run.message);
+  if (object.contains("proposed") && !object["proposed"].is_null()) reader.read("proposed", run.proposed);
+  if (!reader.objection().empty()) return not_a_status(reader.objection());
+  const auto parsed = state_from_name(state);
+  if (!parsed) return tl::unexpected(parsed.error());
+  run.state = *parsed;
+  for (const nlohmann::json& entry : object.value("checks", nlohmann::json::array())) {
+    Check check;
+    Reader fields(entry);
+    fields.read("name", check.name);
+    fields.read("passed", check.passed);
+    fields.read("measured", check.measured);
+    fields.read("limit", check.limit);
+    fields.read("remedy", check.remedy);
+    if (!fields.objection().empty()) return not_a_status("in checks: " + fields.objection());
+    run.checks.push_back(std::move(check));
+  }
+  return run;
+}
+
+}  // namespace mgtd

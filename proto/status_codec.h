@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "proto/error.h"
+#include "proto/run_status.h"
+#include "proto/status_report.h"
+
+/// The JSON of STATUS and RUN, the same on the stream, on the control socket and in `mgt status --json`.
+///
+/// RUN:    {"run_id","state","set","pose","poses","retries","elapsed_s","remaining_s","message",
+///          "proposed": id or null, "checks":[{"name","passed","measured","limit","remedy"}]}
+/// STATUS: {"t","t_ns","uptime_s","software","rig","speed_up","cal": id or null,
+///          "devices":[{"name","driver","port","state","detail","identity","bytes_in","bytes_in_frames",
+///                      "bytes_rejected","bytes_resync","bytes_pending","bytes_out","frames",
+///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s": s or
+///                      null}],
+///          "sampler":{"epochs","gaps","rate_hz","skew_bound_s"},
+///          "stream":{"clients","accepted","refused","gaps","dropped"},
+///          "journal":{"state","bytes"},"disk_free_bytes","run":{RUN}}
+/// The stream puts "class" before these keys. What is not known is null; NaN becomes null.
+namespace mgtd {
+
+[[nodiscard]] nlohmann::ordered_json to_json(const RunStatus& run);
+[[nodiscard]] nlohmann::ordered_json to_json(const StatusReport& report);
+
+/// Reads what to_json wrote; a missing or mistyped key is named. Keys it does not know are passed over, so
+/// that an older tool reads a newer daemon.
+[[nodiscard]] Result<RunStatus> run_status_from_json(const nlohmann::json& object);
+
+}  // namespace mgtd

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/health.h"
+#include "proto/run_status.h"
+#include "proto/time.h"
+
+/// Everything an operator asks a running daemon, in one value taken at one instant.
+namespace mgtd {
+
+struct DeviceStatus {
+  std::string name;    ///< "s1" .. "s4", "table", "scalar"
+  std::string driver;  ///< as in the configuration
+  std::string port;
+  LinkHealth health;
+};
+
+struct SamplerStatus {
+  std::uint64_t epochs{0};
+  std::uint64_t gaps{0};  ///< epochs that were not measured
+  std::optional<double> rate_hz;
+  std::optional<double> skew_bound_s;  ///< of the newest epoch
+};
+
+struct StreamStatus {
+  std::uint64_t clients{0};   ///< connected now
+  std::uint64_t accepted{0};  ///< since the start
+  std::uint64_t refused{0};   ///< beyond the limit of clients
+  std::uint64_t gaps{0};      ///< GAP records sent to clients that were too slow
+  std::uint64_t dropped{0};   ///< clients disconnected because they stayed behind or flooded
+};
+
+struct JournalStatus {
+  std::string state;  ///< "off", "writing", or why it is not
+  std::uint64_t bytes{0};
+};
+
+struct StatusReport {
+  Stamp at;
+  double uptime_s{0};
+  std::string software;
+  std::string rig;
+  double speed_up{1};
+  std::optional<std::string> calibration;  ///< id of the active one
+  std::vector<DeviceStatus> devices;
+  SamplerStatus sampler;
+  StreamStatus stream;
+  JournalStatus journal;
+  std::optional<std::uint64_t> disk_free_bytes;
+  RunStatus run;
+};
+
+}  // namespace mgtd

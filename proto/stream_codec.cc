@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/stream_codec.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proto/status_codec.h"
+
+namespace mgtd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Text that is not UTF-8 (an instrument's answer, a peer's line) must not end the stream: it is replaced.
+std::string line(const Json& object) { return object.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string line_of_class(std::string_view stream_class, const Json& body) {
+  Json object{{"class", stream_class}};
+  object.update(body);
+  return line(object);
+}
+
+}  // namespace
+
+std::string encode(const Greeting& greeting) {
+  return line({{"class", "HELLO"},
+               {"protocol", {{"major", kStreamProtocolMajor}, {"minor", kStreamProtocolMinor}}},
+               {"rig", greeting.rig},
+               {"software", greeting.software}});
+}
+
+std::string encode(const Gap& gap) {
+  return line({{"class", "GAP"}, {"from_seq", gap.from_seq}, {"to_seq", gap.to_seq}, {"why", gap.why}});
+}
+
+std::string encode(const Error& error) {
+  return line({{"class", "ERROR"}, {"message", error.message}, {"remedy", error.remedy}});
+}
+
+std::string encode(const StatusReport& report) { return line_of_class("STATUS", to_json(report)); }
+std::string encode(const RunStatus& run) { return line_of_class("RUN", to_json(run)); }
+
+}  // namespace mgtd

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "proto/epoch.h"
+#include "proto/error.h"
+#include "proto/run_status.h"
+#include "proto/status_report.h"
+
+/// The lines of the live stream beside TENSOR (tensor_encoder.h): one JSON object each, without the line end.
+///
+///   {"class":"HELLO","protocol":{"major":1,"minor":0},"rig":"..","software":"mgtd 0.1.0"}
+///   {"class":"GAP","from_seq":..,"to_seq":..,"why":".."}
+///   {"class":"ERROR","message":"..","remedy":".."}
+///   {"class":"STATUS",...}  {"class":"RUN",...}      keys as in status_codec.h
+namespace mgtd {
+
+/// Major changes when an old client would misread the stream, minor when keys or classes were added.
+inline constexpr int kStreamProtocolMajor = 1;
+inline constexpr int kStreamProtocolMinor = 0;
+
+struct Greeting {
+  std::string rig;
+  std::string software;
+};
+
+[[nodiscard]] std::string encode(const Greeting& greeting);
+[[nodiscard]] std::string encode(const Gap& gap);
+[[nodiscard]] std::string encode(const Error& error);
+[[nodiscard]] std::string encode(const StatusReport& report);
+[[nodiscard]] std::string encode(const RunStatus& run);
+
+}  // namespace mgtd

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/tensor_encoder.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace mgtd {
+namespace {
+
+constexpr std::int64_t kMicro = 1'000'000;
+constexpr double kFixedLimit = 1e12;  // beyond it, micro-units no longer fit an int64 exactly
+
+constexpr auto kPairs = [] {
+  std::array<char, 200> pairs{};
+  for (std::size_t i = 0; i < 100; ++i) {
+    pairs[2 * i] = static_cast<char>('0' + i / 10);
+    pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+  }
+  return pairs;
+}();
+
+/// Six digits, leading zeros kept.
+void append_six(std::string& out, std::uint64_t value) {
+  for (const std::uint64_t pair : {value / 10'000, value / 100 % 100, value % 100}) {
+    out.append(&kPairs[2 * pair], 2);
+  }
+}
+
+void append_integer(std::string& out, std::uint64_t value) {
+  const fmt::format_int text(value);
+  out.append(text.data(), text.size());
+}
+
+void append_micro(std::string& out, std::int64_t micro) {
+  std::uint64_t magnitude = static_cast<std::uint64_t>(micro);
+  if (micro < 0) {
+    out += '-';
+    magnitude = 0 - magnitude;
+  }
+  append_integer(out, magnitude / kMicro);
+  out += '.';
+  append_six(out, magnitude % kMicro);
+}
+
+void append_number(std::string& out, double value) {
+  if (std::abs(value) < kFixedLimit) {
+    append_micro(out, std::llround(value * static_cast<double>(kMicro)));
+  } else if (std::isfinite(value)) {
+    fmt::format_to(std::back_inserter(out), "{}", value);
+  } else {
+    out += "null";
+  }
+}
+
+void append_vector(std::string& out, const Eigen::Vector3d& v) {
+  out += '[';
+  append_number(out, v.x());
+  out += ',';
+  append_number(out, v.y());
+  out += ',';
+  append_number(out, v.z());
+  out += ']';
+}
+
+/// The printed zz of a traceless tensor; any other zz as it is.
+void append_zz(std::string& out, const Gradient& g) {
+  const bool traceless = std::abs(g.xx + g.yy + g.zz) < 1e-6 && std::abs(g.xx) < kFixedLimit / 2 &&
+                         std::abs(g.yy) < kFixedLimit / 2;
+  if (!traceless) return append_number(out, g.zz);
+  const auto micro = [](double v) { return std::llround(v * static_cast<double>(kMicro)); };
+  append_micro(out, -(micro(g.xx) + micro(g.yy)));
+}
+
+void append_gradient(std::string& out, const Gradient& g, bool is_tensor) {
+  out += "{\"xx\":";
+  append_number(out, g.xx);
+  out += ",\"yy\":";
+  append_number(out, g.yy);
+  out += ",\"zz\":";
+  if (is_tensor) {
+    append_zz(out, g);
+  } else {
+    append_number(out, g.zz);
+  }
+  out += ",\"xy\":";
+  append_number(out, g.xy);
+  out += ",\"xz\":";
+  append_number(out, g.xz);
+  out += ",\"yz\":";
+  append_number(out, g.yz);
+  out += '}';
+}
+
+void append_flags(std::string& out, Flags flags) {
+  out += '[';
+  if (flags.any()) {
+    const char* separator = "";
+    for_each_name(flags, [&](std::string_view name) {
+      out += separator;
+      out += '"';
+      out += name;
+      out += '"';
+      separator = ",";
+    });
+  }
+  out += ']';
+}
+
+}  // namespace
+
+void TensorEncoder::append_time(WallTime t) {
+  std::int64_t second = t.ns / 1'000'000'000;
+  if (t.ns % 1'000'000'000 < 0) --second;
+  if (second != second_) {
+    second_ = second;
+    second_text_ = format_utc(WallTime{second * 1'000'000'000}).substr(0, 20);
+  }
+  line_ += second_text_;
+  append_six(line_, static_cast<std::uint64_t>(t.ns - second * 1'000'000'000) / 1000);
+  line_ += "Z\",\"t_ns\":";
+  const fmt::format_int ns(t.ns);
+  line_.append(ns.data(), ns.size());
+}
+
+std::string_view TensorEncoder::encode(const TensorSample& sample) {
+  line_.assign(R"({"class":"TENSOR","seq":)");
+  append_integer(line_, sample.seq);
+  line_ += R"(,"t":")";
+  append_time(sample.t.wall);
+  line_ += R"(,"frame":"platform","cal":)";
+  if (sample.calibration_id) {
+    line_ += '"';
+    line_ += *sample.calibration_id;
+    line_ += '"';
+  } else {
+    line_ += "null";
+  }
+  line_ += R"(,"b_nT":)";
+  append_vector(line_, sample.b_P_nT);
+  line_ += R"(,"f_nT":)";
+  append_number(line_, sample.f_nT);
+  line_ += R"(,"g_nT_per_m":)";
+  append_gradient(line_, sample.g_nT_per_m, true);
+  line_ += R"(,"g_sd_nT_per_m":)";
+  append_gradient(line_, sample.g_sd_nT_per_m, false);
+  line_ += R"(,"closure":{"curl_nT_per_m":)";
+  append_number(line_, sample.closure.curl_nT_per_m);
+  line_ += R"(,"center_nT":)";
+  append_vector(line_, sample.closure.center_nT);
+  line_ += R"(,"chi2":)";
+  append_number(line_, sample.closure.chi2);
+  line_ += R"(},"flags":)";
+  append_flags(line_, sample.flags);
+  line_ += '}';
+  return line_;
+}
+
+}  // namespace mgtd
