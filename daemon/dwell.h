@@ -12,9 +12,9 @@
 
 /// One dwell: epochs while the table stood still, in; one row of the pose table, out.
 ///
-/// mean and sd of one sample per axis over the n epochs whose time lies in the dwell;
-///     n_eff = n (1 - r) / (1 + r),   r the lag-1 autocorrelation pooled over the 12 axes (AR(1)), not below
-///     0;
+/// mean per axis over the n epochs whose time lies in the dwell; sd of one sample and n_eff such that
+///     sd^2 / n_eff = variance of the mean = scatter^2 (1 + 2 sum of autocorrelations) / n
+/// on every axis: sd is that of a raw sample even where the sampler's interpolation smoothed the epochs;
 /// scalar: mean of the good readings, f_sd = standard uncertainty of that mean; temperatures: means.
 /// What makes a pose unusable is an Error of pose(): too many gaps, saturation, a sensor whose value stands
 /// still.
@@ -69,6 +69,7 @@ class Dwell {
   using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
   [[nodiscard]] bool inside(Instant t) const { return t >= begin_ && t < end_; }
   [[nodiscard]] Result<void> acceptable() const;
+  [[nodiscard]] double correlation_time(int slot, const std::vector<Sample>& residual) const;
   void fill_readings(Pose& pose) const;
   void fill_scalar(Pose& pose) const;
 

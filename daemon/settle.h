@@ -57,12 +57,15 @@ class Settle {
     Sample y_nT;
   };
   struct Worst {
-    int axis{0};
-    double change_nT{0}, limit_nT{0}, sd_nT{0};
-    double drift_excess{0};  ///< change / limit
+    int drifting_axis{0}, noisy_axis{0};
+    double change_nT{0}, limit_nT{0};  ///< of the drifting axis
+    double drift_excess{0};            ///< change / limit
+    double sd_nT{0};                   ///< of the noisy axis
   };
   [[nodiscard]] bool window_full() const;
   [[nodiscard]] Worst measure() const;
+  [[nodiscard]] SettleVerdict judge_table(Instant now) const;
+  [[nodiscard]] SettleVerdict judge_field(Instant now) const;
 
   SettleConfig config_;
   Instant commanded_;
