@@ -14,7 +14,6 @@ constexpr std::size_t kLongestLine = 128;
 constexpr double kSilence_s = 0.3;  ///< that ends a drain
 constexpr double kReply_s = 2.0;
 constexpr double kRetry_s = 10.0;
-constexpr double kDead_s = 10.0;  ///< without a single byte, before the port is opened again
 
 using Kind = Step::Kind;
 
@@ -66,7 +65,7 @@ bool is_obsdaq(std::string identity) {
 }  // namespace
 
 ObsdaqDriver::ObsdaqDriver(int slot, ObsdaqSettings settings)
-    : LineDevice(Ending::cr, kLongestLine, settings.baud),
+    : LineDevice({Ending::cr, kLongestLine, settings.baud}),
       slot_(slot),
       settings_(std::move(settings)),
       dialogue_(start_up(settings_)) {}
@@ -77,15 +76,12 @@ std::unique_ptr<Device> ObsdaqDriver::make(int slot, Settings& settings) {
 
 void ObsdaqDriver::on_open(Stamp now) {
   LineDevice::on_open(now);
-  wants_reopen_ = false;
-  dead_.set(now.mono, kDead_s);
   start(now);
 }
 
 void ObsdaqDriver::on_close(Stamp now) {
   LineDevice::on_close(now);
   phase_ = Phase::closed;
-  wants_reopen_ = false;
 }
 
 void ObsdaqDriver::on_shutdown(Stamp /*now*/) {
@@ -99,18 +95,13 @@ void ObsdaqDriver::start(Stamp now) {
 }
 
 void ObsdaqDriver::on_tick(Stamp now) {
-  if (phase_ == Phase::closed) return;
-  if (std::exchange(bytes_seen_, health_.bytes_in) != health_.bytes_in) {
-    dead_.set(now.mono, kDead_s);
-  } else if (dead_.passed(now.mono)) {
-    wants_reopen_ = true;
-  }
+  LineDevice::on_tick(now);
   if (phase_ == Phase::starting) {
     dialogue_.on_tick(now.mono, health_.bytes_in);
     pump(now);
   } else if (phase_ == Phase::streaming) {
     watch_silence(now);
-  } else if (retry_.passed(now.mono)) {
+  } else if (phase_ == Phase::waiting && retry_.passed(now.mono)) {
     start(now);
   }
 }

@@ -32,7 +32,6 @@ class ObsdaqDriver final : public LineDevice {
   void on_tick(Stamp now) override;
   void on_close(Stamp now) override;
   void on_shutdown(Stamp now) override;
-  [[nodiscard]] bool wants_reopen() const override { return wants_reopen_; }
 
  protected:
   Verdict on_line(std::string_view line, Stamp arrival) override;
@@ -54,12 +53,11 @@ class ObsdaqDriver final : public LineDevice {
   ObsdaqSettings settings_;
   Phase phase_{Phase::closed};
   Dialogue dialogue_;
-  Deadline silence_, retry_, dead_;
+  Deadline silence_, retry_;
   std::uint64_t seq_{0};
-  std::uint64_t bytes_seen_{0}, bytes_at_good_line_{0};
+  std::uint64_t bytes_at_good_line_{0};
   bool any_good_line_{false};
   bool impossible_date_noted_{false};
-  bool wants_reopen_{false};
   std::string last_fault_;
 };
 

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/gcs2_driver.h"
 #include "drivers/obsdaq_driver.h"
 
 namespace mgtd::drivers {
 namespace {
 
 constexpr std::array kDrivers{
+    DriverEntry{"gcs2", Role::table, "Physik Instrumente GCS 2.0 turntable, one to three axes",
+                &gcs2::Gcs2Driver::make},
     DriverEntry{"obsdaq", Role::sensor, "Mingeo ObsDAQ digitiser, direct or behind a PalmAcq time-stamper",
                 &obsdaq::ObsdaqDriver::make},
 };

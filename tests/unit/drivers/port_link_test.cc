@@ -21,17 +21,19 @@ using mgtd::testing::PtyMaster;
 /// Greets on opening, notes every line, says goodbye.
 class Parrot final : public LineDevice {
  public:
-  Parrot() : LineDevice(Ending::lf, 100, 115200) {}
+  Parrot() : LineDevice({Ending::lf, 100, 115200, 0.2}) {}
   void on_open(Stamp now) override {
     LineDevice::on_open(now);
     send("hello\n");
   }
-  void on_tick(Stamp /*now*/) override { ++ticks; }
+  void on_tick(Stamp now) override {
+    ++ticks;
+    if (impatient) LineDevice::on_tick(now);
+  }
   void on_shutdown(Stamp /*now*/) override { send("bye\n"); }
-  [[nodiscard]] bool wants_reopen() const override { return reopen; }
   void say(std::string_view text) { send(text); }
   int ticks{0};
-  bool reopen{false};
+  bool impatient{false};  ///< wants a fresh port when nothing comes
 
  protected:
   Verdict on_line(std::string_view line, Stamp arrival) override {
@@ -135,9 +137,9 @@ TEST_F(PortLinkTest, ADeviceThatAsksForItIsOpenedAgain) {
   auto port = link(path_);
   port->start();
   ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
-  device_->reopen = true;
+  device_->impatient = true;
   ASSERT_TRUE(until([&] { return port->health().closes == 1; }));
-  device_->reopen = false;
+  device_->impatient = false;
   ASSERT_TRUE(until([&] { return master.received() == "hello\nhello\n"; }));
 }
 

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/gcs2_settings.h"
+#include "drivers/line_device.h"
+#include "drivers/query_queue.h"
+
+/// A turntable of one to three axes behind a GCS 2 controller.
+///
+///   opening  stop (18), identity, axes checked, travel read, velocity set, servo off; then live
+///   home     per axis not yet referenced: servo on, FRF, 07 until ready, FRF?
+///   move     servo on, MOV per axis, then 05, ONT?, POS? every 0.1 s until all stand on target; servo off
+///   idle     05 and POS? every second
+///
+/// ERR? follows every set command; an error is a DeviceFault in words and stops the table. A move that takes
+/// longer than distance/velocity*2 + 10 s is stopped. limits() is what the controller allows and the
+/// configuration narrows; before the controller was asked, it is the configuration's, or no travel at all.
+/// on_target holds from arrival until the next motion (with the servo off the controller no longer says it).
+///
+/// Does not plan a path: all axes start together, each at the set velocity.
+namespace mgtd::drivers::gcs2 {
+
+class Gcs2Driver final : public LineBased<Turntable> {
+ public:
+  explicit Gcs2Driver(Gcs2Settings settings);
+  [[nodiscard]] static std::unique_ptr<Device> make(int slot, Settings& settings);
+
+  void on_open(Stamp now) override;
+  void on_tick(Stamp now) override;
+  void on_close(Stamp now) override;
+
+  void home() override;
+  void move_to(TableAngles target) override;
+  void stop() override;
+  [[nodiscard]] const TableLimits& limits() const override { return limits_; }
+
+ protected:
+  Verdict on_line(std::string_view line, Stamp arrival) override;
+
+ private:
+  enum class Phase { closed, starting, ready, waiting };
+  enum class Job { none, homing, moving, arriving };
+  enum class Ask {
+    set,
+    error,
+    stop_error,
+    identity,
+    axes,
+    travel_min,
+    travel_max,
+    referenced,
+    ready,
+    moving,
+    on_target,
+    position
+  };
+  struct Axis {
+    AxisSettings settings;
+    double travel_min_deg{0}, travel_max_deg{0};
+    double position_deg{0}, target_deg{0};
+    bool referenced{false}, on_target{false};
+  };
+  using Question = Query<Ask>;
+
+  void start();
+  void pump();
+  void set(std::string command);
+  void ask(Ask what, std::string send, std::size_t axis = 0);
+  void servo(bool on);
+  void ask_cycle();
+  void poll();
+  void begin_wanted();
+  void begin_home();
+  void reference_next();
+  void begin_move(const TableAngles& target);
+  [[nodiscard]] bool refuse_target(const TableAngles& target);
+  void arrive();
+  void end_of_cycle();
+  void halt();
+
+  [[nodiscard]] bool take(const Question& question, std::string_view line);
+  [[nodiscard]] bool take_error(const Question& question, std::string_view line);
+  [[nodiscard]] bool take_start_up(const Question& question, std::string_view line);
+  [[nodiscard]] bool take_state(const Question& question, std::string_view line);
+  void on_axes(const std::vector<std::string>& present);
+  void on_referenced(Axis& axis, bool yes);
+  void narrow_limits(const Axis& axis);
+
+  void fault(std::string what, std::string remedy);
+  void give_up(const Question& question);
+  void fail_start(std::string what, std::string remedy);
+  void report(bool moving);
+  [[nodiscard]] bool all_referenced() const;
+  [[nodiscard]] TableAngles angles() const;
+  [[nodiscard]] bool busy() const { return job_ != Job::none || moving_mask_ != 0; }
+
+  Gcs2Settings settings_;
+  std::vector<Axis> axes_;
+  TableLimits limits_;
+  Phase phase_{Phase::closed};
+  Job job_{Job::none};
+  QueryQueue<Ask> queue_;
+  Stamp now_;
+  Instant next_poll_{};
+  Deadline job_deadline_, retry_;
+  bool wants_home_{false};
+  std::optional<TableAngles> wanted_;
+  std::size_t homing_axis_{0};
+  std::uint32_t moving_mask_{0};
+  bool arrived_{false};
+  bool cycle_is_of_this_move_{false};  ///< a poll begun before the move says nothing about it
+  std::string last_start_fault_;
+};
+
+}  // namespace mgtd::drivers::gcs2
