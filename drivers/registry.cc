@@ -5,6 +5,7 @@
 #include <array>
 
 #include "drivers/gcs2_driver.h"
+#include "drivers/gsm_driver.h"
 #include "drivers/obsdaq_driver.h"
 
 namespace mgtd::drivers {
@@ -13,6 +14,8 @@ namespace {
 constexpr std::array kDrivers{
     DriverEntry{"gcs2", Role::table, "Physik Instrumente GCS 2.0 turntable, one to three axes",
                 &gcs2::Gcs2Driver::make},
+    DriverEntry{"gsm", Role::scalar, "GEM Systems GSM-90 or GSM-19 total-field magnetometer",
+                &gsm::GsmDriver::make},
     DriverEntry{"obsdaq", Role::sensor, "Mingeo ObsDAQ digitiser, direct or behind a PalmAcq time-stamper",
                 &obsdaq::ObsdaqDriver::make},
 };

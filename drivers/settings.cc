@@ -95,6 +95,14 @@ std::vector<double> Settings::numbers(std::string_view key, std::size_t count, s
   return *list;
 }
 
+std::vector<std::string> Settings::texts(std::string_view key) {
+  const Entry* const entry = find(key);
+  if (entry == nullptr) return {};
+  if (const auto* list = std::get_if<std::vector<std::string>>(&entry->value)) return *list;
+  wrong_type(key, "a list of texts in quotes");
+  return {};
+}
+
 double Settings::required_number(std::string_view key) {
   if (!has(key)) missing(key);
   return number(key, 0.0);

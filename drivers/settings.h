@@ -43,6 +43,7 @@ class Settings {
   [[nodiscard]] std::string text(std::string_view key, std::string_view fallback);
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,
                                             std::vector<double> fallback);
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key);
   /// As above, but absence is an error.
   [[nodiscard]] double required_number(std::string_view key);
   [[nodiscard]] std::string required_text(std::string_view key);

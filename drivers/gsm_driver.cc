@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/gsm_driver.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace mgtd::drivers::gsm {
+namespace {
+
+constexpr double kInitPause_s = 1.2;
+constexpr double kReopen_s = 60.0;  ///< slow instruments are allowed long silences
+constexpr std::size_t kLongestLine = 256;
+constexpr std::string_view kUtc = "{utc}";
+
+}  // namespace
+
+GsmSettings read_gsm_settings(Settings& s) {
+  GsmSettings out;
+  out.baud = static_cast<int>(s.integer("baud", kDefaultBaud));
+  if (out.baud < 300 || out.baud > 4'000'000) {
+    s.object("baud", "must be a line speed like 115200");
+    out.baud = kDefaultBaud;
+  }
+  out.init = s.texts("init");
+  const std::vector<double> range = s.numbers("range_nT", 2, {out.min_nT, out.max_nT});
+  out.min_nT = range[0];
+  out.max_nT = range[1];
+  if (!(out.min_nT >= 0 && out.min_nT < out.max_nT)) s.object("range_nT", "must be [lowest, highest] in nT");
+  out.silence_s = s.number("silence_s", out.silence_s);
+  if (!(out.silence_s >= 1)) s.object("silence_s", "must be 1 s or more");
+  return out;
+}
+
+GsmDriver::GsmDriver(GsmSettings settings)
+    : LineDevice({Ending::lf, kLongestLine, settings.baud, kReopen_s}), settings_(std::move(settings)) {}
+
+std::unique_ptr<Device> GsmDriver::make(int /*slot*/, Settings& settings) {
+  return std::make_unique<GsmDriver>(read_gsm_settings(settings));
+}
+
+void GsmDriver::on_open(Stamp now) {
+  LineDevice::on_open(now);
+  set_state(LinkState::probing, "waiting for the first reading");
+  next_init_ = 0;
+  silence_.set(now.mono, settings_.silence_s + kInitPause_s * static_cast<double>(settings_.init.size()));
+  send_init(now);
+}
+
+void GsmDriver::send_init(Stamp now) {
+  if (next_init_ == settings_.init.size()) return;
+  const std::string& text = settings_.init[next_init_++];
+  send(text == kUtc ? clock_string(now.wall) : text);
+  next_.set(now.mono, kInitPause_s, 2);
+}
+
+void GsmDriver::on_tick(Stamp now) {
+  LineDevice::on_tick(now);
+  if (health_.state == LinkState::absent) return;
+  if (next_.passed(now.mono)) {
+    next_.clear();
+    send_init(now);
+  }
+  if (!silence_.passed(now.mono)) return;
+  silence_.clear();
+  set_state(
+      LinkState::silent,
+      fmt::format("no reading for {:.0f} s{}; check power, cable, baud ({}) and that the instrument sends "
+                  "in real time (its memory may be full)",
+                  settings_.silence_s, last_text_.empty() ? "" : fmt::format(", last heard '{}'", last_text_),
+                  baud()));
+  emit(DeviceNote{now, health_.detail});
+}
+
+Verdict GsmDriver::on_line(std::string_view line, Stamp arrival) {
+  const GsmLine parsed = parse_line(line);
+  if (const auto* reading = std::get_if<GsmReading>(&parsed)) return on_reading(*reading, arrival);
+  last_text_ = line;
+  if (const auto* why = std::get_if<Reject>(&parsed)) return Verdict::rejected(*why);
+  if (line.find("z-save") != std::string_view::npos) send("z");
+  if (std::get<GsmText>(parsed).header && line.find("GSM") != std::string_view::npos)
+    health_.identity = line.substr(1);
+  return Verdict::resync();
+}
+
+Verdict GsmDriver::on_reading(const GsmReading& reading, Stamp arrival) {
+  if (reading.f_nT < settings_.min_nT || reading.f_nT > settings_.max_nT)
+    return Verdict::rejected(Reject::range);
+  silence_.set(arrival.mono, settings_.silence_s);
+  last_text_.clear();
+  if (health_.state != LinkState::live) set_state(LinkState::live, "reading the total field");
+  emit(ScalarReading{arrival, reading.f_nT, reading.quality.value_or(-1),
+                     reading.quality.value_or(kBestQuality) == kBestQuality});
+  return Verdict::accepted();
+}
+
+}  // namespace mgtd::drivers::gsm

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/deadline.h"
+#include "drivers/gsm_protocol.h"
+#include "drivers/line_device.h"
+#include "drivers/settings.h"
+
+/// Scalar reference: listens to a GSM-90 or GSM-19, after sending set-up strings when some are configured.
+///
+///   port, baud = 115200
+///   init = ["S", "5", "T048.5", "C", "{utc}", "R"]   optional; sent one by one without ending, at least a
+///                                        second apart; "{utc}" becomes the time for the clock menu
+///   range_nT = [20000, 120000]           a reading outside is rejected
+///   silence_s = 15                       without a reading the link is silent
+///
+/// A ScalarReading is good when its quality is 99, or when the line has no quality at all (quality -1): then
+/// nothing speaks against it. A menu that offers "z-save" is answered by z.
+namespace mgtd::drivers::gsm {
+
+struct GsmSettings {
+  int baud{kDefaultBaud};
+  std::vector<std::string> init;
+  double min_nT{20'000};
+  double max_nT{120'000};
+  double silence_s{15};
+};
+
+/// Mistakes are left in `settings`.
+[[nodiscard]] GsmSettings read_gsm_settings(Settings& settings);
+
+class GsmDriver final : public LineDevice {
+ public:
+  explicit GsmDriver(GsmSettings settings);
+  [[nodiscard]] static std::unique_ptr<Device> make(int slot, Settings& settings);
+
+  void on_open(Stamp now) override;
+  void on_tick(Stamp now) override;
+
+ protected:
+  Verdict on_line(std::string_view line, Stamp arrival) override;
+
+ private:
+  void send_init(Stamp now);
+  Verdict on_reading(const GsmReading& reading, Stamp arrival);
+
+  GsmSettings settings_;
+  std::size_t next_init_{0};
+  Deadline next_, silence_;
+  std::string last_text_;
+};
+
+}  // namespace mgtd::drivers::gsm
