@@ -1,34 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pose_source.h"
 
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "calib/pose_table.h"
+#include "daemon/durable_file.h"
 #include "daemon/run_file.h"
 
 namespace mgtd::daemon {
 namespace {
 
 constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
-
-Result<std::string> read_text(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    return fail(ErrorCode::bad_input, fmt::format("{} is a directory", path.string()), "name a file in it");
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    return fail(ErrorCode::bad_input, fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)),
-                "check path and permissions");
-  }
-  return std::string(std::istreambuf_iterator<char>(in), {});
-}
 
 bool is_database(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -47,7 +30,7 @@ Result<PoseSource> read_run(const std::filesystem::path& path) {
     if (!table) return tl::unexpected(table.error());
     return PoseSource{std::move(*table), file->header()};
   }
-  const auto text = read_text(path);
+  const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   auto table = calib::parse_pose_table(*text, path.string());
   if (!table) return tl::unexpected(table.error());

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "daemon/database.h"
+#include "daemon/durable_file.h"
 #include "daemon/pose_row.h"
 #include "daemon/run_schema.h"
 
@@ -37,13 +38,7 @@ Result<void> publish(const std::filesystem::path& draft, const std::filesystem::
   if (code != 0)
     return fail(ErrorCode::io, fmt::format("cannot create {}: {}", path.string(), std::strerror(errno)),
                 "check path and permissions");
-  const auto directory = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const int fd = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd >= 0) {
-    ::fsync(fd);
-    ::close(fd);
-  }
-  return {};
+  return sync_directory(path.parent_path());
 }
 
 Result<void> insert_pose(Database& db, const Pose& pose) {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 
 #include "daemon/database.h"
 #include "daemon/pose_source.h"
+#include "tests/unit/daemon/full_disk.h"
 #include "tests/unit/daemon/poses.h"
 #include "tests/unit/daemon/temp_dir.h"
 
@@ -18,6 +18,7 @@ namespace mgtd::daemon {
 namespace {
 
 using test::full_pose;
+using test::FullDisk;
 using test::same;
 using test::TempDir;
 
@@ -109,26 +110,6 @@ TEST(RunFile, APoseIsThereAfterSigkill) {
     EXPECT_TRUE(same(poses[i], full_pose(static_cast<int>(i) + 1)));
   EXPECT_TRUE(file.append_pose(full_pose(static_cast<int>(poses.size()) + 1)));
 }
-
-/// While it lives, no file of this process may grow beyond `bytes`: a full disk as the kernel tells it.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 TEST(RunFile, FullDiskIsAnErrorAndLeavesNothingHalfWritten) {
   TempDir dir;

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "proto/error.h"
+#include "proto/time.h"
+
+/// The journal of raw bytes: what went over every wire, exactly as it did. Framing only; no file.
+///
+///     file    header record*
+///     header  "MGTDRAW1" u16 length, text (rig and run), u32 crc of all before
+///     record  u8 0xA5, u8 device, u8 direction, i64 mono_ns, i64 wall_ns, u32 length, bytes, u32 crc of all
+///     before
+///
+/// Little endian; crc is CRC-32 (IEEE 802.3). A file that ends within a record was torn by a crash:
+/// everything before is good. A record whose crc is wrong ends the decoding: what follows cannot be trusted
+/// to be framed.
+namespace mgtd {
+
+enum class RawDirection : std::uint8_t { received, sent, opened, closed };
+
+struct RawRecord {
+  std::uint8_t device{0};  ///< 0..3 sensors, 4 table, 5 scalar
+  RawDirection direction{RawDirection::received};
+  Stamp at;
+  std::string_view bytes;  ///< valid until the decoder is fed again
+};
+
+struct RawLogHeader {
+  std::string rig;
+  std::string run_id;  ///< empty outside runs
+};
+
+inline constexpr std::size_t kRawRecordMax = 1U << 20U;  ///< bytes of payload; longer is refused as damage
+
+[[nodiscard]] std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
+[[nodiscard]] std::string encode_header(const RawLogHeader& header);
+/// Appends to `out`. Bytes beyond kRawRecordMax go into further records of the same stamp.
+void encode_record(const RawRecord& record, std::string& out);
+
+/// Eats a log in pieces of any size.
+class RawLogDecoder {
+ public:
+  enum class State { header, records, damaged };
+
+  void feed(std::string_view bytes);
+  /// The next whole record; empty: more bytes are needed, or the log is damaged.
+  [[nodiscard]] std::optional<RawRecord> next();
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] const RawLogHeader& header() const { return header_; }
+  /// Offset in the log up to which everything is good.
+  [[nodiscard]] std::uint64_t good_bytes() const { return good_; }
+  /// To be asked at the end of the file: nothing to say, a torn tail, or damage, with the offset.
+  [[nodiscard]] Result<void> finish() const;
+
+ private:
+  [[nodiscard]] bool take_header();
+  void damage(std::string what);
+
+  State state_{State::header};
+  RawLogHeader header_;
+  std::string buffer_;
+  std::size_t at_{0};
+  std::uint64_t good_{0};
+  std::string damage_;
+};
+
+}  // namespace mgtd
