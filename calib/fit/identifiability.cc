@@ -46,13 +46,14 @@ Eigen::MatrixXd common_rotation(const JointProblem& problem, const Eigen::Vector
          Eigen::MatrixXd::Identity(problem.fixed(), 5);
 }
 
-std::string slot_name(const JointProblem& problem, int slot) {
+/// What a slot is called: sensor by sensor for a parameter's index alone, `all` for the four together.
+std::string slot_name(const JointProblem& problem, int slot, bool all) {
   static constexpr std::array<const char*, kSensorParameters> kWords{
       "angle theta (x-y)", "angle phi (x-z)", "angle psi (y-z)", "scale x",    "scale y",   "scale z",
       "offset x",          "offset y",        "offset z",        "tilt alpha", "tilt beta", "turn gamma"};
   if (slot < kSensorBlock) {
-    return fmt::format("s{} {}", slot / kSensorParameters + 1,
-                       kWords[static_cast<std::size_t>(slot % kSensorParameters)]);
+    const char* word = kWords[static_cast<std::size_t>(slot % kSensorParameters)];
+    return all ? fmt::format("{} of all sensors", word) : fmt::format("s{} {}", slot / kSensorParameters + 1, word);
   }
   if (slot < kFieldSlot) return "direction of the site's field";
   if (slot == kFieldSlot) return "strength of the field";
@@ -65,25 +66,41 @@ std::string slot_name(const JointProblem& problem, int slot) {
   return {};
 }
 
-/// The largest components of a direction, until they make up most of it.
+struct Part {
+  std::string name;
+  double share;
+};
+
+/// A direction by parameters: one that lies in a single sensor keeps its sensor, others are named for all four.
+std::vector<Part> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
+  std::vector<Part> out;
+  for (int p = 0; p < kSensorParameters; ++p) {
+    Eigen::Vector4d share;
+    for (int i = 0; i < kSensors; ++i) share[i] = v[kSensorParameters * i + p] * v[kSensorParameters * i + p];
+    Eigen::Index most = 0;
+    const bool one = share.maxCoeff(&most) > kNamedShare * share.sum();
+    out.push_back({slot_name(problem, kSensorParameters * static_cast<int>(most) + p, !one), share.sum()});
+  }
+  for (int slot = kSensorBlock; slot < v.size(); ++slot) out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
+  std::sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.share > b.share; });
+  return out;
+}
+
+/// The largest parts of a direction, until they make up most of it.
 std::string describe(const JointProblem& problem, const Eigen::VectorXd& v) {
-  std::vector<int> order(static_cast<std::size_t>(v.size()));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(v[a]) > std::abs(v[b]); });
+  constexpr std::size_t kMaxNames = 4;
   std::string text;
   double covered = 0;
-  constexpr std::size_t kMaxNames = 4;
+  const std::vector<Part> all = parts(problem, v);
   for (std::size_t j = 0; j < kMaxNames && covered < kNamedShare; ++j) {
-    text += (text.empty() ? "" : " with ") + slot_name(problem, order[j]);
-    covered += v[order[j]] * v[order[j]];
+    text += (text.empty() ? "" : " with ") + all[j].name;
+    covered += all[j].share;
   }
-  if (covered < kNamedShare) text += " and others";
-  return text;
+  return covered < kNamedShare ? text + " and others" : text;
 }
 
 /// Mean direction of the field in the platform frame and how far it spreads, in degrees.
 std::string coverage_text(const JointProblem& problem, const JointState& state) {
-  const PoseModel model(problem, state);
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   std::vector<Eigen::Vector3d> directions;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
@@ -95,7 +112,8 @@ std::string coverage_text(const JointProblem& problem, const JointState& state) 
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& b : directions) mean += b / static_cast<double>(directions.size());
   for (const Eigen::Vector3d& b : directions) scatter += (b - mean) * (b - mean).transpose();
-  const Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  if (axis.dot(mean) < 0) axis = -axis;
   double low = 180, high = 0;
   for (const Eigen::Vector3d& b : directions) {
     const double angle = to_deg(std::acos(std::clamp(b.dot(axis), -1.0, 1.0)));
@@ -103,11 +121,10 @@ std::string coverage_text(const JointProblem& problem, const JointState& state) 
     high = std::max(high, angle);
   }
   Eigen::Index nearest = 0;
-  axis.cwiseAbs().maxCoeff(&nearest);
-  return fmt::format(
-      "seen from the rig the field stays between {:.0f} and {:.0f} deg from the axis ({:.2f}, {:.2f}, "
-      "{:.2f}), nearest to platform {}",
-      low, high, axis[0], axis[1], axis[2], "XYZ"[nearest]);
+  const double along = axis.cwiseAbs().maxCoeff(&nearest);
+  const std::string name = fmt::format("{}{}", axis[nearest] < 0 ? '-' : '+', "XYZ"[nearest]);
+  return fmt::format("seen from the rig the field stays between {:.0f} and {:.0f} deg from platform {}{}", low, high, name,
+                     along > 0.95 ? "" : fmt::format(" (axis {:.2f}, {:.2f}, {:.2f})", axis[0], axis[1], axis[2]));
 }
 
 /// Greedy: each time the attitude that takes most variance out of the weak directions.
