@@ -53,7 +53,8 @@ std::string slot_name(const JointProblem& problem, int slot, bool all) {
       "offset x",          "offset y",        "offset z",        "tilt alpha", "tilt beta", "turn gamma"};
   if (slot < kSensorBlock) {
     const char* word = kWords[static_cast<std::size_t>(slot % kSensorParameters)];
-    return all ? fmt::format("{} of all sensors", word) : fmt::format("s{} {}", slot / kSensorParameters + 1, word);
+    return all ? fmt::format("{} of all sensors", word)
+               : fmt::format("s{} {}", slot / kSensorParameters + 1, word);
   }
   if (slot < kFieldSlot) return "direction of the site's field";
   if (slot == kFieldSlot) return "strength of the field";
@@ -71,7 +72,8 @@ struct Part {
   double share;
 };
 
-/// A direction by parameters: one that lies in a single sensor keeps its sensor, others are named for all four.
+/// A direction by parameters: one that lies in a single sensor keeps its sensor, others are named for all
+/// four.
 std::vector<Part> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
   std::vector<Part> out;
   for (int p = 0; p < kSensorParameters; ++p) {
@@ -81,7 +83,8 @@ std::vector<Part> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
     const bool one = share.maxCoeff(&most) > kNamedShare * share.sum();
     out.push_back({slot_name(problem, kSensorParameters * static_cast<int>(most) + p, !one), share.sum()});
   }
-  for (int slot = kSensorBlock; slot < v.size(); ++slot) out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
+  for (int slot = kSensorBlock; slot < v.size(); ++slot)
+    out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
   std::sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.share > b.share; });
   return out;
 }
@@ -123,8 +126,9 @@ std::string coverage_text(const JointProblem& problem, const JointState& state) 
   Eigen::Index nearest = 0;
   const double along = axis.cwiseAbs().maxCoeff(&nearest);
   const std::string name = fmt::format("{}{}", axis[nearest] < 0 ? '-' : '+', "XYZ"[nearest]);
-  return fmt::format("seen from the rig the field stays between {:.0f} and {:.0f} deg from platform {}{}", low, high, name,
-                     along > 0.95 ? "" : fmt::format(" (axis {:.2f}, {:.2f}, {:.2f})", axis[0], axis[1], axis[2]));
+  return fmt::format(
+      "seen from the rig the field stays between {:.0f} and {:.0f} deg from platform {}{}", low, high, name,
+      along > 0.95 ? "" : fmt::format(" (axis {:.2f}, {:.2f}, {:.2f})", axis[0], axis[1], axis[2]));
 }
 
 /// Greedy: each time the attitude that takes most variance out of the weak directions.

@@ -27,10 +27,13 @@ Vec<T> reading(const T* p, const Vec<T>& b, const Eigen::Matrix3d& mounting) {
     ceres::AngleAxisRotatePoint(w, v.data(), out.data());
     return out;
   };
-  const Vec<T> s = mounting.transpose().cast<T>() * axis_turn(p[alpha], 0, axis_turn(p[beta], 1, axis_turn(p[gamma], 2, b)));
+  const Vec<T> s = mounting.transpose().cast<T>() *
+                   axis_turn(p[alpha], 0, axis_turn(p[beta], 1, axis_turn(p[gamma], 2, b)));
   using std::cos, std::sin;
-  return {p[cx] * (cos(p[theta]) * cos(p[phi]) * s[0] + sin(p[theta]) * cos(p[phi]) * s[1] + sin(p[phi]) * s[2]) + p[ix],
-          p[cy] * (cos(p[psi]) * s[1] + sin(p[psi]) * s[2]) + p[iy], p[cz] * s[2] + p[iz]};
+  return {
+      p[cx] * (cos(p[theta]) * cos(p[phi]) * s[0] + sin(p[theta]) * cos(p[phi]) * s[1] + sin(p[phi]) * s[2]) +
+          p[ix],
+      p[cy] * (cos(p[psi]) * s[1] + sin(p[psi]) * s[2]) + p[iy], p[cz] * s[2] + p[iz]};
 }
 
 struct PoseCost {
@@ -39,9 +42,11 @@ struct PoseCost {
   std::array<Eigen::Vector3d, kSensors> r;
   /// Sensors s1..s4, site (inclination, declination), gradient, attitude error, field strength.
   template <class T>
-  bool operator()(const T* s1, const T* s2, const T* s3, const T* s4, const T* site, const T* g, const T* w, const T* f, T* e) const {
+  bool operator()(const T* s1, const T* s2, const T* s3, const T* s4, const T* site, const T* g, const T* w,
+                  const T* f, T* e) const {
     using std::cos, std::sin;
-    const Vec<T> B{f[0] * cos(site[0]) * cos(site[1]), f[0] * cos(site[0]) * sin(site[1]), f[0] * sin(site[0])};
+    const Vec<T> B{f[0] * cos(site[0]) * cos(site[1]), f[0] * cos(site[0]) * sin(site[1]),
+                   f[0] * sin(site[0])};
     Mat<T> G;
     G << g[0], g[2], g[3], g[2], g[1], g[4], g[3], g[4], -g[0] - g[1];
     // A passive turn by w: the quaternion of -w/2.
@@ -71,7 +76,8 @@ struct PoseCost {
 double ceres_cost(const JointFit& fit, bool with_gradient, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
   std::array<ParameterVector, kSensors> sensors;
-  std::array<double, 2> site{std::asin(fit.state.direction[2]), std::atan2(fit.state.direction[1], fit.state.direction[0])};
+  std::array<double, 2> site{std::asin(fit.state.direction[2]),
+                             std::atan2(fit.state.direction[1], fit.state.direction[0])};
   std::array<double, 5> g{};
   std::vector<Nuisance> nuisances = fit.state.nuisances;
   ceres::Problem problem;
@@ -79,14 +85,16 @@ double ceres_cost(const JointFit& fit, bool with_gradient, std::mt19937_64& rng)
   for (std::size_t i = 0; i < kSensors; ++i) {
     // Away from the optimum, so that Ceres has to find its own way.
     sensors[i] = fit.state.sensors[i].parameters();
-    for (int p = 0; p < kSensorParameters; ++p) sensors[i][p] += (p >= ix && p <= iz ? 20 : 1e-3) * normal(rng);
+    for (int p = 0; p < kSensorParameters; ++p)
+      sensors[i][p] += (p >= ix && p <= iz ? 20 : 1e-3) * normal(rng);
     cost.mounting[i] = fit.state.sensors[i].mounting;
   }
   for (std::size_t k = 0; k < nuisances.size(); ++k) {
     cost.pose = &fit.problem.poses[k];
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PoseCost, 16, 12, 12, 12, 12, 2, 5, 3, 1>(new PoseCost(cost)), nullptr,
-                             sensors[0].data(), sensors[1].data(), sensors[2].data(), sensors[3].data(), site.data(), g.data(),
-                             nuisances[k].data(), nuisances[k].data() + 3);
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PoseCost, 16, 12, 12, 12, 12, 2, 5, 3, 1>(new PoseCost(cost)),
+        nullptr, sensors[0].data(), sensors[1].data(), sensors[2].data(), sensors[3].data(), site.data(),
+        g.data(), nuisances[k].data(), nuisances[k].data() + 3);
   }
   if (!with_gradient) problem.SetParameterBlockConstant(g.data());
   ceres::Solver::Options options;
