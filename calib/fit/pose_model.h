@@ -4,7 +4,7 @@
 #include <array>
 
 #include "calib/fit/joint_problem.h"
-#include "calib/fit/level_terms.h"
+#include "calib/effects/level_terms.h"
 
 /// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform,
 /// sensor, axis.

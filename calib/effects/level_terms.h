@@ -8,11 +8,13 @@
 /// The terms of all effects of one level, summed, with their derivatives.
 namespace mgtd::calib {
 
+inline constexpr int kMaxTermInputs = 6, kMaxTermOutputs = 5;
+using TermValue = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxTermOutputs, 1>;
+
 struct TermSum {
-  static constexpr int kMaxInputs = 6, kMaxOutputs = 5;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxOutputs, 1> value;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs, kMaxInputs> d_input;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxOutputs>
+  TermValue value;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxTermOutputs, kMaxTermInputs> d_input;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxTermOutputs>
       d_coefficient;  ///< one column per coefficient of the model
 };
 
@@ -23,6 +25,9 @@ class LevelTerms {
   [[nodiscard]] bool empty() const { return entries_.empty(); }
   [[nodiscard]] TermSum sum(const Conditions& at, int sensor, std::span<const double> in,
                             const Eigen::VectorXd& coefficients) const;
+  /// The value alone, `outputs_of(level)` numbers.
+  [[nodiscard]] TermValue value(const Conditions& at, int sensor, std::span<const double> in,
+                                const Eigen::VectorXd& coefficients) const;
 
  private:
   struct Entry {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/fit/level_terms.h"
+#include "calib/effects/level_terms.h"
 
 #include <array>
 
@@ -36,7 +36,7 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
   total.d_coefficient.setZero(outputs, coefficients.size());
 
   const auto& one = unit();
-  std::array<Jet, TermSum::kMaxInputs> x;
+  std::array<Jet, kMaxTermInputs> x;
   for (std::size_t i = 0; i < in.size(); ++i) {
     x[i] = one[i];
     x[i].v = in[i];
@@ -44,7 +44,7 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
   for (const Entry& entry : entries_) {
     const std::span<const int> active = entry.effect->at(sensor);
     std::array<Jet, kJetSlots> c;
-    std::array<Jet, TermSum::kMaxOutputs> out;
+    std::array<Jet, kMaxTermOutputs> out;
     for (std::size_t j = 0; j < active.size(); ++j) {
       c[j] = one[in.size() + j];
       c[j].v = coefficients[entry.first + active[j]];
@@ -60,6 +60,22 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
         total.d_coefficient(o, entry.first + active[j]) += y.d[inputs + static_cast<int>(j)];
       }
     }
+  }
+  return total;
+}
+
+TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const double> in,
+                            const Eigen::VectorXd& coefficients) const {
+  const auto outputs = static_cast<std::size_t>(outputs_of(level_));
+  TermValue total = TermValue::Zero(outputs_of(level_));
+  for (const Entry& entry : entries_) {
+    const std::span<const int> active = entry.effect->at(sensor);
+    std::array<double, kJetSlots> c{};
+    std::array<double, kMaxTermOutputs> out{};
+    for (std::size_t j = 0; j < active.size(); ++j) c[j] = coefficients[entry.first + active[j]];
+    entry.effect->term(at, sensor, in, std::span<const double>(c.data(), active.size()),
+                       std::span<double>(out.data(), outputs));
+    for (std::size_t o = 0; o < outputs; ++o) total[static_cast<Eigen::Index>(o)] += out[o];
   }
   return total;
 }

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/array_model.h"
+
+#include <Eigen/LU>
+
+#include "calib/sensor_equations.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kMaxSteps = 60;
+constexpr double kExact_nT = 1e-9;
+
+/// x with x + term(x) = target.
+Eigen::Vector3d undo(const Eigen::Vector3d& target, const auto& term) {
+  Eigen::Vector3d x = target;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const Eigen::Vector3d next = target - term(x);
+    const double change = (next - x).norm();
+    x = next;
+    if (change < kExact_nT) break;
+  }
+  return x;
+}
+
+}  // namespace
+
+ArrayModel::ArrayModel(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
+                       const std::vector<EffectPtr>& effects, Eigen::VectorXd coefficients)
+    : positions_P_m_(geometry.positions_P_m()),
+      table_(effects, Level::table),
+      site_(effects, Level::site),
+      platform_(effects, Level::platform),
+      axis_(effects, Level::axis),
+      coefficients_(std::move(coefficients)) {
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    gain_[i] = sensors[i].R_PS() * sensors[i].response().inverse();
+    offset_nT_[i] = sensors[i].offset_nT;
+  }
+}
+
+FieldVector ArrayModel::correct(const Conditions& at, const FieldVector& y_nT,
+                                const std::optional<Eigen::Matrix3d>& R) const {
+  FieldVector out;
+  for (int i = 0; i < kSensors; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    Eigen::Vector3d v = y_nT.segment<3>(3 * i) - offset_nT_[s];
+    if (!axis_.empty()) {
+      v = undo(v, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+        return axis_.value(at, i, {x.data(), 3}, coefficients_);
+      });
+    }
+    Eigen::Vector3d b = gain_[s] * v;
+    if (!platform_.empty()) {
+      b = undo(b, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+        Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
+        in.head<3>() = x;
+        if (R) in.tail<3>() = R->col(2);
+        return platform_.value(at, i, {in.data(), 6}, coefficients_);
+      });
+    }
+    out.segment<3>(3 * i) = b;
+  }
+  return out;
+}
+
+FieldVector ArrayModel::site_field(const Conditions& at, const Eigen::Matrix3d& R) const {
+  FieldVector out = FieldVector::Zero();
+  for (int i = 0; i < kSensors && !site_.empty(); ++i) {
+    const Eigen::Vector3d x_S_m = R.transpose() * positions_P_m_[static_cast<std::size_t>(i)];
+    out.segment<3>(3 * i) = R * Eigen::Vector3d(site_.value(at, i, {x_S_m.data(), 3}, coefficients_));
+  }
+  return out;
+}
+
+Eigen::Matrix3d ArrayModel::attitude(const Conditions& at) const {
+  const TableAngles a = at.pose.angles().value_or(TableAngles{});
+  std::array<double, 5> s{a.azimuth_rad, a.pitch_rad, a.roll_rad, 0, 0};
+  if (!table_.empty()) {
+    const TermValue terms = table_.value(at, 0, s, coefficients_);
+    for (std::size_t j = 0; j < s.size(); ++j) s[j] += terms[static_cast<Eigen::Index>(j)];
+  }
+  return table_rotation(s[0], s[1], s[2], s[3], s[4]);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint_errors.h"
+
+#include <cmath>
+
+#include "calib/array_model.h"
+#include "calib/sensor_equations.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kFolds = 10;
+
+struct Sums {
+  Eigen::Vector4d field{Eigen::Vector4d::Zero()};
+  Eigen::Matrix<double, 6, 1> tensor{Eigen::Matrix<double, 6, 1>::Zero()};
+  double residual{0}, readings{0}, fields{0}, poses{0};
+
+  [[nodiscard]] JointErrors errors() const {
+    JointErrors out;
+    for (int i = 0; i < kSensors; ++i)
+      out.summary.total_field_rmse_nT[static_cast<std::size_t>(i)] = std::sqrt(field[i] / fields);
+    const Eigen::Matrix<double, 6, 1> g = (tensor / poses).cwiseSqrt();
+    out.summary.tensor_rmse_nT_per_m = {g[0], g[1], g[2], g[3], g[4], g[5]};
+    out.residual_rms_nT = readings > 0 ? std::sqrt(residual / readings) : 0;
+    return out;
+  }
+};
+
+void add(const JointProblem& problem, const JointState& state, Sums& sums) {
+  const ArrayModel array(state.sensors, problem.geometry, problem.effects, state.coefficients);
+  const PoseModel model(problem, state);
+  const auto rows = gradient_rows(problem.geometry);
+  PoseLinear linear;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    const JointPose& pose = problem.poses[k];
+    const Nuisance& x = state.nuisances[k];
+    const Conditions at{*pose.pose, pose.t_h, pose.previous};
+    std::optional<Eigen::Matrix3d> R;
+    if (pose.has_angles) R = turn_by<double>(x.head<3>()) * array.attitude(at);
+    FieldVector b = array.correct(at, pose.y_nT, R);
+    if (R) b -= array.site_field(at, *R);
+    if (pose.f_weight > 0) {
+      const double f = problem.common_field ? state.f_nT : pose.f_nT;
+      for (int i = 0; i < kSensors; ++i) sums.field[i] += std::pow(b.segment<3>(3 * i).norm() - f, 2);
+      ++sums.fields;
+    }
+    sums.tensor += (rows * b).cwiseAbs2();
+    ++sums.poses;
+    model.linearise(pose, x, linear);
+    for (int c = 0; c < kChannels; ++c) {
+      if (!(pose.weight[c] > 0)) continue;
+      sums.residual += std::pow(pose.y_nT[c] - linear.y_nT[c], 2);
+      ++sums.readings;
+    }
+  }
+}
+
+/// A problem and the nuisances of its poses: those from..to, or all the others.
+struct Part {
+  JointProblem problem;
+  std::vector<Nuisance> nuisances;
+};
+
+Part part(const JointFit& fit, std::size_t from, std::size_t to, bool inside) {
+  Part out{fit.problem, {}};
+  out.problem.poses.clear();
+  for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
+    if ((k >= from && k < to) != inside) continue;
+    out.problem.poses.push_back(fit.problem.poses[k]);
+    out.nuisances.push_back(fit.state.nuisances[k]);
+  }
+  return out;
+}
+
+}  // namespace
+
+JointErrors joint_errors(const JointProblem& problem, const JointState& state) {
+  Sums sums;
+  add(problem, state, sums);
+  return sums.errors();
+}
+
+std::optional<JointErrors> held_out_errors(const JointFit& fit) {
+  const std::size_t n = fit.problem.poses.size();
+  Sums sums;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    const std::size_t from = fold * n / kFolds, to = (fold + 1) * n / kFolds;
+    Part others = part(fit, from, to, false), own = part(fit, from, to, true);
+    JointState start = fit.state;
+    start.nuisances = std::move(others.nuisances);
+    auto fitted = solve(others.problem, std::move(start), kNearlyConverged / 1000);
+    if (!fitted) return std::nullopt;
+    fitted->state.nuisances = std::move(own.nuisances);
+    refit_nuisances(own.problem, fitted->state);
+    add(own.problem, fitted->state, sums);
+  }
+  return sums.errors();
+}
+
+}  // namespace mgtd::calib
