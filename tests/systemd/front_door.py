@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Installs into an empty directory and looks at what arrived, as the machine's own tools do.
+
+front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
+  tree        every file in its place, an edited configuration kept
+  verify      systemd-analyze finds nothing wrong with the unit
+  exposure    the unit is confined: systemd-analyze's score is at most LIMIT
+  manual      groff finds nothing wrong with the manual pages
+  keys        every key the configuration knows is in mgtd.toml and in its manual page
+  completion  bash completes subcommands and options of the programs
+Exit code 77: the tool needed for the check is not on this machine.
+"""
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+LIMIT = 15  # tenths, as systemd-analyze counts; its scale ends at 100
+SKIPPED = 77
+TREE = [
+    "usr/bin/mgtd",
+    "usr/bin/mgt",
+    "usr/bin/mgt-rig",
+    "usr/lib/systemd/system/mgtd.service",
+    "usr/lib/sysusers.d/mgtd.conf",
+    "usr/share/man/man1/mgt.1",
+    "usr/share/man/man1/mgt-rig.1",
+    "usr/share/man/man5/mgtd.toml.5",
+    "usr/share/man/man8/mgtd.8",
+    "usr/share/bash-completion/completions/mgt",
+    "usr/share/doc/mgtd/examples/70-mgtd.rules",
+    "usr/share/doc/mgtd/examples/mgtd.toml",
+    "etc/mgtd/mgtd.toml",
+]
+KEY_CALL = re.compile(
+    r"""\b(?:number|integer|boolean|text|numbers|required_number|required_text)\(\s*"([\w.]+)"
+      | \boptional_number\(\s*\w+,\s*"([\w.]+)" """,
+    re.X,
+)
+
+
+class Failure(Exception):
+    pass
+
+
+def run(*command):
+    return subprocess.run([str(c) for c in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def need(tool):
+    if shutil.which(tool) is None:
+        print(f"skipped: {tool} is not on this machine")
+        sys.exit(SKIPPED)
+    return tool
+
+
+def demand(result, what):
+    if result.returncode != 0:
+        raise Failure(f"{what} (exit code {result.returncode}):\n{result.stdout}")
+    return result.stdout
+
+
+def install(options, root):
+    done = subprocess.run(
+        ["cmake", "--install", options.build, "--prefix", "/usr"],
+        env={"PATH": "/usr/local/bin:/usr/bin:/bin", "DESTDIR": str(root)},
+        text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    demand(done, "cmake --install failed")
+
+
+def check_tree(options, root):
+    install(options, root)
+    missing = [path for path in TREE if not (root / path).is_file()]
+    if missing:
+        raise Failure("not installed: " + ", ".join(missing))
+    config = root / "etc/mgtd/mgtd.toml"
+    config.write_text("# edited by the operator\n")
+    install(options, root)
+    if config.read_text() != "# edited by the operator\n":
+        raise Failure("a second installation overwrote the operator's configuration")
+
+
+def unit_to_check(options, root):
+    """The unit as built, with the program where it is now: `verify` wants to see it."""
+    text = (options.build / "systemd/mgtd.service").read_text()
+    moved, count = re.subn(r"^ExecStart=\S+", f"ExecStart={options.programs / 'mgtd'}", text, flags=re.M)
+    if count != 1:
+        raise Failure("the unit has no single ExecStart")
+    unit = root / "mgtd.service"
+    unit.write_text(moved)
+    return unit
+
+
+def check_verify(options, root):
+    tool = need("systemd-analyze")
+    said = demand(run(tool, "verify", "--man=no", unit_to_check(options, root)), "systemd-analyze verify")
+    if "mgtd.service" in said:  # a key it does not know is only a remark to systemd-analyze
+        raise Failure(said)
+
+
+def check_exposure(options, root):
+    tool = need("systemd-analyze")
+    unit = unit_to_check(options, root)
+
+    def score():
+        return run(tool, "security", "--offline=true", f"--threshold={LIMIT}", unit)
+
+    print(demand(score(), "the unit is exposed too much").splitlines()[-1])
+    unit.write_text(re.sub(r"^(SystemCallFilter|Protect\w+)=.*\n", "", unit.read_text(), flags=re.M))
+    if score().returncode == 0:
+        raise Failure("the check cannot fail: an unconfined unit passed")
+
+
+def check_manual(options, root):
+    tool = need("groff")
+    complaints = ""
+    for page in sorted((options.source / "man").iterdir()):
+        said = run(tool, "-man", "-ww", "-Tutf8", "-z", page).stdout
+        complaints += f"{page.name}: {said}" if said else ""
+    if complaints:
+        raise Failure(complaints)
+    planted = root / "planted.1"
+    planted.write_text(".TH X 1\n.SH NAME\n.nosuchmacro\n")
+    if not run(tool, "-man", "-ww", "-Tutf8", "-z", planted).stdout:
+        raise Failure("the check cannot fail: an unknown macro passed")
+
+
+def check_keys(options, root):
+    del root
+    sources = [options.source / "daemon/config.cc", *sorted((options.source / "drivers").glob("*.cc"))]
+    keys = set()
+    for source in sources:
+        for match in KEY_CALL.finditer(source.read_text()):
+            keys.add(match.group(1) or match.group(2))
+    if not {"baseline_m", "field_nT", "profile"} <= keys:
+        raise Failure(f"the keys are no longer found in the sources: {sorted(keys)}")
+    lacking = []
+    for document in ("systemd/mgtd.toml", "man/mgtd.toml.5"):
+        text = (options.source / document).read_text().replace("\\-", "-")
+        lacking += [f"{document}: '{key}'" for key in sorted(keys) if not re.search(rf"\b{re.escape(key)}\b", text)]
+    if lacking:
+        raise Failure("not documented: " + ", ".join(lacking))
+
+
+def check_completion(options, root):
+    del root
+    script = options.source / "systemd/completion.bash"
+
+    def complete(*words):
+        line = " ".join(f"'{w}'" for w in words)
+        return demand(run("bash", "-c", f"PATH={options.programs}:$PATH; . {script}; COMP_WORDS=({line}); "
+                          f"COMP_CWORD={len(words) - 1}; _mgt; printf '%s\\n' \"${{COMPREPLY[@]}}\""),
+                      "completion").split()
+
+    for words, wanted in ((("mgt", "check-c"), "check-config"), (("mgt", "check-config", "--js"), "--json"),
+                          (("mgtd", "--ver"), "--version")):
+        if wanted not in complete(*words):
+            raise Failure(f"{' '.join(words)}: {wanted} not offered, but {complete(*words)}")
+
+
+CHECKS = {name[6:]: function for name, function in list(globals().items()) if name.startswith("check_")}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", type=pathlib.Path, required=True)
+    parser.add_argument("--source", type=pathlib.Path, required=True)
+    parser.add_argument("--programs", type=pathlib.Path, required=True)
+    parser.add_argument("check", choices=CHECKS)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="mgtd-front-door-") as root:
+        try:
+            CHECKS[options.check](options, pathlib.Path(root))
+        except Failure as failure:
+            print(failure)
+            return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
