@@ -99,6 +99,8 @@ std::vector<std::string> Settings::texts(std::string_view key) {
   const Entry* const entry = find(key);
   if (entry == nullptr) return {};
   if (const auto* list = std::get_if<std::vector<std::string>>(&entry->value)) return *list;
+  const auto* numbers = std::get_if<std::vector<double>>(&entry->value);
+  if (numbers != nullptr && numbers->empty()) return {};  // [] says nothing about its kind
   wrong_type(key, "a list of texts in quotes");
   return {};
 }

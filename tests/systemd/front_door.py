@@ -2,7 +2,7 @@
 """Installs into an empty directory and looks at what arrived, as the machine's own tools do.
 
 front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
-  tree        every file in its place, an edited configuration kept
+  tree        every file in its place, the configuration accepted by the programs, an edited one kept
   verify      systemd-analyze finds nothing wrong with the unit
   exposure    the unit is confined: systemd-analyze's score is at most LIMIT
   manual      groff finds nothing wrong with the manual pages
@@ -36,7 +36,7 @@ TREE = [
     "etc/mgtd/mgtd.toml",
 ]
 KEY_CALL = re.compile(
-    r"""\b(?:number|integer|boolean|text|numbers|required_number|required_text)\(\s*"([\w.]+)"
+    r"""\b(?:number|integer|boolean|text|numbers|texts|required_number|required_text)\(\s*"([\w.]+)"
       | \boptional_number\(\s*\w+,\s*"([\w.]+)" """,
     re.X,
 )
@@ -77,6 +77,7 @@ def check_tree(options, root):
     if missing:
         raise Failure("not installed: " + ", ".join(missing))
     config = root / "etc/mgtd/mgtd.toml"
+    demand(run(options.programs / "mgt", "check-config", config), "the installed configuration is refused")
     config.write_text("# edited by the operator\n")
     install(options, root)
     if config.read_text() != "# edited by the operator\n":

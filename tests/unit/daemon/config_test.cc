@@ -52,5 +52,34 @@ TEST(Config, AnUnknownDriverIsRefused) {
               Contains(HasSubstr("rig.toml:2: [table]: 'driver': no such driver here")));
 }
 
+TEST(Config, TheCommentedExampleIsAcceptedAndItsDefaultsAreTheDefaults) {
+  const auto config = load_config(MGTD_SOURCE_DIR "/systemd/mgtd.toml");
+  ASSERT_TRUE(config) << config.error().lines.front();
+  const Config untouched;
+  EXPECT_EQ(config->baseline_m, untouched.baseline_m);
+  EXPECT_EQ(config->rate_hz, untouched.rate_hz);
+  EXPECT_EQ(config->table_sd_deg, untouched.table_sd_deg);
+  EXPECT_EQ(config->field_nT, untouched.field_nT);
+  EXPECT_EQ(config->field_sd_nT, untouched.field_sd_nT);
+  EXPECT_EQ(config->run.step_deg, untouched.run.step_deg);
+  EXPECT_EQ(config->run.random, untouched.run.random);
+  EXPECT_EQ(config->run.revisits, untouched.run.revisits);
+  EXPECT_EQ(config->run.dwell_short_s, untouched.run.dwell_short_s);
+  EXPECT_EQ(config->run.dwell_long_s, untouched.run.dwell_long_s);
+  EXPECT_EQ(config->run.settle_min_s, untouched.run.settle_min_s);
+  EXPECT_EQ(config->run.settle_max_s, untouched.run.settle_max_s);
+  EXPECT_EQ(config->run.preflight_s, untouched.run.preflight_s);
+  EXPECT_EQ(config->run.retries, untouched.run.retries);
+  EXPECT_EQ(config->run.seed, untouched.run.seed);
+  EXPECT_EQ(config->store_dir, untouched.store_dir);
+  EXPECT_EQ(config->journal, untouched.journal);
+  EXPECT_EQ(config->stream_tcp, untouched.stream_tcp);
+  EXPECT_EQ(config->stream_unix, untouched.stream_unix);
+  EXPECT_EQ(config->control_unix, untouched.control_unix);
+  EXPECT_EQ(config->control_mode, untouched.control_mode);
+  EXPECT_EQ(config->log_level, untouched.log_level);
+  EXPECT_EQ(config->speed_up, untouched.speed_up);
+}
+
 }  // namespace
 }  // namespace mgtd::daemon
