@@ -29,7 +29,8 @@ struct FitOptions {
   std::optional<double> inclination_rad, declination_rad;
   double baseline_m{0.4};
   double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
-  std::uint64_t seed{1};             ///< of the bootstrap that gives the standard errors
+  int replicates{400};               ///< of the bootstrap that gives the standard errors
+  std::uint64_t seed{1};             ///< of the same
 };
 
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a
@@ -39,7 +40,7 @@ struct ErrorSummary {
   Gradient tensor_rmse_nT_per_m;
 };
 
-/// Step 2 from the odd and from the even poses of the standard set, in the order they were measured.
+/// Step 2 from the odd and from the even poses of the standard set, counted by azimuth.
 struct HalvesComparison {
   ErrorSummary odd, even;
   /// Largest difference between the halves of alpha, beta and gamma over the sensors, gamma less its common

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/error_summary.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "calib/tensor.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+}  // namespace
+
+FieldTable raw_fields(const Readings& readings) {
+  FieldTable b(3 * kSensors, readings.poses());
+  for (std::size_t i = 0; i < kCount; ++i)
+    b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = readings.y_nT[i];
+  return b;
+}
+
+FieldTable corrected_fields(const Readings& readings, const std::array<SensorModel, kSensors>& sensors) {
+  FieldTable b(3 * kSensors, readings.poses());
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
+    b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        gain * (readings.y_nT[i].colwise() - sensors[i].offset_nT);
+  }
+  return b;
+}
+
+ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, const Geometry& geometry) {
+  ErrorSummary out;
+  const auto n = static_cast<double>(b_nT.cols());
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto b = b_nT.middleRows<3>(3 * static_cast<Eigen::Index>(i));
+    out.total_field_rmse_nT[i] = std::sqrt((b.colwise().norm().transpose() - f_nT).squaredNorm() / n);
+  }
+  const Eigen::Matrix<double, 6, 1> rms =
+      ((gradient_rows(geometry) * b_nT).rowwise().squaredNorm() / n).cwiseSqrt();
+  out.tensor_rmse_nT_per_m = {rms[0], rms[1], rms[2], rms[3], rms[4], rms[5]};
+  return out;
+}
+
+double field_chi2(const FieldTable& b_nT, const Readings& readings,
+                  const std::array<SensorModel, kSensors>& sensors, const AxisNoise& pose_noise_nT) {
+  double chi2 = 0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
+    const Eigen::Vector3d variance = pose_noise_nT.row(at).array().square();
+    for (Eigen::Index k = 0; k < b_nT.cols(); ++k) {
+      const Eigen::Vector3d b = b_nT.col(k).segment<3>(3 * at);
+      const Eigen::Vector3d along = gain.transpose() * b.normalized();
+      const double residual = b.norm() - readings.f_nT[k];
+      chi2 +=
+          residual * residual / (along.cwiseAbs2().dot(variance) + readings.f_sd_nT[k] * readings.f_sd_nT[k]);
+    }
+  }
+  return chi2;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/fit.h"
+#include "calib/fit/readings.h"
+
+/// How far corrected readings are from what they should be: |b| from F at each sensor, and the tensor of a
+/// uniform field from zero.
+namespace mgtd::calib {
+
+/// Corrected fields, one column per pose; platform frame for the tensor to mean anything.
+using FieldTable = Eigen::Matrix<double, 3 * kSensors, Eigen::Dynamic>;
+
+[[nodiscard]] FieldTable raw_fields(const Readings& readings);
+[[nodiscard]] FieldTable corrected_fields(const Readings& readings,
+                                          const std::array<SensorModel, kSensors>& sensors);
+
+[[nodiscard]] ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT,
+                                     const Geometry& geometry);
+
+/// (|b| - F)/sd squared, summed over sensors and poses. sd: the pose-mean noise along the field, and that of
+/// F.
+[[nodiscard]] double field_chi2(const FieldTable& b_nT, const Readings& readings,
+                                const std::array<SensorModel, kSensors>& sensors,
+                                const AxisNoise& pose_noise_nT);
+
+}  // namespace mgtd::calib

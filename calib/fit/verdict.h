@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/two_step.h"
+
+/// Is this calibration fit for use? The conjunction of named checks, each with what was measured, the limit
+/// and what to do. They ask whether the estimate is sound; whether the model explains the data down to the
+/// noise is said beside them (FitReport::reasons).
+namespace mgtd::calib {
+
+[[nodiscard]] std::vector<Check> verdict(const FitReport& report, const TwoStep& fitted,
+                                         const FitOptions& options);
+
+/// Sentences about what was recognised: turned and mirrored sensors, gauge, residual against the noise.
+[[nodiscard]] std::vector<std::string> remarks(const FitReport& report);
+
+/// In words, with its uncertainty.
+[[nodiscard]] std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad);
+
+}  // namespace mgtd::calib
