@@ -47,7 +47,7 @@ Readings half_of(const Readings& readings, std::size_t parity) {
 }
 
 /// Step 1 is common to both halves, as in the paper's Table 5; only step 2 sees half of the standard set.
-Result<std::array<SensorModel, kSensors>> from_half(const Readings& readings, int parity,
+Result<std::array<SensorModel, kSensors>> from_half(const Readings& readings, std::size_t parity,
                                                     const TwoStep& whole) {
   const Readings half = half_of(readings, parity);
   std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
@@ -79,7 +79,7 @@ std::optional<HalvesComparison> compare_halves(const Readings& readings, const T
   const auto odd = from_half(readings, 1, whole), even = from_half(readings, 0, whole);
   if (!odd || !even) return std::nullopt;
   return HalvesComparison{summarise(corrected_fields(readings, *odd), readings.f_nT, geometry),
-                          summarise(corrected_fields(readings, *even), readings.f_nT, geometry),
+                          summarise(corrected_fields(readings, *even), readings.f_nT, geometry), *odd, *even,
                           largest_angle_difference(*odd, *even)};
 }
 
@@ -203,6 +203,9 @@ Result<FitReport> fit(const PoseTable& table, const FitOptions& options) {
     if (const auto simple = two_step(*readings, baseline)) {
       report.simplified = summarise(corrected_fields(*readings, simple->sensors), readings->f_nT, c.geometry);
     }
+  }
+  if (const auto unseen = readings_of(table, options, PoseUse::check)) {
+    report.check_poses = summarise(corrected_fields(*unseen, c.sensors), unseen->f_nT, c.geometry);
   }
   report.held_out = hold_out(*readings, options, c.geometry);
   report.halves = compare_halves(*readings, *fitted, c.geometry);

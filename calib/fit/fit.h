@@ -43,6 +43,7 @@ struct ErrorSummary {
 /// Step 2 from the odd and from the even poses of the standard set, counted by azimuth.
 struct HalvesComparison {
   ErrorSummary odd, even;
+  std::array<SensorModel, kSensors> odd_sensors, even_sensors;
   /// Largest difference between the halves of alpha, beta and gamma over the sensors, gamma less its common
   /// part.
   double angle_difference_rad{0};
@@ -67,6 +68,7 @@ struct FitReport {
   std::optional<ErrorSummary> simplified;  ///< the baseline method beside a two-step fit
   std::optional<ErrorSummary>
       held_out;  ///< folds contiguous in time; empty when a fold cannot be fitted without its poses
+  std::optional<ErrorSummary> check_poses;  ///< poses of the set "check", which no fit has seen
   std::optional<HalvesComparison> halves;
 };
 

@@ -47,10 +47,14 @@ Readings Readings::subset(const std::vector<Eigen::Index>& which) const {
   return out;
 }
 
-Result<Readings> readings_of(const PoseTable& table, const FitOptions& options) {
+Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, PoseUse use) {
   std::vector<const Pose*> used;
   for (const Pose& pose : table.poses) {
-    if (pose.set != "check") used.push_back(&pose);
+    if ((pose.set == "check") == (use == PoseUse::check)) used.push_back(&pose);
+  }
+  if (used.empty()) {
+    return fail(ErrorCode::refused, "no pose to use",
+                "poses of the set 'check' are never fitted: add others");
   }
   Readings out;
   const auto n = static_cast<Eigen::Index>(used.size());

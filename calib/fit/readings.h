@@ -24,8 +24,12 @@ struct Readings {
   [[nodiscard]] Readings subset(const std::vector<Eigen::Index>& which) const;
 };
 
-/// Every pose but those of the set "check". Refuses when a pose has no field and none is given.
-[[nodiscard]] Result<Readings> readings_of(const PoseTable& table, const FitOptions& options);
+/// Every pose but those of the set "check", or those alone.
+enum class PoseUse { fit, check };
+
+/// Refuses when there is no such pose, and when a pose has no field and none is given.
+[[nodiscard]] Result<Readings> readings_of(const PoseTable& table, const FitOptions& options,
+                                           PoseUse use = PoseUse::fit);
 
 /// Noise of one sample per axis, pooled over the poses (root mean square of their spreads); zero where no
 /// pose tells.

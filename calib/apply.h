@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/calibration.h"
+#include "calib/tensor.h"
+#include "proto/pose.h"
+
+/// A calibration applied to a pose table, row by row: calibrated field of every sensor, field and tensor at
+/// the centre, closure. Instrument errors are removed; what the site does is real field and stays in.
+namespace mgtd::calib {
+
+struct AppliedPose {
+  int number{0};
+  std::optional<double> t_s;
+  FieldVector b_P_nT;   ///< of the four sensors
+  TensorSample sample;  ///< at the centre; the noise is that of the pose's n_eff (else n, else one) samples
+};
+
+[[nodiscard]] std::vector<AppliedPose> apply(const Calibration& calibration, const PoseTable& table);
+
+/// CSV, platform frame: pose, t_s (when any pose has it), s1_bx_nT .. s4_bz_nT, Bx_nT, By_nT, Bz_nT, F_nT,
+/// Gxx_nT_per_m, Gyy.., Gzz.., Gxy.., Gxz.., Gyz.., curl_nT_per_m, center_x_nT, center_y_nT, center_z_nT, and
+/// where the noise is known Gxx_sd_nT_per_m .. Gyz_sd_nT_per_m and closure_chi2. Six decimals.
+[[nodiscard]] std::string format_applied(const std::vector<AppliedPose>& rows);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/fit_report_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/fit/fit_report_json.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+std::string error_row(std::string_view stage, const ErrorSummary& errors) {
+  std::string row = fmt::format("{:<12}", stage);
+  for (const double rmse : errors.total_field_rmse_nT) row += fmt::format("{:>9.3f}", rmse);
+  row += "  ";
+  const Gradient& g = errors.tensor_rmse_nT_per_m;
+  for (const double rmse : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += fmt::format("{:>10.3f}", rmse);
+  return row + "\n";
+}
+
+/// As many decimals as show two digits of the standard deviation.
+std::string with_sd(double value, double sd) {
+  if (!(sd > 0)) return fmt::format("{:.6g}", value);
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sd))), 0, 9);
+  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, sd, decimals);
+}
+
+std::string parameter_table(const Calibration& c) {
+  std::string out = fmt::format("{:<12}", "parameter");
+  for (std::size_t i = 0; i < kCount; ++i) out += fmt::format("{:>24}", fmt::format("s{}", i + 1));
+  out += "\n";
+  for (int k = 0; k < kSensorParameters; ++k) {
+    const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(k)];
+    out += fmt::format("{:<12}", fmt::format("{} {}", shown.name, shown.unit));
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto at = static_cast<Eigen::Index>(i) * kSensorParameters + k;
+      const double sd = std::sqrt(std::max(0.0, c.covariance(at, at)));
+      out += fmt::format("{:>24}", with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor));
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+std::string halves_table(const HalvesComparison& halves) {
+  std::string out = "step 2 from each half of the standard set (odd less even, deg)\n";
+  const auto row = [&](std::string_view name, double SensorModel::*angle) {
+    out += fmt::format("{:<12}", name);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      out += fmt::format("{:>24.5f}", to_deg(halves.odd_sensors[i].*angle - halves.even_sensors[i].*angle));
+    }
+    out += "\n";
+  };
+  row("alpha", &SensorModel::alpha_rad);
+  row("beta", &SensorModel::beta_rad);
+  row("gamma", &SensorModel::gamma_rad);
+  return out;
+}
+
+std::string check_list(const std::vector<Check>& checks) {
+  std::string out = "checks\n";
+  for (const Check& check : checks) {
+    out += fmt::format("  {:<5} {:<20} {} (limit {})\n", check.passed ? "ok" : "FAIL", check.name,
+                       check.measured, check.limit);
+    if (!check.passed && !check.remedy.empty()) out += fmt::format("        -> {}\n", check.remedy);
+  }
+  return out;
+}
+
+std::string heading(const FitReport& report) {
+  const Calibration& c = report.calibration;
+  std::string out = fmt::format("{} calibration {} of {} poses: {}\n", c.method, c.id, c.poses,
+                                c.accepted_by_checks ? "accepted by its checks" : "NOT ACCEPTED");
+  out += fmt::format("gauge: {}\n", c.gauge);
+  out += fmt::format("site:  F {:.2f} nT, inclination {} deg, declination {} deg\n", report.site.f_nT,
+                     with_sd(to_deg(report.site.inclination_rad), to_deg(report.site.inclination_sd_rad)),
+                     with_sd(to_deg(report.site.declination_rad), to_deg(report.site.declination_sd_rad)));
+  if (report.dof > 0) {
+    out += fmt::format("noise: {:.3f} nT of a pose mean; chi-square {:.1f} for {:.0f} degrees of freedom\n",
+                       report.noise_nT, report.chi2, report.dof);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string error_table(const FitReport& report) {
+  std::string out = fmt::format("{:<12}{:^36}  {:^60}\n", "rms error", "total field, nT", "tensor, nT/m");
+  out += fmt::format("{:<12}{:>9}{:>9}{:>9}{:>9}  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "s1", "s2",
+                     "s3", "s4", "xx", "yy", "zz", "xy", "xz", "yz");
+  out += error_row("before", report.before);
+  if (report.simplified) out += error_row("simplified", *report.simplified);
+  out += error_row("step 1", report.after_step1);
+  out += error_row(report.calibration.method, report.after);
+  if (report.halves) {
+    out += error_row("  odd half", report.halves->odd);
+    out += error_row("  even half", report.halves->even);
+  }
+  if (report.held_out) out += error_row("held out", *report.held_out);
+  if (report.check_poses) out += error_row("check poses", *report.check_poses);
+  return out;
+}
+
+std::string to_text(const FitReport& report) {
+  std::string out = heading(report) + "\n" + error_table(report) + "\n" + parameter_table(report.calibration);
+  if (report.halves) out += "\n" + halves_table(*report.halves);
+  if (!report.calibration.verdict.empty()) out += "\n" + check_list(report.calibration.verdict);
+  for (const std::string& reason : report.reasons) out += fmt::format("note: {}\n", reason);
+  return out;
+}
+
+}  // namespace mgtd::calib

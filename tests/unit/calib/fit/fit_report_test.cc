@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "calib/fit/fit_report_json.h"
+#include "calib/fit/fit_report_text.h"
+#include "tests/support/paper_rigs.h"
+
+namespace mgtd::calib {
+namespace {
+
+using ::testing::HasSubstr;
+
+const FitReport& report() {
+  static const FitReport kReport = [] {
+    PoseTable table =
+        testing::measure(testing::table6_rig(), {53'907.7, 60, -5}, testing::standard_run(121, 5), 36,
+                         {testing::Noise::Kind::gaussian, 0.3, 0.1}, 17);
+    for (std::size_t k = 150; k < table.poses.size(); ++k) table.poses[k].set = "check";
+    return *fit(table, {});
+  }();
+  return kReport;
+}
+
+TEST(FitReportJson, HoldsTheDocumentedKeys) {
+  const nlohmann::json out = to_json(report());
+  for (const char* key : {"schema", "method", "poses", "accepted", "reasons", "gauge", "chi2", "dof",
+                          "noise_nT", "sensors", "effects", "before", "after", "held_out", "id"}) {
+    EXPECT_TRUE(out.contains(key)) << key;
+  }
+  EXPECT_EQ(out["schema"], "mgt.fit/1");
+  EXPECT_EQ(out["method"], "two-step");
+  EXPECT_EQ(out["poses"], 150);
+  ASSERT_EQ(out["sensors"].size(), 4U);
+  for (const char* key : {"theta_deg", "phi_deg", "psi_deg", "cx", "cy", "cz", "ix_nT", "iy_nT", "iz_nT",
+                          "alpha_deg", "beta_deg", "gamma_deg"}) {
+    EXPECT_TRUE(out["sensors"][3][key]["value"].is_number()) << key;
+    EXPECT_GT(out["sensors"][3][key]["sd"].get<double>(), 0) << key;
+  }
+  EXPECT_EQ(out["before"]["total_field_rmse_nT"].size(), 4U);
+  EXPECT_TRUE(out["held_out"]["tensor_rmse_nT_per_m"]["yz"].is_number());
+}
+
+TEST(FitReportJson, AnglesAreDegrees) {
+  const nlohmann::json out = to_json(report());
+  EXPECT_NEAR(out["sensors"][0]["gamma_deg"]["value"].get<double>(), -2.177,
+              0.2);  // Table 6, a 0.1 deg table
+  EXPECT_NEAR(out["site"]["inclination_deg"]["value"].get<double>(), 60, 0.2);
+}
+
+TEST(FitReportJson, BothHalvesOfTheStandardSetAreThere) {
+  const nlohmann::json halves = to_json(report())["halves"];
+  EXPECT_TRUE(halves["two_step_odd"]["tensor_rmse_nT_per_m"]["xy"].is_number());
+  EXPECT_NEAR(halves["two_step_odd"]["sensors"][2]["beta_deg"].get<double>() -
+                  halves["two_step_even"]["sensors"][2]["beta_deg"].get<double>(),
+              halves["odd_less_even"][2]["beta_deg"].get<double>(), 1e-12);
+}
+
+TEST(FitReportJson, PosesOfTheCheckSetArePredictedAndNotFitted) {
+  const nlohmann::json out = to_json(report());
+  // No fit has seen them: noise of 0.3 nT, and a little more from the parameters.
+  EXPECT_NEAR(out["check_poses"]["total_field_rmse_nT"][0].get<double>(), 0.3, 0.3);
+}
+
+TEST(FitReportText, TellsVerdictStagesAndParameters) {
+  const std::string text = to_text(report());
+  for (const char* part :
+       {"two-step calibration c", "of 150 poses: accepted by its checks", "gauge: ", "before ", "simplified ",
+        "step 1 ", "odd half", "held out", "theta deg", " ± ", "scale factors", "  ok "}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+TEST(FitReportText, AFailedCheckShowsItsRemedy) {
+  FitReport bad = report();
+  bad.calibration.accepted_by_checks = false;
+  bad.calibration.verdict.push_back({"residual", false, "90 nT", "54 nT", "look for iron near the rig"});
+  const std::string text = to_text(bad);
+  EXPECT_THAT(text, HasSubstr("NOT ACCEPTED"));
+  EXPECT_THAT(text, HasSubstr("FAIL  residual"));
+  EXPECT_THAT(text, HasSubstr("-> look for iron near the rig"));
+}
+
+}  // namespace
+}  // namespace mgtd::calib
