@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run_plan_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "proto/units.h"
+
+namespace mgtd::daemon {
+namespace {
+
+using nlohmann::json;
+constexpr const char* kSchema = "mgtd.plan/1";
+
+/// Planned angles are multiples of 0.01 deg; the conversion's last bits are not for readers.
+double rounded_deg(double a_rad) { return std::round(to_deg(a_rad) * 1e6) / 1e6; }
+
+json to_json(const PlannedPose& p) {
+  return {{"number", p.number},
+          {"set", p.set},
+          {"azimuth_deg", rounded_deg(p.target.azimuth_rad)},
+          {"pitch_deg", rounded_deg(p.target.pitch_rad)},
+          {"roll_deg", rounded_deg(p.target.roll_rad)},
+          {"dwell_s", p.dwell_s},
+          {"sense", p.sense},
+          {"revisit_of", p.revisit_of ? json(*p.revisit_of) : json(nullptr)}};
+}
+
+PlannedPose pose_from(const json& j) {
+  PlannedPose p;
+  p.number = j.at("number").get<int>();
+  p.set = j.at("set").get<std::string>();
+  p.target = {to_rad(j.at("azimuth_deg").get<double>()), to_rad(j.at("pitch_deg").get<double>()),
+              to_rad(j.at("roll_deg").get<double>())};
+  p.dwell_s = j.at("dwell_s").get<double>();
+  p.sense = j.at("sense").get<int>();
+  if (!j.at("revisit_of").is_null()) p.revisit_of = j.at("revisit_of").get<int>();
+  return p;
+}
+
+PlanOptions options_from(const json& j) {
+  PlanOptions o;
+  o.step_deg = j.at("step_deg").get<double>();
+  o.random = j.at("random").get<int>();
+  o.revisits = j.at("revisits").get<int>();
+  o.dwell_short_s = j.at("dwell_short_s").get<double>();
+  o.dwell_long_s = j.at("dwell_long_s").get<double>();
+  o.seed = j.at("seed").get<std::uint64_t>();
+  return o;
+}
+
+/// Throws json::exception like the rest of the reading; plan_from_json turns it into an Error.
+RunPlan plan_from(const json& j) {
+  RunPlan plan;
+  plan.options = options_from(j.at("options"));
+  plan.notes = j.at("notes").get<std::vector<std::string>>();
+  for (const json& pose : j.at("poses")) plan.poses.push_back(pose_from(pose));
+  return plan;
+}
+
+}  // namespace
+
+json to_json(const RunPlan& plan) {
+  const PlanOptions& o = plan.options;
+  json poses = json::array();
+  for (const PlannedPose& pose : plan.poses) poses.push_back(to_json(pose));
+  return {{"schema", kSchema},
+          {"options",
+           {{"step_deg", o.step_deg},
+            {"random", o.random},
+            {"revisits", o.revisits},
+            {"dwell_short_s", o.dwell_short_s},
+            {"dwell_long_s", o.dwell_long_s},
+            {"seed", o.seed}}},
+          {"notes", plan.notes},
+          {"poses", std::move(poses)}};
+}
+
+Result<RunPlan> plan_from_json(std::string_view text) {
+  const auto refuse = [](std::string_view why) {
+    return fail(ErrorCode::bad_input, fmt::format("the run's plan cannot be read: {}", why),
+                "the run file is damaged or of another version: its poses can still be fitted");
+  };
+  try {
+    const json j = json::parse(text);
+    if (j.value("schema", "") != kSchema) return refuse(fmt::format("its schema is not {}", kSchema));
+    return plan_from(j);
+  } catch (const json::exception& e) {
+    return refuse(e.what());
+  }
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "daemon/run_plan.h"
+
+/// The plan as text: kept in the run file, shown by a dry run.
+///
+///   { "schema":"mgtd.plan/1", "options":{...}, "notes":[...], "poses":[ { "number":1, "set":"standard",
+///     "azimuth_deg":..., "pitch_deg":..., "roll_deg":..., "dwell_s":..., "sense":1, "revisit_of":null }, ...
+///     ] }
+namespace mgtd::daemon {
+
+[[nodiscard]] nlohmann::json to_json(const RunPlan& plan);
+
+/// Gives back exactly the plan that was written; anything else is refused with the place of the mistake.
+[[nodiscard]] Result<RunPlan> plan_from_json(std::string_view text);
+
+}  // namespace mgtd::daemon
