@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/device.h"
+#include "proto/epoch.h"
+#include "proto/health.h"
+#include "proto/reading.h"
+#include "proto/run_status.h"
+#include "proto/time.h"
+#include "proto/units.h"
+
+/// Before a run: a short look at everything it needs. Each check says what was measured, the limit, and what
+/// to do when it fails.
+///
+/// Noise of one sample, per axis, from first differences: sd = sqrt(mean (y[k+1] - y[k])^2 / 2), which no
+/// drift and no slow disturbance enters; the total scatter against it shows those. Not judged here: whether
+/// the sensors are the right way round (the fit sees that).
+namespace mgtd::daemon {
+
+struct PreflightConfig {
+  double length_s{5};
+  double wait_s{20};  ///< for the first epoch
+  double rate_hz{50};
+  double max_rate_error{0.02};  ///< relative
+  double max_gap_share{0.05};
+  double max_noise_nT{30};   ///< of one sample
+  double max_unrest{6};      ///< total scatter against noise ...
+  double unrest_free_nT{5};  ///< ... not counted below this
+  bool frozen_check{true};   ///< off for instruments whose resolution is coarser than their noise
+  double max_skew_s{0.02};
+  double max_field_error{0.25};    ///< |y| of a sensor not calibrated yet against the field, relative
+  std::optional<double> field_nT;  ///< of the site, used when there is no scalar reference
+  bool scalar{false};              ///< a scalar reference is configured
+  double max_scalar_sd_nT{10};
+};
+
+class Preflight {
+ public:
+  explicit Preflight(PreflightConfig config, Instant begin) : config_(config), begin_(begin) {}
+
+  void add(const EpochOrGap& item);
+  void add(const ScalarReading& reading);
+  void add(const TableReading& reading) { table_ = reading; }
+  void add(const std::string& device, const LinkHealth& health) { links_[device] = health; }
+
+  /// length_s after the first epoch (gaps count), or wait_s without any.
+  [[nodiscard]] bool complete(Instant now) const;
+  [[nodiscard]] std::vector<Check> checks(const drivers::TableLimits& limits, Instant now) const;
+  /// Of one sample, the largest axis; 0 when there were too few epochs.
+  [[nodiscard]] double noise_nT() const;
+
+ private:
+  using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
+  struct Statistics {
+    Sample mean_nT{Sample::Zero()}, noise_nT{Sample::Zero()}, scatter_nT{Sample::Zero()};
+    Sample changes{Sample::Zero()};  ///< successive values that differ
+    std::size_t pairs{0};
+  };
+  [[nodiscard]] Statistics statistics() const;
+  [[nodiscard]] std::optional<double> expected_field_nT() const;
+  [[nodiscard]] std::vector<double> good_field_nT() const;
+  [[nodiscard]] Check rate() const;
+  [[nodiscard]] Check gaps() const;
+  [[nodiscard]] Check saturation() const;
+  [[nodiscard]] Check skew() const;
+  [[nodiscard]] Check noise(int slot, const Statistics& s) const;
+  [[nodiscard]] Check rest(int slot, const Statistics& s) const;
+  [[nodiscard]] Check alive(int slot, const Statistics& s) const;
+  [[nodiscard]] Check field(int slot, const Statistics& s) const;
+  [[nodiscard]] Check scalar() const;
+  [[nodiscard]] Check table(const drivers::TableLimits& limits, Instant now) const;
+
+  PreflightConfig config_;
+  Instant begin_;
+  std::optional<Instant> first_;
+  std::vector<Sample> y_nT_;
+  std::vector<std::uint64_t> seq_;
+  std::uint64_t missing_{0};
+  std::string why_missing_;
+  std::size_t saturated_{0};
+  double skew_s_{0};
+  std::optional<Instant> last_;
+  std::vector<ScalarReading> scalar_;
+  std::optional<TableReading> table_;
+  std::map<std::string, LinkHealth> links_;
+};
+
+[[nodiscard]] bool all_passed(const std::vector<Check>& checks);
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "proto/pose.h"
+#include "proto/reading.h"
+#include "proto/run_status.h"
+
+/// All that a run can ask for, to be carried out in the order given.
+namespace mgtd::daemon {
+
+struct HomeTable {};
+struct MoveTable {
+  TableAngles target;
+};
+struct StopTable {};  ///< also of a table at rest; never refused
+
+/// Answered by PoseStored once it is on disk. The table does not move before.
+struct StorePose {
+  Pose pose;
+};
+/// What the table did since the last one. Not answered: a run does not depend on it.
+struct StorePath {
+  std::vector<TableReading> readings;
+};
+struct StoreChecks {
+  std::string stage;  ///< "preflight" or "verdict"
+  std::vector<Check> checks;
+};
+
+/// Fit all poses of the run. Answered by SolveDone.
+struct StartSolve {};
+struct CancelSolve {};  ///< a SolveDone that still comes is ignored
+/// Answered by CalibrationProposed. The active calibration is never touched by a run.
+struct ProposeCalibration {
+  std::string calibration_id;
+};
+
+/// At every change and once a second.
+struct PublishStatus {
+  RunStatus status;
+};
+/// A line for the run's own log and the daemon's.
+struct Record {
+  std::string what;
+};
+/// The last action of a run: done, rejected, aborted or failed.
+struct Finish {
+  RunState state{RunState::failed};
+  std::string message;
+};
+
+using Action = std::variant<HomeTable, MoveTable, StopTable, StorePose, StorePath, StoreChecks, StartSolve,
+                            CancelSolve, ProposeCalibration, PublishStatus, Record, Finish>;
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "daemon/dwell.h"
+#include "daemon/preflight.h"
+#include "daemon/run_duration.h"
+#include "daemon/settle.h"
+#include "drivers/device.h"
+#include "proto/units.h"
+
+/// What a run goes by, beside its plan.
+namespace mgtd::daemon {
+
+struct RunConfig {
+  std::string run_id;
+  drivers::TableLimits limits;
+  PreflightConfig preflight;
+  SettleConfig settle;  ///< noise_nT is replaced by what the preflight finds
+  DwellConfig dwell;    ///< length_s is that of each planned pose
+  Pace pace;
+
+  int retries{3};                  ///< of one pose, before the run pauses and asks
+  double approach_rad{to_rad(5)};  ///< overshoot that gives the azimuth its planned sense; 0: none
+  double reach_rad{to_rad(1)};     ///< a table at rest further from its target has not reached it
+
+  double home_max_s{180};
+  double lost_max_s{120};  ///< wait for a device to come back
+  double stop_max_s{10};   ///< from abort to a table seen at rest
+  double store_max_s{30};
+  double solve_max_s{900};
+};
+
+}  // namespace mgtd::daemon

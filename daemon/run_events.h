@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "proto/epoch.h"
+#include "proto/error.h"
+#include "proto/health.h"
+#include "proto/reading.h"
+#include "proto/run_status.h"
+
+/// All that can happen to a run. Devices are named as in the configuration: "s1" .. "s4", "table", "scalar".
+namespace mgtd::daemon {
+
+enum class Request { pause, resume, abort, retry };  ///< of the operator
+[[nodiscard]] constexpr std::string_view name(Request request) {
+  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "retry"};
+  return kNames[static_cast<std::size_t>(request)];
+}
+
+struct Tick {};  ///< time passes; every 20-50 ms
+
+/// The link was live and is no more. To be told before the faults the device reports on losing its port.
+struct DeviceLost {
+  std::string device;
+  std::string why;
+};
+struct DeviceBack {
+  std::string device;
+};
+struct DeviceFaulted {
+  std::string device;
+  DeviceFault fault;
+};
+/// Now and then, at least once before the preflight ends.
+struct LinkSeen {
+  std::string device;
+  LinkHealth health;
+};
+
+/// The answer to StorePose.
+struct PoseStored {
+  int number{0};
+  Result<void> result;
+};
+
+/// The answer to StartSolve: a calibration, whether it passed its checks, and which.
+struct Solution {
+  bool accepted{false};
+  std::string calibration_id;
+  std::vector<std::string> reasons;  ///< why it was not accepted
+  std::vector<Check> checks;
+};
+struct SolveDone {
+  Result<Solution> result;
+};
+/// The answer to ProposeCalibration.
+struct CalibrationProposed {
+  Result<void> result;
+};
+
+using Event = std::variant<Tick, Request, Epoch, Gap, ScalarReading, TableReading, LinkSeen, DeviceLost,
+                           DeviceBack, DeviceFaulted, PoseStored, SolveDone, CalibrationProposed>;
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "daemon/dwell.h"
+#include "daemon/preflight.h"
+#include "daemon/run_actions.h"
+#include "daemon/run_config.h"
+#include "daemon/run_events.h"
+#include "daemon/run_plan.h"
+#include "daemon/run_progress.h"
+#include "daemon/settle.h"
+
+/// A calibration run as a state machine: events and the time in, actions out. It reads no clock and touches
+/// nothing; the caller carries out the actions in their order and brings the answers back as events.
+///
+///     preflight -> homing -> [ moving -> settling -> dwelling -> stored ]* -> solving -> done | rejected
+///
+/// - A pose that cannot be used (not settled, disturbed, gaps, saturated, frozen) is measured again, up to
+///   `retries` times; then the run pauses with what was measured, the limit and what to do.
+/// - The table does not move between StorePose and its PoseStored.
+/// - A fault of a device, or a pose that cannot be stored, stops the table and pauses. A device that is lost
+///   stops the table; the pose is repeated when it comes back within lost_max_s, else the run fails.
+/// - Abort stops the table in every state; the run is `aborted` once the table was seen at rest, or after
+///   stop_max_s. Nothing is proposed then.
+/// - Every target lies within the limits, or the table is not moved.
+/// - Poses stored by an earlier life of the run are skipped. A new run whose preflight fails is `failed`; one
+///   that has poses already pauses instead.
+namespace mgtd::daemon {
+
+/// A run that was interrupted: when it began (origin of t_s) and what it has.
+struct EarlierLife {
+  WallTime started_utc;
+  std::set<int> stored;  ///< pose numbers
+  double last_t_s{0};    ///< of them; time goes on after it even where the wall clock was set back
+};
+
+class RunFsm {
+ public:
+  /// The run begins with the first step().
+  RunFsm(RunConfig config, RunPlan plan, Stamp now, const std::optional<EarlierLife>& earlier = std::nullopt);
+
+  [[nodiscard]] std::vector<Action> step(const Event& event, Stamp now);
+
+  /// Why a request has no effect now (ErrorCode::state), or nothing. step() ignores such a request.
+  [[nodiscard]] Result<void> possible(Request request) const;
+  [[nodiscard]] RunStatus status(Instant now) const;
+  [[nodiscard]] bool ended() const { return phase_ == Phase::ended; }
+  [[nodiscard]] const RunPlan& plan() const { return plan_; }
+
+ private:
+  enum class Phase {
+    preflight,
+    homing,
+    approaching,  ///< to a point before the target, so that the azimuth arrives in its planned sense
+    moving,       ///< and settling
+    dwelling,
+    storing,
+    paused,   ///< until the operator says
+    waiting,  ///< for a lost device
+    solving,
+    proposing,
+    stopping,  ///< aborted; the table is not yet seen at rest
+    ended,
+  };
+
+  void on(const Tick&) {}
+  void on(const Request& request);
+  void on(const Epoch& epoch) { on_sample(EpochOrGap{epoch}); }
+  void on(const Gap& gap) { on_sample(EpochOrGap{gap}); }
+  void on(const ScalarReading& reading);
+  void on(const TableReading& reading);
+  void on(const LinkSeen& link);
+  void on(const DeviceLost& lost);
+  void on(const DeviceBack& back);
+  void on(const DeviceFaulted& faulted);
+  void on(const PoseStored& stored);
+  void on(const SolveDone& solved);
+  void on(const CalibrationProposed& proposed);
+  void on_sample(const EpochOrGap& item);
+  void follow_settling(const TableReading& reading);
+
+  void pause();
+  void abort();
+  void retry();
+
+  /// Decisions that time or new data make possible.
+  void advance();
+  void advance_preflight();
+  void advance_homing();
+  void advance_approach();
+  void advance_move();
+  void advance_dwell();
+  void advance_stopping();
+
+  /// What comes next, judged from what is done: preflight, home, a pose, the fit.
+  void go_on();
+  void enter(Phase phase, std::string message);
+  void enter_preflight();
+  void enter_homing();
+  void enter_pose(std::size_t index);
+  void move_to_target();
+  void enter_dwell();
+  void store(Pose pose);
+  void lost_reference();
+  void bad_pose(const Error& why);
+  void hold(const std::string& message);  ///< stop and ask the operator
+  void finish(RunState state, const std::string& message);
+
+  [[nodiscard]] bool measuring() const;  ///< preflight .. storing, waiting
+  [[nodiscard]] bool timed_out(double limit_s) const { return now_.mono - entered_ > from_seconds(limit_s); }
+  [[nodiscard]] std::optional<TableAngles> waypoint(const PlannedPose& pose) const;
+  [[nodiscard]] TableReading judged(TableReading reading) const;
+  [[nodiscard]] TableAngles angles_at_rest() const;
+  [[nodiscard]] Result<void> undisturbed(const Pose& pose) const;
+  [[nodiscard]] const PlannedPose& planned() const { return plan_.poses[index_]; }
+  [[nodiscard]] std::string kept() const;
+  void publish();
+  void flush_path();
+  template <class A>
+  void act(A action) {
+    actions_.emplace_back(std::move(action));
+  }
+
+  RunConfig config_;
+  RunPlan plan_;
+  RunProgress progress_;
+  Stamp run_start_;
+
+  Stamp now_;  ///< of the step under way
+  std::vector<Action> actions_;
+  Phase phase_{Phase::preflight};
+  Instant entered_;  ///< the phase
+  std::string message_;
+  std::optional<Instant> published_;
+  bool changed_{true};  ///< the status, since it was published
+
+  Preflight preflight_;
+  bool preflight_passed_{false};
+  bool homed_{false};
+  std::optional<TableReading> table_;  ///< latest
+  std::vector<TableReading> path_;     ///< not yet stored
+  std::set<std::string> lost_;
+
+  std::size_t index_{0};      ///< of the pose under way
+  int attempt_{0};            ///< failed ones of this pose
+  int retries_{0};            ///< of the run
+  TableAngles goal_;          ///< of the move under way
+  std::optional<int> sense_;  ///< of the last azimuth move
+  std::optional<Settle> settle_;
+  std::optional<Dwell> dwell_;
+  std::vector<TableAngles> at_rest_;  ///< reported during the dwell
+  std::optional<int> unanswered_;     ///< number of the pose whose PoseStored is awaited
+
+  std::vector<Check> checks_;
+  std::string proposed_;
+  RunState final_{RunState::idle};
+};
+
+}  // namespace mgtd::daemon

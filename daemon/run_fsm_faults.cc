@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// What interrupts a run: the operator, a fault, a device that is lost. Whatever it is, the table stops.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "daemon/run_fsm.h"
+
+namespace mgtd::daemon {
+
+Result<void> RunFsm::possible(Request request) const {
+  const auto refuse = [](std::string message, std::string remedy) {
+    return fail(ErrorCode::state, std::move(message), std::move(remedy));
+  };
+  if (phase_ == Phase::ended) {
+    if (request == Request::abort) return {};
+    return refuse(fmt::format("the run has ended: {}", name(final_)), "start a new one");
+  }
+  switch (request) {
+    case Request::abort:
+      return {};
+    case Request::pause:
+      if (phase_ == Phase::paused) return refuse("the run is paused already", "resume or abort it");
+      if (!measuring()) return refuse("all poses are measured and the table is at rest", "wait, or abort");
+      return {};
+    case Request::resume:
+      if (phase_ != Phase::paused) return refuse("the run is not paused", "");
+      if (!lost_.empty())
+        return refuse(fmt::format("{} is not connected", *lost_.begin()), "reconnect it, then resume");
+      return {};
+    case Request::retry:
+      if (phase_ == Phase::paused) return possible(Request::resume);
+      if (phase_ == Phase::approaching || phase_ == Phase::moving || phase_ == Phase::dwelling) return {};
+      return refuse("no pose is under way that could be measured again", "");
+  }
+  return refuse("no such request", "");
+}
+
+void RunFsm::on(const Request& request) {
+  if (!possible(request)) return;
+  act(Record{fmt::format("the operator says: {}", name(request))});
+  switch (request) {
+    case Request::abort:
+      return abort();
+    case Request::pause:
+      return pause();
+    case Request::resume:
+      attempt_ = 0;
+      return go_on();
+    case Request::retry:
+      return retry();
+  }
+}
+
+void RunFsm::pause() {
+  hold(progress_.next() ? "paused by the operator; the pose under way will be measured again"
+                        : "paused by the operator");
+}
+
+void RunFsm::retry() {
+  attempt_ = 0;
+  if (phase_ != Phase::paused) {
+    ++retries_;
+    act(StopTable{});
+  }
+  go_on();
+}
+
+void RunFsm::hold(const std::string& message) {
+  act(StopTable{});
+  flush_path();
+  enter(Phase::paused, message);
+  act(Record{"paused: " + message});
+}
+
+void RunFsm::abort() {
+  if (phase_ == Phase::stopping) return;
+  if (phase_ == Phase::solving) act(CancelSolve{});
+  act(StopTable{});
+  proposed_.clear();
+  enter(Phase::stopping, "aborting: stopping the table");
+}
+
+void RunFsm::advance_stopping() {
+  const bool rests = table_ && table_->arrival.mono > entered_ && !table_->moving;
+  if (rests) {
+    finish(RunState::aborted, "aborted by the operator, the table is at rest; " + kept());
+  } else if (lost_.contains("table") || timed_out(config_.stop_max_s)) {
+    finish(
+        RunState::aborted,
+        "aborted by the operator, but the table has not reported that it is at rest: look at it; " + kept());
+  }
+}
+
+void RunFsm::on(const DeviceLost& lost) {
+  if (lost.device == "table") {
+    homed_ = false;
+    table_.reset();
+  }
+  lost_.insert(lost.device);
+  act(Record{fmt::format("{} is lost: {}", lost.device, lost.why)});
+  if (phase_ == Phase::preflight) {  // it reports on links itself
+    LinkHealth health;
+    health.detail = lost.why;
+    preflight_.add(lost.device, health);
+    return;
+  }
+  if (!measuring() || phase_ == Phase::waiting) return;
+  act(StopTable{});
+  enter(Phase::waiting,
+        fmt::format("{} is lost ({}); the table is stopped, waiting up to {:.0f} s for it, then the "
+                    "pose is measured again",
+                    lost.device, lost.why, config_.lost_max_s));
+}
+
+void RunFsm::on(const DeviceBack& back) {
+  if (lost_.erase(back.device) > 0) act(Record{back.device + " is back"});
+}
+
+void RunFsm::on(const DeviceFaulted& faulted) {
+  const std::string what = fmt::format("{}: {}{}{}", faulted.device, faulted.fault.what,
+                                       faulted.fault.remedy.empty() ? "" : "; ", faulted.fault.remedy);
+  const bool already_known = lost_.contains(faulted.device);
+  if (measuring() && !already_known) {
+    if (phase_ == Phase::preflight && progress_.done() == 0)
+      finish(RunState::failed, what);
+    else
+      hold(what);
+    return;
+  }
+  act(Record{what});
+}
+
+}  // namespace mgtd::daemon
