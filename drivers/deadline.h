@@ -11,7 +11,7 @@ namespace mgtd::drivers {
 
 class Deadline {
  public:
-  static constexpr int kFairTicks = 25;
+  static constexpr int kFairTicks = 100;
 
   void set(Instant now, double span_s, int min_ticks = kFairTicks) {
     at_ = now + from_seconds(span_s);

@@ -4,6 +4,9 @@
 namespace mgtd::drivers {
 namespace {
 
+/// A silence or a pause blames nobody: fewer ticks will do.
+constexpr int kPauseTicks = 15;
+
 bool matches(std::string_view line, std::string_view expected) {
   if (!expected.ends_with('*')) return line == expected;
   expected.remove_suffix(1);
@@ -33,8 +36,18 @@ void Dialogue::enter(std::size_t at, Instant now) {
 void Dialogue::say(Instant now) {
   ++attempts_;
   to_send_ += step().send;
-  resend_.set(now, 1.0);
-  deadline_.set(now, step().seconds, step().kind == Step::Kind::tell ? 1 : Deadline::kFairTicks);
+  resend_.set(now, 1.0, kPauseTicks);
+  switch (step().kind) {
+    case Step::Kind::tell:
+      deadline_.set(now, step().seconds, 1);
+      break;
+    case Step::Kind::drain:
+      deadline_.set(now, step().seconds, kPauseTicks);
+      break;
+    case Step::Kind::ask:
+      deadline_.set(now, step().seconds);
+      break;
+  }
 }
 
 void Dialogue::on_line(std::string_view line, Instant now) {
@@ -78,12 +91,12 @@ void Dialogue::tick_drain(Instant now, std::uint64_t bytes_in) {
   const bool over = limit_.passed(now);
   const bool resend = resend_.passed(now);
   if (std::exchange(bytes_seen_, bytes_in) != bytes_in) {
-    deadline_.set(now, step().seconds);
+    deadline_.set(now, step().seconds, kPauseTicks);
     if (over) {
       outcome_ = Outcome::never_silent;
     } else if (resend) {
       to_send_ += step().send;
-      resend_.set(now, 1.0);
+      resend_.set(now, 1.0, kPauseTicks);
     }
   } else if (deadline_.passed(now)) {
     enter(at_ + 1, now);

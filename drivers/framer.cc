@@ -43,7 +43,8 @@ void Framer::finish(std::size_t bytes_after, LinkHealth& health, const Taker& ta
   const bool status = line.size() == 1 && is_status_byte(line.front()) && ending_ == Ending::gcs;
   const bool clean =
       status || std::all_of(line.begin(), line.end(), [&](char c) { return printable(c, ending_); });
-  const Verdict verdict = clean ? take({line, bytes_after}) : Verdict::rejected(Reject::framing);
+  Verdict verdict = take({line, bytes_after, clean ? std::nullopt : std::optional(Reject::framing)});
+  if (!clean) verdict = Verdict::rejected(Reject::framing);
   switch (verdict.kind) {
     case Verdict::Kind::accepted:
       health.bytes_in_frames += size;
@@ -59,6 +60,17 @@ void Framer::finish(std::size_t bytes_after, LinkHealth& health, const Taker& ta
   pending_.clear();
 }
 
+void Framer::overlong(std::size_t bytes_after, LinkHealth& health, const Taker& take) {
+  if (skipping_) {
+    health.bytes_resync += pending_.size();
+  } else {
+    static_cast<void>(take({pending_, bytes_after, Reject::length}));
+    health.reject(Reject::length, pending_.size());
+    skipping_ = true;
+  }
+  pending_.clear();
+}
+
 void Framer::feed(std::span<const std::byte> bytes, LinkHealth& health, const Taker& take) {
   health.bytes_in += bytes.size();
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -67,13 +79,7 @@ void Framer::feed(std::span<const std::byte> bytes, LinkHealth& health, const Ta
     if (complete(c)) {
       finish(bytes.size() - 1 - i, health, take);
     } else if (pending_.size() >= max_bytes_) {
-      if (skipping_) {
-        health.bytes_resync += pending_.size();
-      } else {
-        health.reject(Reject::length, pending_.size());
-        skipping_ = true;
-      }
-      pending_.clear();
+      overlong(bytes.size() - 1 - i, health, take);
     }
   }
   health.bytes_pending = pending_.size();

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +14,7 @@
 /// Every byte is accounted for in the LinkHealth it is given, so that bytes_in = frames + rejected + resync +
 /// pending holds after every call: the taker of a frame says what it was (Verdict), the framer itself rejects
 /// what is too long (Reject::length, then skips to the next ending as resync) or holds bytes that no such
-/// line contains (Reject::framing).
+/// line contains (Reject::framing), and tells the taker of both.
 ///
 ///   Ending::cr   frame ends at CR; an LF in front of a frame is skipped as part of it
 ///   Ending::lf   frame ends at LF; a CR before it is not part of the text
@@ -39,6 +40,8 @@ struct Verdict {
 struct Frame {
   std::string_view text;       ///< without its ending; valid during the call only
   std::size_t bytes_after{0};  ///< bytes of the same chunk behind it: it arrived that much before the last
+  /// The framer itself rejects it; the taker is told so that it can count, its verdict is not asked.
+  std::optional<Reject> damage{};
 };
 
 class Framer {
@@ -54,6 +57,7 @@ class Framer {
  private:
   [[nodiscard]] bool complete(char last) const;
   [[nodiscard]] std::string_view text() const;
+  void overlong(std::size_t bytes_after, LinkHealth& health, const Taker& take);
   void finish(std::size_t bytes_after, LinkHealth& health, const Taker& take);
 
   Ending ending_;

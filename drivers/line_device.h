@@ -39,6 +39,10 @@ class LineBased : public Base {
     framer_.feed(bytes, this->health_, [&](const Frame& frame) {
       const Duration behind = from_seconds(static_cast<double>(frame.bytes_after) * 10.0 / traits_.baud);
       const Stamp at{arrival.mono - behind, WallTime{arrival.wall.ns - behind.count()}};
+      if (frame.damage) {
+        on_damaged_line(frame.text);
+        return Verdict::rejected(*frame.damage);
+      }
       const Verdict verdict = on_line(frame.text, at);
       if (verdict.kind == Verdict::Kind::accepted) this->health_.last_frame = at.mono;
       return verdict;
@@ -62,6 +66,9 @@ class LineBased : public Base {
 
   /// One line without its ending. What it returns goes to the books.
   virtual Verdict on_line(std::string_view line, Stamp arrival) = 0;
+
+  /// A line that holds what no line may; already rejected. `text` may contain any byte.
+  virtual void on_damaged_line(std::string_view /*text*/) {}
 
   void set_state(LinkState state, std::string detail) {
     this->health_.state = state;

@@ -56,6 +56,11 @@ std::string without_cr(std::string text) {
   return text.starts_with('|') ? "||||" : text;
 }
 
+/// A line that lost its ending holds the start of the next one too.
+std::uint64_t samples_lost(std::string_view line) {
+  return static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(1, std::count(line.begin(), line.end(), '*')));
+}
+
 bool is_obsdaq(std::string identity) {
   std::transform(identity.begin(), identity.end(), identity.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
@@ -192,11 +197,15 @@ Verdict ObsdaqDriver::on_line(std::string_view line, Stamp arrival) {
   return Verdict::accepted();
 }
 
+void ObsdaqDriver::on_damaged_line(std::string_view text) {
+  if (phase_ == Phase::streaming && any_good_line_) seq_ += samples_lost(text);
+}
+
 Verdict ObsdaqDriver::on_stream_line(std::string_view line, Stamp arrival) {
   const auto sample = parse_data_line(line);
   if (!sample || sample->time_stamped != settings_.palmacq) {
     if (!any_good_line_) return Verdict::resync();
-    ++seq_;
+    seq_ += samples_lost(line);
     return Verdict::rejected(sample ? Reject::framing : sample.error());
   }
   any_good_line_ = true;

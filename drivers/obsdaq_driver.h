@@ -19,8 +19,9 @@
 ///              again when nothing at all came for 10 s
 ///   failed     the port answers with something else: DeviceFault, tried again every 10 s
 ///
-/// y_nT = volts * scale_nT_per_V + offset_nT, per axis. seq counts from the start of the acquisition; a line
-/// that had to be rejected counts one, lines that never came are not known. Lost time is seen by the sampler.
+/// y_nT = volts * scale_nT_per_V + offset_nT, per axis. seq counts from the start of the acquisition; a
+/// rejected line counts as many samples as it shows starts of ('*'), at least one. Lines that left no trace
+/// are not known here.
 namespace mgtd::drivers::obsdaq {
 
 class ObsdaqDriver final : public LineDevice {
@@ -35,6 +36,7 @@ class ObsdaqDriver final : public LineDevice {
 
  protected:
   Verdict on_line(std::string_view line, Stamp arrival) override;
+  void on_damaged_line(std::string_view text) override;
 
  private:
   enum class Phase { closed, starting, streaming, waiting };

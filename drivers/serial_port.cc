@@ -12,11 +12,13 @@
 
 #include <array>
 #include <cerrno>
-#include <climits>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <utility>
+
+#include "drivers/port_list.h"
 
 namespace mgtd::drivers {
 
@@ -60,11 +62,6 @@ Error os_error(const std::string& path, std::string_view doing, int number) {
     default:
       return {ErrorCode::io, what, "unplug the converter and plug it in again"};
   }
-}
-
-std::string resolved(const std::string& path) {
-  std::array<char, PATH_MAX> real{};
-  return ::realpath(path.c_str(), real.data()) == nullptr ? path : std::string(real.data());
 }
 
 speed_t speed_of(int baud) {
@@ -167,7 +164,12 @@ std::string lower_latency(int fd, const std::string& path) {
 }  // namespace
 
 Result<SerialPort> SerialPort::open(const std::string& path, int baud, Way way) {
-  const std::string real = resolved(path);
+  const std::optional<std::string> found = port_path(path);
+  if (!found)
+    return fail(ErrorCode::unreachable,
+                fmt::format("{}: no USB converter with this serial number is plugged in", path),
+                "plug it in, or correct 'port'; 'mgt ports' lists what is there");
+  const std::string& real = *found;
   auto handle = std::make_unique<PortHandle>();
   const bool pty = way == Way::automatic && real.starts_with("/dev/pts/");
   if (auto opened = pty ? open_pty(*handle, real, baud) : open_real(*handle, real, baud); !opened)

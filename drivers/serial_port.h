@@ -9,7 +9,8 @@
 /// non-blocking and not inherited. Exclusive: TIOCEXCL, and flock against root, whom TIOCEXCL does not stop.
 ///
 /// Real ports are opened and set up by libserialport. It refuses ptys (they have no entry in /sys/class/tty),
-/// so these are opened by plain termios. Symbolic links (udev names) are followed.
+/// so these are opened by plain termios. Names are those of port_list.h: a path, a
+/// link to one (as udev makes them), or "usb:SERIAL".
 ///
 /// Does not read, write or wait: lend `fd()` to whoever does, and take it back before the port is destroyed.
 namespace mgtd::drivers {

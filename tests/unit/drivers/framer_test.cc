@@ -2,10 +2,10 @@
 #include "drivers/framer.h"
 
 #include <gtest/gtest.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -19,6 +19,8 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 struct Taken {
   std::vector<std::string> frames;
   LinkHealth health;
+  int damaged{0};
+  bool balanced{true};
 };
 
 /// Feeds `text` in pieces that end at the given places; the books must balance after every piece.
@@ -30,14 +32,19 @@ Taken run(Ending ending, std::string_view text, std::vector<std::size_t> cuts = 
   std::size_t from = 0;
   for (const std::size_t to : cuts) {
     framer.feed(bytes_of(text.substr(from, to - from)), taken.health, [&](const Frame& frame) {
+      if (frame.damage) {
+        ++taken.damaged;
+        return Verdict::accepted();  // not asked
+      }
       taken.frames.emplace_back(frame.text);
       if (frame.text.starts_with('?')) return Verdict::rejected(Reject::number);
       if (frame.text.empty()) return Verdict::resync();
       return Verdict::accepted();
     });
-    EXPECT_TRUE(taken.health.balanced());
+    taken.balanced = taken.balanced && taken.health.balanced();
     from = to;
   }
+  EXPECT_TRUE(taken.balanced);
   return taken;
 }
 
@@ -70,6 +77,7 @@ TEST(Framer, RefusesWhatIsTooLongAndFindsTheNextLine) {
   const Taken taken = run(Ending::cr, std::string(200, 'x') + "\rok\r");
   EXPECT_EQ(taken.frames, std::vector<std::string>{"ok"});
   EXPECT_EQ(taken.health.rejected[static_cast<std::size_t>(Reject::length)], 1U);
+  EXPECT_EQ(taken.damaged, 1);
   EXPECT_EQ(taken.health.bytes_rejected, 64U);
   EXPECT_EQ(taken.health.bytes_resync, 137U);
 }
@@ -77,6 +85,7 @@ TEST(Framer, RefusesWhatIsTooLongAndFindsTheNextLine) {
 TEST(Framer, RefusesBytesNoLineContains) {
   const Taken taken = run(Ending::cr, "a\x01z\rok\r");
   EXPECT_EQ(taken.frames, std::vector<std::string>{"ok"});
+  EXPECT_EQ(taken.damaged, 1);
   EXPECT_EQ(taken.health.rejected[static_cast<std::size_t>(Reject::framing)], 1U);
 }
 
@@ -108,34 +117,31 @@ TEST(Framer, SaysHowManyBytesCameBehind) {
 }
 
 /// Garbage with a good share of endings, spaces, status bytes and printable text.
-std::string random_stream(std::mt19937_64& random, std::size_t size) {
+rc::Gen<std::string> garbage() {
   static constexpr std::string_view kLikely = "\r\n \n*!01=ABCDEF?\xB1\x07";
-  std::uniform_int_distribution<int> any(0, 255);
-  std::uniform_int_distribution<std::size_t> likely(0, kLikely.size() - 1);
-  std::string out;
-  for (std::size_t i = 0; i < size; ++i)
-    out += any(random) < 200 ? kLikely[likely(random)] : static_cast<char>(any(random));
-  return out;
+  const auto likely = rc::gen::elementOf(std::string(kLikely));
+  return rc::gen::container<std::string>(
+      rc::gen::weightedOneOf<char>({{4, likely}, {1, rc::gen::arbitrary<char>()}}));
 }
 
 TEST(Framer, AnySplitGivesTheSameFramesAndBooks) {
-  std::mt19937_64 random(20261121);
-  for (int round = 0; round < 400; ++round) {
-    const std::string text = random_stream(random, 300);
-    std::uniform_int_distribution<std::size_t> place(0, text.size());
-    std::vector<std::size_t> cuts(8);
-    for (std::size_t& cut : cuts) cut = place(random);
+  const bool holds = rc::check("split anywhere, same frames, books in balance", [] {
+    const std::string text = *rc::gen::scale(4.0, garbage());
+    auto cuts =
+        *rc::gen::container<std::vector<std::size_t>>(rc::gen::inRange<std::size_t>(0, text.size() + 1));
     std::sort(cuts.begin(), cuts.end());
-    for (const Ending ending : {Ending::cr, Ending::lf, Ending::gcs}) {
-      const Taken whole = run(ending, text, {}, 32);
-      const Taken split = run(ending, text, cuts, 32);
-      EXPECT_EQ(whole.frames, split.frames);
-      EXPECT_EQ(whole.health.rejected, split.health.rejected);
-      EXPECT_EQ(whole.health.bytes_in_frames, split.health.bytes_in_frames);
-      EXPECT_EQ(whole.health.bytes_resync, split.health.bytes_resync);
-      EXPECT_EQ(whole.health.bytes_pending, split.health.bytes_pending);
-    }
-  }
+    const Ending ending = *rc::gen::element(Ending::cr, Ending::lf, Ending::gcs);
+    const Taken whole = run(ending, text, {}, 32);
+    const Taken split = run(ending, text, cuts, 32);
+    RC_ASSERT(whole.frames == split.frames);
+    RC_ASSERT(whole.damaged == split.damaged);
+    RC_ASSERT(whole.health.rejected == split.health.rejected);
+    RC_ASSERT(whole.health.bytes_in_frames == split.health.bytes_in_frames);
+    RC_ASSERT(whole.health.bytes_resync == split.health.bytes_resync);
+    RC_ASSERT(whole.health.bytes_pending == split.health.bytes_pending);
+    RC_ASSERT(split.balanced);
+  });
+  EXPECT_TRUE(holds);
 }
 
 }  // namespace

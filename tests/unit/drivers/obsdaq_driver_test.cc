@@ -154,6 +154,16 @@ TEST_F(ObsdaqDriverTest, ARejectedLineCountsOne) {
   EXPECT_TRUE(driver.health().balanced());
 }
 
+TEST_F(ObsdaqDriverTest, ALineThatLostItsEndingCountsTwo) {
+  go_live();
+  bench.feed("*0259FEFFF1BFFFFCEDL\r*0259FEFFF1BFFFFCEDL*0259FEFFF1BFFFFCEDL\r*0259FEFFF1BFFFFCEDL\r");
+  EXPECT_EQ(bench.events<FieldReading>().back().seq, 3U);
+  bench.feed(
+      "*0259FE\xFF"
+      "F1BFFFFCEDL\r*0259FEFFF1BFFFFCEDL\r");
+  EXPECT_EQ(bench.events<FieldReading>().back().seq, 5U) << "a byte no line contains";
+}
+
 TEST_F(ObsdaqDriverTest, ADeviceFoundStreamingIsStoppedFirst) {
   instrument.streaming = true;
   bench.open();

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The serial ports of this machine. A number like ttyUSB0 changes with the order of plugging in; the serial
+/// number of the USB converter does not: "usb:SERIAL" names a port by it wherever a path is expected.
+namespace mgtd::drivers {
+
+struct PortInfo {
+  std::string path;         ///< /dev/ttyUSB0
+  std::string description;  ///< as the converter calls itself
+  std::string usb_serial;   ///< empty for ports that are not on USB
+  std::string usb_id;       ///< "0403:6001"
+  /// What to write into the configuration.
+  [[nodiscard]] std::string name() const { return usb_serial.empty() ? path : "usb:" + usb_serial; }
+};
+
+[[nodiscard]] std::vector<PortInfo> list_ports();
+
+/// The path behind a name: "usb:SERIAL" is looked up, links are followed. Empty when no such converter is
+/// plugged in.
+[[nodiscard]] std::optional<std::string> port_path(const std::string& name);
+
+}  // namespace mgtd::drivers
