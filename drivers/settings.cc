@@ -119,9 +119,9 @@ void Settings::refuse_unknown() {
   for (const auto& [key, entry] : entries_) {
     if (entry.used) continue;
     std::string message = fmt::format("{}: unknown key '{}'", section_, key);
-    const auto nearest = std::min_element(asked_.begin(), asked_.end(), [&](const auto& a, const auto& b) {
-      return distance(a, key) < distance(b, key);
-    });
+    const auto nearest = std::min_element(
+        asked_.begin(), asked_.end(),
+        [&wrong = key](const auto& a, const auto& b) { return distance(a, wrong) < distance(b, wrong); });
     if (nearest != asked_.end() && distance(*nearest, key) <= 3)
       message += fmt::format(", did you mean '{}'?", *nearest);
     errors_.push_back({entry.line, std::move(message)});
