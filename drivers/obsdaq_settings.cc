@@ -55,8 +55,8 @@ void read_thermometer(Settings& s, ObsdaqSettings& out) {
     s.object("temperature", fmt::format("no input '{}'; there are \"p\", \"q\", \"r\" and \"none\"", input));
     return;
   }
-  if (!s.has("degC_per_V") || !s.has("degC_at_0V"))
-    s.object("temperature", "needs degC_per_V and degC_at_0V of the thermometer on that input");
+  if (slope == 0)
+    s.object("temperature", "needs degC_per_V (and degC_at_0V) of the thermometer on that input");
   out.thermometer = Thermometer{static_cast<std::size_t>(input[0] - 'p'), slope, at_zero};
 }
 

@@ -17,7 +17,7 @@
 ///   scale_nT_per_V = [x, y, z]
 ///   offset_nT = [0, 0, 0]       added after scaling
 ///   temperature = "none"        auxiliary input of the sensor's thermometer: "p", "q", "r"
-///   degC_per_V, degC_at_0V      its line; both needed with an input
+///   degC_per_V, degC_at_0V = 0  its line; the slope is needed with an input
 ///
 /// Profiles are nominal figures of the sensor family; what a sensor really does is the calibration's affair.
 namespace mgtd::drivers::obsdaq {

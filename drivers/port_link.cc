@@ -142,6 +142,7 @@ void PortLink::Impl::lost(const std::string& why) {
   close_port();
   device_->on_close(clock_.now());
   static_cast<void>(device_->take_output());
+  report_state();  // first that the device is lost, then what it says about it
   deliver();
   open_later();
 }

@@ -38,7 +38,7 @@ struct PortCallbacks {
   std::function<void(std::vector<DeviceEvent>)> on_events;
   /// Every byte as it crossed the port, for the journal.
   std::function<void(Direction, std::span<const std::byte>, Stamp)> on_raw;
-  /// State or detail changed.
+  /// State or detail changed. Loss of the port is told before the events it causes, all else after them.
   std::function<void(const LinkHealth&)> on_state;
 };
 

@@ -29,6 +29,10 @@ class Parrot final : public LineDevice {
     ++ticks;
     if (impatient) LineDevice::on_tick(now);
   }
+  void on_close(Stamp now) override {
+    LineDevice::on_close(now);
+    emit(DeviceNote{now, "alas"});
+  }
   void on_shutdown(Stamp /*now*/) override { send("bye\n"); }
   void say(std::string_view text) { send(text); }
   int ticks{0};
@@ -57,6 +61,7 @@ class PortLinkTest : public ::testing::Test {
     return std::make_unique<PortLink>(
         io_, clock_, PortSettings{path, 0}, device_,
         PortCallbacks{[this](const std::vector<DeviceEvent>& events) {
+                        if (!states_.empty()) told_ = states_.back().state;
                         for (const auto& event : events) lines_.push_back(std::get<DeviceNote>(event).what);
                       },
                       [this](Direction direction, std::span<const std::byte> bytes, Stamp) {
@@ -73,6 +78,7 @@ class PortLinkTest : public ::testing::Test {
   std::shared_ptr<Parrot> device_;
   std::vector<std::string> lines_;
   std::vector<LinkHealth> states_;
+  LinkState told_{LinkState::opening};  ///< state known when the last event came
   std::string raw_in_, raw_out_;
 };
 
@@ -124,11 +130,13 @@ TEST_F(PortLinkTest, UnplugAndReplugStartOver) {
   ASSERT_TRUE(until([&] { return port->health().state == LinkState::absent; }));
   EXPECT_TRUE(port->health().balanced());
   EXPECT_EQ(port->health().closes, 1U);
+  EXPECT_EQ(lines_, std::vector<std::string>{"alas"});
+  EXPECT_EQ(told_, LinkState::absent) << "the loss is told first";
   master.emplace(path_);
   ASSERT_TRUE(until([&] { return master->received() == "hello\n"; }));
   EXPECT_EQ(port->health().opens, 2U);
   master->write("ne\n");
-  ASSERT_TRUE(until([&] { return lines_ == std::vector<std::string>{"ne"}; }));
+  ASSERT_TRUE(until([&] { return lines_ == (std::vector<std::string>{"alas", "ne"}); }));
 }
 
 TEST_F(PortLinkTest, ADeviceThatAsksForItIsOpenedAgain) {
