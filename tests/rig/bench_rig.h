@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/rig/fault.h"
+#include "tests/rig/instrument.h"
+#include "tests/rig/wire.h"
+#include "tests/rig/world.h"
+
+/// The whole rig in virtual time: one world, six instruments, six cables. Tests drive it byte by byte; the
+/// server puts it on ptys.
+namespace mgtd::rig {
+
+inline constexpr std::array<std::string_view, 6> kPortNames{"fluxgate1", "fluxgate2", "fluxgate3",
+                                                            "fluxgate4", "table",     "scalar"};
+
+class BenchRig {
+ public:
+  /// `utc_s`: the hour on the instruments' clocks when the rig is switched on.
+  BenchRig(Scenario scenario, double utc_s);
+
+  /// Index in kPortNames; the scalar reference is left out where the scenario has none.
+  [[nodiscard]] std::size_t ports() const { return instruments_.size(); }
+  void write(std::size_t port, std::string_view bytes, double now_s);
+  /// Everything that has come out of the cable by now; empty while unplugged.
+  [[nodiscard]] std::string read(std::size_t port, double now_s);
+  [[nodiscard]] bool plugged(std::size_t port) const { return plugged_.at(port); }
+
+  /// Applies a fault at once; refuses a port that does not exist, in words.
+  [[nodiscard]] tl::expected<void, std::string> apply(const Fault& fault, double now_s);
+  /// Ends faults whose time is over and starts those of the scenario; call before read().
+  void run_script(double now_s);
+
+  [[nodiscard]] World& world() { return world_; }
+
+ private:
+  struct Ending {
+    double at_s;
+    std::size_t port;
+    FaultKind kind;
+  };
+  void end(std::size_t port, FaultKind kind);
+
+  World world_;
+  std::vector<std::unique_ptr<Instrument>> instruments_;
+  std::vector<Wire> wires_;
+  std::vector<bool> plugged_;
+  std::vector<Ending> endings_;
+  std::size_t next_fault_{0};
+};
+
+}  // namespace mgtd::rig

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+/// What can go wrong with a cable or an instrument, on demand.
+///   unplug PORT [for S]    the port vanishes; it comes back after S simulated seconds, or by `restore`
+///   garbage PORT           200 random bytes on the line
+///   torn PORT [for S]      bytes get lost on the line, one in a hundred
+///   freeze PORT [for S]    the instrument repeats its last value; the table jams
+///   stall PORT [for S]     the instrument neither speaks nor listens
+///   restore PORT           all of it ends
+/// Ports: fluxgate1 .. fluxgate4, table, scalar.
+namespace mgtd::rig {
+
+enum class FaultKind { unplug, garbage, torn, freeze, stall, restore };
+
+struct Fault {
+  FaultKind kind{FaultKind::restore};
+  std::string port;
+  std::optional<double> for_s;
+};
+
+[[nodiscard]] tl::expected<Fault, std::string> parse_fault(std::string_view text);
+
+}  // namespace mgtd::rig

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+/// A pseudo-terminal with a stable name: what a USB serial adapter is to the host. Closing it is pulling the
+/// plug.
+namespace mgtd::rig {
+
+class Pty {
+ public:
+  /// Makes a raw pty and links it at `link`. is_open() tells whether that worked; why() what did not.
+  explicit Pty(std::string link);
+  ~Pty() { close(); }
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+
+  void open();
+  /// The link is removed and the host sees a hang-up.
+  void close();
+  [[nodiscard]] bool is_open() const { return master_ >= 0; }
+  [[nodiscard]] const std::string& why() const { return why_; }
+
+  /// Bytes the host wrote since the last call; never blocks.
+  [[nodiscard]] std::string read();
+  /// Writes what fits and returns how much that was; never blocks.
+  [[nodiscard]] std::size_t write(std::string_view bytes);
+
+ private:
+  std::string link_, why_;
+  int master_{-1}, slave_{-1};
+};
+
+}  // namespace mgtd::rig

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/rig/truth.h"
+
+#include <cmath>
+#include <random>
+
+#include "tests/rig/rotations.h"
+
+namespace mgtd::rig {
+namespace {
+
+SensorTruth sensor(double theta, double phi, double psi, double cx, double cy, double cz, double ix,
+                   double iy, double iz, double alpha, double beta, double gamma) {
+  return {theta, phi, psi, {cx, cy, cz}, {ix, iy, iz}, alpha, beta, gamma, Eigen::Matrix3d::Identity()};
+}
+
+RigTruth random_rig(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  RigTruth rig;
+  for (SensorTruth& s : rig) {
+    s = sensor(3 * unit(random), 3 * unit(random), 3 * unit(random), 1 + 0.05 * unit(random),
+               1 + 0.05 * unit(random), 1 + 0.05 * unit(random), 400 * unit(random), 400 * unit(random),
+               400 * unit(random), 3 * unit(random), 3 * unit(random), 3 * unit(random));
+  }
+  return rig;
+}
+
+}  // namespace
+
+Eigen::Matrix3d SensorTruth::matrix() const {
+  const double ct = std::cos(theta_deg * kDeg), st = std::sin(theta_deg * kDeg);
+  const double cf = std::cos(phi_deg * kDeg), sf = std::sin(phi_deg * kDeg);
+  const double cp = std::cos(psi_deg * kDeg), sp = std::sin(psi_deg * kDeg);
+  const Eigen::Matrix3d axes{{ct * cf, st * cf, sf}, {0, cp, sp}, {0, 0, 1}};
+  const Eigen::Matrix3d to_platform = about_z(gamma_deg) * about_y(beta_deg) * about_x(alpha_deg) * mounting;
+  return scale.asDiagonal() * axes * to_platform.transpose();
+}
+
+std::optional<RigTruth> rig_named(std::string_view name, std::uint64_t seed) {
+  if (name == "ideal") return RigTruth{};
+  if (name == "random") return random_rig(seed);
+  if (name == "table3") {
+    return RigTruth{sensor(-1.9, 1.6, 2.3, 0.988, 1.105, 1.054, 234, 114, -218, 2.5, -2.2, 1.7),
+                    sensor(1.8, 1.1, 3.2, 0.991, 1.152, 0.897, -312, 154, 98, -2.0, 1.7, 3.3),
+                    sensor(2.3, 1.5, -1.8, 1.101, 0.926, 1.084, 230, -142, 195, 1.3, 2.1, -2.5),
+                    sensor(1.5, -2.3, -2.9, 0.915, 1.084, 1.118, 251, -221, -308, -2.1, 1.4, 2.7)};
+  }
+  if (name == "table6") {
+    return RigTruth{
+        sensor(-0.252, -3.478, 0.865, 0.999, 1.003, 0.992, 351.9, -170.9, -123.7, 0.682, -0.882, -2.177),
+        sensor(0.705, 3.077, 0.900, 1.008, 1.002, 0.999, 363.4, 412.6, -139.4, -0.899, 0.241, 1.644),
+        sensor(-0.126, -3.146, -1.719, 0.995, 1.003, 0.998, -87.4, 79.1, -102.9, -0.487, 0.785, -1.381),
+        sensor(0.814, 3.174, 2.515, 1.006, 1.004, 0.998, -301.0, -298.8, -29.7, 0.693, -0.160, 1.902)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace mgtd::rig

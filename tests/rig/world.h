@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <random>
+
+#include "tests/rig/axis_motion.h"
+#include "tests/rig/scenario.h"
+
+/// The physics of the rig: site, table, sensors, temperature. Everything is a function of the simulated time,
+/// asked for by the instruments sample by sample. Knows the truth; nobody else does.
+///
+///   B(t, x)                                     site frame, x from the centre of the array
+///   b_i = T B(t, T' r_i)                        T = Rz(azimuth) Ry(pitch) Rx(roll), the angles as they truly
+///   are y_i = M_i b_i + I_i + effects + noise       M_i from SensorTruth
+namespace mgtd::rig {
+
+enum TableAxis : std::size_t { azimuth, pitch, roll };
+
+class World {
+ public:
+  explicit World(Scenario scenario);
+
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] AxisMotion& axis(TableAxis which) { return axes_.at(which); }
+  [[nodiscard]] const AxisMotion& axis(TableAxis which) const { return axes_.at(which); }
+  [[nodiscard]] std::mt19937_64& random() { return random_; }
+
+  /// Noisy reading of sensor i (0 .. 3) at time t, nT at nominal scale. Times of one sensor must not go back.
+  [[nodiscard]] Eigen::Vector3d read_sensor(int i, double t_s);
+  [[nodiscard]] double head_degC(int i, double t_s) const;
+  /// Noisy total field at the centre.
+  [[nodiscard]] double read_scalar(double t_s);
+  /// Site frame to platform frame, by the true angles.
+  [[nodiscard]] Eigen::Matrix3d attitude(double t_s) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector3d site_field(double t_s, const Eigen::Vector3d& x_m) const;
+  [[nodiscard]] double noise();
+
+  Scenario scenario_;
+  std::array<AxisMotion, 3> axes_;
+  std::array<Eigen::Matrix3d, 4> matrix_;
+  std::array<Eigen::Vector3d, 4> position_m_;
+  Eigen::Vector3d direction_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+}  // namespace mgtd::rig
