@@ -1,9 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include <CLI/CLI.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/rig.h"
+#include "daemon/service_notify.h"
+
+namespace {
+
+using namespace mgtd;
+using namespace mgtd::daemon;
+
+// sysexits.h, as systemd and scripts know them.
+constexpr int kExitConfig = 78, kExitUnavailable = 69, kExitIo = 74;
+
+int report(const Error& error) {
+  fmt::print(stderr, "mgtd: {}\n", error.text());
+  return error.code == ErrorCode::io ? kExitIo : kExitUnavailable;
+}
+
+int serve(Config config) {
+  start_log(config.log_level);
+  std::signal(SIGPIPE, SIG_IGN);
+  auto store = CalibrationStore::open(std::filesystem::path(config.store_dir) / "calibrations");
+  if (!store) return report(store.error());
+  boost::asio::io_context io(1);
+  Rig rig(io, std::move(config), *std::move(store));
+  if (auto started = rig.start(); !started) return report(started.error());
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&](auto ec, int number) {
+    if (ec) return;
+    spdlog::info("signal {}: stopping the table and closing", number);
+    notify_stopping();
+    rig.stop();
+    io.stop();
+  });
+  notify_ready();
+  io.run();
+  return 0;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"mgtd: acquires, calibrates and streams the magnetic gradient tensor"};
+  CLI::App app{
+      "mgtd: drives a magnetic gradient tensor rig, calibrates it and streams the tensor\n\n"
+      "  mgtd --config /etc/mgtd/mgtd.toml                  run\n"
+      "  mgtd --config rig.toml --check-config              list every mistake in the configuration and "
+      "end\n\n"
+      "The operator's tool is mgt: mgt status, mgt run start, mgt watch.",
+      "mgtd"};
   app.set_version_flag("--version", MGTD_VERSION);
+  std::string config_file = "/etc/mgtd/mgtd.toml";
+  bool check_only = false;
+  app.add_option("--config", config_file, "the configuration")->capture_default_str();
+  app.add_flag("--check-config", check_only, "only read the configuration");
   CLI11_PARSE(app, argc, argv);
-  return 0;
+  auto config = load_config(config_file);
+  if (!config) {
+    for (const std::string& line : config.error().lines) fmt::print(stderr, "{}\n", line);
+    return kExitConfig;
+  }
+  if (check_only) {
+    fmt::print("{}: good\n", config_file);
+    return 0;
+  }
+  return serve(*std::move(config));
 }

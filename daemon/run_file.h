@@ -33,7 +33,7 @@ struct RunEvent {
   std::string what;
 };
 
-struct RunProgress {
+struct StoredState {
   RunState state{RunState::idle};
   std::string message;
 };
@@ -72,7 +72,7 @@ class RunFile {
   [[nodiscard]] Result<std::vector<TableReading>> path_readings() const;
   [[nodiscard]] Result<std::vector<RunEvent>> events() const;
   /// A file whose writer died in an active state reads as written; who resumes it decides.
-  [[nodiscard]] Result<RunProgress> state() const;
+  [[nodiscard]] Result<StoredState> state() const;
   [[nodiscard]] Result<std::vector<Check>> checks(std::string_view stage) const;
   /// Empty when there is none of that name.
   [[nodiscard]] Result<std::optional<std::string>> document(std::string_view name) const;

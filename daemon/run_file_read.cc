@@ -88,14 +88,14 @@ Result<std::vector<RunEvent>> RunFile::events() const {
                         });
 }
 
-Result<RunProgress> RunFile::state() const {
+Result<StoredState> RunFile::state() const {
   auto row = db_->prepare("SELECT state, message FROM progress");
   if (!row) return tl::unexpected(row.error());
   const auto there = row->step();
   if (!there) return tl::unexpected(there.error());
   const std::string word = *there ? row->text(0) : "";
   for (int i = 0; i <= static_cast<int>(RunState::interrupted); ++i) {
-    if (name(static_cast<RunState>(i)) == word) return RunProgress{static_cast<RunState>(i), row->text(1)};
+    if (name(static_cast<RunState>(i)) == word) return StoredState{static_cast<RunState>(i), row->text(1)};
   }
   return fail(ErrorCode::bad_input, fmt::format("{}: unknown run state '{}'", path_.string(), word),
               "read it with the mgtd that wrote it");

@@ -24,6 +24,14 @@ int main(int argc, char** argv) {
   app.add_option("--socket", session.control_socket, "control socket of the daemon")
       ->envname("MGTD_CONTROL")
       ->capture_default_str();
+  add_status(app, session);
+  add_watch(app, session);
+  add_run(app, session);
+  add_calibrations(app, session);
+  add_fit(app, session);
+  add_apply(app, session);
+  add_import(app, session);
+  add_export(app, session);
   add_check_config(app, session);
   try {
     app.parse(argc, argv);

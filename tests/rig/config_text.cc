@@ -14,7 +14,7 @@ std::string config_text(const Scenario& s, const std::string& dir, const std::st
     out += fmt::format(
         "\n[[sensor]]\ndriver = \"obsdaq\"\nport = \"{}/fluxgate{}\"\npalmacq = {}\nrate_hz = {}\nrange_V = "
         "{}\n"
-        "profile = \"mag-13-{:.0f}\"\ntemperature_input = \"p\"\ndegC_per_V = 10.0\n",
+        "profile = \"mag-13-{:.0f}\"\ntemperature = \"p\"\ndegC_per_V = 10.0\ndegC_at_0V = 0.0\n",
         dir, i, s.palmacq, s.rate_hz, s.range_V, s.uT_full_scale);
   }
   out += fmt::format(

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/apply.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "daemon/cli/command.h"
+#include "daemon/pose_source.h"
+
+namespace mgtd::cli {
+namespace {
+
+struct Arguments {
+  std::string calibration, run, output;
+};
+
+int run_apply(const Session& session, const Arguments& args) {
+  const auto text = read_file(args.calibration);
+  if (!text) return report(session, text.error());
+  const auto calibration = calib::calibration_from_json_text(*text);
+  if (!calibration) {
+    Error error = calibration.error();
+    error.message = args.calibration + ": " + error.message;
+    return report(session, error);
+  }
+  const auto table = daemon::read_poses(args.run);
+  if (!table) return report(session, table.error());
+  const auto rows = calib::apply(*calibration, *table);
+  const std::string csv = calib::format_applied(rows);
+  if (!args.output.empty()) {
+    if (auto written = write_file(args.output, csv); !written) return report(session, written.error());
+  }
+  if (session.json) {
+    print_json({{"schema", "mgt.apply/1"},
+                {"calibration", calibration->id},
+                {"poses", rows.size()},
+                {"output", args.output.empty() ? nlohmann::json() : nlohmann::json(args.output)}});
+  } else if (args.output.empty()) {
+    fmt::print("{}", csv);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_apply(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command =
+      add_command(app, session, "apply", "calibrated field of every sensor and the tensor, row by row (CSV)",
+                  [args, &session] { return run_apply(session, *args); });
+  command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
+  command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  command->add_option("-o,--output", args->output, "file; standard output when absent");
+}
+
+}  // namespace mgtd::cli

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Import and export: pose tables into run files and back.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "calib/pose_table.h"
+#include "daemon/cli/command.h"
+#include "daemon/pose_source.h"
+#include "daemon/run_file.h"
+
+namespace mgtd::cli {
+namespace {
+
+struct Arguments {
+  std::string from, to;
+};
+
+daemon::RunHeader header_of(const PoseTable& table, const Arguments& args) {
+  daemon::RunHeader header;
+  header.run_id = std::filesystem::path(args.to).stem().string();
+  header.rig = "imported";
+  if (!table.poses.empty() && table.poses.front().t_utc) header.started_utc = *table.poses.front().t_utc;
+  header.software = "mgtd " MGTD_VERSION;
+  header.source = std::filesystem::path(args.from).filename().string();
+  return header;
+}
+
+int run_import(const Session& session, const Arguments& args) {
+  const auto table = daemon::read_poses(args.from);
+  if (!table) return report(session, table.error());
+  if (auto done = daemon::import_poses(*table, args.to, header_of(*table, args)); !done)
+    return report(session, done.error());
+  if (session.json) {
+    print_json({{"schema", "mgt.import/1"}, {"poses", table->poses.size()}, {"output", args.to}});
+  } else {
+    fmt::print("{} poses in {}\n", table->poses.size(), args.to);
+  }
+  return 0;
+}
+
+int run_export(const Session& session, const Arguments& args) {
+  const auto table = daemon::read_poses(args.from);
+  if (!table) return report(session, table.error());
+  const std::string csv = calib::format_pose_table(*table);
+  if (args.to.empty() && !session.json) {
+    fmt::print("{}", csv);
+    return 0;
+  }
+  if (!args.to.empty()) {
+    if (auto written = write_file(args.to, csv); !written) return report(session, written.error());
+  }
+  if (session.json) {
+    print_json({{"schema", "mgt.export/1"},
+                {"poses", table->poses.size()},
+                {"output", args.to.empty() ? nlohmann::json() : nlohmann::json(args.to)}});
+  } else {
+    fmt::print("{} poses in {}\n", table->poses.size(), args.to);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "import", "a pose table becomes a run file",
+                                        [args, &session] { return run_import(session, *args); });
+  command->add_option("POSES", args->from, "pose table in CSV")->required();
+  command->add_option("-o,--output", args->to, "RUN.mgtrun; must not exist")->required();
+}
+
+void add_export(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "export", "a run file becomes a pose table",
+                                        [args, &session] { return run_export(session, *args); });
+  command->add_option("RUN", args->from, "*.mgtrun")->required();
+  command->add_option("-o,--output", args->to, "POSES.csv; standard output when absent");
+}
+
+}  // namespace mgtd::cli

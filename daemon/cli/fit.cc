@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "calib/calibration.h"
+#include "calib/fit/fit_report_json.h"
+#include "calib/fit/fit_report_text.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/fit_flags.h"
+
+namespace mgtd::cli {
+namespace {
+
+struct Arguments {
+  std::string run, output;
+  std::shared_ptr<FitFlags> flags;
+};
+
+int run_fit(const Session& session, const Arguments& args) {
+  const auto source = daemon::read_run(args.run);
+  if (!source) return report(session, source.error());
+  const auto options = fit_options(*args.flags, *source);
+  if (!options) return report(session, options.error());
+  const auto fitted = calib::fit(source->table, *options);
+  if (!fitted) return report(session, fitted.error());
+  if (!args.output.empty()) {
+    if (auto written = write_file(args.output, calib::to_json_text(fitted->calibration)); !written)
+      return report(session, written.error());
+    fmt::print(stderr, "calibration {} written to {}\n", fitted->calibration.id, args.output);
+  }
+  if (session.json) {
+    print_json(calib::to_json(*fitted));
+  } else {
+    fmt::print("{}", calib::to_text(*fitted));
+  }
+  return fitted->calibration.accepted_by_checks ? 0 : 1;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "fit", "calibrate from a run file or a pose table",
+                                        [args, &session] { return run_fit(session, *args); });
+  command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  command->add_option("-o,--output", args->output, "write the calibration here (CAL.json)");
+  args->flags = add_fit_flags(command);
+}
+
+}  // namespace mgtd::cli

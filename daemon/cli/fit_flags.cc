@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/fit_flags.h"
+
+#include "daemon/solver.h"
+
+namespace mgtd::cli {
+
+std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
+  auto f = std::make_shared<FitFlags>();
+  command->add_option("--method", f->method, "simplified or two-step")
+      ->check(CLI::IsMember({"simplified", "two-step"}))
+      ->capture_default_str();
+  command->add_option("--field", f->field_nT, "total field in nT, for poses without f_nT");
+  command->add_option("--field-sd", f->field_sd_nT, "its standard uncertainty in nT");
+  command->add_option("--baseline", f->baseline_m, "distance of opposite sensors in m (0.4)");
+  command->add_option("--inclination", f->inclination_deg,
+                      "of the field in the platform frame at zero table angles, deg, positive towards +Z");
+  command->add_option("--declination", f->declination_deg, "the same, from X towards Y, deg");
+  command->add_option("--table-sd", f->table_sd_deg, "standard deviation of a table angle in deg (0.1)");
+  command->add_option("--seed", f->seed, "of everything random");
+  return f;
+}
+
+Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source) {
+  calib::FitOptions out = source.header ? daemon::fit_options(source.header->options) : calib::FitOptions{};
+  const auto method = calib::method_from(flags.method);
+  if (!method) return fail(ErrorCode::usage, "no method '" + flags.method + "'", "simplified or two-step");
+  out.method = *method;
+  if (flags.field_nT) out.field_nT = flags.field_nT;
+  if (flags.field_sd_nT) out.field_sd_nT = *flags.field_sd_nT;
+  if (flags.baseline_m) out.baseline_m = *flags.baseline_m;
+  if (flags.inclination_deg) out.inclination_rad = to_rad(*flags.inclination_deg);
+  if (flags.declination_deg) out.declination_rad = to_rad(*flags.declination_deg);
+  if (flags.table_sd_deg) out.table_sd_rad = to_rad(*flags.table_sd_deg);
+  if (flags.seed) out.seed = *flags.seed;
+  return out;
+}
+
+}  // namespace mgtd::cli

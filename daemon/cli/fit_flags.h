@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "calib/fit/fit.h"
+#include "daemon/pose_source.h"
+
+/// The options that every command with a fit understands, and how they combine with what a run file says
+/// itself.
+namespace mgtd::cli {
+
+struct FitFlags {
+  std::string method{"two-step"};
+  std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
+  std::optional<std::uint64_t> seed;
+};
+
+std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);
+
+/// What the command line says goes before what the run file says, and that before the defaults.
+[[nodiscard]] Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source);
+
+}  // namespace mgtd::cli

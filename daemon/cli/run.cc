@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "daemon/cli/ask.h"
+#include "daemon/cli/progress.h"
+#include "proto/run_request.h"
+#include "proto/status_codec.h"
+
+namespace mgtd::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Arguments {
+  RunRequest request;
+  bool detach{false};
+};
+
+int terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 100;
+}
+
+int print_end(const Session& session, const RunStatus& run) {
+  if (session.json) print_json(nlohmann::json(to_json(run)));
+  fmt::print(stderr, "{}: {}\n", name(run.state), run.message);
+  for (const Check& check : run.checks) {
+    if (!check.passed)
+      fmt::print(stderr, "  failed: {}: {}; limit {}; {}\n", check.name, check.measured, check.limit,
+                 check.remedy);
+  }
+  if (run.state != RunState::done) return 1;
+  if (!session.json)
+    fmt::print("proposed: {}\naccept it with: mgt calibrations accept {}\n", run.proposed, run.proposed);
+  return 0;
+}
+
+/// Shows the run until it ends or waits for the operator. Ctrl-C leaves it running.
+int follow(const Session& session) {
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  auto client = daemon::ControlClient::connect(session.control_socket);
+  if (!client) return report(session, client.error());
+  std::string last;
+  int last_tenth = -1;
+  while (interrupted == 0) {
+    const auto reply = client->request(ControlCommand::run_status);
+    if (!reply) return report(session, reply.error());
+    const auto run = run_status_from_json(*reply);
+    if (!run) return report(session, run.error());
+    const std::string line = progress_line(*run, terminal_width() - 1);
+    const int tenth = run->poses > 0 ? 10 * run->pose / run->poses : 0;
+    if (terminal) {
+      fmt::print(stderr, "\r\033[K{}", line);
+    } else if (tenth != last_tenth) {
+      fmt::print(stderr, "{}\n", line);
+      last_tenth = tenth;
+    }
+    if (!is_active(run->state) || run->state == RunState::paused) {
+      if (terminal) fmt::print(stderr, "\n");
+      return print_end(session, *run);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  fmt::print(stderr, "\nthe run goes on; mgt run follow shows it again, mgt run abort ends it\n");
+  return 0;
+}
+
+int start(const Session& session, const Arguments& args) {
+  const auto reply = ask(session, ControlCommand::run_start, to_json(args.request));
+  if (!reply) return report(session, reply.error());
+  if (!args.detach) return follow(session);
+  if (session.json) print_json(*reply);
+  return 0;
+}
+
+int dry_run(const Session& session, const Arguments& args) {
+  const auto reply = ask(session, ControlCommand::run_dry_run, to_json(args.request));
+  if (!reply) return report(session, reply.error());
+  if (session.json) {
+    print_json(*reply);
+    return 0;
+  }
+  fmt::print("{}\nabout {:.0f} minutes; nothing was moved\n", reply->at("text").get<std::string>(),
+             reply->at("minutes").get<double>());
+  return 0;
+}
+
+int simple(const Session& session, ControlCommand command, bool then_follow) {
+  const auto reply = ask(session, command);
+  if (!reply) return report(session, reply.error());
+  if (then_follow) return follow(session);
+  const auto run = run_status_from_json(*reply);
+  if (!run) return report(session, run.error());
+  if (session.json) {
+    print_json(*reply);
+  } else {
+    fmt::print("{}\n{}\n", progress_line(*run, 100), run->message);
+  }
+  return 0;
+}
+
+void add_plan_options(CLI::App* command, RunRequest& r) {
+  command->add_option("--step", r.step_deg, "degrees between standard poses: 10 or 20");
+  command->add_option("--random", r.random, "random poses");
+  command->add_option("--revisits", r.revisits, "of them at attitudes measured before");
+  command->add_option("--dwell-short", r.dwell_short_s, "seconds");
+  command->add_option("--dwell-long", r.dwell_long_s, "seconds");
+  command->add_option("--retries", r.retries, "of a bad pose before the run pauses");
+  command->add_option("--seed", r.seed, "of the random set");
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Session& session) {
+  CLI::App* const group =
+      app.add_subcommand("run", "a calibration run: start, dry-run, follow, pause, resume, abort");
+  group->require_subcommand(1);
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const begin = add_command(
+      *group, session, "start", "preflight, home, measure every pose, solve, propose; shows the progress",
+      [args, &session] { return start(session, *args); });
+  add_plan_options(begin, args->request);
+  begin->add_flag("--detach", args->detach, "do not wait for the end");
+  CLI::App* const dry = add_command(*group, session, "dry-run",
+                                    "what a run would do, and how long it would take; moves nothing",
+                                    [args, &session] { return dry_run(session, *args); });
+  add_plan_options(dry, args->request);
+  add_command(*group, session, "follow", "show the run that is going on",
+              [&session] { return follow(session); });
+  add_command(*group, session, "status", "the run in one object",
+              [&session] { return simple(session, ControlCommand::run_status, false); });
+  add_command(*group, session, "pause", "stop the table; the present pose will be measured again",
+              [&session] { return simple(session, ControlCommand::run_pause, false); });
+  add_command(*group, session, "resume", "go on after a pause, or with a run that a dead daemon left",
+              [&session] { return simple(session, ControlCommand::run_resume, true); });
+  add_command(*group, session, "abort", "end the run; the active calibration stays",
+              [&session] { return simple(session, ControlCommand::run_abort, false); });
+}
+
+}  // namespace mgtd::cli

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "daemon/cli/ask.h"
+#include "daemon/stream_reader.h"
+
+namespace mgtd::cli {
+namespace {
+
+struct Arguments {
+  std::string stream;
+  std::optional<double> rate_hz;
+  std::uint64_t count{0};
+  bool raw{false};
+};
+
+double number(const nlohmann::json& object, const char* key) {
+  const auto& value = object.at(key);
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+void print_sample(const nlohmann::json& s) {
+  const auto& g = s.at("g_nT_per_m");
+  const auto& sd = s.at("g_sd_nT_per_m");
+  std::string flags;
+  for (const auto& flag : s.at("flags")) flags += " " + flag.get<std::string>();
+  fmt::print(
+      "{}  F {:10.2f} nT  G xx {:8.2f} yy {:8.2f} zz {:8.2f} xy {:8.2f} xz {:8.2f} yz {:8.2f} +-{:6.2f} nT/m "
+      " cal {}{}\n",
+      s.at("t").get<std::string>().substr(11, 12), number(s, "f_nT"), number(g, "xx"), number(g, "yy"),
+      number(g, "zz"), number(g, "xy"), number(g, "xz"), number(g, "yz"), number(sd, "xx"),
+      s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
+  std::fflush(stdout);
+}
+
+/// Where the stream is, as the daemon itself says.
+Result<std::string> stream_of(const Session& session, const Arguments& args) {
+  if (!args.stream.empty()) return args.stream;
+  const auto version = ask(session, ControlCommand::version);
+  if (!version) return tl::unexpected(version.error());
+  const std::string unix_path = version->at("stream_unix");
+  return unix_path.empty() ? version->at("stream_tcp").get<std::string>() : unix_path;
+}
+
+int run_watch(const Session& session, const Arguments& args) {
+  const auto where = stream_of(session, args);
+  if (!where) return report(session, where.error());
+  WatchRequest request;
+  request.classes = {};
+  request.classes.add(StreamClass::tensor);
+  if (session.json || args.raw) request.classes = StreamClasses::all();
+  request.rate_hz = args.rate_hz;
+  auto reader = daemon::StreamReader::open(*where, request);
+  if (!reader) return report(session, reader.error());
+  for (std::uint64_t seen = 0; args.count == 0 || seen < args.count;) {
+    const auto object = reader->next(std::chrono::seconds(30));
+    if (!object) return report(session, object.error());
+    if (!*object)
+      return report(session,
+                    {ErrorCode::unreachable, "the stream is silent for 30 s", "mgt status tells why"});
+    const std::string kind = (*object)->at("class");
+    if (session.json || args.raw) {
+      print_json(**object);
+      std::fflush(stdout);
+    } else if (kind == "TENSOR") {
+      print_sample(**object);
+    } else if (kind == "GAP") {
+      fmt::print("              gap: samples {} to {} were not measured: {}\n",
+                 (*object)->at("from_seq").get<std::uint64_t>(), (*object)->at("to_seq").get<std::uint64_t>(),
+                 (*object)->at("why").get<std::string>());
+    }
+    if (kind == "TENSOR") ++seen;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  args->rate_hz = 2;
+  CLI::App* const command = add_command(app, session, "watch", "the live stream",
+                                        [args, &session] { return run_watch(session, *args); });
+  command->add_option("--rate", args->rate_hz, "samples a second")->capture_default_str();
+  command->add_option("--count", args->count, "end after so many samples (0: never)")->capture_default_str();
+  command->add_option("--stream", args->stream, "Unix socket or host:port; asked of the daemon when absent");
+  command->add_flag("--raw", args->raw, "the objects as they come, one per line");
+}
+
+}  // namespace mgtd::cli

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/instruments.h"
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr std::size_t kTable = kSensors;
+
+}  // namespace
+
+Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
+                         Callbacks callbacks)
+    : callbacks_(std::move(callbacks)) {
+  for (const DeviceConfig& sensor : config.sensors) add(io, clock, sensor);
+  add(io, clock, config.table);
+  if (config.scalar) add(io, clock, *config.scalar);
+}
+
+void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device) {
+  const auto number = static_cast<std::uint8_t>(instruments_.size());
+  const std::string name = device.name;
+  drivers::PortCallbacks port;
+  port.on_events = [this, name](std::vector<DeviceEvent> events) {
+    for (const DeviceEvent& event : events) callbacks_.on_event(name, event);
+  };
+  port.on_state = [this, name](const LinkHealth& health) { callbacks_.on_link(name, health); };
+  port.on_raw = [this, number](drivers::Direction direction, std::span<const std::byte> bytes, Stamp at) {
+    callbacks_.on_raw(
+        {.device = number,
+         .direction = direction == drivers::Direction::in ? RawDirection::received : RawDirection::sent,
+         .at = at,
+         .bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
+  };
+  instruments_.push_back(
+      {name, device.driver, device.port,
+       std::make_unique<drivers::PortLink>(io, clock, drivers::PortSettings{device.port, device.baud},
+                                           device.device, std::move(port))});
+}
+
+void Instruments::start() {
+  for (Instrument& instrument : instruments_) instrument.link->start();
+}
+
+void Instruments::shutdown() {
+  instruments_[kTable].link->shutdown();
+  for (Instrument& instrument : instruments_) instrument.link->shutdown();
+}
+
+drivers::Turntable& Instruments::table() {
+  return static_cast<drivers::Turntable&>(instruments_[kTable].link->device());
+}
+
+void Instruments::flush_table() { instruments_[kTable].link->flush(); }
+
+std::vector<DeviceStatus> Instruments::status() const {
+  std::vector<DeviceStatus> out;
+  for (const Instrument& i : instruments_) out.push_back({i.name, i.driver, i.port, i.link->health()});
+  return out;
+}
+
+std::vector<std::pair<std::string, LinkHealth>> Instruments::links() const {
+  std::vector<std::pair<std::string, LinkHealth>> out;
+  for (const Instrument& i : instruments_) out.emplace_back(i.name, i.link->health());
+  return out;
+}
+
+}  // namespace mgtd::daemon

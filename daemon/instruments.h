@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "drivers/clock.h"
+#include "drivers/port_link.h"
+#include "proto/raw_log.h"
+#include "proto/status_report.h"
+
+/// The instruments of the rig on their ports: four sensors, the table and, where configured, the scalar
+/// reference. Opens and keeps them, and tells its owner what they say. Does not know what their words are
+/// for.
+namespace mgtd::daemon {
+
+class Instruments {
+ public:
+  struct Callbacks {
+    std::function<void(const std::string& device, const DeviceEvent& event)> on_event;
+    /// The link became live, or is no longer, or has another reason for it.
+    std::function<void(const std::string& device, const LinkHealth& health)> on_link;
+    std::function<void(const RawRecord& record)> on_raw;
+  };
+
+  /// `io` and `clock` outlive this.
+  Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
+              Callbacks callbacks);
+
+  void start();
+  /// The table is told to stop, then every port is closed.
+  void shutdown();
+
+  [[nodiscard]] drivers::Turntable& table();
+  /// Sends what the table has been asked for.
+  void flush_table();
+  [[nodiscard]] std::vector<DeviceStatus> status() const;
+  [[nodiscard]] std::vector<std::pair<std::string, LinkHealth>> links() const;
+
+ private:
+  struct Instrument {
+    std::string name, driver, port;
+    std::unique_ptr<drivers::PortLink> link;
+  };
+  void add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device);
+
+  Callbacks callbacks_;
+  std::vector<Instrument> instruments_;  ///< s1 .. s4, table, scalar
+};
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "calib/tensor.h"
+#include "daemon/calibration_store.h"
+#include "daemon/config.h"
+#include "daemon/control_server.h"
+#include "daemon/instruments.h"
+#include "daemon/journal.h"
+#include "daemon/log.h"
+#include "daemon/run_conductor.h"
+#include "daemon/sampler.h"
+#include "daemon/stream_server.h"
+#include "daemon/worker.h"
+
+/// The whole daemon, put together: instruments -> sampler -> tensor -> stream, and beside it the run and the
+/// operator's commands.
+///
+/// Order of starting: store, sockets, ports. Order of stopping: run (table stops), ports, sockets, worker,
+/// journal. Everything is on the one thread of the io_context but the solver.
+namespace mgtd::daemon {
+
+class Rig {
+ public:
+  Rig(boost::asio::io_context& io, Config config, CalibrationStore store);
+  ~Rig();
+  Rig(const Rig&) = delete;
+  Rig& operator=(const Rig&) = delete;
+
+  [[nodiscard]] Result<void> start();
+  void stop();
+
+ private:
+  void on_event(const std::string& device, const DeviceEvent& event);
+  void on_link(const std::string& device, const LinkHealth& health);
+  void on_reading(const FieldReading& reading);
+  void deliver();
+  void publish(const Epoch& epoch);
+  void tick();
+  void every_second(Stamp now);
+  void use_active_calibration();
+  void watch_links(Stamp now);
+
+  [[nodiscard]] Result<nlohmann::ordered_json> answer(const ControlRequest& request);
+  [[nodiscard]] Result<nlohmann::ordered_json> answer_run(const ControlRequest& request);
+  [[nodiscard]] Result<nlohmann::ordered_json> answer_calibrations(const ControlRequest& request);
+  [[nodiscard]] Result<nlohmann::ordered_json> dry_run(const RunRequest& request) const;
+  [[nodiscard]] StatusReport report() const;
+
+  boost::asio::io_context& io_;
+  Config config_;
+  drivers::Clock clock_;
+  CalibrationStore store_;
+  Worker worker_;
+  Instruments instruments_;
+  Sampler sampler_;
+  calib::TensorPipeline pipeline_;
+  StreamServer stream_;
+  ControlServer control_;
+  RunConductor run_;
+  std::optional<Journal> journal_;
+  boost::asio::steady_timer timer_;
+  QuietLog quiet_;
+
+  Stamp started_;
+  std::vector<EpochOrGap> pending_;  ///< reused, so that a sample allocates nothing
+  std::optional<double> last_skew_s_;
+  std::uint64_t published_{0}, published_at_watchdog_{0};
+  std::uint64_t epochs_at_second_{0};
+  std::optional<double> rate_hz_;
+  std::map<std::string, LinkState> link_states_;
+  std::optional<Instant> last_second_, last_watchdog_;
+  std::optional<Duration> watchdog_;
+  bool stopping_{false};
+};
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run_conductor.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "daemon/run_plan_json.h"
+#include "daemon/solver.h"
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr const char* kSuffix = ".mgtrun";
+
+/// "20261121T100000Z": sorts by time, names the file.
+std::string run_id_at(WallTime t) {
+  std::string id = format_utc(t).substr(0, 19);
+  std::erase_if(id, [](char c) { return c == '-' || c == ':'; });
+  return id + "Z";
+}
+
+PlanOptions plan_options(const RunDefaults& d, const RunRequest& r) {
+  return {.step_deg = r.step_deg.value_or(d.step_deg),
+          .random = r.random.value_or(d.random),
+          .revisits = r.revisits.value_or(r.random ? std::min(d.revisits, std::max(0, (*r.random - 2) / 2)) : d.revisits),
+          .dwell_short_s = r.dwell_short_s.value_or(d.dwell_short_s),
+          .dwell_long_s = r.dwell_long_s.value_or(std::max(d.dwell_long_s, r.dwell_short_s.value_or(0))),
+          .seed = r.seed.value_or(d.seed)};
+}
+
+RunOptions run_options(const Config& c) {
+  RunOptions out;
+  out.baseline_m = c.baseline_m;
+  out.field_nT = c.field_nT;
+  if (c.field_nT) out.field_sd_nT = c.field_sd_nT;
+  if (c.inclination_deg) out.inclination_rad = to_rad(*c.inclination_deg);
+  if (c.declination_deg) out.declination_rad = to_rad(*c.declination_deg);
+  out.table_sd_rad = to_rad(c.table_sd_deg);
+  return out;
+}
+
+}  // namespace
+
+RunConductor::RunConductor(const Config& config, std::filesystem::path directory, CalibrationStore& store,
+                           Worker& worker, RunHooks hooks)
+    : config_(config),
+      directory_(std::move(directory)),
+      store_(store),
+      worker_(worker),
+      hooks_(std::move(hooks)) {}
+
+void RunConductor::find_interrupted() {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_, ignored)) {
+    if (entry.path().extension() == kSuffix) files.push_back(entry.path());
+  }
+  std::sort(files.rbegin(), files.rend());
+  for (const auto& path : files) {
+    const auto file = RunFile::open(path, Access::read_only);
+    if (!file) {
+      spdlog::warn("{}: {}", path.string(), file.error().text());
+      continue;
+    }
+    const auto state = file->state();
+    const auto plan = plan_from_json(file->header().plan);
+    if (!state || !plan || !is_active(state->state)) continue;
+    interrupted_ = Interrupted{path, file->header().run_id, static_cast<int>(file->pose_count().value_or(0)),
+                               static_cast<int>(plan->poses.size())};
+    spdlog::warn(
+        "run {} was interrupted with {} of {} poses on disk: mgt run resume goes on with it, mgt run abort "
+        "gives it up",
+        interrupted_->run_id, interrupted_->stored, interrupted_->planned);
+    return;
+  }
+}
+
+Result<RunPlan> RunConductor::plan(const RunRequest& request) const {
+  return make_plan(plan_options(config_.run, request), hooks_.table().limits());
+}
+
+Pace RunConductor::pace() const { return {}; }
+
+RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& request) const {
+  RunConfig out;
+  out.run_id = run_id;
+  out.limits = hooks_.table().limits();
+  out.preflight.length_s = config_.run.preflight_s;
+  out.preflight.field_nT = config_.field_nT;
+  out.preflight.scalar = config_.scalar.has_value();
+  out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config_.rate_hz;
+  out.settle.min_s = config_.run.settle_min_s;
+  out.settle.max_s = config_.run.settle_max_s;
+  // A sped-up clock makes the host's own delays longer: 1 ms of scheduling is that many ms of the rig's time.
+  out.preflight.max_skew_s *= config_.speed_up;
+  out.retries = request.retries.value_or(config_.run.retries);
+  out.pace = pace();
+  return out;
+}
+
+Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
+  if (active())
+    return fail(ErrorCode::state, fmt::format("run {} is going on", status(now.mono).run_id),
+                "wait for it, or: mgt run abort");
+  if (interrupted_) {
+    return fail(ErrorCode::state,
+                fmt::format("run {} was interrupted with {} of {} poses", interrupted_->run_id,
+                            interrupted_->stored, interrupted_->planned),
+                "mgt run resume goes on with it, mgt run abort gives it up");
+  }
+  auto planned = plan(request);
+  if (!planned) return tl::unexpected(planned.error());
+  const std::string id = run_id_at(now.wall);
+  auto file = RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
+                                                            .rig = config_.rig_name,
+                                                            .started_utc = now.wall,
+                                                            .software = "mgtd " MGTD_VERSION,
+                                                            .config = config_.text,
+                                                            .plan = to_json(*planned).dump(),
+                                                            .seed = planned->options.seed,
+                                                            .source = "measured",
+                                                            .options = run_options(config_)});
+  if (!file) return tl::unexpected(file.error());
+  begin(*std::move(file), run_config(id, request), *std::move(planned), now, std::nullopt);
+  return {};
+}
+
+void RunConductor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
+                         const std::optional<EarlierLife>& earlier) {
+  file_ = std::move(file);
+  solved_.reset();
+  answers_.clear();
+  ++generation_;
+  spdlog::info("run {}: {} poses into {}", config.run_id, plan.poses.size(), file_->path().string());
+  fsm_ = std::make_unique<RunFsm>(std::move(config), std::move(plan), now, earlier);
+  feed(Tick{}, now);
+}
+
+Result<void> RunConductor::resume_interrupted(Stamp now) {
+  auto file = RunFile::open(interrupted_->file, Access::resume);
+  if (!file) return tl::unexpected(file.error());
+  auto plan = plan_from_json(file->header().plan);
+  if (!plan) return tl::unexpected(plan.error());
+  const auto poses = file->poses();
+  if (!poses) return tl::unexpected(poses.error());
+  EarlierLife earlier;
+  earlier.started_utc = file->header().started_utc;
+  for (const Pose& pose : poses->poses) {
+    earlier.stored.insert(pose.number);
+    earlier.last_t_s = std::max(earlier.last_t_s, pose.t_s.value_or(0));
+  }
+  RunConfig config = run_config(file->header().run_id, {});
+  interrupted_.reset();
+  begin(*std::move(file), std::move(config), *std::move(plan), now, earlier);
+  return {};
+}
+
+Result<void> RunConductor::drop_interrupted() {
+  auto file = RunFile::open(interrupted_->file, Access::resume);
+  if (!file) return tl::unexpected(file.error());
+  if (auto set = file->set_state(RunState::aborted, "interrupted, then given up by the operator"); !set)
+    return set;
+  interrupted_.reset();
+  return {};
+}
+
+Result<void> RunConductor::request(Request request, Stamp now) {
+  if (interrupted_ && request == Request::resume) return resume_interrupted(now);
+  if (interrupted_ && request == Request::abort) return drop_interrupted();
+  if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
+  if (auto possible = fsm_->possible(request); !possible) return possible;
+  feed(request, now);
+  return {};
+}
+
+void RunConductor::feed(const Event& event, Stamp now) {
+  if (!active()) return;
+  carry_out(fsm_->step(event, now), now);
+  while (!answers_.empty()) {
+    const std::vector<Event> answers = std::exchange(answers_, {});
+    for (const Event& answer : answers) carry_out(fsm_->step(answer, now), now);
+  }
+}
+
+void RunConductor::carry_out(const std::vector<Action>& actions, Stamp now) {
+  for (const Action& action : actions) std::visit([&](const auto& a) { act(a, now); }, action);
+}
+
+void RunConductor::act(const HomeTable&, Stamp) {
+  hooks_.table().home();
+  hooks_.flush_table();
+}
+
+void RunConductor::act(const MoveTable& action, Stamp) {
+  hooks_.table().move_to(action.target);
+  hooks_.flush_table();
+}
+
+void RunConductor::act(const StopTable&, Stamp) {
+  hooks_.table().stop();
+  hooks_.flush_table();
+}
+
+void RunConductor::act(const StorePose& action, Stamp) {
+  answers_.push_back(PoseStored{action.pose.number, file_->append_pose(action.pose)});
+}
+
+void RunConductor::act(const StorePath& action, Stamp) {
+  if (auto stored = file_->append_path(action.readings); !stored)
+    spdlog::warn("table path: {}", stored.error().text());
+}
+
+void RunConductor::act(const StoreChecks& action, Stamp) {
+  if (auto stored = file_->set_checks(action.stage, action.checks); !stored)
+    spdlog::warn("checks: {}", stored.error().text());
+}
+
+void RunConductor::act(const StartSolve&, Stamp) {
+  worker_.run([path = file_->path()](std::stop_token) { return solve_run(path); },
+              [this, generation = generation_](Result<calib::FitReport> report) {
+                if (generation != generation_ || !active()) return;
+                SolveDone done{tl::unexpected(Error{})};
+                if (report) {
+                  const calib::Calibration& c = report->calibration;
+                  done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict};
+                  solved_ = c;
+                } else {
+                  done.result = tl::unexpected(report.error());
+                }
+                answers_.push_back(std::move(done));
+              });
+}
+
+void RunConductor::act(const ProposeCalibration& action, Stamp now) {
+  Result<void> proposed =
+      fail(ErrorCode::internal, fmt::format("calibration {} was not solved here", action.calibration_id));
+  if (solved_ && solved_->id == action.calibration_id)
+    proposed = store_.propose(*solved_, file_->header().run_id, now.wall);
+  if (proposed) proposed = file_->set_document("proposed", calib::to_json_text(*solved_));
+  answers_.push_back(CalibrationProposed{std::move(proposed)});
+}
+
+void RunConductor::act(const PublishStatus& action, Stamp) {
+  // The file knows the state it would be found in after a crash.
+  if (const auto known = file_->state();
+      known && known->state != action.status.state && is_active(action.status.state)) {
+    if (auto set = file_->set_state(action.status.state, action.status.message); !set)
+      spdlog::warn("run state: {}", set.error().text());
+  }
+  hooks_.publish(action.status);
+}
+
+void RunConductor::act(const Record& action, Stamp now) {
+  spdlog::info("run: {}", action.what);
+  if (auto stored = file_->append_event({now, action.what}); !stored)
+    spdlog::warn("run log: {}", stored.error().text());
+}
+
+void RunConductor::act(const Finish& action, Stamp) {
+  spdlog::info("run ended, {}: {}", name(action.state), action.message);
+  if (auto set = file_->set_state(action.state, action.message); !set)
+    spdlog::error("run state: {}", set.error().text());
+}
+
+RunStatus RunConductor::status(Instant now) const {
+  if (fsm_ != nullptr) return fsm_->status(now);
+  RunStatus out;
+  if (interrupted_) {
+    out.run_id = interrupted_->run_id;
+    out.state = RunState::interrupted;
+    out.pose = interrupted_->stored;
+    out.poses = interrupted_->planned;
+    out.message =
+        "the daemon ended during this run: mgt run resume goes on with it, mgt run abort gives it up";
+  }
+  return out;
+}
+
+void RunConductor::abandon() {
+  if (!active()) return;
+  hooks_.table().stop();
+  hooks_.flush_table();
+  spdlog::warn("run {} is left with its poses on disk; it can be resumed when the daemon is back",
+               file_->header().run_id);
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/calibration_store.h"
+#include "daemon/config.h"
+#include "daemon/run_duration.h"
+#include "daemon/run_file.h"
+#include "daemon/run_fsm.h"
+#include "daemon/worker.h"
+#include "proto/run_request.h"
+
+/// Carries out what the run's state machine asks for: moves the table, keeps the run file, has the worker
+/// solve, proposes the calibration. One run at a time; the last one stays readable. A run that a dead daemon
+/// left behind is found at start and offered.
+namespace mgtd::daemon {
+
+struct RunHooks {
+  std::function<drivers::Turntable&()> table;
+  std::function<void()> flush_table;
+  std::function<void(const RunStatus&)> publish;
+};
+
+class RunConductor {
+ public:
+  RunConductor(const Config& config, std::filesystem::path directory, CalibrationStore& store, Worker& worker,
+               RunHooks hooks);
+
+  /// Looks for a run that was under way when the daemon died.
+  void find_interrupted();
+
+  [[nodiscard]] Result<RunPlan> plan(const RunRequest& request) const;
+  [[nodiscard]] Pace pace() const;
+  /// Refused while a run is active, or one is waiting to be resumed or aborted.
+  [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
+  /// Pause, resume, abort, retry. Resume and abort also settle an interrupted run.
+  [[nodiscard]] Result<void> request(Request request, Stamp now);
+
+  void feed(const Event& event, Stamp now);
+  [[nodiscard]] RunStatus status(Instant now) const;
+  [[nodiscard]] bool active() const { return fsm_ != nullptr && !fsm_->ended(); }
+  /// The daemon ends: the table stops, the run file is left to be resumed.
+  void abandon();
+
+ private:
+  struct Interrupted {
+    std::filesystem::path file;
+    std::string run_id;
+    int stored{0}, planned{0};
+  };
+
+  [[nodiscard]] RunConfig run_config(const std::string& run_id, const RunRequest& request) const;
+  [[nodiscard]] Result<void> resume_interrupted(Stamp now);
+  [[nodiscard]] Result<void> drop_interrupted();
+  void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
+             const std::optional<EarlierLife>& earlier);
+  void carry_out(const std::vector<Action>& actions, Stamp now);
+  void act(const HomeTable&, Stamp);
+  void act(const MoveTable& action, Stamp);
+  void act(const StopTable&, Stamp);
+  void act(const StorePose& action, Stamp now);
+  void act(const StorePath& action, Stamp);
+  void act(const StoreChecks& action, Stamp);
+  void act(const StartSolve&, Stamp now);
+  void act(const CancelSolve&, Stamp) {}
+  void act(const ProposeCalibration& action, Stamp now);
+  void act(const PublishStatus& action, Stamp);
+  void act(const Record& action, Stamp now);
+  void act(const Finish& action, Stamp);
+
+  const Config& config_;
+  std::filesystem::path directory_;
+  CalibrationStore& store_;
+  Worker& worker_;
+  RunHooks hooks_;
+  std::unique_ptr<RunFsm> fsm_;
+  std::optional<RunFile> file_;
+  std::optional<calib::Calibration> solved_;
+  std::optional<Interrupted> interrupted_;
+  std::vector<Event> answers_;  ///< of actions carried out at once, fed after them
+  std::uint64_t generation_{0};
+};
+
+}  // namespace mgtd::daemon

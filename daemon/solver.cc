@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/solver.h"
+
+#include "daemon/pose_source.h"
+
+namespace mgtd::daemon {
+
+calib::FitOptions fit_options(const RunOptions& options) {
+  calib::FitOptions out;
+  out.field_nT = options.field_nT;
+  out.field_sd_nT = options.field_sd_nT.value_or(out.field_sd_nT);
+  out.inclination_rad = options.inclination_rad;
+  out.declination_rad = options.declination_rad;
+  out.baseline_m = options.baseline_m;
+  out.table_sd_rad = options.table_sd_rad.value_or(out.table_sd_rad);
+  return out;
+}
+
+Result<calib::FitReport> solve_run(const std::filesystem::path& run_file) {
+  const auto source = read_run(run_file);
+  if (!source) return tl::unexpected(source.error());
+  return calib::fit(source->table,
+                    source->header ? fit_options(source->header->options) : calib::FitOptions{});
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "calib/fit/fit.h"
+#include "daemon/run_header.h"
+
+/// How the daemon and the offline tool call the fit: the same options from the same run file give the same
+/// answer.
+namespace mgtd::daemon {
+
+/// The options a run file states; the rest as the fit's defaults.
+[[nodiscard]] calib::FitOptions fit_options(const RunOptions& options);
+
+/// Reads the poses of a run file and fits them. Takes what it needs from the file alone, so it may run on any
+/// thread.
+[[nodiscard]] Result<calib::FitReport> solve_run(const std::filesystem::path& run_file);
+
+}  // namespace mgtd::daemon
