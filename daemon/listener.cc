@@ -17,6 +17,13 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
+namespace {
+
+/// Bounds what the kernel holds for a client that does not read, and so how old its next line can be.
+constexpr int kSendBuffer = 256 * 1024;
+
+}  // namespace
+
 class Listener::State : public std::enable_shared_from_this<State> {
  public:
   using Acceptor = asio::basic_socket_acceptor<asio::generic::stream_protocol>;
@@ -50,6 +57,7 @@ class Listener::State : public std::enable_shared_from_this<State> {
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);  // a Unix socket has none and needs none
       socket.set_option(asio::socket_base::keep_alive(true), ignored);
+      socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
       self->on_client_(std::move(socket));
       if (!self->stopped_) self->accept();
     });

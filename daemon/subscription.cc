@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "proto/stream_codec.h"
 
 namespace mgtd::daemon {
@@ -17,7 +19,9 @@ void Subscription::tell_gap(std::uint64_t from_seq, std::uint64_t end_seq, const
 void Subscription::watch(const WatchRequest& request, const SampleRing& ring, std::string& out) {
   request_ = request;
   due_.reset();
+  last_at_.reset();
   strikes_ = 0;
+  kept_up_ = 0;
   cursor_ = ring.end();
   next_seq_ = ring.next_seq();
   if (!request.from_seq) return;
@@ -35,20 +39,24 @@ void Subscription::watch(const WatchRequest& request, const SampleRing& ring, st
   next_seq_ = from_seq;
 }
 
-bool Subscription::wanted(const StreamRecord& record) {
-  if (!request_.classes.has(record.stream_class)) return false;
-  if (record.stream_class != StreamClass::tensor || !request_.rate_hz) return true;
+/// The sample nearest to each due time is taken; nearest, since real samples jitter about their grid.
+bool Subscription::is_due(Instant at) {
   const Duration period = from_seconds(1.0 / *request_.rate_hz);
-  // A quarter period of tolerance: samples that jitter about a due time are taken evenly.
-  if (due_ && record.at + period / 4 < *due_) return false;
-  due_ = !due_ || record.at > *due_ + period ? record.at + period : *due_ + period;
+  const Duration interval = last_at_ ? at - *last_at_ : Duration{0};
+  last_at_ = at;
+  if (due_ && at + std::min(interval, period) / 2 < *due_) return false;
+  due_ = !due_ || at > *due_ + period ? at + period : *due_ + period;
   return true;
 }
 
+bool Subscription::wanted(const StreamRecord& record) {
+  if (!request_.classes.has(record.stream_class)) return false;
+  return record.stream_class != StreamClass::tensor || !request_.rate_hz || is_due(record.at);
+}
+
 void Subscription::skip_lost(const SampleRing& ring, std::string& out) {
-  const bool soon_again = strikes_ > 0 && ring.end() - struck_at_ <= 2 * ring.capacity();
-  strikes_ = soon_again ? strikes_ + 1 : 1;
-  struck_at_ = ring.end();
+  strikes_ = kept_up_ < ring.capacity() ? strikes_ + 1 : 1;
+  kept_up_ = 0;
   ++gaps_;
   tell_gap(next_seq_, ring.next_seq(), "client too slow", out);
   cursor_ = ring.end();
@@ -62,7 +70,7 @@ void Subscription::fill(const SampleRing& ring, std::string& out, std::size_t li
     return;
   }
   if (cursor_ < ring.begin()) skip_lost(ring, out);
-  for (; cursor_ < ring.end() && out.size() < limit; ++cursor_) {
+  for (; cursor_ < ring.end() && out.size() < limit; ++cursor_, ++kept_up_) {
     const StreamRecord& record = ring.at(cursor_);
     if (wanted(record)) out += record.line;
     next_seq_ = record.stream_class == StreamClass::tensor || record.stream_class == StreamClass::gap

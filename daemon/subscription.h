@@ -11,8 +11,8 @@
 /// ring to a buffer here, sockets are elsewhere.
 ///
 /// A client that the ring has overtaken is told by a GAP which epochs it lost ("client too slow") and goes on
-/// with the newest sample. Overtaken three times in a row, each within two ring lengths of the one before, it
-/// has stayed behind and is to be disconnected.
+/// with the newest sample. Overtaken three times without keeping up for a ring length in between, it has
+/// stayed behind and is to be disconnected.
 namespace mgtd::daemon {
 
 class Subscription {
@@ -33,17 +33,19 @@ class Subscription {
 
  private:
   [[nodiscard]] bool wanted(const StreamRecord& record);
+  [[nodiscard]] bool is_due(Instant at);
   void skip_lost(const SampleRing& ring, std::string& out);
   /// Of epochs from_seq .. end_seq - 1.
   void tell_gap(std::uint64_t from_seq, std::uint64_t end_seq, const char* why, std::string& out);
 
   WatchRequest request_{StreamClasses{}, std::nullopt, std::nullopt};
-  std::uint64_t cursor_{0};    ///< number of the next record to look at
-  std::uint64_t next_seq_{0};  ///< epoch after the last one looked at
-  std::optional<Instant> due_;
+  std::uint64_t cursor_{0};         ///< number of the next record to look at
+  std::uint64_t next_seq_{0};       ///< epoch after the last one looked at
+  std::optional<Instant> due_;      ///< of the next sample to take, when decimating
+  std::optional<Instant> last_at_;  ///< of the newest sample, taken or not
   std::uint64_t gaps_{0};
   int strikes_{0};
-  std::uint64_t struck_at_{0};  ///< record number
+  std::uint64_t kept_up_{0};  ///< records looked at since it was last overtaken
 };
 
 }  // namespace mgtd::daemon

@@ -50,11 +50,6 @@ LinePeer::LinePeer(LinePeer&& other) noexcept
 
 LinePeer::~LinePeer() { close(); }
 
-void LinePeer::shrink_receive_buffer() {
-  const int size = 1;
-  ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &size, sizeof(size));
-}
-
 std::size_t LinePeer::send(std::string_view bytes) {
   const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   return n > 0 ? static_cast<std::size_t>(n) : 0;

@@ -18,8 +18,6 @@ class LinePeer {
   ~LinePeer();
 
   [[nodiscard]] bool connected() const { return fd_ >= 0; }
-  /// The smallest receive buffer the kernel allows: makes a slow reader quickly felt.
-  void shrink_receive_buffer();
   /// Bytes the kernel took; fewer than given when its buffer is full or the peer is gone.
   std::size_t send(std::string_view bytes);
   std::size_t send_line(std::string_view line) { return send(std::string(line) + "\n"); }
