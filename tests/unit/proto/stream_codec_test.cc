@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/stream_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "proto/status_codec.h"
+
+namespace mgtd {
+namespace {
+
+using Json = nlohmann::json;
+
+RunStatus run_status() {
+  RunStatus run;
+  run.run_id = "2026-11-21T10-00-00";
+  run.state = RunState::dwelling;
+  run.set = "random";
+  run.pose = 70;
+  run.poses = 157;
+  run.retries = 2;
+  run.elapsed_s = 512.5;
+  run.remaining_s = 250;
+  run.message = "pose 71: dwelling";
+  run.checks = {{"rate s1", true, "50.0 Hz", "50 Hz", ""},
+                {"noise s3", false, "2 nT", "1 nT", "look for iron"}};
+  return run;
+}
+
+bool operator==(const Check& a, const Check& b) {
+  return a.name == b.name && a.passed == b.passed && a.measured == b.measured && a.limit == b.limit &&
+         a.remedy == b.remedy;
+}
+
+TEST(StreamCodec, GreetingGapAndErrorHaveTheirDocumentedForm) {
+  EXPECT_EQ(encode(Greeting{"rig 7", "mgtd 0.1.0"}),
+            R"({"class":"HELLO","protocol":{"major":1,"minor":0},"rig":"rig 7","software":"mgtd 0.1.0"})");
+  EXPECT_EQ(encode(Gap{4, 9, {}, "s2 silent"}),
+            R"({"class":"GAP","from_seq":4,"to_seq":9,"why":"s2 silent"})");
+  EXPECT_EQ(encode(Error{ErrorCode::bad_input, "a \"quote\"", "b"}),
+            R"({"class":"ERROR","message":"a \"quote\"","remedy":"b"})");
+}
+
+TEST(StreamCodec, TextOfAnInstrumentCannotBreakALine) {
+  const std::string line = encode(Greeting{"rig\n\xff\x01", "m"});
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  EXPECT_TRUE(Json::accept(line));
+}
+
+TEST(StreamCodec, RunComesBackWhole) {
+  const RunStatus run = run_status();
+  const Json object = Json::parse(encode(run));
+  EXPECT_EQ(object["class"], "RUN");
+  const auto back = run_status_from_json(object);
+  ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ(back->run_id, run.run_id);
+  EXPECT_EQ(back->state, run.state);
+  EXPECT_EQ(back->set, run.set);
+  EXPECT_EQ(back->pose, run.pose);
+  EXPECT_EQ(back->poses, run.poses);
+  EXPECT_EQ(back->retries, run.retries);
+  EXPECT_EQ(back->elapsed_s, run.elapsed_s);
+  EXPECT_EQ(back->remaining_s, run.remaining_s);
+  EXPECT_EQ(back->message, run.message);
+  EXPECT_EQ(back->proposed, run.proposed);
+  ASSERT_EQ(back->checks.size(), run.checks.size());
+  for (std::size_t i = 0; i < run.checks.size(); ++i) EXPECT_TRUE(back->checks[i] == run.checks[i]);
+}
+
+TEST(StreamCodec, EveryRunStateHasAName) {
+  for (int i = 0; i <= static_cast<int>(RunState::interrupted); ++i) {
+    RunStatus run = run_status();
+    run.state = static_cast<RunState>(i);
+    run.proposed = "c1";
+    const auto back = run_status_from_json(Json::parse(encode(run)));
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->state, run.state);
+    EXPECT_EQ(back->proposed, "c1");
+  }
+}
+
+TEST(StreamCodec, ARunThatIsNoneIsRefusedByKey) {
+  const auto message = [](const char* key, const Json& value) {
+    Json object = Json::parse(encode(run_status()));
+    object[key] = value;
+    if (value.is_discarded()) object.erase(key);
+    const auto run = run_status_from_json(object);
+    return run ? std::string("accepted") : run.error().message;
+  };
+  const Json erased(Json::value_t::discarded);
+  EXPECT_NE(message("pose", erased).find("'pose' is missing"), std::string::npos);
+  EXPECT_NE(message("pose", "x").find("'pose' is not a whole number"), std::string::npos);
+  EXPECT_NE(message("state", "dancing").find("state 'dancing' is unknown"), std::string::npos);
+  EXPECT_NE(message("checks", Json::array({7})).find("in checks"), std::string::npos);
+  EXPECT_EQ(message("another", 1), "accepted");
+  EXPECT_FALSE(run_status_from_json(Json::array()));
+}
+
+TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
+  StatusReport report;
+  report.at.mono = Instant{std::chrono::seconds(100)};
+  report.at.wall.ns = 1'795'255'200'000'000'000;
+  report.uptime_s = 12.5;
+  report.software = "mgtd 0.1.0";
+  report.rig = "rig 7";
+  report.calibration = "c1";
+  DeviceStatus device{"s1", "obsdaq", "/dev/mgt/s1", {}};
+  device.health.state = LinkState::live;
+  device.health.bytes_in = 100;
+  device.health.bytes_in_frames = 80;
+  device.health.reject(Reject::checksum, 20);
+  device.health.last_frame = Instant{std::chrono::milliseconds(99'980)};
+  report.devices = {device, {"table", "gcs2", "/dev/mgt/table", {}}};
+  report.devices[1].health.bytes_in = 1;
+  report.sampler = {500, 3, 50.0, 1e-4};
+  report.journal = {"writing", 4096};
+  report.run.remaining_s = std::numeric_limits<double>::quiet_NaN();
+
+  const Json status = Json::parse(encode(report));
+  EXPECT_EQ(status["class"], "STATUS");
+  EXPECT_EQ(status["t"], "2026-11-21T10:00:00.000000Z");
+  EXPECT_EQ(status["cal"], "c1");
+  EXPECT_EQ(status["devices"][0]["state"], "live");
+  EXPECT_EQ(
+      status["devices"][0]["rejected"],
+      Json({{"length", 0}, {"framing", 0}, {"checksum", 1}, {"number", 0}, {"range", 0}, {"sequence", 0}}));
+  EXPECT_EQ(status["devices"][0]["balanced"], true);
+  EXPECT_EQ(status["devices"][0]["last_frame_age_s"], 0.02);
+  EXPECT_EQ(status["devices"][1]["balanced"], false);
+  EXPECT_TRUE(status["devices"][1]["last_frame_age_s"].is_null());
+  EXPECT_EQ(status["sampler"],
+            Json({{"epochs", 500}, {"gaps", 3}, {"rate_hz", 50.0}, {"skew_bound_s", 1e-4}}));
+  EXPECT_EQ(status["journal"], Json({{"state", "writing"}, {"bytes", 4096}}));
+  EXPECT_TRUE(status["disk_free_bytes"].is_null());
+  EXPECT_EQ(status["run"]["state"], "idle");
+  EXPECT_TRUE(status["run"]["remaining_s"].is_null());
+}
+
+}  // namespace
+}  // namespace mgtd
