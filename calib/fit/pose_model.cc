@@ -39,8 +39,7 @@ struct PoseModel::Field {
 };
 
 PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
-    : problem_(problem),
-      state_(state),
+    : state_(state),
       table_(problem.effects, Level::table),
       site_(problem.effects, Level::site),
       platform_(problem.effects, Level::platform),

@@ -44,7 +44,6 @@ class PoseModel {
   void scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const;
   void read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const;
 
-  const JointProblem& problem_;
   const JointState& state_;
   LevelTerms table_, site_, platform_, axis_;
   std::array<SensorGain, kSensors> gains_;
