@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,11 +15,15 @@ struct PortInfo {
   std::string description;  ///< as the converter calls itself
   std::string usb_serial;   ///< empty for ports that are not on USB
   std::string usb_id;       ///< "0403:6001"
-  /// What to write into the configuration.
+  std::string by_path;      ///< udev's name for the socket it is in (/dev/serial/by-path/...); may be empty
   [[nodiscard]] std::string name() const { return usb_serial.empty() ? path : "usb:" + usb_serial; }
 };
 
 [[nodiscard]] std::vector<PortInfo> list_ports();
+
+/// What to write into the configuration: the serial number where it is there and no other port has it (the
+/// ports of a four-port converter share one), else the socket, else the path.
+[[nodiscard]] std::string lasting_name(const PortInfo& port, std::span<const PortInfo> all);
 
 /// The path behind a name: "usb:SERIAL" is looked up, links are followed. Empty when no such converter is
 /// plugged in.

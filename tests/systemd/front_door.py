@@ -7,6 +7,7 @@ front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
   exposure    the unit is confined: systemd-analyze's score is at most LIMIT
   manual      groff finds nothing wrong with the manual pages
   keys        every key the configuration knows is in mgtd.toml and in its manual page
+  commands    every command and option of the programs is in the manual pages, and nothing else is
   completion  bash completes subcommands and options of the programs
 Exit code 77: the tool needed for the check is not on this machine.
 """
@@ -144,6 +145,47 @@ def check_keys(options, root):
         lacking += [f"{document}: '{key}'" for key in sorted(keys) if not re.search(rf"\b{re.escape(key)}\b", text)]
     if lacking:
         raise Failure("not documented: " + ", ".join(lacking))
+
+
+def help_of(program, path):
+    """Subcommands and long options that --help lists."""
+    said = demand(run(program, *path, "--help"), f"{program.name} {' '.join(path)} --help")
+    inside, subcommands = False, []
+    for line in said.splitlines():
+        if re.match(r"\S", line):
+            inside = line.lower().startswith("subcommands")
+        elif inside and (name := re.match(r"  ([a-z][\w-]*)", line)):
+            subcommands.append(name.group(1))
+    listed = said[said.index("Options:"):] if "Options:" in said else said
+    return subcommands, set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", listed))
+
+
+def walk(program, path=()):
+    """Every command of a program, with the options that it takes."""
+    subcommands, options = help_of(program, path)
+    yield path, options
+    for name in subcommands:
+        yield from walk(program, (*path, name))
+
+
+def check_commands(options, root):
+    del root
+    wrong, texts, known = [], {}, set()
+    for name, page in (("mgt", "mgt.1"), ("mgtd", "mgtd.8"), ("mgt-rig", "mgt-rig.1")):
+        text = (options.source / "man" / page).read_text().replace("\\-", "-")
+        text = re.sub(r"\\f[BIRP]", "", text)
+        texts[page] = text
+        for path, taken in walk(options.programs / name):
+            known |= taken
+            wrong += [f"{page} lacks {option} ({name} {' '.join(path)})" for option in taken if option not in text]
+            command = r"[\s\"]+".join(path)
+            if path and not re.search(rf"(?<![\w-]){command}(?![\w-])", text):
+                wrong.append(f"{page} lacks the command {name} {' '.join(path)}")
+    for page, text in texts.items():
+        wrong += [f"{page} has {option}, which no program takes"
+                  for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - known)]
+    if wrong:
+        raise Failure("\n".join(wrong))
 
 
 def check_completion(options, root):
