@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cables pulled, instruments stuck and the program killed in the middle of a run, through the real drivers.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "tests/rig/rotations.h"
+#include "tests/scenario/virtual_daemon.h"
+
+namespace mgtd {
+namespace {
+
+using namespace mgtd::daemon;
+using test::scenario_of;
+using test::VirtualDaemon;
+using testing::HasSubstr;
+
+constexpr int kPoses = 30;
+
+rig::Scenario table6() {
+  return scenario_of("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n");
+}
+
+RunPlan plan_for(VirtualDaemon& daemon) {
+  return *make_plan({.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
+                    daemon.table().limits());
+}
+
+/// Started and some poses far.
+void start(VirtualDaemon& daemon, std::size_t poses) {
+  ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
+  daemon.start(plan_for(daemon));
+  ASSERT_TRUE(daemon.run(600, [&] { return daemon.poses.poses.size() >= poses; }));
+  ASSERT_FALSE(daemon.finished) << daemon.finished->message;
+}
+
+bool run_to(VirtualDaemon& daemon, RunState state, double limit_s = 200) {
+  return daemon.run(limit_s, [&] { return daemon.status->state == state; });
+}
+
+/// Nothing of the trouble is in the data: every stored pose is of a table at rest where it says it was (its
+/// accuracy is 0.1 degree per axis), and every sensor, put right by the truth, reads the site's field.
+void expect_clean(VirtualDaemon& daemon) {
+  const rig::Scenario& scenario = daemon.rig.world().scenario();
+  const double inclination_rad = to_rad(scenario.inclination_deg),
+               declination_rad = to_rad(scenario.declination_deg);
+  const Eigen::Vector3d b_S(std::cos(inclination_rad) * std::cos(declination_rad),
+                            std::cos(inclination_rad) * std::sin(declination_rad), std::sin(inclination_rad));
+  for (const Pose& pose : daemon.poses.poses) {
+    SCOPED_TRACE(fmt::format("pose {}", pose.number));
+    EXPECT_NEAR(pose.f_nT.value_or(0), scenario.f_nT, 0.1);
+    const auto angles = pose.angles();
+    ASSERT_TRUE(angles);
+    const Eigen::Vector3d n_P = rig::about_z(to_deg(angles->azimuth_rad)) *
+                                rig::about_y(to_deg(angles->pitch_rad)) *
+                                rig::about_x(to_deg(angles->roll_rad)) * b_S;
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      const rig::SensorTruth& truth = scenario.truth[i];
+      const Eigen::Vector3d b_P_nT = truth.matrix().inverse() * (pose.y_nT[i] - truth.offset_nT);
+      EXPECT_NEAR(b_P_nT.norm(), scenario.f_nT, 0.5);  // 0.3 nT / sqrt(100), times the 15 axes' worst of many
+      EXPECT_LT(to_deg(b_P_nT.normalized().cross(n_P).norm()), 0.7);
+      for (const auto& sd_nT : pose.sd_nT[i]) EXPECT_LT(sd_nT.value_or(99), 0.5);  // of a sample: 0.3 nT
+    }
+  }
+}
+
+class TroubleThatPasses : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(TroubleThatPasses, CostsTimeButNeitherThePlanNorTheData) {
+  // Struck in each part of a pose's life.
+  for (const RunState state : {RunState::moving, RunState::settling, RunState::dwelling}) {
+    SCOPED_TRACE(name(state));
+    VirtualDaemon daemon(table6());
+    start(daemon, 3);
+    ASSERT_TRUE(run_to(daemon, state));
+    daemon.fault(GetParam());
+    daemon.run(3600, [&] {
+      return daemon.status->state == RunState::paused && daemon.rig.plugged(4) && daemon.all_live();
+    });
+    for (int i = 0; i < 5 && !daemon.finished; ++i) {  // an operator who looks and goes on
+      daemon.run(60);
+      daemon.tell(Request::resume);
+      daemon.run(1200);
+    }
+    const std::string fault = GetParam();
+    if (fault.starts_with("unplug")) {
+      EXPECT_THAT(daemon.notes, testing::Not(testing::IsEmpty()));
+    }
+    if (fault.find("fluxgate") != std::string::npos) {
+      EXPECT_GT(daemon.gaps + static_cast<unsigned>(daemon.status->retries), 1u);
+    }
+    ASSERT_TRUE(daemon.finished) << daemon.status->message;
+    EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
+    ASSERT_EQ(daemon.poses.poses.size(), static_cast<std::size_t>(kPoses));
+    expect_clean(daemon);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, TroubleThatPasses,
+                         ::testing::Values("unplug fluxgate1 for 3", "unplug fluxgate3 for 20",
+                                           "stall fluxgate2 for 4", "freeze fluxgate4 for 6",
+                                           "garbage fluxgate1", "torn fluxgate2 for 10",
+                                           "unplug scalar for 15", "stall scalar for 15",
+                                           "unplug table for 5", "stall table for 5", "freeze table for 8",
+                                           "garbage table"));
+
+TEST(RunFaults, JammedTableEndsInAPauseThatNamesTheTable) {
+  VirtualDaemon daemon(table6());
+  start(daemon, 2);
+  ASSERT_TRUE(run_to(daemon, RunState::moving));
+  daemon.fault("freeze table");
+  ASSERT_TRUE(run_to(daemon, RunState::paused, 1200));
+  EXPECT_THAT(daemon.status->message, HasSubstr("table"));
+  daemon.tell(Request::abort);
+  ASSERT_TRUE(daemon.run(60));
+  EXPECT_EQ(daemon.finished->state, RunState::aborted);
+}
+
+TEST(RunFaults, SensorThatStaysAwayFailsTheRunAndKeepsThePoses) {
+  VirtualDaemon daemon(table6());
+  start(daemon, 5);
+  daemon.fault("unplug fluxgate2");
+  ASSERT_TRUE(daemon.run(600));
+  EXPECT_EQ(daemon.finished->state, RunState::failed);
+  EXPECT_THAT(daemon.finished->message, HasSubstr("s2"));
+  EXPECT_THAT(daemon.finished->message, HasSubstr("are kept"));
+}
+
+TEST(RunFaults, AbortInMotionLeavesTheTableStandingStill) {
+  VirtualDaemon daemon(table6());
+  start(daemon, 1);
+  ASSERT_TRUE(run_to(daemon, RunState::moving));
+  daemon.run(0.5);
+  daemon.tell(Request::abort);
+  ASSERT_TRUE(daemon.run(60));
+  EXPECT_EQ(daemon.finished->state, RunState::aborted);
+  for (const auto axis : {rig::azimuth, rig::pitch, rig::roll})
+    EXPECT_FALSE(daemon.rig.world().axis(axis).moving(daemon.t_s));
+}
+
+TEST(RunFaults, KilledAnywhereTheRunGoesOnAtTheNextPose) {
+  for (const double after_s : {0.3, 2.0, 4.0, 6.0, 8.0, 11.0}) {  // parts of a pose's life
+    SCOPED_TRACE(after_s);
+    VirtualDaemon daemon(table6());
+    start(daemon, 4);
+    daemon.run(after_s);
+    const std::size_t kept = daemon.poses.poses.size();
+    EarlierLife earlier{daemon.started_utc(), {}, 0};
+    for (const Pose& pose : daemon.poses.poses) {
+      earlier.stored.insert(pose.number);
+      earlier.last_t_s = *pose.t_s;
+    }
+    daemon.restart();  // finds its instruments streaming and the table on its way
+    daemon.run(30);
+    ASSERT_TRUE(daemon.all_live());
+    daemon.start(plan_for(daemon), std::nullopt, earlier);
+    ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
+    EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
+    ASSERT_EQ(daemon.poses.poses.size(), static_cast<std::size_t>(kPoses));
+    EXPECT_EQ(daemon.poses.poses[kept].number, static_cast<int>(kept) + 1);
+    for (std::size_t i = 1; i < daemon.poses.poses.size(); ++i) {
+      EXPECT_GT(*daemon.poses.poses[i].t_s, *daemon.poses.poses[i - 1].t_s);
+      EXPECT_NEAR(
+          *daemon.poses.poses[i].t_s - *daemon.poses.poses[i - 1].t_s,
+          static_cast<double>(daemon.poses.poses[i].t_utc->ns - daemon.poses.poses[i - 1].t_utc->ns) * 1e-9,
+          1e-3);
+    }
+    expect_clean(daemon);
+  }
+}
+
+}  // namespace
+}  // namespace mgtd

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/run_fsm.h"
+#include "daemon/sampler.h"
+#include "tests/rig/bench_rig.h"
+#include "tests/rig/config_text.h"
+
+/// The whole stack in virtual time and in one thread: the simulated instruments, byte by byte through the
+/// real drivers, the sampler and the run. Only ports, clock and disk are left out: bytes are handed over
+/// every kStep_s, the time is a number, poses are kept in memory.
+namespace mgtd::test {
+
+using namespace mgtd::daemon;
+
+inline constexpr double kStep_s = 0.005;
+inline constexpr double kTick_s = 0.02;
+inline constexpr double kReopen_s = 0.5;
+inline constexpr double kSwitchedOn_utc_s = 1'795'255'200;  // 2026-11-21T10:00:00Z
+
+inline rig::Scenario scenario_of(const std::string& text) {
+  auto scenario = rig::parse_scenario(text, "test");
+  if (!scenario) throw std::invalid_argument(scenario.error().at(0));
+  return *scenario;
+}
+
+class VirtualDaemon {
+ public:
+  explicit VirtualDaemon(const rig::Scenario& scenario)
+      : rig(scenario, kSwitchedOn_utc_s), config_(read_config(scenario)), sampler_(sampler_config()) {
+    add_ports();
+  }
+
+  rig::BenchRig rig;
+  PoseTable poses;
+  std::optional<Finish> finished;
+  std::optional<RunStatus> status;
+  std::vector<std::string> records;
+  std::vector<std::string> notes;  ///< faults and losses, as they came
+  std::function<Result<Solution>(const PoseTable&)> solver = [](const PoseTable&) {
+    return Solution{true, "cal", {}, {}};
+  };
+  std::uint64_t epochs{0}, gaps{0};
+  double t_s{0};
+
+  [[nodiscard]] Stamp now() const {
+    return {
+        Instant{from_seconds(1000 + t_s)},
+        WallTime{static_cast<std::int64_t>(kSwitchedOn_utc_s) * 1'000'000'000 + from_seconds(t_s).count()}};
+  }
+  [[nodiscard]] WallTime started_utc() const { return started_utc_; }
+  [[nodiscard]] drivers::Turntable& table() { return dynamic_cast<drivers::Turntable&>(*ports_[4].device); }
+  [[nodiscard]] const LinkHealth& health(std::size_t port) const { return ports_.at(port).device->health(); }
+  [[nodiscard]] bool all_live() const {
+    for (const Port& port : ports_) {
+      if (port.device->health().state != LinkState::live) return false;
+    }
+    return true;
+  }
+
+  /// As the daemon makes it from its configuration.
+  [[nodiscard]] RunConfig run_config() {
+    RunConfig run;
+    run.run_id = "virtual";
+    run.limits = table().limits();
+    run.preflight.rate_hz = run.settle.rate_hz = run.dwell.rate_hz = config_.rate_hz;
+    run.preflight.scalar = config_.scalar.has_value();
+    run.preflight.field_nT = config_.field_nT;
+    return run;
+  }
+  void start(RunPlan plan, std::optional<RunConfig> config = std::nullopt,
+             const std::optional<EarlierLife>& earlier = std::nullopt) {
+    fsm_ = std::make_unique<RunFsm>(config ? *config : run_config(), std::move(plan), now(), earlier);
+    if (!earlier) started_utc_ = now().wall;
+    finished.reset();
+    tell(Tick{});
+  }
+  void tell(const Event& event) {
+    if (fsm_ == nullptr) return;
+    for (const Action& action : fsm_->step(event, now())) {
+      std::visit([this](const auto& a) { carry_out(a); }, action);
+    }
+  }
+  /// The program dies without a word and is started again; the instruments go on as they were.
+  void restart() {
+    config_ = read_config(rig.world().scenario());
+    ports_.clear();
+    add_ports();
+    sampler_ = Sampler(sampler_config());
+    fsm_.reset();
+    pending_.clear();
+    answers_.clear();
+  }
+  void fault(const std::string& line) {
+    const auto parsed = rig::parse_fault(line);
+    ASSERT_TRUE(parsed) << parsed.error();
+    const auto applied = rig.apply(*parsed, t_s);
+    ASSERT_TRUE(applied) << applied.error();
+  }
+
+  void step() {
+    t_s += kStep_s;
+    rig.run_script(t_s);
+    for (std::size_t i = 0; i < ports_.size(); ++i) exchange(i);
+    for (const Event& answer : std::exchange(answers_, {})) tell(answer);
+    if (t_s < next_tick_s_) return;
+    next_tick_s_ = t_s + kTick_s;
+    for (Port& port : ports_) {
+      if (port.open) port.device->on_tick(now());
+    }
+    sampler_.advance(now().mono, pending_);
+    deliver();
+    watch_links();
+    tell(Tick{});
+  }
+  /// Until `done` or the run's end; false after limit_s.
+  bool run(
+      double limit_s, const std::function<bool()>& done = [] { return false; }) {
+    for (const double end_s = t_s + limit_s; t_s < end_s;) {
+      if (finished || done()) return true;
+      step();
+    }
+    return finished.has_value() || done();
+  }
+
+ private:
+  struct Port {
+    std::string name;
+    std::shared_ptr<drivers::Device> device;
+    bool open{false}, was_live{false};
+    double reopen_at_s{0};
+  };
+
+  static Config read_config(const rig::Scenario& scenario) {
+    auto config =
+        parse_config(rig::config_text(scenario, "/dev", "/nowhere", 1, "127.0.0.1:0"), "virtual.toml");
+    if (!config) throw std::invalid_argument(config.error().lines.at(0));
+    return *std::move(config);
+  }
+  [[nodiscard]] SamplerConfig sampler_config() const {
+    SamplerConfig sampler;
+    sampler.rate_hz = config_.rate_hz;
+    return sampler;
+  }
+  void add_ports() {
+    for (const DeviceConfig& sensor : config_.sensors) ports_.push_back({sensor.name, sensor.device});
+    ports_.push_back({config_.table.name, config_.table.device});
+    if (config_.scalar) ports_.push_back({config_.scalar->name, config_.scalar->device});
+  }
+
+  void exchange(std::size_t i) {
+    Port& port = ports_[i];
+    if (port.open && (!rig.plugged(i) || port.device->wants_reopen())) {
+      port.open = false;
+      port.reopen_at_s = t_s + kReopen_s;
+      port.device->on_close(now());
+      take_events(i);
+    }
+    if (!port.open && rig.plugged(i) && t_s >= port.reopen_at_s) {
+      port.open = true;
+      if (i < kSensors) sampler_.reopened(static_cast<int>(i));
+      port.device->on_open(now());
+    }
+    if (!port.open) return;
+    rig.write(i, port.device->take_output(), t_s);
+    const std::string bytes = rig.read(i, t_s);
+    if (!bytes.empty()) port.device->on_bytes(std::as_bytes(std::span(bytes)), now());
+    rig.write(i, port.device->take_output(), t_s);
+    take_events(i);
+  }
+  void take_events(std::size_t i) {
+    Port& port = ports_[i];
+    watch_link(port);
+    for (const DeviceEvent& event : port.device->take_events()) {
+      std::visit([&](const auto& e) { on(port, e); }, event);
+    }
+    deliver();
+  }
+  void on(const Port&, const FieldReading& reading) { sampler_.push(reading, pending_); }
+  void on(const Port&, const TemperatureReading& reading) { sampler_.push(reading); }
+  void on(const Port&, const ScalarReading& reading) { tell(reading); }
+  void on(const Port&, const TableReading& reading) { tell(reading); }
+  void on(const Port& port, const DeviceFault& fault) {
+    notes.push_back(port.name + ": " + fault.what);
+    tell(DeviceFaulted{port.name, fault});
+  }
+  void on(const Port&, const DeviceNote&) {}
+  void deliver() {
+    for (const EpochOrGap& item : std::exchange(pending_, {})) {
+      if (const auto* gap = std::get_if<Gap>(&item)) {
+        gaps += gap->to_seq - gap->from_seq + 1;
+        tell(*gap);
+      } else {
+        ++epochs;
+        tell(std::get<Epoch>(item));
+      }
+    }
+  }
+
+  void watch_links() {
+    for (Port& port : ports_) {
+      watch_link(port);
+      tell(LinkSeen{port.name, port.device->health()});
+    }
+  }
+  void watch_link(Port& port) {
+    const LinkHealth& health = port.device->health();
+    EXPECT_TRUE(health.balanced()) << port.name;
+    const bool live = port.open && health.state == LinkState::live;
+    if (live == port.was_live) return;
+    port.was_live = live;
+    if (live) {
+      tell(DeviceBack{port.name});
+    } else {
+      notes.push_back(port.name + " lost");
+      tell(DeviceLost{port.name, health.detail});
+    }
+  }
+
+  void carry_out(const HomeTable&) { table().home(); }
+  void carry_out(const MoveTable& move) { table().move_to(move.target); }
+  void carry_out(const StopTable&) { table().stop(); }
+  void carry_out(const StorePose& store) {
+    poses.poses.push_back(store.pose);
+    answers_.emplace_back(PoseStored{store.pose.number, {}});
+  }
+  void carry_out(const StartSolve&) { answers_.emplace_back(SolveDone{solver(poses)}); }
+  void carry_out(const ProposeCalibration&) { answers_.emplace_back(CalibrationProposed{}); }
+  void carry_out(const PublishStatus& publish) { status = publish.status; }
+  void carry_out(const Record& record) { records.push_back(record.what); }
+  void carry_out(const Finish& finish) { finished = finish; }
+  void carry_out(const StorePath&) {}
+  void carry_out(const StoreChecks&) {}
+  void carry_out(const CancelSolve&) {}
+
+  Config config_;
+  Sampler sampler_;
+  std::vector<Port> ports_;
+  std::unique_ptr<RunFsm> fsm_;
+  std::vector<EpochOrGap> pending_;
+  std::vector<Event> answers_;
+  double next_tick_s_{0};
+  WallTime started_utc_;
+};
+
+}  // namespace mgtd::test
