@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kReference = 0;
 constexpr double kImpossiblyEarly = 0.5;    // periods before the model's sample time
+constexpr double kPrompt = 0.2;             // periods of mean delay: lost frames can be counted by time
+constexpr std::int64_t kMerged = 2;         // frames that garbage can hide in one rejected line
+constexpr std::int64_t kConfirmed = 64;     // samples on time after a loss
 constexpr double kLate = 0.75;              // periods behind it
 constexpr std::uint64_t kLateSamples = 16;  // all late, and spread in time: frames were lost unseen
 constexpr double kHoldGap_s = 1.0;          // before a gap is told, so that a long one is one record
@@ -37,7 +40,7 @@ Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.r
   const std::size_t capacity = std::bit_ceil(static_cast<std::size_t>(kept));
   const ClockModel::Config clock{period_s_, config.clock_window_s, config.max_drift, config.settle_samples};
   for (int slot = 0; slot < kSensors; ++slot) {
-    streams_.push_back(Stream{ClockModel(clock), std::vector<Sample>(capacity), 0, -1, 0, {}, {}, {}});
+    streams_.emplace_back(ClockModel(clock), capacity);
   }
   T_degC_.fill(std::numeric_limits<double>::quiet_NaN());
 }
@@ -64,14 +67,19 @@ void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
     ++s.health.duplicates;
     return;
   }
-  const std::int64_t k = number(reading.slot, reading, sample_s);
+  const auto numbered = number(reading.slot, reading, sample_s);
+  s.last = reading;
+  s.last_arrival_s = arrival_s;
+  if (!numbered) {
+    ++s.health.duplicates;
+    return;
+  }
+  const std::int64_t k = *numbered;
   s.clock.add(k, sample_s);
   if (reading.y_nT.allFinite()) {
     s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, reading.flags};
   }
   s.last_k = k;
-  s.last = reading;
-  s.last_arrival_s = arrival_s;
   ++s.health.samples;
   watch_lateness(s, arrival_s, sample_s - s.clock.time_of(static_cast<double>(k)));
   emit_ready(out);
@@ -108,19 +116,20 @@ std::int64_t Sampler::first_number(int slot, double sample_s) const {
   return std::max({s.last_k + 1, next_k_, whole(grid_.k + (sample_s - grid_.t_s) / grid_.period_s)});
 }
 
-/// Number of this sample in its stream; frames lost before it are counted.
-std::int64_t Sampler::number(int slot, const FieldReading& reading, double sample_s) {
+/// Number of this sample in its stream; frames lost before it are counted. Empty: the number is taken, drop
+/// the sample.
+std::optional<std::int64_t> Sampler::number(int slot, const FieldReading& reading, double sample_s) {
   Stream& s = streams_[static_cast<std::size_t>(slot)];
   if (s.last && reading.seq < s.last->seq) {
     ++s.health.reopened;
     restart(slot);
   }
   if (s.last) {
-    const std::int64_t by = step(s, reading, sample_s);
-    if (by > 0) {
-      s.health.lost += static_cast<std::uint64_t>(by - 1);
+    if (const std::int64_t by = step(s, reading, sample_s); by > 0) {
+      count_lost(s, by - 1);
       return s.last_k + by;
     }
+    if (was_overcounted(s, sample_s)) return std::nullopt;
     ++s.health.clock_breaks;
     restart(slot);
   }
@@ -128,23 +137,42 @@ std::int64_t Sampler::number(int slot, const FieldReading& reading, double sampl
   return s.first_k;
 }
 
+void Sampler::count_lost(Stream& s, std::int64_t frames) const {
+  s.health.lost += static_cast<std::uint64_t>(frames);
+  if (frames == 0 && s.last_k - s.inserted_at < kConfirmed) return;
+  s.inserted = frames;
+  s.inserted_at = s.last_k;
+}
+
+/// Garbage can look like more frames than were lost: then the next sample comes a period before its number is
+/// due.
+bool Sampler::was_overcounted(Stream& s, double sample_s) const {
+  const double early = (s.clock.time_of(static_cast<double>(s.last_k + 1)) - sample_s) / period_s_;
+  if (s.inserted < 1 || early > static_cast<double>(s.inserted) + kImpossiblyEarly) return false;
+  --s.inserted;
+  return true;
+}
+
 /// By how much the number rises: as the device's clock or count says, as long as the sample does not then
-/// arrive before it was taken. 0: not even by one; host clock or device clock jumped.
+/// arrive before it was taken. A count that jumps is uncertain (torn lines merge); where delivery is prompt,
+/// the time between decides. 0: not even by one.
 std::int64_t Sampler::step(const Stream& s, const FieldReading& reading, double sample_s) const {
   const auto counted = static_cast<std::int64_t>(reading.seq - s.last->seq);
   std::int64_t timed = 0;
   if (reading.device_time_s && s.last->device_time_s) {
     timed = whole((*reading.device_time_s - *s.last->device_time_s) / period_s_);
   }
-  const double slack_s = kImpossiblyEarly * period_s_ + (s.clock.settled() ? 0 : config_.silence_s);
-  const auto possible = [&](std::int64_t by) {
-    return by > 0 && sample_s - s.clock.time_of(static_cast<double>(s.last_k + by)) > -slack_s;
-  };
-  for (const std::int64_t by :
-       {std::max(counted, timed), std::min(counted, timed), counted, std::int64_t{1}}) {
-    if (possible(by)) return by;
+  const double due =
+      s.clock.index_of(sample_s) - static_cast<double>(s.last_k);  // at most, delay being positive
+  const double slack = s.clock.settled() ? kImpossiblyEarly : config_.silence_s / period_s_;
+  const auto possible = [&](std::int64_t by) { return by > 0 && static_cast<double>(by) < due + slack; };
+  if (timed > 0 && possible(timed)) return timed;
+  const ClockState clock = s.clock.state();
+  if (counted > 1 && clock.settled && clock.residual_s < kPrompt * period_s_) {
+    return std::clamp<std::int64_t>(whole(due - clock.residual_s / period_s_), 1, counted + kMerged);
   }
-  return 0;
+  if (possible(counted)) return counted;
+  return possible(1) ? 1 : 0;
 }
 
 /// Frames lost before the driver saw them leave no trace but time: from then on every sample is whole periods
@@ -162,7 +190,7 @@ void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
   if (late.samples < kLateSamples || late.span_s < config_.silence_s / 2) return;
   const std::int64_t lost = std::max<std::int64_t>(1, whole(late.least_s / period_s_));
   s.last_k += lost;
-  s.health.lost += static_cast<std::uint64_t>(lost);
+  count_lost(s, lost);
   late = {};
 }
 

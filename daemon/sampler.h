@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/clock_model.h"
@@ -82,6 +83,8 @@ class Sampler {
     double since_s{0}, least_s{0}, span_s{0};
   };
   struct Stream {
+    Stream(ClockModel model, std::size_t capacity) : clock(std::move(model)), ring(capacity) {}
+
     ClockModel clock;
     std::vector<Sample> ring;  ///< by k modulo its size, a power of two
     std::int64_t first_k{0};   ///< of this opening
@@ -89,6 +92,8 @@ class Sampler {
     double last_arrival_s{0};          ///< or when the sampler began
     std::optional<FieldReading> last;  ///< empty after reopening
     Lateness late;
+    std::int64_t inserted{0};  ///< numbers given to frames counted lost and not yet confirmed by time
+    std::int64_t inserted_at{0};
     SensorStreamHealth health;
 
     [[nodiscard]] const Sample* find(std::int64_t k) const;
@@ -110,8 +115,10 @@ class Sampler {
 
   void begin(const Stamp& stamp);
   [[nodiscard]] double seconds(Instant t) const { return to_seconds(t - origin_); }
-  [[nodiscard]] std::int64_t number(int slot, const FieldReading& reading, double sample_s);
+  [[nodiscard]] std::optional<std::int64_t> number(int slot, const FieldReading& reading, double sample_s);
   [[nodiscard]] std::int64_t step(const Stream& s, const FieldReading& reading, double sample_s) const;
+  [[nodiscard]] bool was_overcounted(Stream& s, double sample_s) const;
+  void count_lost(Stream& s, std::int64_t frames) const;
   void restart(int slot);
   [[nodiscard]] std::int64_t first_number(int slot, double sample_s) const;
   void watch_lateness(Stream& s, double arrival_s, double delay_s);
