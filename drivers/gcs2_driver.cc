@@ -261,7 +261,6 @@ void Gcs2Driver::arrive() {
 }
 
 void Gcs2Driver::end_of_cycle() {
-  const bool standing = moving_mask_ == 0;
   if (phase_ == Phase::starting) {
     phase_ = Phase::ready;
     last_start_fault_.clear();
@@ -269,16 +268,27 @@ void Gcs2Driver::end_of_cycle() {
     next_poll_ = now_.mono + from_seconds(kIdlePoll_s);
   } else if (job_ == Job::moving) {
     const bool there = std::all_of(axes_.begin(), axes_.end(), [](const Axis& a) { return a.on_target; });
-    if (standing && there && cycle_is_of_this_move_) {
+    if (moving_mask_ == 0 && there && cycle_is_of_this_move_) {
       arrive();
       return;
     }
   } else if (job_ == Job::arriving) {
     job_ = Job::none;
-  } else if (!standing) {
-    arrived_ = false;
+  } else if (arrived_) {
+    check_dwell();
   }
   report(busy());
+}
+
+/// With the servo off nothing holds the table but friction.
+void Gcs2Driver::check_dwell() {
+  for (const Axis& axis : axes_) {
+    if (std::abs(axis.position_deg - axis.target_deg) <= settings_.dwell_tolerance_deg) continue;
+    fault(fmt::format("{} turned to {:.3f} deg while the table should stand at {:.3f} deg",
+                      axis.settings.name, axis.position_deg, axis.target_deg),
+          "check that nothing pushes or unbalances the table; servo_off_in_dwell = false holds it");
+    return;
+  }
 }
 
 }  // namespace mgtd::drivers::gcs2

@@ -21,7 +21,8 @@
 /// ERR? follows every set command; an error is a DeviceFault in words and stops the table. A move that takes
 /// longer than distance/velocity*2 + 10 s is stopped. limits() is what the controller allows and the
 /// configuration narrows; before the controller was asked, it is the configuration's, or no travel at all.
-/// on_target holds from arrival until the next motion (with the servo off the controller no longer says it).
+/// on_target holds from arrival until the next request (with the servo off the controller no longer says it);
+/// a table that turns meanwhile is a fault.
 ///
 /// Does not plan a path: all axes start together, each at the set velocity.
 namespace mgtd::drivers::gcs2 {
@@ -82,6 +83,7 @@ class Gcs2Driver final : public LineBased<Turntable> {
   [[nodiscard]] bool refuse_target(const TableAngles& target);
   void arrive();
   void end_of_cycle();
+  void check_dwell();
   void halt();
 
   [[nodiscard]] bool take(const Question& question, std::string_view line);

@@ -59,6 +59,8 @@ Gcs2Settings read_gcs2_settings(Settings& s) {
   if (!(out.velocity_deg_per_s > 0 && out.velocity_deg_per_s <= 1000))
     s.object("velocity_deg_per_s", "must be above 0 and at most 1000 deg/s");
   out.servo_off_in_dwell = s.boolean("servo_off_in_dwell", true);
+  out.dwell_tolerance_deg = s.number("dwell_tolerance_deg", out.dwell_tolerance_deg);
+  if (!(out.dwell_tolerance_deg > 0)) s.object("dwell_tolerance_deg", "must be above 0 deg");
   return out;
 }
 

@@ -15,6 +15,7 @@
 ///   exist limits.azimuth = [-180, 180]  deg, narrower than the controller's own; likewise pitch, roll
 ///   velocity_deg_per_s = 10
 ///   servo_off_in_dwell = true   motor current and servo hold are magnetic noise
+///   dwell_tolerance_deg = 0.5   a table that stands and yet turns by more is a fault
 namespace mgtd::drivers::gcs2 {
 
 /// Which of the table's angles an axis turns.
@@ -32,6 +33,7 @@ struct Gcs2Settings {
   std::vector<AxisSettings> axes;
   double velocity_deg_per_s{10};
   bool servo_off_in_dwell{true};
+  double dwell_tolerance_deg{0.5};
 };
 
 [[nodiscard]] TableLimits::Range& travel(TableLimits& limits, Turns turns);

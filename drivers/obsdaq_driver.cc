@@ -56,8 +56,9 @@ std::string without_cr(std::string text) {
   return text.starts_with('|') ? "||||" : text;
 }
 
-/// A line that lost its ending holds the start of the next one too.
+/// A line that lost its ending holds the start of the next one too; a reply is no sample.
 std::uint64_t samples_lost(std::string_view line) {
+  if (line.starts_with('!') || line.starts_with('?')) return 0;
   return static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(1, std::count(line.begin(), line.end(), '*')));
 }
 

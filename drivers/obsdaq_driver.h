@@ -20,8 +20,8 @@
 ///   failed     the port answers with something else: DeviceFault, tried again every 10 s
 ///
 /// y_nT = volts * scale_nT_per_V + offset_nT, per axis. seq counts from the start of the acquisition; a
-/// rejected line counts as many samples as it shows starts of ('*'), at least one. Lines that left no trace
-/// are not known here.
+/// rejected line counts as many samples as it shows starts of ('*'), at least one unless it is a reply. Lines
+/// that left no trace are not known here.
 namespace mgtd::drivers::obsdaq {
 
 class ObsdaqDriver final : public LineDevice {

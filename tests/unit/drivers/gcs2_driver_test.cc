@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "drivers/registry.h"
 #include "proto/units.h"
@@ -322,6 +323,60 @@ TEST_F(Gcs2DriverTest, AStalledTableIsStoppedAfterItsDeadline) {
   EXPECT_THAT(faults()[0].what, HasSubstr("azimuth at 0.000 deg for 50.000"));
   ASSERT_TRUE(until([&] { return controller.commands.back() == "SVO 1 0"; }));
   EXPECT_THAT(controller.commands, ::testing::Contains("stop"));
+}
+
+TEST_F(Gcs2DriverTest, ATableThatIsPushedInItsDwellIsAFault) {
+  home();
+  move(50);
+  ASSERT_TRUE(until([&] { return last().on_target; }));
+  auto& axis = controller.axes["1"];
+  axis.position = axis.target = 50.4;
+  bench.pass(3);
+  EXPECT_TRUE(faults().empty());
+  EXPECT_NEAR(to_deg(last().angles.azimuth_rad), 50.4, 1e-9) << "what is measured is told";
+  axis.position = axis.target = 52;
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_THAT(faults()[0].what,
+              HasSubstr("azimuth turned to 52.000 deg while the table should stand at 50.000"));
+  EXPECT_FALSE(last().on_target);
+  bench.pass(5);
+  EXPECT_EQ(faults().size(), 1U) << "said once";
+}
+
+/// Each answer takes a tick, so that a move can be asked for while a poll is under way.
+TEST_F(Gcs2DriverTest, AnOldPollDoesNotAnswerForANewMove) {
+  controller.axes["1"].referenced = true;
+  std::string under_way;
+  DeviceBench slow(driver, [&](std::string_view sent) {
+    under_way += controller(sent);
+    return std::string();
+  });
+  const auto step = [&] {
+    slow.feed(std::exchange(under_way, {}));
+    slow.tick();
+    controller.advance(slow.t_s());
+  };
+  const auto arrived = [&] {
+    const auto readings = slow.events<TableReading>();
+    return !readings.empty() && readings.back().on_target;
+  };
+  slow.open();
+  for (int i = 0; i < 100; ++i) step();
+  ASSERT_EQ(driver.health().state, LinkState::live);
+  for (int phase = 1; phase < 90; ++phase) {  // 10 deg take 50 ticks
+    driver.move_to({to_rad(20.0), 0, 0});
+    slow.exchange();
+    for (int i = 0; i < 2000 && !arrived(); ++i) step();
+    driver.move_to({to_rad(30.0), 0, 0});
+    slow.exchange();
+    for (int i = 0; i < phase; ++i) step();  // under way, or just there
+    driver.move_to({to_rad(-10.0), 0, 0});
+    slow.exchange();
+    slow.forget_events();
+    for (int i = 0; i < 2000 && !arrived(); ++i) step();
+    ASSERT_TRUE(arrived()) << "after " << phase << " ticks";
+    EXPECT_NEAR(controller.axes["1"].position, -10, 1e-9) << "after " << phase << " ticks";
+  }
 }
 
 TEST_F(Gcs2DriverTest, AFailedReferenceIsAFault) {

@@ -164,6 +164,13 @@ TEST_F(ObsdaqDriverTest, ALineThatLostItsEndingCountsTwo) {
   EXPECT_EQ(bench.events<FieldReading>().back().seq, 5U) << "a byte no line contains";
 }
 
+TEST_F(ObsdaqDriverTest, AnUnsolicitedReplyIsRejectedAndNoLostSample) {
+  go_live();
+  bench.feed("*0259FEFFF1BFFFFCEDL\r?01\r!01\r*0259FEFFF1BFFFFCEDL\r");
+  EXPECT_EQ(bench.events<FieldReading>().back().seq, 1U);
+  EXPECT_EQ(driver.health().rejected[static_cast<std::size_t>(Reject::framing)], 2U);
+}
+
 TEST_F(ObsdaqDriverTest, ADeviceFoundStreamingIsStoppedFirst) {
   instrument.streaming = true;
   bench.open();

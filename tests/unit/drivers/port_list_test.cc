@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/child_process.h"
+#include "tests/support/pty.h"
+
 namespace mgtd::drivers {
 namespace {
 
@@ -33,6 +36,14 @@ TEST(PortList, WithoutSerialNumberTheSocketElseThePath) {
                                   usb("/dev/ttyS0", "", "")};
   EXPECT_EQ(lasting_name(all[0], all), "/dev/serial/by-path/x");
   EXPECT_EQ(lasting_name(all[1], all), "/dev/ttyS0");
+}
+
+TEST(PortList, LinksAreFollowedAndUnknownPathsKept) {
+  const mgtd::testing::TemporaryDirectory directory;
+  const mgtd::testing::PtyMaster master(directory / "s1");
+  EXPECT_EQ(port_path(directory / "s1"), master.terminal());
+  EXPECT_EQ(port_path(directory / "absent"), directory / "absent") << "so that the message names it";
+  EXPECT_FALSE(port_path("usb:NO-SUCH-SERIAL"));
 }
 
 }  // namespace
