@@ -8,6 +8,7 @@ front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
   manual      groff finds nothing wrong with the manual pages
   keys        every key the configuration knows is in mgtd.toml and in its manual page
   commands    every command and option of the programs is in the manual pages, and nothing else is
+  links       every file and heading that README.md and docs/ point to is there
   completion  bash completes subcommands and options of the programs
 Exit code 77: the tool needed for the check is not on this machine.
 """
@@ -186,6 +187,31 @@ def check_commands(options, root):
                   for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - known)]
     if wrong:
         raise Failure("\n".join(wrong))
+
+
+def anchors(text):
+    """Headings as a reader's browser knows them."""
+    heads = re.findall(r"^#+ (.+)$", text, flags=re.M)
+    return {re.sub(r"[^\w -]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+def check_links(options, root):
+    del root
+    broken = []
+    for page in (options.source / "README.md", *sorted((options.source / "docs").glob("*.md"))):
+        text = page.read_text()
+        for target, anchor in re.findall(r"\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)", text):
+            file = (page.parent / target) if target else page
+            if not file.exists():
+                broken.append(f"{page.name}: there is no {target}")
+            elif anchor and anchor not in anchors(file.read_text()):
+                broken.append(f"{page.name}: {target or page.name} has no heading #{anchor}")
+        rooms = "proto|drivers|calib|daemon|tests|systemd|man|docs"
+        for path in re.findall(rf"`((?:{rooms})/[\w./-]+)`", text):
+            if "NAME" not in path and not (options.source / path).exists():
+                broken.append(f"{page.name}: there is no {path}")
+    if broken:
+        raise Failure("\n".join(broken))
 
 
 def check_completion(options, root):
