@@ -2,14 +2,9 @@
 #include "calib/calibration.h"
 
 #include "calib/calibration_json.h"
-#include "proto/sha256.h"
 
 namespace mgtd::calib {
 
-void Calibration::seal() {
-  nlohmann::json content = to_json(*this);
-  content.erase("id");
-  id = "c" + sha256_hex(content.dump()).substr(0, 12);
-}
+void Calibration::seal() { id = content_id(to_json(*this)); }
 
 }  // namespace mgtd::calib

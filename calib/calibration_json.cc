@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "proto/sha256.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -145,6 +147,11 @@ Result<Calibration> calibration_from_json(const json& object) {
       return fail(ErrorCode::bad_input, fmt::format("schema '{}' is not '{}'", schema, kSchema),
                   "use the version of mgt that wrote it");
     }
+    if (const json& effects = object.at("effects"); effects != json::array()) {
+      return fail(ErrorCode::bad_input,
+                  fmt::format("it holds effects that this version cannot remove: {}", effects.dump()),
+                  "use the version of mgt that wrote it");
+    }
     c.id = object.at("id");
     c.method = object.at("method");
     for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
@@ -163,14 +170,18 @@ Result<Calibration> calibration_from_json(const json& object) {
     return fail(ErrorCode::bad_input, fmt::format("not a calibration: {}", error.what()),
                 "give a CAL.json written by mgt fit -o");
   }
-  const std::string written = c.id;
-  c.seal();
-  if (c.id != written) {
+  const std::string found = content_id(object);
+  if (c.id != found) {
     return fail(ErrorCode::bad_input,
-                fmt::format("the content was changed: it hashes to {}, the file says {}", c.id, written),
+                fmt::format("the content was changed: it hashes to {}, the file says {}", found, c.id),
                 "a calibration is never edited; fit again instead");
   }
   return c;
+}
+
+std::string content_id(json object) {
+  object.erase("id");
+  return "c" + sha256_hex(object.dump()).substr(0, 12);
 }
 
 std::string to_json_text(const Calibration& calibration) { return to_json(calibration).dump(1) + "\n"; }

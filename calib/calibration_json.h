@@ -10,6 +10,8 @@ namespace mgtd::calib {
 
 [[nodiscard]] nlohmann::json to_json(const Calibration& calibration);
 [[nodiscard]] nlohmann::json to_json(const std::vector<Check>& checks);
+/// "c" and the first 12 hex digits of the SHA-256 of everything but the key "id".
+[[nodiscard]] std::string content_id(nlohmann::json object);
 [[nodiscard]] Result<Calibration> calibration_from_json(const nlohmann::json& object);
 
 }  // namespace mgtd::calib

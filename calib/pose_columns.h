@@ -16,6 +16,7 @@ struct PoseColumn {
   bool required{false};
   std::function<void(Pose&, double)> set;
   std::function<std::optional<double>(const Pose&)> get;
+  bool whole{false};  ///< only whole numbers within +-1e9
 };
 
 /// In the order they are written. `pose`, `set` and `t_utc` are not numbers of this kind and stand before

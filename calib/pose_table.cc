@@ -148,6 +148,12 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
       return complain(cells[i].column, fmt::format("'{}' in column {} is not a number", cells[i].text, name),
                       "write it with a decimal point, or leave the cell empty when it was not measured");
     }
+    if (known_[i] != nullptr && known_[i]->whole &&
+        !(std::abs(*value) < 1e9 && std::floor(*value) == *value)) {
+      return complain(cells[i].column,
+                      fmt::format("{} in column {} is not a whole number", cells[i].text, name),
+                      "write it without decimals, or leave the cell empty");
+    }
     if (known_[i] != nullptr) {
       known_[i]->set(pose, *value);
     } else {
