@@ -2,47 +2,17 @@
 #include "calib/tensor.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+
+#include "calib/field_derivative.h"
 
 namespace mgtd::calib {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kCount = static_cast<std::size_t>(kSensors);
-
-/// d(corrected field of one sensor)/d(its 12 parameters), at b_P: 3 x 12.
-/// b_P = R (CA)^-1 (y - I) with y fixed: -R (CA)^-1 d(CA) R' b - R (CA)^-1 dI + dR R' b.
-using FieldDerivative = Eigen::Matrix<double, 3, kSensorParameters>;
-
-FieldDerivative field_derivative(const SensorModel& m, const Eigen::Vector3d& b_P_nT) {
-  FieldDerivative d;
-  const Eigen::Matrix3d R = m.R_PS();
-  const Eigen::Vector3d b_S = R.transpose() * b_P_nT;
-  const Eigen::Matrix3d gain = R * m.response().inverse();
-  const double st = std::sin(m.theta_rad), ct = std::cos(m.theta_rad);
-  const double sf = std::sin(m.phi_rad), cf = std::cos(m.phi_rad);
-  const double sp = std::sin(m.psi_rad), cp = std::cos(m.psi_rad);
-  const auto& c = m.scale;
-  const Eigen::Vector3d along_scale = m.response() * b_S;
-  d.col(theta) = -gain.col(0) * c[0] * (-st * cf * b_S[0] + ct * cf * b_S[1]);
-  d.col(phi) = -gain.col(0) * c[0] * (-ct * sf * b_S[0] - st * sf * b_S[1] + cf * b_S[2]);
-  d.col(psi) = -gain.col(1) * c[1] * (-sp * b_S[1] + cp * b_S[2]);
-  for (int a = 0; a < 3; ++a) {
-    d.col(cx + a) = -gain.col(a) * along_scale[a] / c[a];
-    d.col(ix + a) = -gain.col(a);
-  }
-  // A passive rotation by a about unit e: d/da (A v) = -(e x A v).
-  const Eigen::Vector3d inner = m.mounting * b_S;
-  const Eigen::Matrix3d Ax = rotation_x(m.alpha_rad), Ay = rotation_y(m.beta_rad),
-                        Az = rotation_z(m.gamma_rad);
-  d.col(alpha) = -(Az * Ay * Eigen::Vector3d::UnitX().cross(Ax * inner));
-  d.col(beta) = -(Az * Eigen::Vector3d::UnitY().cross(Ay * (Ax * inner)));
-  d.col(gamma) = -Eigen::Vector3d::UnitZ().cross(b_P_nT);
-  return d;
-}
 
 FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
   FieldVector out;

@@ -26,9 +26,8 @@ std::vector<Tilted> tilted_poses(const Readings& readings, const Alignment& alig
   std::vector<Tilted> out;
   for (Eigen::Index k = 0; k < readings.poses(); ++k) {
     const auto& angles = readings.angles[static_cast<std::size_t>(k)];
-    if (!angles) continue;
+    if (!is_tilted(angles)) continue;
     const Eigen::Matrix3d T = table_rotation(*angles);
-    if (std::acos(std::clamp(T(2, 2), -1.0, 1.0)) < kTilted_rad) continue;
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < kCount; ++i) b += alignment.R_PS[i] * b_S_nT[i].col(k);
     out.push_back({T, b.normalized()});
@@ -82,6 +81,10 @@ double mean_gamma_declination(const Alignment& alignment) {
 
 Eigen::Matrix3d table_rotation(const TableAngles& angles) {
   return rotation_z(angles.azimuth_rad) * rotation_y(angles.pitch_rad) * rotation_x(angles.roll_rad);
+}
+
+bool is_tilted(const std::optional<TableAngles>& angles) {
+  return angles && std::acos(std::clamp(table_rotation(*angles)(2, 2), -1.0, 1.0)) >= kTilted_rad;
 }
 
 AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignment,

@@ -34,4 +34,7 @@ void turn_to(Alignment& alignment, double declination_rad);
 /// Site frame to platform frame (passive): Rz(azimuth) Ry(pitch) Rx(roll).
 [[nodiscard]] Eigen::Matrix3d table_rotation(const TableAngles& angles);
 
+/// The angles are known and turn the platform away from Z by two degrees or more.
+[[nodiscard]] bool is_tilted(const std::optional<TableAngles>& angles);
+
 }  // namespace mgtd::calib

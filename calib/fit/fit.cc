@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "calib/fit/bootstrap.h"
 #include "calib/fit/error_summary.h"
+#include "calib/fit/influence.h"
 #include "calib/fit/orientation.h"
 #include "calib/fit/two_step.h"
 #include "calib/fit/verdict.h"
@@ -98,17 +98,23 @@ std::optional<ErrorSummary> hold_out(const Readings& readings, const FitOptions&
   return summarise(b, readings.f_nT, geometry);
 }
 
-/// Noise of a pose mean for the weights and the standard errors: what the spreads say, or what the residual
-/// says where it is larger.
+/// Noise of a pose mean for the standard errors: what the spreads say, or what the residual says where it is
+/// larger by more than chance (three standard deviations of a variance).
 AxisNoise effective_noise(const Readings& readings, const TwoStep& fitted, const ErrorSummary& step1) {
   AxisNoise noise = readings.pose_noise_nT;
+  const auto n = static_cast<double>(readings.poses());
+  const double dof = std::max(1.0, n - 9);
+  const double by_chance = 1 + 3 * std::sqrt(2 / dof);
+  const double scalar = readings.f_sd_nT.squaredNorm() / n;
   for (std::size_t i = 0; i < kCount; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    const double dof_ratio = std::sqrt(static_cast<double>(readings.poses()) /
-                                       static_cast<double>(std::max<Eigen::Index>(1, readings.poses() - 9)));
-    const Eigen::Vector3d scale = fitted.sensors[i].scale;
-    for (int a = 0; a < 3; ++a)
-      noise(at, a) = std::max(noise(at, a), step1.total_field_rmse_nT[i] * dof_ratio * scale[a]);
+    const double variance =
+        std::max(0.0, step1.total_field_rmse_nT[i] * step1.total_field_rmse_nT[i] * n / dof - scalar);
+    for (int a = 0; a < 3; ++a) {
+      const double stated = noise(at, a) / fitted.sensors[i].scale[a];
+      if (variance > by_chance * stated * stated)
+        noise(at, a) = std::sqrt(variance) * fitted.sensors[i].scale[a];
+    }
   }
   return noise;
 }
@@ -148,7 +154,7 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
   const FieldTable b = corrected_fields(readings, fitted.sensors);
   report.chi2 = field_chi2(b, readings, fitted.sensors, c.pose_noise_nT);
   report.dof = static_cast<double>(kSensors * (readings.poses() - 9));
-  const BootstrapResult spread = bootstrap(readings, options, fitted, effective);
+  const Influence spread = influence(readings, options, fitted, effective);
   c.covariance = spread.covariance;
   const Eigen::Vector3d site = fitted.site_direction();
   report.site = {.f_nT = readings.mean_f_nT(),

@@ -29,8 +29,7 @@ struct FitOptions {
   std::optional<double> inclination_rad, declination_rad;
   double baseline_m{0.4};
   double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
-  int replicates{400};               ///< of the bootstrap that gives the standard errors
-  std::uint64_t seed{1};             ///< of the same
+  std::uint64_t seed{1};             ///< of anything random in a method; two-step draws nothing
 };
 
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a

@@ -76,10 +76,15 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
                   "it must be in nT, between 1000 and 200000; check f_nT or --field");
     }
     for (std::size_t i = 0; i < kCount; ++i) out.y_nT[i].col(k) = pose.y_nT[i];
-    out.angles.push_back(pose.angles());
     out.standard.push_back(pose.set == "standard");
+    out.angles.push_back(pose.angles());
+    // A table with one axis reports no tilt: the standard set is level by definition.
+    if (out.standard.back() && pose.azimuth_rad && !out.angles.back())
+      out.angles.back() =
+          TableAngles{*pose.azimuth_rad, pose.pitch_rad.value_or(0), pose.roll_rad.value_or(0)};
   }
-  out.pose_noise_nT = pooled(table, [](const Pose& p) { return p.n_eff.value_or(p.n.value_or(1.0)); });
+  out.pose_noise_nT =
+      pooled(table, [](const Pose& p) { return std::max(1.0, p.n_eff.value_or(p.n.value_or(1.0))); });
   return out;
 }
 

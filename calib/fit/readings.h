@@ -19,6 +19,11 @@ struct Readings {
   AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< of a pose mean; zero when the table has no spreads
 
   [[nodiscard]] Eigen::Index poses() const { return f_nT.size(); }
+  /// The pose belongs to the turn of the standard set and its azimuth is known.
+  [[nodiscard]] bool of_turn(Eigen::Index k) const {
+    const auto at = static_cast<std::size_t>(k);
+    return standard[at] && angles[at].has_value();
+  }
   [[nodiscard]] double mean_f_nT() const { return f_nT.mean(); }
   /// The poses with these indices, in this order.
   [[nodiscard]] Readings subset(const std::vector<Eigen::Index>& which) const;

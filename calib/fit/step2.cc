@@ -8,6 +8,8 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "proto/units.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -18,6 +20,8 @@ constexpr std::size_t kMinStandard = 5;
 constexpr double kMaxCondition = 20;
 /// Mean of cos and sin of the azimuths: a whole turn has none; 0.9 is a fan of about 90 degrees.
 constexpr double kMaxFan = 0.9;
+/// A standard pose tilted by more is not of a turn about platform Z with the table's axis upright.
+constexpr double kLevel_rad = 1 * kRadiansPerDegree;
 
 struct Turn {
   std::vector<Eigen::Index> poses;
@@ -29,7 +33,16 @@ Result<Turn> standard_turn(const Readings& readings) {
   std::vector<double> azimuths;
   for (Eigen::Index k = 0; k < readings.poses(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    if (!readings.standard[at] || !readings.angles[at]) continue;
+    if (!readings.of_turn(k)) continue;
+    const double tilt =
+        std::max(std::abs(readings.angles[at]->pitch_rad), std::abs(readings.angles[at]->roll_rad));
+    if (tilt > kLevel_rad) {
+      return fail(
+          ErrorCode::refused,
+          fmt::format("a standard pose at azimuth {:.2f} deg is tilted by {:.2f} deg, limit {:.0f} deg",
+                      to_deg(readings.angles[at]->azimuth_rad), to_deg(tilt), to_deg(kLevel_rad)),
+          "the standard set is a turn of the level table about Z: give tilted poses another set");
+    }
     turn.poses.push_back(k);
     azimuths.push_back(readings.angles[at]->azimuth_rad);
   }
@@ -88,13 +101,15 @@ Result<Alignment> align(const Readings& readings, const std::array<Eigen::Matrix
   Alignment out;
   std::array<Rows, kCount> rows;
   double bz = 0, handedness = 0;
+  const double f = readings.mean_f_nT();
+  // A field that drifts during the turn would look like a tilt.
+  const Eigen::VectorXd to_mean = f * readings.f_nT(turn->poses).cwiseInverse();
   for (std::size_t i = 0; i < kCount; ++i) {
-    rows[i] = rows_of(b_S_nT[i](Eigen::all, turn->poses), turn->azimuth_rad);
+    rows[i] = rows_of(b_S_nT[i](Eigen::all, turn->poses) * to_mean.asDiagonal(), turn->azimuth_rad);
     out.condition = std::max(out.condition, rows[i].condition);
     bz += rows[i].bz_nT / kSensors;
     handedness += rows[i].T.determinant() > 0 ? 1 : -1;
   }
-  const double f = readings.mean_f_nT();
   if (!(out.condition < kMaxCondition)) {
     const bool along_z = bz > 0.5 * f;
     return fail(

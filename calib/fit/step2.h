@@ -13,7 +13,8 @@
 ///
 ///     P Tz = Bz,   P Tx = Bh cos(D - az),   P Ty = Bh sin(D - az)          (eqs. 16-18)
 ///
-/// P holds the fields of step 1, one row per pose. |Bz| is not given by the table: P u = 1 gives Tz =
+/// P holds the fields of step 1, one row per pose, brought to the mean total field. |Bz| is not given by the
+/// table: P u = 1 gives Tz =
 /// +-u/|u|, |Bz| = 1/|u|. The horizontal rows fix Tx and Ty with their signs, so the sign of Tz decides
 /// between a right-handed and a mirrored sensor; it is common to the four (the sign of Bz) and chosen by the
 /// majority, by a known inclination, or by the poses that tilt. Here D = 0: the origin of the azimuth is a
@@ -28,9 +29,9 @@ struct Alignment {
 };
 
 /// b_S: the corrected fields of every pose in the sensors' own frames. Only poses marked standard with a
-/// known azimuth count. `bz_sign` +1 or -1 when known. Refuses fewer than five such poses, a turn of less
-/// than 90 degrees, and a field within about three degrees of Z or of the horizontal plane, with the
-/// condition number.
+/// known azimuth count. `bz_sign` +1 or -1 when known. Refuses fewer than five such poses, poses
+/// that are not level, a turn of less than 90 degrees, and a field within about three degrees of Z or of the
+/// horizontal plane, with the condition number.
 [[nodiscard]] Result<Alignment> align(const Readings& readings,
                                       const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
                                       std::optional<double> bz_sign);

@@ -72,6 +72,10 @@ PoseTable measure(const RigTruth& rig, const Site& site, const std::vector<Attit
     pose.pitch_rad = a.pitch * kDeg;
     pose.roll_rad = a.roll * kDeg;
     pose.f_nT = site.f_nT;
+    if (noise.f_sd_nT > 0) {
+      pose.f_nT = site.f_nT + noise.f_sd_nT * normal(random);
+      pose.f_sd_nT = noise.f_sd_nT;
+    }
     pose.n = 1;
     for (std::size_t i = 0; i < rig.size(); ++i) {
       const Vec y = reading(rig[i], b_P);

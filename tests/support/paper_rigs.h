@@ -29,6 +29,7 @@ struct Noise {
   enum class Kind { gaussian, uniform } kind{Kind::gaussian};
   double size_nT{0};       ///< standard deviation, or half width of the uniform
   double table_sd_deg{0};  ///< true angles less the reported ones
+  double f_sd_nT{0};       ///< of the scalar reference; zero: exact, and no f_sd_nT is reported
 };
 
 /// One run: a pose per attitude; the first `standard` ones belong to the standard set.

@@ -159,9 +159,7 @@ TEST(TwoStepFit, EveryTurnedAndMirroredSensorIsRecognised) {
       for (int a = 0; a < 3; ++a)
         wiring(a, order.at(static_cast<std::size_t>(a))) = (signs >> a & 1) != 0 ? -1 : 1;
       for (Pose& pose : table.poses) pose.y_nT[2] = wiring * pose.y_nT[2];
-      FitOptions quick;
-      quick.replicates = 2;
-      const auto report = fit(table, quick);
+      const auto report = fit(table, {});
       ASSERT_TRUE(report) << report.error().text();
       EXPECT_EQ(report->calibration.sensors[2].mounting, Eigen::Matrix3d(wiring.transpose()));
       EXPECT_LT(report->after.tensor_rmse_nT_per_m.xx, 30);
