@@ -10,6 +10,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
@@ -52,6 +53,7 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
     tick();
   }
   void deliver();
+  void flush();
   void shutdown();
 
   [[nodiscard]] Device& device() { return *device_; }
@@ -67,6 +69,7 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
   void read();
   void write();
   void send_last_words();
+  bool send_output();
   void report_state();
 
   const Clock& clock_;
@@ -198,22 +201,35 @@ void PortLink::Impl::write() {
                     });
 }
 
+/// False when the device had nothing to send.
+bool PortLink::Impl::send_output() {
+  const std::string bytes = device_->take_output();
+  if (bytes.empty() || !port_) return false;
+  if (callbacks_.on_raw)
+    callbacks_.on_raw(Direction::out, std::as_bytes(std::span(bytes.data(), bytes.size())), clock_.now());
+  out_ += bytes;
+  write();
+  return true;
+}
+
 void PortLink::Impl::deliver() {
   if (std::exchange(delivering_, true)) return;  // a callback asked: the loop below goes on
   for (bool more = true; more;) {
-    const std::string bytes = device_->take_output();
-    if (!bytes.empty() && port_) {
-      if (callbacks_.on_raw)
-        callbacks_.on_raw(Direction::out, std::as_bytes(std::span(bytes.data(), bytes.size())), clock_.now());
-      out_ += bytes;
-      write();
-    }
+    const bool sent = send_output();
     std::vector<DeviceEvent> events = device_->take_events();
-    more = !bytes.empty() || !events.empty();
+    more = sent || !events.empty();
     if (!events.empty() && callbacks_.on_events) callbacks_.on_events(std::move(events));
   }
   delivering_ = false;
   report_state();
+}
+
+void PortLink::Impl::flush() {
+  if (ended_) return;
+  send_output();
+  asio::post(stream_.get_executor(), [self = shared_from_this()] {
+    if (!self->ended_) self->deliver();
+  });
 }
 
 /// Blocking, but for no longer than kLastWords_ms: there is no event loop left to wait in.
@@ -253,7 +269,7 @@ PortLink::PortLink(asio::io_context& io, const Clock& clock, PortSettings settin
 PortLink::~PortLink() { impl_->shutdown(); }
 
 void PortLink::start() { impl_->start(); }
-void PortLink::flush() { impl_->deliver(); }
+void PortLink::flush() { impl_->flush(); }
 void PortLink::shutdown() { impl_->shutdown(); }
 Device& PortLink::device() { return impl_->device(); }
 LinkHealth PortLink::health() const { return impl_->health(); }

@@ -52,7 +52,8 @@ class PortLink {
   PortLink& operator=(const PortLink&) = delete;
 
   void start();
-  /// Sends what the device wants to send and delivers its events: call after asking the device for something.
+  /// Sends what the device wants to send: call after asking it for something. What it has to say about that
+  /// is told from the event loop, never before flush() returns.
   void flush();
   /// The device's last words (a table stops) are sent if the port is there, then the port is closed for good.
   void shutdown();

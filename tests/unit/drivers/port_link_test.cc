@@ -35,6 +35,7 @@ class Parrot final : public LineDevice {
   }
   void on_shutdown(Stamp /*now*/) override { send("bye\n"); }
   void say(std::string_view text) { send(text); }
+  void note(std::string text) { emit(DeviceNote{{}, std::move(text)}); }
   int ticks{0};
   bool impatient{false};  ///< wants a fresh port when nothing comes
 
@@ -107,6 +108,16 @@ TEST_F(PortLinkTest, FlushSendsWhatWasAskedOfTheDevice) {
   device_->say("end\n");
   port->flush();
   ASSERT_TRUE(until([&] { return master.received() == "hello\n" + much + "end\n"; }));
+}
+
+TEST_F(PortLinkTest, WhatARequestProvokesIsToldAfterFlushHasReturned) {
+  PtyMaster master(path_);
+  auto port = link(path_);
+  port->start();
+  device_->note("refused");
+  port->flush();
+  EXPECT_TRUE(lines_.empty());
+  EXPECT_TRUE(until([&] { return lines_ == std::vector<std::string>{"refused"}; }));
 }
 
 TEST_F(PortLinkTest, APortThatIsNotThereIsAwaited) {
