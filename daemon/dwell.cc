@@ -54,7 +54,7 @@ void Dwell::add(const ScalarReading& reading) {
   if (reading.good && inside(reading.arrival.mono)) f_nT_.push_back(reading.f_nT);
 }
 
-bool Dwell::complete(Instant now, Duration grace) const { return past_end_ || now >= end_ + grace; }
+bool Dwell::complete(Instant now) const { return past_end_ || now >= end_ + from_seconds(config_.grace_s); }
 
 DwellQuality Dwell::quality() const {
   DwellQuality q;

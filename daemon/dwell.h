@@ -27,6 +27,7 @@ struct DwellConfig {
   double max_saturated_share{0};
   bool frozen_check{true};  ///< off for instruments whose resolution is coarser than their noise
   double scalar_sd_nT{kDefaultScalarSd_nT};  ///< of one scalar reading, until its own scatter says otherwise
+  double grace_s{3};                         ///< waited after the end for epochs that come late
 };
 
 /// Where and when the dwell is, as the run knows it.
@@ -56,8 +57,8 @@ class Dwell {
   /// Epochs and readings before begin or after the end are ignored.
   void add(const EpochOrGap& item);
   void add(const ScalarReading& reading);
-  /// The epochs of the whole dwell are in, or will not come (`grace` after its end).
-  [[nodiscard]] bool complete(Instant now, Duration grace = std::chrono::seconds{3}) const;
+  /// The epochs of the whole dwell are in, or will not come (grace_s after its end).
+  [[nodiscard]] bool complete(Instant now) const;
   [[nodiscard]] Instant begin() const { return begin_; }
   [[nodiscard]] Instant end() const { return end_; }
 

@@ -54,8 +54,10 @@ void Preflight::add(const ScalarReading& reading) {
 }
 
 bool Preflight::complete(Instant now) const {
-  return first_ ? now - *first_ >= from_seconds(config_.length_s)
-                : now - begin_ >= from_seconds(config_.wait_s);
+  if (!first_) return now - begin_ >= from_seconds(config_.wait_s);
+  // By the time of the data: a program that slept still has to read what came meanwhile.
+  const bool seen = last_ && *last_ - *first_ >= from_seconds(config_.length_s);
+  return seen || now - *first_ >= from_seconds(config_.length_s + config_.wait_s);
 }
 
 Preflight::Statistics Preflight::statistics() const {

@@ -49,7 +49,7 @@ class Preflight {
   void add(const TableReading& reading) { table_ = reading; }
   void add(const std::string& device, const LinkHealth& health) { links_[device] = health; }
 
-  /// length_s after the first epoch (gaps count), or wait_s without any.
+  /// length_s of epochs and gaps, or wait_s without any (more).
   [[nodiscard]] bool complete(Instant now) const;
   [[nodiscard]] std::vector<Check> checks(const drivers::TableLimits& limits, Instant now) const;
   /// Of one sample, the largest axis; 0 when there were too few epochs.

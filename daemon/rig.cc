@@ -185,6 +185,7 @@ void Rig::tick() {
   const Stamp now = clock_.now();
   sampler_.advance(now.mono, pending_);
   deliver();
+  if (run_.status(now.mono).state == RunState::preflight) watch_links(now);
   run_.feed(Tick{}, now);
   if (journal_) {
     journal_->tick(now.mono);
@@ -196,9 +197,8 @@ void Rig::tick() {
     last_second_ = host;
   }
   if (stopping_) return;
-  timer_.expires_after(kTick);
-  timer_.async_wait([this](auto ec) {
-    if (!ec && !stopping_) tick();
+  timer_.wait(kTick, [this] {
+    if (!stopping_) tick();
   });
 }
 

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "daemon/sampler.h"
 #include "daemon/stream_server.h"
 #include "daemon/worker.h"
+#include "drivers/patient_timer.h"
 
 /// The whole daemon, put together: instruments -> sampler -> tensor -> stream, and beside it the run and the
 /// operator's commands.
@@ -66,7 +66,7 @@ class Rig {
   ControlServer control_;
   RunConductor run_;
   std::optional<Journal> journal_;
-  boost::asio::steady_timer timer_;
+  drivers::PatientTimer timer_;
   QuietLog quiet_;
 
   Stamp started_;

@@ -25,7 +25,8 @@ std::string run_id_at(WallTime t) {
 PlanOptions plan_options(const RunDefaults& d, const RunRequest& r) {
   return {.step_deg = r.step_deg.value_or(d.step_deg),
           .random = r.random.value_or(d.random),
-          .revisits = r.revisits.value_or(r.random ? std::min(d.revisits, std::max(0, (*r.random - 2) / 2)) : d.revisits),
+          .revisits = r.revisits.value_or(r.random ? std::min(d.revisits, std::max(0, (*r.random - 2) / 2))
+                                                   : d.revisits),
           .dwell_short_s = r.dwell_short_s.value_or(d.dwell_short_s),
           .dwell_long_s = r.dwell_long_s.value_or(std::max(d.dwell_long_s, r.dwell_short_s.value_or(0))),
           .seed = r.seed.value_or(d.seed)};
@@ -94,8 +95,14 @@ RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& 
   out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config_.rate_hz;
   out.settle.min_s = config_.run.settle_min_s;
   out.settle.max_s = config_.run.settle_max_s;
-  // A sped-up clock makes the host's own delays longer: 1 ms of scheduling is that many ms of the rig's time.
-  out.preflight.max_skew_s *= config_.speed_up;
+  // A sped-up clock makes the host's own delays longer: 1 ms of scheduling or disk is that many ms of the
+  // rig's time.
+  // What the clocks then show is the host, not the rig.
+  if (config_.speed_up > 1) out.preflight.max_skew_s = 60;
+  for (double* limit :
+       {&out.preflight.wait_s, &out.store_max_s, &out.solve_max_s, &out.stop_max_s, &out.dwell.grace_s}) {
+    *limit *= config_.speed_up;
+  }
   out.retries = request.retries.value_or(config_.run.retries);
   out.pace = pace();
   return out;

@@ -17,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "drivers/patient_timer.h"
 #include "drivers/serial_port.h"
 
 namespace mgtd::drivers {
@@ -79,7 +80,8 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
 
   std::optional<SerialPort> port_;  ///< owns the descriptor that stream_ borrows
   asio::posix::stream_descriptor stream_;
-  asio::steady_timer tick_timer_, open_timer_;
+  PatientTimer tick_timer_;
+  asio::steady_timer open_timer_;
   Duration backoff_{kFirstBackoff};
   std::string closed_because_{"not opened yet"};
   std::array<std::byte, 4096> in_{};
@@ -152,9 +154,8 @@ void PortLink::Impl::lost(const std::string& why) {
 
 void PortLink::Impl::tick() {
   if (ended_) return;
-  tick_timer_.expires_after(std::clamp(clock_.host(kTick), kShortestTick, kTick));
-  tick_timer_.async_wait([self = shared_from_this()](error_code ec) {
-    if (ec || self->ended_) return;
+  tick_timer_.wait(std::clamp(clock_.host(kTick), kShortestTick, kTick), [self = shared_from_this()] {
+    if (self->ended_) return;
     if (self->port_) {
       self->device_->on_tick(self->clock_.now());
       self->deliver();

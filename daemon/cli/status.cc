@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <chrono>
+#include <memory>
+#include <thread>
+
 #include "daemon/cli/ask.h"
 #include "daemon/cli/progress.h"
 #include "proto/status_codec.h"
@@ -42,12 +46,30 @@ void print_run(const nlohmann::json& object) {
     fmt::print("          proposed: {} (mgt calibrations accept {})\n", run->proposed, run->proposed);
 }
 
-int run_status(const Session& session) {
-  const auto status = ask(session, ControlCommand::status);
+bool all_live(const nlohmann::json& status) {
+  for (const auto& device : status.at("devices")) {
+    if (device.at("state") != "live") return false;
+  }
+  return !status.at("sampler").at("rate_hz").is_null();
+}
+
+/// The status, once every device is live and samples come, or as it is when the patience is over.
+Result<nlohmann::json> status_after(const Session& session, double patience_s) {
+  const auto deadline = std::chrono::steady_clock::now() + from_seconds(patience_s);
+  while (true) {
+    auto status = ask(session, ControlCommand::status);
+    if ((status && all_live(*status)) || std::chrono::steady_clock::now() >= deadline) return status;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+int run_status(const Session& session, double patience_s) {
+  const auto status = status_after(session, patience_s);
   if (!status) return report(session, status.error());
+  const int code = patience_s > 0 && !all_live(*status) ? 1 : 0;
   if (session.json) {
     print_json(*status);
-    return 0;
+    return code;
   }
   const auto& s = *status;
   const auto& sampler = s.at("sampler");
@@ -62,14 +84,18 @@ int run_status(const Session& session) {
   fmt::print("journal   {}\n", s.at("journal").at("state").get<std::string>());
   print_devices(s.at("devices"));
   print_run(s.at("run"));
-  return 0;
+  return code;
 }
 
 }  // namespace
 
 void add_status(CLI::App& app, Session& session) {
-  add_command(app, session, "status", "devices, stream, calibration and run of the daemon",
-              [&session] { return run_status(session); });
+  auto patience_s = std::make_shared<double>(0);
+  CLI::App* const command =
+      add_command(app, session, "status", "devices, stream, calibration and run of the daemon",
+                  [patience_s, &session] { return run_status(session, *patience_s); });
+  command->add_option("--wait", *patience_s,
+                      "up to so many seconds for every device to be live; exit code 1 when one is not");
 }
 
 }  // namespace mgtd::cli

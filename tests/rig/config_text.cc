@@ -18,19 +18,22 @@ std::string config_text(const Scenario& s, const std::string& dir, const std::st
         dir, i, s.palmacq, s.rate_hz, s.range_V, s.uT_full_scale);
   }
   out += fmt::format(
-      "\n[table]\ndriver = \"gcs2\"\nport = \"{}/table\"\nbaud = 115200\naxes.azimuth = \"1\"\naxes.pitch = "
+      "\n[table]\ndriver = \"gcs2\"\nport = \"{}/table\"\nbaud = 115200\nvelocity_deg_per_s = "
+      "{}\naxes.azimuth = \"1\"\naxes.pitch = "
       "\"2\"\naxes.roll = \"3\"\n",
-      dir);
+      dir, s.table_velocity_deg_per_s);
   if (s.scalar) {
     out += fmt::format("\n[scalar]\ndriver = \"gsm\"\nport = \"{}/scalar\"\nbaud = 115200\n", dir);
   } else {
     out += fmt::format("\n[site]\nfield_nT = {}\n", s.f_nT);
   }
+  // Long enough that the host's own pauses, which a fast clock makes long, leave something to look at.
+  const double preflight_s = 5 + (speed_up - 1) / 2;
   out += fmt::format(
       "\n[store]\ndir = \"{0}\"\n\n[stream]\ntcp = \"{1}\"\nunix = \"{0}/stream.sock\"\n\n[control]\nunix = "
       "\"{0}/control.sock\"\n"
-      "\n[daemon]\nspeed_up = {2}\n",
-      state_dir, tcp, speed_up);
+      "\n[run]\npreflight_s = {3}\n\n[daemon]\nspeed_up = {2}\n",
+      state_dir, tcp, speed_up, preflight_s);
   return out;
 }
 

@@ -150,7 +150,13 @@ TEST(Preflight, LooksForItsLengthFromTheFirstEpoch) {
   Epoch epoch;
   epoch.t = at(3);
   preflight.add(epoch);
-  EXPECT_FALSE(preflight.complete(at(7.9).mono));
+  EXPECT_FALSE(preflight.complete(at(20).mono));  // nothing has come since: the program may have slept
+  EXPECT_TRUE(preflight.complete(at(28).mono));
+  epoch.t = at(7.9);
+  preflight.add(epoch);
+  EXPECT_FALSE(preflight.complete(at(8).mono));
+  epoch.t = at(8);
+  preflight.add(epoch);
   EXPECT_TRUE(preflight.complete(at(8).mono));
 }
 
