@@ -59,6 +59,7 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
     client->start({.on_line = [this, raw = client.get()](std::string_view line) { on_line(*raw, line); },
                    .on_overlong = [raw = client.get()] { on_overlong(*raw); },
                    .refill = [](std::string&) {},
+                   .keep_after_end = {},
                    .on_close = [this, raw = client.get()](std::string_view) { forget(raw); }});
   }
 

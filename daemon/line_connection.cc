@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/line_connection.h"
 
+#include <poll.h>
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/post.hpp>
@@ -24,7 +26,8 @@ void LineConnection::start(Handlers handlers) {
 void LineConnection::read() {
   socket_.async_read_some(asio::buffer(in_), [self = shared_from_this()](error_code ec, std::size_t n) {
     if (!self->open_) return;
-    if (ec) return self->close(ec == asio::error::eof ? "the client closed the connection" : ec.message());
+    if (ec == asio::error::eof) return self->sending_ended();
+    if (ec) return self->close(ec.message());
     self->received({self->in_.data(), n});
     if (self->open_) self->read();
   });
@@ -39,6 +42,17 @@ void LineConnection::received(std::string_view bytes) {
       [&] {
         if (open_) handlers_.on_overlong();
       });
+}
+
+void LineConnection::sending_ended() {
+  pollfd state{socket_.native_handle(), 0, 0};  // POLLHUP and POLLERR are always reported
+  const bool gone = ::poll(&state, 1, 0) != 0;
+  if (gone || !handlers_.keep_after_end || !handlers_.keep_after_end()) {
+    return close("the client closed the connection");
+  }
+  socket_.async_wait(Socket::wait_error, [self = shared_from_this()](error_code ec) {
+    if (self->open_) self->close(ec ? ec.message() : "the client is gone");
+  });
 }
 
 void LineConnection::send(std::string_view bytes) {

@@ -26,6 +26,9 @@ class LineConnection : public std::enable_shared_from_this<LineConnection> {
     std::function<void()> on_overlong;
     /// Appends what is due, when the peer can take more; is asked again when it filled the buffer to kBatch.
     std::function<void(std::string&)> refill;
+    /// Whether the peer is still owed something when it has ended its sending ("echo ... | nc" does); without
+    /// this handler it is not, and is closed.
+    std::function<bool()> keep_after_end;
     /// Called once, with the reason; nothing is called afterwards.
     std::function<void(std::string_view)> on_close;
   };
@@ -48,6 +51,7 @@ class LineConnection : public std::enable_shared_from_this<LineConnection> {
  private:
   void read();
   void received(std::string_view bytes);
+  void sending_ended();
   void write();
   void await_writable();
 

@@ -2,6 +2,7 @@
 #include "daemon/listener.h"
 
 #include <fmt/format.h>
+#include <netinet/tcp.h>
 
 #include <boost/asio/basic_socket_acceptor.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -21,6 +22,27 @@ namespace {
 
 /// Bounds what the kernel holds for a client that does not read, and so how old its next line can be.
 constexpr int kSendBuffer = 256 * 1024;
+
+/// A whole-number option of TCP, as Asio wants it.
+struct TcpOption {
+  int number;
+  int value;
+  [[nodiscard]] static int level(const asio::generic::stream_protocol&) { return IPPROTO_TCP; }
+  [[nodiscard]] int name(const asio::generic::stream_protocol&) const { return number; }
+  [[nodiscard]] const int* data(const asio::generic::stream_protocol&) const { return &value; }
+  [[nodiscard]] static std::size_t size(const asio::generic::stream_protocol&) { return sizeof(int); }
+};
+
+/// TCP options fail on a Unix socket, which needs none of them.
+void prepare(Listener::Socket& socket) {
+  error_code ignored;
+  socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+  socket.set_option(tcp::no_delay(true), ignored);
+  // A client that vanished without a word is noticed within two minutes.
+  socket.set_option(asio::socket_base::keep_alive(true), ignored);
+  socket.set_option(TcpOption{TCP_KEEPIDLE, 30}, ignored);
+  socket.set_option(TcpOption{TCP_KEEPINTVL, 10}, ignored);
+}
 
 }  // namespace
 
@@ -54,10 +76,7 @@ class Listener::State : public std::enable_shared_from_this<State> {
     acceptor_.async_accept([self = shared_from_this()](error_code ec, Socket socket) {
       if (self->stopped_) return;
       if (ec) return self->accept_later();
-      error_code ignored;
-      socket.set_option(tcp::no_delay(true), ignored);  // a Unix socket has none and needs none
-      socket.set_option(asio::socket_base::keep_alive(true), ignored);
-      socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+      prepare(socket);
       self->on_client_(std::move(socket));
       if (!self->stopped_) self->accept();
     });

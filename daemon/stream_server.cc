@@ -134,6 +134,7 @@ void StreamServer::State::admit(LineConnection::Socket socket) {
   connection->start({.on_line = [this, client](std::string_view line) { on_line(*client, line); },
                      .on_overlong = [this, client] { bad_line(*client, overlong()); },
                      .refill = [this, client](std::string& out) { refill(*client, out); },
+                     .keep_after_end = [client] { return client->subscription.watching(); },
                      .on_close = [this, client](std::string_view) { std::erase(clients_, client); }});
   connection->send(greeting_);
 }

@@ -77,6 +77,8 @@ void LinePeer::close() {
   if (fd_ >= 0) ::close(std::exchange(fd_, -1));
 }
 
+void LinePeer::end_sending() const { ::shutdown(fd_, SHUT_WR); }
+
 std::size_t LinePeer::count(std::string_view text) const {
   return static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
     return line.find(text) != std::string::npos;

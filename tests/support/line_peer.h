@@ -24,6 +24,8 @@ class LinePeer {
   /// Reads what is there, at most `limit` bytes.
   void pump(std::size_t limit = SIZE_MAX);
   void close();
+  /// Sends no more, still listens.
+  void end_sending() const;
 
   std::vector<std::string> lines;  ///< complete ones so far
   bool closed{false};              ///< the other side hung up

@@ -280,6 +280,39 @@ TEST_F(StreamServerTest, AClientThatHangsUpIsForgottenEvenInTheMiddleOfWriting) 
   EXPECT_EQ(server_->stats().dropped, 0U);
 }
 
+TEST_F(StreamServerTest, AClientThatEndsItsSendingStillHearsTheStream) {
+  start();
+  std::vector<LinePeer> peers;
+  peers.push_back(connect());
+  peers.push_back(connect_tcp());
+  for (LinePeer& peer : peers) {
+    watch(peer, kWatchTensor);
+    peer.end_sending();
+    for (int turn = 0; turn < 100; ++turn) io_.poll();
+    publish(0, 4);
+    ASSERT_TRUE(wait(peer, [&] { return seqs(peer).size() == 5; }));
+    peer.close();
+    std::uint64_t next = 5;
+    ASSERT_TRUE(wait([&] {
+      publish(next, next);
+      ++next;
+      return server_->stats().clients == static_cast<std::size_t>(&peers.back() - &peer);
+    }));
+  }
+}
+
+TEST_F(StreamServerTest, WhoLeavesWithoutAWatchFreesItsPlaceAtOnce) {
+  start();
+  {
+    LinePeer unix_peer = connect();
+    LinePeer tcp_peer = connect_tcp();
+    LinePeer watching = connect();
+    watch(watching, R"({"watch":{"class":["RUN"]}})");
+    EXPECT_EQ(server_->stats().clients, 3U);
+  }
+  ASSERT_TRUE(wait([&] { return server_->stats().clients == 0; }));
+}
+
 TEST_F(StreamServerTest, OneTooManyIsToldTheLimit) {
   start(1024, /*max_clients=*/2);
   LinePeer first = connect();
