@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real programs against each other: mgt-rig on ptys, mgtd on its ports, mgt as the operator.
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/child_process.h"
+
+namespace mgtd::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+std::string program(const std::string& name) { return std::string(MGTD_BIN_DIR) + "/" + name; }
+
+/// A simulated rig and a daemon on it, in a directory of their own.
+class Bench {
+ public:
+  explicit Bench(const std::string& speed_up = "30") : speed_up_(speed_up) {
+    rig_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{program("mgt-rig"), "run", "--rig", "table6", "--dir", dir_ / "ports",
+                                 "--speed-up", speed_up_},
+        dir_.path(), "rig");
+    const bool ready = eventually([&] { return !slurp(dir_ / "ports/ready").empty(); });
+    const Finished config =
+        run_program({program("mgt-rig"), "config", "--rig", "table6", "--dir", dir_ / "ports", "--speed-up",
+                     speed_up_, "--state", dir_.path(), "--tcp", "127.0.0.1:0"},
+                    dir_.path());
+    std::ofstream(config_path()) << config.out;
+    EXPECT_TRUE(ready && config.exit_code == 0) << rig_->err();
+  }
+
+  void start_daemon() {
+    daemon_.reset();
+    daemon_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{program("mgtd"), "--config", config_path()}, dir_.path(), "mgtd");
+    const bool live = eventually([&] { return mgt({"status", "--wait", "10"}).exit_code == 0; });
+    EXPECT_TRUE(live) << daemon_->err();
+  }
+  Finished mgt(std::vector<std::string> words) {
+    words.insert(words.begin(), {program("mgt"), "--socket", dir_ / "control.sock"});
+    return run_program(std::move(words), dir_.path(), std::chrono::seconds(400));
+  }
+  json ask(std::vector<std::string> words) {
+    words.emplace_back("--json");
+    return json::parse(mgt(std::move(words)).out, nullptr, false);
+  }
+  [[nodiscard]] std::string config_path() const { return dir_ / "mgtd.toml"; }
+  [[nodiscard]] ChildProcess& daemon() { return *daemon_; }
+  [[nodiscard]] const TemporaryDirectory& dir() const { return dir_; }
+
+ private:
+  TemporaryDirectory dir_;
+  std::string speed_up_;
+  std::unique_ptr<ChildProcess> rig_, daemon_;
+};
+
+const std::vector<std::string> kShortRun{"run",        "start", "--step",        "20", "--random",     "16",
+                                         "--revisits", "4",     "--dwell-short", "1",  "--dwell-long", "2"};
+
+TEST(Programs, ARunFromPortsToACalibratedStream) {
+  Bench bench;
+  bench.start_daemon();
+  EXPECT_TRUE(bench.ask({"status"}).at("cal").is_null());
+  const Finished run = bench.mgt(kShortRun);
+  ASSERT_EQ(run.exit_code, 0) << run.err << bench.daemon().err();
+  EXPECT_THAT(run.out, HasSubstr("proposed: c"));
+  // Proposed is not active.
+  EXPECT_TRUE(bench.ask({"status"}).at("cal").is_null());
+  ASSERT_EQ(bench.mgt({"calibrations", "accept", "latest"}).exit_code, 0);
+  const std::string id = bench.ask({"status"}).at("cal");
+  const Finished watch = bench.mgt({"watch", "--raw", "--count", "1"});
+  EXPECT_THAT(watch.out, HasSubstr("\"cal\":\"" + id + "\""));
+  for (const auto& device : bench.ask({"status"}).at("devices"))
+    EXPECT_TRUE(device.at("balanced")) << device.dump();
+  bench.daemon().signal(SIGTERM);
+  const auto ended = bench.daemon().wait();
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->exit_code, 0);
+}
+
+TEST(Programs, AKilledDaemonOffersTheRunAndGoesOnAtTheNextPose) {
+  Bench bench;
+  bench.start_daemon();
+  std::vector<std::string> detached = kShortRun;
+  detached.emplace_back("--detach");
+  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  int stored = 0;
+  ASSERT_TRUE(eventually([&] {
+    const json run = bench.ask({"run", "status"});
+    stored = run.is_object() ? run.value("pose", 0) : 0;
+    return stored >= 4;
+  })) << bench.daemon().err();
+  bench.daemon().signal(SIGKILL);
+  ASSERT_TRUE(bench.daemon().wait());
+  bench.start_daemon();
+  const json offered = bench.ask({"run", "status"});
+  EXPECT_EQ(offered.at("state"), "interrupted");
+  EXPECT_GE(offered.at("pose").get<int>(), stored);
+  EXPECT_EQ(bench.mgt(kShortRun).exit_code, 1) << "a new run must not bury the old one";
+  const Finished resumed = bench.mgt({"run", "resume"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err << bench.daemon().err();
+}
+
+TEST(Programs, AbortChangesNothingAndASecondDaemonIsTurnedAway) {
+  Bench bench;
+  bench.start_daemon();
+  const Finished second = run_program({program("mgtd"), "--config", bench.config_path()}, bench.dir().path());
+  EXPECT_NE(second.exit_code, 0);
+  std::vector<std::string> detached = kShortRun;
+  detached.emplace_back("--detach");
+  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  ASSERT_TRUE(eventually([&] { return bench.ask({"run", "status"}).value("pose", 0) >= 1; }));
+  EXPECT_EQ(bench.mgt({"run", "abort"}).exit_code, 0);
+  ASSERT_TRUE(eventually([&] { return bench.ask({"run", "status"}).value("state", "") == "aborted"; }));
+  EXPECT_TRUE(bench.ask({"calibrations", "list"}).at("calibrations").empty());
+  EXPECT_EQ(bench.mgt({"run", "pause"}).exit_code, 1);
+}
+
+TEST(Programs, BadInputIsNamedAndNothingIsWritten) {
+  TemporaryDirectory dir;
+  std::ofstream(dir / "bad.csv") << "pose,s1_x_nT\n1,abc\n";
+  const Finished fit =
+      run_program({program("mgt"), "fit", dir / "bad.csv", "-o", dir / "cal.json"}, dir.path());
+  EXPECT_EQ(fit.exit_code, 2);
+  EXPECT_THAT(fit.err, HasSubstr("bad.csv:1:1: missing column"));
+  EXPECT_EQ(slurp(dir / "cal.json"), "");
+  EXPECT_EQ(run_program({program("mgt"), "frobnicate"}, dir.path()).exit_code, 2);
+  const Finished nobody =
+      run_program({program("mgt"), "--socket", dir / "nobody.sock", "status"}, dir.path());
+  EXPECT_EQ(nobody.exit_code, 3);
+  EXPECT_THAT(nobody.err, HasSubstr("is mgtd running"));
+  EXPECT_EQ(run_program({program("mgtd"), "--config", dir / "none.toml"}, dir.path()).exit_code, 78);
+}
+
+TEST(Programs, TheOfflineChainFromTableToTensor) {
+  TemporaryDirectory dir;
+  ASSERT_EQ(run_program({program("mgt-rig"), "table", "--rig", "table6", "-o", dir / "poses.csv"}, dir.path())
+                .exit_code,
+            0);
+  ASSERT_EQ(run_program({program("mgt"), "import", dir / "poses.csv", "-o", dir / "run.mgtrun"}, dir.path())
+                .exit_code,
+            0);
+  const Finished fit =
+      run_program({program("mgt"), "fit", dir / "run.mgtrun", "-o", dir / "cal.json", "--json"}, dir.path());
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const json report = json::parse(fit.out);
+  EXPECT_EQ(report.at("schema"), "mgt.fit/1");
+  EXPECT_EQ(report.at("poses"), 157);
+  EXPECT_TRUE(report.at("accepted"));
+  const Finished apply =
+      run_program({program("mgt"), "apply", dir / "cal.json", dir / "run.mgtrun"}, dir.path());
+  EXPECT_EQ(apply.exit_code, 0);
+  EXPECT_THAT(apply.out, HasSubstr("Gxx_nT_per_m"));
+  const Finished exported = run_program({program("mgt"), "export", dir / "run.mgtrun"}, dir.path());
+  EXPECT_THAT(exported.out, HasSubstr("azimuth_deg"));
+}
+
+}  // namespace
+}  // namespace mgtd::testing
