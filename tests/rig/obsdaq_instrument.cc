@@ -98,8 +98,10 @@ void ObsdaqInstrument::obsdaq_line(std::string_view line, double now_s) {
   }
   if (acquiring_) return;
   if (line[0] == '#' && command.starts_with("PP") && command.size() == 10) {
-    ticks_ = static_cast<unsigned>(std::stoul(std::string(command.substr(2, 4)), nullptr, 16));
-    reply(fmt::format("!01{}", command.substr(2)));
+    const std::string_view digits = command.substr(2);
+    if (digits.find_first_not_of("0123456789ABCDEFabcdef") != std::string_view::npos) return reply("?01");
+    ticks_ = static_cast<unsigned>(std::stoul(std::string(digits.substr(0, 4)), nullptr, 16));
+    reply(fmt::format("!01{}", digits));
   } else if (line[0] == '#' && command == "CS" && ticks_ > 0) {
     reply("!01");
     start_acquisition(now_s);
