@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/array_model.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 
 #include "calib/sensor_equations.h"
@@ -27,16 +29,37 @@ Eigen::Vector3d undo(const Eigen::Vector3d& target, const auto& term) {
 
 ArrayModel::ArrayModel(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
                        const std::vector<EffectPtr>& effects, Eigen::VectorXd coefficients)
-    : positions_P_m_(geometry.positions_P_m()),
-      table_(effects, Level::table),
-      site_(effects, Level::site),
-      platform_(effects, Level::platform),
-      axis_(effects, Level::axis),
+    : effects_(effects),
+      positions_P_m_(geometry.positions_P_m()),
+      table_(effects_, Level::table),
+      site_(effects_, Level::site),
+      platform_(effects_, Level::platform),
+      axis_(effects_, Level::axis),
       coefficients_(std::move(coefficients)) {
   for (std::size_t i = 0; i < kSensors; ++i) {
     gain_[i] = sensors[i].R_PS() * sensors[i].response().inverse();
     offset_nT_[i] = sensors[i].offset_nT;
   }
+}
+
+Result<ArrayModel> ArrayModel::of(const Calibration& calibration) {
+  std::vector<EffectPtr> effects;
+  std::vector<double> values;
+  for (const CalibratedEffect& fitted : calibration.effects) {
+    auto effect = make_effect(fitted.effect);
+    if (!effect) return tl::unexpected(effect.error());
+    if ((*effect)->coefficients().size() != fitted.coefficients.size()) {
+      return fail(ErrorCode::bad_input,
+                  fmt::format("{} has {} coefficients in this calibration and {} here", fitted.effect,
+                              fitted.coefficients.size(), (*effect)->coefficients().size()),
+                  "use the version of mgt that wrote the calibration, or fit again");
+    }
+    effects.push_back(*effect);
+    for (const EffectCoefficient& c : fitted.coefficients) values.push_back(c.value);
+  }
+  return ArrayModel(
+      calibration.sensors, calibration.geometry, effects,
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
 }
 
 FieldVector ArrayModel::correct(const Conditions& at, const FieldVector& y_nT,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/calibration.h"
 #include "calib/effects/level_terms.h"
 #include "calib/geometry.h"
 #include "calib/sensor_model.h"
@@ -20,6 +21,9 @@ class ArrayModel {
   ArrayModel(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
              const std::vector<EffectPtr>& effects, Eigen::VectorXd coefficients);
 
+  /// Refuses an effect that is not in the library or has other coefficients there.
+  [[nodiscard]] static Result<ArrayModel> of(const Calibration& calibration);
+
   /// Fields at the sensors, platform frame, with axis and platform effects removed. Effects of the site are
   /// real field and stay in. `R` (site to platform) is used by effects that know where down is; without it
   /// they see no gravity. The inverse is a fixed point: exact to 1e-9 nT for effects that change a reading by
@@ -33,6 +37,7 @@ class ArrayModel {
   [[nodiscard]] Eigen::Matrix3d attitude(const Conditions& at) const;
 
  private:
+  std::vector<EffectPtr> effects_;              ///< kept alive for the terms
   std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R (CA)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
   std::array<Eigen::Vector3d, kSensors> positions_P_m_;

@@ -28,12 +28,29 @@ struct Reference {
   std::optional<double> f_nT;                          ///< mean total field
 };
 
+/// A coefficient of an effect as it was fitted.
+struct EffectCoefficient {
+  std::string name;  ///< "Gxx", "s3.z"
+  double value{0}, sd{0};
+  std::string unit;
+};
+
+/// An effect that is part of the calibration, by its name in the library.
+struct CalibratedEffect {
+  std::string effect;
+  std::vector<EffectCoefficient> coefficients;
+};
+
 struct Calibration {
   std::string id;      ///< "c" and 12 hex digits; set by seal()
   std::string method;  ///< "simplified", "two-step", "joint"
   std::array<SensorModel, kSensors> sensors;
   ArrayCovariance covariance{
       ArrayCovariance::Zero()};  ///< of the parameters in kParameterNames order, sensor by sensor
+  std::vector<CalibratedEffect> effects;
+  /// Of all coefficients (rows) with the 48 parameters and then with all coefficients (columns); empty
+  /// without effects.
+  Eigen::MatrixXd effect_covariance;
   Geometry geometry;
   AxisNoise sample_noise_nT{
       AxisNoise::Zero()};  ///< of one sample, for the stream's standard deviations; 0 unknown

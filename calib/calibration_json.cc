@@ -77,6 +77,51 @@ ArrayCovariance covariance_from(const json& list) {
   return c;
 }
 
+json effects_json(const std::vector<CalibratedEffect>& effects) {
+  json out = json::array();
+  for (const CalibratedEffect& e : effects) {
+    json coefficients = json::array();
+    for (const EffectCoefficient& c : e.coefficients) {
+      coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
+    }
+    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}});
+  }
+  return out;
+}
+
+std::vector<CalibratedEffect> effects_from(const json& list) {
+  std::vector<CalibratedEffect> out;
+  for (const json& e : list) {
+    CalibratedEffect effect{e.at("effect"), {}};
+    for (const json& c : e.at("coefficients")) {
+      effect.coefficients.push_back({c.at("name"), c.at("value"), c.at("sd"), c.at("unit")});
+    }
+    out.push_back(std::move(effect));
+  }
+  return out;
+}
+
+json matrix_json(const Eigen::MatrixXd& m) {
+  json out = json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    json row = json::array();
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+Eigen::MatrixXd matrix_from(const json& rows, std::size_t columns) {
+  Eigen::MatrixXd m(static_cast<Eigen::Index>(rows.size()),
+                    rows.empty() ? 0 : static_cast<Eigen::Index>(columns));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows.at(i).at(j).get<double>();
+    }
+  }
+  return m;
+}
+
 json reference_json(const Reference& r) {
   json T = json::array();
   for (const auto& t : r.T_degC) T.push_back(t ? json(*t) : json());
@@ -127,7 +172,8 @@ json to_json(const Calibration& c) {
           {"model", "y = C A R' b + I (12 parameters a sensor)"},
           {"sensors", std::move(sensors)},
           {"covariance", triangle(c.covariance)},
-          {"effects", json::array()},
+          {"effects", effects_json(c.effects)},
+          {"effect_covariance", matrix_json(c.effect_covariance)},
           {"baseline_m", c.geometry.baseline_m},
           {"sample_noise_nT", rows(c.sample_noise_nT)},
           {"pose_noise_nT", rows(c.pose_noise_nT)},
@@ -156,6 +202,9 @@ Result<Calibration> calibration_from_json(const json& object) {
     c.method = object.at("method");
     for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
     c.covariance = covariance_from(object.at("covariance"));
+    c.effects = effects_from(object.at("effects"));
+    const json& rows = object.at("effect_covariance");
+    c.effect_covariance = matrix_from(rows, kArrayParameters + rows.size());
     c.geometry.baseline_m = object.at("baseline_m");
     c.sample_noise_nT = noise_from(object.at("sample_noise_nT"));
     c.pose_noise_nT = noise_from(object.at("pose_noise_nT"));
