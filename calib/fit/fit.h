@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "calib/calibration.h"
+#include "calib/effects/library.h"
+#include "calib/fit/outlier_node.h"
 #include "proto/error.h"
 #include "proto/pose.h"
 #include "proto/tensor.h"
@@ -16,12 +18,12 @@
 /// From a pose table to a calibration and everything an operator must know about it.
 namespace mgtd::calib {
 
-enum class Method { simplified, two_step };
+enum class Method { simplified, two_step, joint };
 [[nodiscard]] std::string_view name(Method method);
 [[nodiscard]] std::optional<Method> method_from(std::string_view name);
 
 struct FitOptions {
-  Method method{Method::two_step};
+  Method method{Method::joint};
   std::optional<double> field_nT;  ///< total field of every pose that has no f_nT
   double field_sd_nT{0};           ///< its standard uncertainty, common to those poses
   /// Direction of the field in the platform frame when all table angles are zero: inclination positive
@@ -29,7 +31,8 @@ struct FitOptions {
   std::optional<double> inclination_rad, declination_rad;
   double baseline_m{0.4};
   double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
-  std::uint64_t seed{1};             ///< of anything random in a method; two-step draws nothing
+  std::uint64_t seed{1};             ///< of anything random in a method; no method here draws
+  std::vector<EffectPtr> effects;    ///< beside the twelve parameters a sensor; joint only
 };
 
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a
@@ -57,24 +60,36 @@ struct SiteField {
 
 struct FitReport {
   Calibration calibration;
-  double chi2{0};  ///< of |b| against F, all sensors, pose-mean noise
+  double chi2{0};  ///< two-step: of |b| against F; joint: of all readings and the scalar reference
   double dof{0};
   double noise_nT{0};  ///< of a pose mean, rms over the axes
   std::vector<std::string>
       reasons;  ///< sentences for the operator: what failed, what was recognised, what is left over
   SiteField site;
   ErrorSummary before, after_step1, after;
+  std::optional<ErrorSummary> two_step;    ///< beside a joint fit, where the poses allow one
   std::optional<ErrorSummary> simplified;  ///< the baseline method beside a two-step fit
   std::optional<ErrorSummary>
       held_out;  ///< folds contiguous in time; empty when a fold cannot be fitted without its poses
   std::optional<ErrorSummary> check_poses;  ///< poses of the set "check", which no fit has seen
   std::optional<HalvesComparison> halves;
+
+  // Of the joint fit:
+  double chi2_table{0}, dof_table{0};          ///< of the table angles, kept apart from the model's
+  double table_sd_rad{0};                      ///< estimated
+  double residual_nT{0};                       ///< rms of raw readings less prediction
+  std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
+  std::vector<OutlierNode> outliers;
+  std::vector<std::string>
+      weak;  ///< what the poses do not tell, with the standard deviation it leaves in the field
+  Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, mean square over all attitudes
 };
 
-/// Refuses (ErrorCode::refused), with what was measured and what to do: no field known, fewer than nine
-/// poses, poses about one axis only, no or too few "standard" poses, field along platform Z or at right
-/// angles to it. Poses of the set "check" are not used. A result that is not refused can still fail a check:
-/// see calibration.accepted_by_checks.
+/// Refuses (ErrorCode::refused), with what was measured and what to do: too few poses, poses about one axis
+/// only; the two-step also: no field known, no or too few "standard" poses, field along platform Z or at
+/// right angles to it; the joint fit also: an effect that needs what the poses do not have. Poses of the set
+/// "check" are not used. A result that is not refused can still fail a check: see
+/// calibration.accepted_by_checks.
 [[nodiscard]] Result<FitReport> fit(const PoseTable& table, const FitOptions& options);
 
 }  // namespace mgtd::calib

@@ -66,10 +66,41 @@ json halves_json(const std::optional<HalvesComparison>& halves) {
           {"largest_difference_deg", to_deg(halves->angle_difference_rad)}};
 }
 
+json effects_json(const std::vector<CalibratedEffect>& effects) {
+  json out = json::array();
+  for (const CalibratedEffect& e : effects) {
+    json coefficients = json::array();
+    for (const EffectCoefficient& c : e.coefficients) {
+      coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
+    }
+    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}});
+  }
+  return out;
+}
+
+json outliers_json(const std::vector<OutlierNode>& outliers) {
+  json out = json::array();
+  for (const OutlierNode& o : outliers) {
+    out.push_back(
+        {{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}, {"sigmas", o.sigmas}});
+  }
+  return out;
+}
+
 json site_json(const SiteField& site) {
   return {{"f_nT", site.f_nT},
           {"inclination_deg", value_and_sd(to_deg(site.inclination_rad), to_deg(site.inclination_sd_rad))},
           {"declination_deg", value_and_sd(to_deg(site.declination_rad), to_deg(site.declination_sd_rad))}};
+}
+
+void add_joint(const FitReport& report, json& out) {
+  out["table"] = {
+      {"sd_deg", to_deg(report.table_sd_rad)}, {"chi2", report.chi2_table}, {"dof", report.dof_table}};
+  out["residual_nT"] = report.residual_nT;
+  out["held_out_residual_nT"] = report.held_out_residual_nT ? json(*report.held_out_residual_nT) : json();
+  out["outliers"] = outliers_json(report.outliers);
+  out["weak"] = report.weak;
+  out["tensor_sd_nT_per_m"] = components(report.tensor_sd_nT_per_m);
 }
 
 }  // namespace
@@ -101,30 +132,33 @@ json to_json(const FitReport& report) {
   const Calibration& c = report.calibration;
   json sensors = json::array();
   for (std::size_t i = 0; i < kCount; ++i) sensors.push_back(sensor_json(c, i));
-  return {{"schema", "mgt.fit/1"},
-          {"id", c.id},
-          {"method", c.method},
-          {"poses", c.poses},
-          {"accepted", c.accepted_by_checks},
-          {"reasons", report.reasons},
-          {"checks", to_json(c.verdict)},
-          {"gauge", c.gauge},
-          {"site", site_json(report.site)},
-          {"chi2", report.chi2},
-          {"dof", report.dof},
-          {"noise_nT", report.noise_nT},
-          {"baseline_m", c.geometry.baseline_m},
-          {"sensors", std::move(sensors)},
-          {"effects", json::array()},
-          {"before", to_json(report.before)},
-          {"simplified", maybe(report.simplified)},
-          {"after_step1", to_json(report.after_step1)},
-          {"after", to_json(report.after)},
-          {"held_out", maybe(report.held_out)},
-          {"check_poses", maybe(report.check_poses)},
-          {"halves", halves_json(report.halves)},
-          {"data_hash", c.data_hash},
-          {"software", c.software}};
+  json out{{"schema", "mgt.fit/1"},
+           {"id", c.id},
+           {"method", c.method},
+           {"poses", c.poses},
+           {"accepted", c.accepted_by_checks},
+           {"reasons", report.reasons},
+           {"checks", to_json(c.verdict)},
+           {"gauge", c.gauge},
+           {"site", site_json(report.site)},
+           {"chi2", report.chi2},
+           {"dof", report.dof},
+           {"noise_nT", report.noise_nT},
+           {"baseline_m", c.geometry.baseline_m},
+           {"sensors", std::move(sensors)},
+           {"effects", effects_json(c.effects)},
+           {"before", to_json(report.before)},
+           {"two_step", maybe(report.two_step)},
+           {"simplified", maybe(report.simplified)},
+           {"after_step1", to_json(report.after_step1)},
+           {"after", to_json(report.after)},
+           {"held_out", maybe(report.held_out)},
+           {"check_poses", maybe(report.check_poses)},
+           {"halves", halves_json(report.halves)},
+           {"data_hash", c.data_hash},
+           {"software", c.software}};
+  if (c.method == name(Method::joint)) add_joint(report, out);
+  return out;
 }
 
 }  // namespace mgtd::calib

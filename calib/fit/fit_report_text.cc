@@ -47,6 +47,17 @@ std::string parameter_table(const Calibration& c) {
   return out;
 }
 
+std::string effect_table(const std::vector<CalibratedEffect>& effects) {
+  std::string out;
+  for (const CalibratedEffect& e : effects) {
+    for (const EffectCoefficient& c : e.coefficients) {
+      out += fmt::format("{:<28}{:>24} {}\n", fmt::format("{} {}", e.effect, c.name), with_sd(c.value, c.sd),
+                         c.unit);
+    }
+  }
+  return out;
+}
+
 std::string halves_table(const HalvesComparison& halves) {
   std::string out = "step 2 from each half of the standard set (odd less even, deg)\n";
   const auto row = [&](std::string_view name, double SensorModel::*angle) {
@@ -84,6 +95,10 @@ std::string heading(const FitReport& report) {
     out += fmt::format("noise: {:.3f} nT of a pose mean; chi-square {:.1f} for {:.0f} degrees of freedom\n",
                        report.noise_nT, report.chi2, report.dof);
   }
+  if (report.table_sd_rad > 0) {
+    out += fmt::format("table: {:.4f} deg of angle error a pose; chi-square {:.1f} for {:.0f}\n",
+                       to_deg(report.table_sd_rad), report.chi2_table, report.dof_table);
+  }
   return out;
 }
 
@@ -96,6 +111,7 @@ std::string error_table(const FitReport& report) {
   out += error_row("before", report.before);
   if (report.simplified) out += error_row("simplified", *report.simplified);
   out += error_row("step 1", report.after_step1);
+  if (report.two_step) out += error_row("two-step", *report.two_step);
   out += error_row(report.calibration.method, report.after);
   if (report.halves) {
     out += error_row("  odd half", report.halves->odd);
@@ -108,6 +124,7 @@ std::string error_table(const FitReport& report) {
 
 std::string to_text(const FitReport& report) {
   std::string out = heading(report) + "\n" + error_table(report) + "\n" + parameter_table(report.calibration);
+  if (!report.calibration.effects.empty()) out += "\n" + effect_table(report.calibration.effects);
   if (report.halves) out += "\n" + halves_table(*report.halves);
   if (!report.calibration.verdict.empty()) out += "\n" + check_list(report.calibration.verdict);
   for (const std::string& reason : report.reasons) out += fmt::format("note: {}\n", reason);

@@ -70,7 +70,9 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
   fit.dof_table = residuals.attitude_freedom;
   double unknowns =
       kSensorBlock + problem.coefficients() + (problem.common_field ? 1 : 0) + (problem.has_angles ? 2 : 0);
-  double observed = residuals.readings + residuals.scalars + fit.gauge.constraints;
+  double observed = residuals.readings + residuals.scalars + fit.gauge.constraints +
+                    (problem.has_angles && problem.known_inclination_rad ? 1 : 0) +
+                    (problem.has_angles && problem.known_declination_rad ? 1 : 0);
   for (const JointPose& pose : problem.poses) {
     unknowns += pose.has_angles ? 4 : 3;
     observed += (pose.has_angles ? 3 : 0) + (problem.common_field ? 1 : 0);
@@ -95,14 +97,14 @@ std::string describe_gauge(const JointFit& fit) {
         "mountings; the "
         "common rotation against the platform is unknown";
   } else {
-    const bool convention = fit.gauge.angles == AngleCoverage::one_axis && !fit.gauge.direction_known;
+    const bool convention = fit.gauge.angles == AngleCoverage::one_axis && !fit.gauge.declination_known;
     text = fmt::format(
         "table angles (sd {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, {:.2g} "
         "about Y",
         to_deg(fit.table_sd_rad), sd_deg(alpha), sd_deg(beta));
     text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
                        : fmt::format(", {:.2g} about Z", sd_deg(gamma));
-    if (fit.gauge.direction_known) text += "; inclination and declination as given";
+    if (fit.gauge.declination_known) text += "; declination as given";
   }
   if (!fit.gauge.scale_known)
     text += "; no field is known: mean scale factor of the twelve axes = 1, the overall scale is free";

@@ -2,6 +2,7 @@
 #include "calib/fit/joint_problem.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace mgtd::calib {
 
@@ -32,6 +33,21 @@ JointState JointState::moved(const Eigen::VectorXd& step) const {
   next.f_nT += step[kFieldSlot];
   next.coefficients += step.tail(coefficients.size());
   return next;
+}
+
+double inclination_of(const Eigen::Vector3d& n) { return std::atan2(n[2], std::hypot(n[0], n[1])); }
+double declination_of(const Eigen::Vector3d& n) { return std::atan2(n[1], n[0]); }
+
+Eigen::Vector3d direction_of(double inclination_rad, double declination_rad) {
+  const double h = std::cos(inclination_rad);
+  return {h * std::cos(declination_rad), h * std::sin(declination_rad), std::sin(inclination_rad)};
+}
+
+Eigen::Matrix2d inclination_declination_rows(const Eigen::Vector3d& n) {
+  const double h = std::hypot(n[0], n[1]);
+  Eigen::Matrix<double, 2, 3> rows;
+  rows << -n[2] * n[0] / h, -n[2] * n[1] / h, h, -n[1] / (h * h), n[0] / (h * h), 0;
+  return rows * tangents(n);
 }
 
 Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n) {

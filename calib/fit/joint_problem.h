@@ -58,11 +58,12 @@ struct JointProblem {
   Geometry geometry;
   std::vector<EffectPtr> effects;
   std::vector<JointPose> poses;
-  bool common_field{false};                        ///< no scalar reference: F_k is F within 1/f_weight
-  bool has_angles{false};                          ///< at least one pose has table angles
-  std::vector<LinearPrior> priors;                 ///< gauge, coefficients, known field
-  std::optional<Eigen::Vector3d> known_direction;  ///< of the site's field, from the operator
-  double direction_weight{0};                      ///< 1/rad
+  bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
+  bool has_angles{false};           ///< at least one pose has table angles
+  std::vector<LinearPrior> priors;  ///< gauge, coefficients, known field
+  std::optional<double> known_inclination_rad,
+      known_declination_rad;   ///< of the site's field, from the operator
+  double direction_weight{0};  ///< 1/rad, of both
 
   [[nodiscard]] int coefficients() const;
   [[nodiscard]] int fixed() const { return kEffectSlot + coefficients(); }
@@ -80,6 +81,13 @@ struct JointState {
   /// x + step on the manifold: n moves in its tangent plane and is normalised.
   [[nodiscard]] JointState moved(const Eigen::VectorXd& step) const;
 };
+
+/// Inclination and declination of a direction: positive towards +Z, and from X towards Y.
+[[nodiscard]] double inclination_of(const Eigen::Vector3d& n);
+[[nodiscard]] double declination_of(const Eigen::Vector3d& n);
+[[nodiscard]] Eigen::Vector3d direction_of(double inclination_rad, double declination_rad);
+/// Their derivatives by the two slots of n, rows.
+[[nodiscard]] Eigen::Matrix2d inclination_declination_rows(const Eigen::Vector3d& n);
 
 /// Two orthonormal tangents of the unit sphere at n, columns.
 [[nodiscard]] Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
 
 #include "calib/fit/joint_solver.h"
 
@@ -15,6 +17,20 @@ void hold_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
   if (!problem.common_field) S(kFieldSlot, kFieldSlot) = 1;
 }
 
+void add_direction_prior(const JointProblem& problem, const Eigen::Vector3d& n, Reduced& out) {
+  const double w = problem.direction_weight;
+  const auto observe = [&](const std::optional<double>& known, double now, const Eigen::RowVector2d& row) {
+    if (!known) return;
+    const double r = w * std::remainder(*known - now, 2 * std::numbers::pi);
+    out.S.block<2, 2>(kSiteSlot, kSiteSlot) += w * w * row.transpose() * row;
+    out.g.segment<2>(kSiteSlot) += w * r * row.transpose();
+    out.cost.priors += r * r;
+  };
+  const Eigen::Matrix2d rows = inclination_declination_rows(n);
+  observe(problem.known_inclination_rad, inclination_of(n), rows.row(0));
+  observe(problem.known_declination_rad, declination_of(n), rows.row(1));
+}
+
 void add_priors(const JointProblem& problem, const JointState& state, Reduced& out) {
   const Eigen::VectorXd x = state.fixed();
   for (const LinearPrior& prior : problem.priors) {
@@ -23,13 +39,7 @@ void add_priors(const JointProblem& problem, const JointState& state, Reduced& o
     out.g += prior.weight * r * prior.row;
     out.cost.priors += r * r;
   }
-  if (!problem.known_direction || !problem.has_angles) return;
-  const double w = problem.direction_weight;
-  const Eigen::Vector2d r =
-      w * tangents(state.direction).transpose() * (*problem.known_direction - state.direction);
-  out.S.block<2, 2>(kSiteSlot, kSiteSlot).diagonal().array() += w * w;
-  out.g.segment<2>(kSiteSlot) += w * r;
-  out.cost.priors += r.squaredNorm();
+  if (problem.has_angles) add_direction_prior(problem, state.direction, out);
 }
 
 void scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose,

@@ -12,6 +12,8 @@ namespace mgtd::calib {
 namespace {
 
 constexpr int kMinPoses = 12;
+/// A reference cannot be better than its last digit, and the weights stay finite.
+constexpr double kMinFieldSd_nT = 1e-3;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
 constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
 
@@ -26,8 +28,10 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   if (common_field) {
     out.f_weight = 1 / kCommonFieldSpread_nT;
   } else {
-    out.f_nT = *pose.f_nT;
-    out.f_weight = 1 / pose.f_sd_nT.value_or(kDefaultScalarSd_nT);
+    const double sd = pose.f_nT ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
+                                : options.field_sd_nT.value_or(kCommonFieldSpread_nT);
+    out.f_nT = pose.f_nT ? *pose.f_nT : *options.field_nT;
+    out.f_weight = 1 / std::max(sd, kMinFieldSd_nT);
   }
   if (const auto angles = pose.angles()) {
     out.has_angles = true;
@@ -65,25 +69,25 @@ void add_coefficient_priors(JointProblem& problem) {
 
 }  // namespace
 
-Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options) {
+Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options, PoseUse use) {
   JointProblem problem;
   problem.geometry = options.geometry;
   problem.effects = options.effects;
   for (const EffectPtr& effect : options.effects) {
     if (const auto ok = effect->check(table); !ok) return tl::unexpected(ok.error());
   }
-  const auto fitted = [](const Pose& pose) { return pose.set != "check"; };
+  const auto fitted = [use](const Pose& pose) { return (pose.set == "check") == (use == PoseUse::check); };
   const auto total = std::count_if(table.poses.begin(), table.poses.end(), fitted);
   const auto with_f = std::count_if(table.poses.begin(), table.poses.end(),
                                     [&](const Pose& p) { return fitted(p) && p.f_nT; });
-  if (total < kMinPoses) {
+  if (total < (use == PoseUse::fit ? kMinPoses : 1)) {
     return fail(ErrorCode::refused,
                 fmt::format("{} poses to fit; the joint fit needs at least {}", total, kMinPoses),
                 "measure at least 12 poses in general position, better 60");
   }
-  if (with_f != 0 && with_f != total) {
+  if (with_f != 0 && with_f != total && !options.field_nT) {
     return fail(ErrorCode::refused, fmt::format("{} of {} poses have a scalar reference f_nT", with_f, total),
-                "give f_nT for every pose, or leave the column out and give the field with --field");
+                "give f_nT for every pose, or give the field of the others with --field");
   }
   problem.common_field = with_f == 0;
   const Pose* previous = nullptr;
@@ -100,21 +104,22 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
 
 Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
   Gauge gauge{.angles = angle_coverage(problem),
-              .direction_known = options.inclination_rad && options.declination_rad,
+              .declination_known = false,
               .scale_known = !problem.common_field || options.field_nT.has_value(),
               .constraints = 0};
+  gauge.declination_known = gauge.angles == AngleCoverage::one_axis && options.declination_rad;
   add_coefficient_priors(problem);
-  if (gauge.direction_known) {
-    const double i = *options.inclination_rad, d = *options.declination_rad;
-    problem.known_direction =
-        Eigen::Vector3d{std::cos(i) * std::cos(d), std::cos(i) * std::sin(d), std::sin(i)};
+  // Where the angles decide, what the operator says is compared with the result and does not enter it.
+  if (gauge.angles != AngleCoverage::full) {
+    problem.known_inclination_rad = options.inclination_rad;
+    problem.known_declination_rad = options.declination_rad;
     problem.direction_weight = 1 / options.table_sd_rad;
   }
   if (gauge.angles == AngleCoverage::none) {
     for (const int p : {alpha, beta, gamma})
       problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
     gauge.constraints += 3;
-  } else if (gauge.angles == AngleCoverage::one_axis && !gauge.direction_known) {
+  } else if (gauge.angles == AngleCoverage::one_axis && !gauge.declination_known) {
     problem.priors.push_back(mean_of(problem, {gamma}, 0, kAngleConstraint));
     gauge.constraints += 1;
   }

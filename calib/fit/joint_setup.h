@@ -7,6 +7,7 @@
 #include "calib/calibration.h"
 #include "calib/fit/joint_problem.h"
 #include "calib/fit/joint_start.h"
+#include "calib/fit/readings.h"
 #include "proto/units.h"
 
 /// From a pose table to the joint problem: which poses take part, what each observation weighs, which gauge
@@ -30,12 +31,13 @@ inline constexpr double kStartNoise_nT = 1.0;
 
 /// Poses of set "check" are left out. Refuses too few poses, a scalar reference in only part of the poses,
 /// and effects whose needs the poses do not meet. Keeps pointers into `table`.
-[[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options);
+[[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options,
+                                                 PoseUse use = PoseUse::fit);
 
 /// What holds the freedoms that the data leave.
 struct Gauge {
   AngleCoverage angles{AngleCoverage::none};
-  bool direction_known{false};
+  bool declination_known{false};
   bool scale_known{false};
   int constraints{0};  ///< freedoms fixed by convention
 };

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "calib/fit/joint_solver.h"
@@ -91,7 +93,10 @@ Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>&
     return Eigen::Vector3d{Q.cwiseProduct(H[0]).sum(), Q.cwiseProduct(H[1]).sum(),
                            Q.cwiseProduct(H[2]).sum()};
   };
-  if (problem.known_direction) return {best_turn(*problem.known_direction), *problem.known_direction};
+  if (problem.known_inclination_rad && problem.known_declination_rad) {
+    const Eigen::Vector3d n = direction_of(*problem.known_inclination_rad, *problem.known_declination_rad);
+    return {best_turn(n), n};
+  }
   constexpr int kPoints = 200, kAlternations = 100;
   Placement best;
   double best_gain = -1;
@@ -138,22 +143,28 @@ TurnAxis turn_axis(const JointProblem& problem) {
   return out;
 }
 
-/// Turns the placement about the axis that the angles leave open until sensor 1 stands as upright as it can.
-void turn_upright(const JointProblem& problem, Placement& p) {
+/// Turns the placement about the axis that the angles leave open: to the declination where it is known, else
+/// until sensor 1 stands as upright as it can.
+void turn_free(const JointProblem& problem, Placement& p) {
+  constexpr int kSteps = 3600;
   const TurnAxis turn = turn_axis(problem);
-  const auto about = [&](double a) { return Eigen::AngleAxisd(a, turn.axis_P).toRotationMatrix(); };
-  const double c = (p.Q - turn.axis_P * turn.axis_P.transpose() * p.Q).trace();
-  double s = 0;
-  for (int j = 0; j < 3; ++j)
-    s += Eigen::Vector3d::Unit(j).dot(turn.axis_P.cross(Eigen::Vector3d(p.Q.col(j))));
-  const Eigen::Matrix3d Z = about(std::atan2(s, c));
-  // T n = T' (Z n') must hold with T T_1' about the axis: n moves by T_1' Z T_1.
-  for (const JointPose& pose : problem.poses) {
-    if (!pose.has_angles) continue;
-    p.n = pose.T.transpose() * Z * pose.T * p.n;
-    break;
+  const auto first = std::find_if(problem.poses.begin(), problem.poses.end(),
+                                  [](const JointPose& q) { return q.has_angles; });
+  const Placement from = p;
+  double best = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kSteps; ++i) {
+    const Eigen::Matrix3d Z =
+        Eigen::AngleAxisd(2 * std::numbers::pi * i / kSteps, turn.axis_P).toRotationMatrix();
+    // T n = Z' T (n') for turns T about the axis away from the first: n moves by T_1' Z T_1.
+    const Placement turned{Z * from.Q, first->T.transpose() * Z * first->T * from.n};
+    const double merit = problem.known_declination_rad
+                             ? std::cos(declination_of(turned.n) - *problem.known_declination_rad)
+                             : turned.Q.trace();
+    if (merit > best) {
+      best = merit;
+      p = turned;
+    }
   }
-  p.Q = Z * p.Q;
 }
 
 }  // namespace
@@ -193,7 +204,7 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   Placement p;
   const AngleCoverage coverage = angle_coverage(problem);
   if (coverage != AngleCoverage::none) p = place(problem, aligned->u);
-  if (coverage == AngleCoverage::one_axis && !problem.known_direction) turn_upright(problem, p);
+  if (coverage == AngleCoverage::one_axis) turn_free(problem, p);
   std::array<SensorModel, kSensors> sensors;
   for (std::size_t i = 0; i < kCount; ++i) {
     sensors[i] =

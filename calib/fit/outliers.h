@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
 #include <vector>
 
+#include "calib/fit/outlier_node.h"
 #include "calib/fit/pose_residuals.h"
 
 /// Observations that the rest of the data contradicts. Each stays in the table, is left out of the sums, and
 /// is listed with the shift that would reconcile it (mean-shift outlier model). Nothing is ever dropped
 /// silently.
 namespace mgtd::calib {
-
-struct OutlierNode {
-  int pose{0};        ///< number in the table
-  std::string where;  ///< "s3.z", "scalar" or "angles"
-  double shift{0};    ///< observed minus predicted
-  std::string unit;   ///< "nT", or "deg" for angles
-  double sigmas{0};   ///< of the shift, when it was found
-};
 
 /// The set of observations left out, grown from the worst downwards and checked again at the end.
 class Outliers {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "calib/fit/joint_problem.h"
 #include "calib/effects/level_terms.h"
+#include "calib/fit/joint_problem.h"
 
 /// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform,
 /// sensor, axis.

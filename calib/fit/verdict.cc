@@ -101,9 +101,13 @@ Check halves_check(const FitReport& r, const FitOptions& options) {
 
 }  // namespace
 
-std::vector<Check> verdict(const FitReport& report, const TwoStep& fitted, const FitOptions& options) {
+std::vector<Check> common_checks(const FitReport& report) {
   const Calibration& c = report.calibration;
-  std::vector<Check> out{scale_check(c), angle_check(c), determinant_check(c), residual_check(report)};
+  return {scale_check(c), angle_check(c), determinant_check(c), residual_check(report)};
+}
+
+std::vector<Check> verdict(const FitReport& report, const TwoStep& fitted, const FitOptions& options) {
+  std::vector<Check> out = common_checks(report);
   if (fitted.origin.misfit_rad > 0) out.push_back(table_check(fitted, options));
   if (options.inclination_rad) out.push_back(inclination_check(report, options));
   if (report.halves) out.push_back(halves_check(report, options));

@@ -10,6 +10,9 @@ namespace mgtd::calib {
 [[nodiscard]] std::vector<Check> verdict(const FitReport& report, const TwoStep& fitted,
                                          const FitOptions& options);
 
+/// The checks that hold for every method: scale factors, angles, volume, residual.
+[[nodiscard]] std::vector<Check> common_checks(const FitReport& report);
+
 /// Sentences about what was recognised: turned and mirrored sensors, gauge, residual against the noise.
 [[nodiscard]] std::vector<std::string> remarks(const FitReport& report);
 

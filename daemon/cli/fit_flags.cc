@@ -7,9 +7,11 @@ namespace mgtd::cli {
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
-  command->add_option("--method", f->method, "simplified or two-step")
-      ->check(CLI::IsMember({"simplified", "two-step"}))
+  command->add_option("--method", f->method, "simplified, two-step or joint")
+      ->check(CLI::IsMember({"simplified", "two-step", "joint"}))
       ->capture_default_str();
+  command->add_option("--with", f->with, "effect to put in the model, by name; may be given again (joint)")
+      ->allow_extra_args(false);
   command->add_option("--field", f->field_nT, "total field in nT, for poses without f_nT");
   command->add_option("--field-sd", f->field_sd_nT, "its standard uncertainty in nT");
   command->add_option("--baseline", f->baseline_m, "distance of opposite sensors in m (0.4)");
@@ -24,8 +26,17 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
 Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source) {
   calib::FitOptions out = source.header ? daemon::fit_options(source.header->options) : calib::FitOptions{};
   const auto method = calib::method_from(flags.method);
-  if (!method) return fail(ErrorCode::usage, "no method '" + flags.method + "'", "simplified or two-step");
+  if (!method)
+    return fail(ErrorCode::usage, "no method '" + flags.method + "'", "simplified, two-step or joint");
   out.method = *method;
+  for (const std::string& name : flags.with) {
+    auto effect = calib::make_effect(name);
+    if (!effect) return tl::unexpected(effect.error());
+    out.effects.push_back(*effect);
+  }
+  if (!out.effects.empty() && out.method != calib::Method::joint) {
+    return fail(ErrorCode::usage, "--with needs the joint method", "leave --method out");
+  }
   if (flags.field_nT) out.field_nT = flags.field_nT;
   if (flags.field_sd_nT) out.field_sd_nT = *flags.field_sd_nT;
   if (flags.baseline_m) out.baseline_m = *flags.baseline_m;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/fit/fit.h"
 #include "daemon/pose_source.h"
@@ -13,7 +14,8 @@
 namespace mgtd::cli {
 
 struct FitFlags {
-  std::string method{"two-step"};
+  std::string method{"joint"};
+  std::vector<std::string> with;  ///< effects by name
   std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;
 };

@@ -16,7 +16,9 @@ const FitReport& report() {
         testing::measure(testing::table6_rig(), {53'907.7, 60, -5}, testing::standard_run(121, 5), 36,
                          {testing::Noise::Kind::gaussian, 0.3, 0.1}, 17);
     for (std::size_t k = 150; k < table.poses.size(); ++k) table.poses[k].set = "check";
-    return *fit(table, {});
+    FitOptions options;
+    options.method = Method::two_step;
+    return *fit(table, options);
   }();
   return kReport;
 }

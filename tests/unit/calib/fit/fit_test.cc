@@ -15,6 +15,12 @@ using testing::Noise;
 using testing::RigTruth;
 using testing::Site;
 
+FitOptions two_step_options() {
+  FitOptions options;
+  options.method = Method::two_step;
+  return options;
+}
+
 /// Estimates in the units of the tables: deg, 1, nT.
 std::array<double, 12> in_table_units(const SensorModel& s) {
   ParameterVector p = s.parameters();
@@ -43,7 +49,7 @@ TEST(TwoStepFit, ReachesTheNoiseFloorOnThePapersSimulation) {
   const Site site{50'000, 60, -5};
   const PoseTable table = testing::measure(testing::table3_rig(), site, testing::grid_5832(), 18,
                                            {Noise::Kind::uniform, 1.0, 0.0}, 3);
-  FitOptions options;
+  FitOptions options = two_step_options();
   options.declination_rad = to_rad(-5.0);
   const auto report = fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
@@ -65,7 +71,7 @@ TEST(TwoStepFit, FindsTheTableFrameFromTiltedPosesWithinItsUncertainty) {
   const RigTruth rig = testing::table6_rig();
   const PoseTable table = testing::measure(rig, {53'907.7, 60, -5}, testing::standard_run(121, 5), 36,
                                            {Noise::Kind::gaussian, 0.3, 0.1}, 17);
-  const auto report = fit(table, {});
+  const auto report = fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_TRUE(report->calibration.accepted_by_checks)
       << (report->reasons.empty() ? "" : report->reasons.front());
@@ -89,7 +95,7 @@ TEST(TwoStepFit, PosesAboutOneAxisAreRefused) {
   const PoseTable table =
       testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
                        {Noise::Kind::gaussian, 0.3, 0.1}, 1);
-  const auto report = fit(table, {});
+  const auto report = fit(table, two_step_options());
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::refused);
   EXPECT_THAT(report.error().message, HasSubstr("lie on a plane"));
@@ -101,7 +107,7 @@ TEST(TwoStepFit, AFieldAlongZOrHorizontalIsRefusedWithTheConditionNumber) {
     const PoseTable table =
         testing::measure(testing::table6_rig(), {50'000, inclination_deg, -5}, testing::standard_run(121, 1),
                          36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
-    const auto report = fit(table, {});
+    const auto report = fit(table, two_step_options());
     ASSERT_FALSE(report) << inclination_deg;
     EXPECT_THAT(report.error().message, HasSubstr("condition number"));
   }
@@ -110,16 +116,16 @@ TEST(TwoStepFit, AFieldAlongZOrHorizontalIsRefusedWithTheConditionNumber) {
 TEST(TwoStepFit, WithoutStandardPosesOrFieldItSaysWhatIsMissing) {
   PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 1),
                                      0, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
-  EXPECT_THAT(fit(table, {}).error().message, HasSubstr("standard"));
+  EXPECT_THAT(fit(table, two_step_options()).error().message, HasSubstr("standard"));
   for (Pose& pose : table.poses) pose.f_nT.reset();
-  EXPECT_THAT(fit(table, {}).error().remedy, HasSubstr("--field"));
+  EXPECT_THAT(fit(table, two_step_options()).error().remedy, HasSubstr("--field"));
 }
 
 TEST(TwoStepFit, FewerThanNinePosesAreRefused) {
   PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 1),
                                      36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
   table.poses.resize(8);
-  EXPECT_THAT(fit(table, {}).error().message, HasSubstr("8 poses"));
+  EXPECT_THAT(fit(table, two_step_options()).error().message, HasSubstr("8 poses"));
 }
 
 /// A southern site: the field points up.
@@ -127,7 +133,7 @@ TEST(TwoStepFit, TheSignOfBzIsFound) {
   const PoseTable table =
       testing::measure(testing::table6_rig(), {50'000, -55, 20}, testing::standard_run(121, 3), 36,
                        {Noise::Kind::gaussian, 0.3, 0.05}, 2);
-  const auto report = fit(table, {});
+  const auto report = fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_NEAR(to_deg(report->site.inclination_rad), -55, 0.2);
   EXPECT_NEAR(to_deg(report->site.declination_rad), 20, 0.2);
@@ -139,7 +145,7 @@ TEST(TwoStepFit, ReversedAzimuthIsNoticed) {
   PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 3),
                                      36, {Noise::Kind::gaussian, 0.3, 0.05}, 2);
   for (Pose& pose : table.poses) pose.azimuth_rad = -*pose.azimuth_rad;
-  FitOptions options;
+  FitOptions options = two_step_options();
   options.inclination_rad = to_rad(60.0);
   const auto report = fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
@@ -159,7 +165,7 @@ TEST(TwoStepFit, EveryTurnedAndMirroredSensorIsRecognised) {
       for (int a = 0; a < 3; ++a)
         wiring(a, order.at(static_cast<std::size_t>(a))) = (signs >> a & 1) != 0 ? -1 : 1;
       for (Pose& pose : table.poses) pose.y_nT[2] = wiring * pose.y_nT[2];
-      const auto report = fit(table, {});
+      const auto report = fit(table, two_step_options());
       ASSERT_TRUE(report) << report.error().text();
       EXPECT_EQ(report->calibration.sensors[2].mounting, Eigen::Matrix3d(wiring.transpose()));
       EXPECT_LT(report->after.tensor_rmse_nT_per_m.xx, 30);

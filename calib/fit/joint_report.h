@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/fit.h"
+#include "calib/fit/joint_fit.h"
+
+namespace mgtd::calib {
+
+/// fit() by joint maximum likelihood: everything the two-step reports, the effects, the outlier nodes, and
+/// what the poses do not tell.
+[[nodiscard]] Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options);
+
+[[nodiscard]] JointOptions joint_options(const FitOptions& options);
+
+/// The 48 parameters, the effects, their covariance and the noise of a fit, into a calibration.
+void fill_calibration(const JointFit& fit, Calibration& calibration);
+
+}  // namespace mgtd::calib

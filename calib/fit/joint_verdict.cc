@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint_verdict.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kMaxTableSigmas = 5;  ///< of the uncertainty the operator gives the table
+constexpr double kMaxOutlierShare = 0.1;
+constexpr double kMaxDirectionSigmas = 5;
+
+std::string additions(const Identifiability& known) {
+  std::vector<std::string> texts;
+  for (const TableAngles& angles : known.add) texts.push_back(to_text(angles));
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+std::string sd_text(double sd_nT) {
+  return std::isfinite(sd_nT) ? fmt::format("{:.0f} nT", sd_nT) : "unlimited";
+}
+
+Check determined_check(const FitReport& r, const Identifiability& known) {
+  const double limit = kUnusable * r.site.f_nT;
+  const bool passed = known.worst_nT() <= limit;
+  return {"determined by the poses", passed,
+          known.weak.empty()
+              ? std::string("every combination of parameters to better than 0.1 % of the field")
+              : fmt::format("{}: {} of field uncertainty; {}", known.weak.front().what,
+                            sd_text(known.worst_nT()), known.coverage),
+          sd_text(limit), known.add.empty() ? std::string() : "add poses: " + additions(known)};
+}
+
+Check table_check(const FitReport& r, const FitOptions& options) {
+  const double limit = kMaxTableSigmas * options.table_sd_rad;
+  return {"table angles", r.table_sd_rad <= limit,
+          fmt::format("the sensors put the attitudes {:.3f} deg rms from the table's angles",
+                      to_deg(r.table_sd_rad)),
+          fmt::format("{:.3f} deg, {} times the table's {:.3f} deg", to_deg(limit), kMaxTableSigmas,
+                      to_deg(options.table_sd_rad)),
+          "check the sense and the zero of every table axis, or give its real uncertainty with --table-sd"};
+}
+
+Check outlier_check(const FitReport& r) {
+  const double share = static_cast<double>(r.outliers.size()) / std::max(1, r.calibration.poses);
+  return {"bad poses", share <= kMaxOutlierShare,
+          fmt::format("{} observations left out in {} poses", r.outliers.size(), r.calibration.poses),
+          fmt::format("{:.0f} % of the poses", 100 * kMaxOutlierShare),
+          "look at the listed poses; measure them again"};
+}
+
+Check direction_check(const char* name, double found, double sd, double given, double table_sd) {
+  const double limit = kMaxDirectionSigmas * std::hypot(sd, table_sd);
+  return {name, std::abs(std::remainder(found - given, 2 * std::numbers::pi)) <= limit,
+          fmt::format("the poses show {:.3f} deg, {:.3f} deg was given", to_deg(found), to_deg(given)),
+          fmt::format("{:.3f} deg apart", to_deg(limit)),
+          "a mismatch means reversed table angles, a mirrored sensor, a table that is not level, or a wrong "
+          "value"};
+}
+
+}  // namespace
+
+std::vector<Check> joint_verdict(const FitReport& r, const Identifiability& known,
+                                 const FitOptions& options) {
+  std::vector<Check> out = common_checks(r);
+  out.push_back(determined_check(r, known));
+  if (r.table_sd_rad > 0) {
+    out.push_back(table_check(r, options));
+    const SiteField& s = r.site;
+    if (options.inclination_rad) {
+      out.push_back(direction_check("inclination", s.inclination_rad, s.inclination_sd_rad,
+                                    *options.inclination_rad, options.table_sd_rad));
+    }
+    if (options.declination_rad) {
+      out.push_back(direction_check("declination", s.declination_rad, s.declination_sd_rad,
+                                    *options.declination_rad, options.table_sd_rad));
+    }
+  }
+  out.push_back(outlier_check(r));
+  return out;
+}
+
+std::vector<std::string> joint_remarks(const FitReport& report, const Identifiability& known, double spread) {
+  std::vector<std::string> out = remarks(report);
+  if (spread > 1) {
+    out.push_back(fmt::format(
+        "all uncertainties are widened by {:.2f}, so that they cover what the model leaves out", spread));
+  }
+  for (const OutlierNode& node : report.outliers) {
+    out.push_back(
+        fmt::format("pose {}, {}: {:.4g} {} off by {:.0f} times what the others allow; left out of the fit",
+                    node.pose, node.where, node.shift, node.unit, node.sigmas));
+  }
+  for (const std::string& weak : report.weak) out.push_back("weakly known: " + weak);
+  if (!known.add.empty())
+    out.push_back(fmt::format("{}; the poses that would help most: {}", known.coverage, additions(known)));
+  return out;
+}
+
+}  // namespace mgtd::calib

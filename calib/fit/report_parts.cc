@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/report_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/pose_table.h"
+
+namespace mgtd::calib {
+
+Reference reference_of(const PoseTable& table, const Readings& readings) {
+  Reference out;
+  out.f_nT = readings.mean_f_nT();
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    double sum = 0, count = 0;
+    for (const Pose& pose : table.poses) {
+      if (pose.T_degC[i]) sum += *pose.T_degC[i], ++count;
+    }
+    if (count > 0) out.T_degC[i] = sum / count;
+  }
+  if (!table.poses.empty() && table.poses.front().t_utc) out.t_utc = format_utc(*table.poses.front().t_utc);
+  return out;
+}
+
+Calibration calibration_frame(const PoseTable& table, const Readings& readings, const FitOptions& options) {
+  Calibration c;
+  c.method = name(options.method);
+  c.geometry.baseline_m = options.baseline_m;
+  c.sample_noise_nT = pooled_sample_noise(table);
+  c.reference = reference_of(table, readings);
+  c.data_hash = data_hash(table);
+  c.poses = static_cast<int>(readings.poses());
+  c.software = "mgtd " MGTD_VERSION;
+  return c;
+}
+
+void conclude(FitReport& report, const std::vector<std::string>& remarks) {
+  Calibration& c = report.calibration;
+  c.accepted_by_checks =
+      std::all_of(c.verdict.begin(), c.verdict.end(), [](const Check& check) { return check.passed; });
+  for (const Check& check : c.verdict) {
+    if (check.passed) continue;
+    report.reasons.push_back(
+        fmt::format("{}: {}; limit {}; {}", check.name, check.measured, check.limit, check.remedy));
+  }
+  report.reasons.insert(report.reasons.end(), remarks.begin(), remarks.end());
+  c.seal();
+}
+
+}  // namespace mgtd::calib
