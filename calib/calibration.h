@@ -54,7 +54,7 @@ struct Calibration {
   Geometry geometry;
   AxisNoise sample_noise_nT{
       AxisNoise::Zero()};  ///< of one sample, for the stream's standard deviations; 0 unknown
-  AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< of a pose mean, as the fit weighted it
+  AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< scatter of a pose mean about the model
   std::string gauge;  ///< which common rotation was fixed, how, and how well it is known
   Reference reference;
   std::string data_hash;  ///< of the poses it was fitted to

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/effects/library.h"
 #include "proto/sha256.h"
 
 namespace mgtd::calib {
@@ -193,11 +194,6 @@ Result<Calibration> calibration_from_json(const json& object) {
       return fail(ErrorCode::bad_input, fmt::format("schema '{}' is not '{}'", schema, kSchema),
                   "use the version of mgt that wrote it");
     }
-    if (const json& effects = object.at("effects"); effects != json::array()) {
-      return fail(ErrorCode::bad_input,
-                  fmt::format("it holds effects that this version cannot remove: {}", effects.dump()),
-                  "use the version of mgt that wrote it");
-    }
     c.id = object.at("id");
     c.method = object.at("method");
     for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
@@ -215,6 +211,12 @@ Result<Calibration> calibration_from_json(const json& object) {
     c.accepted_by_checks = object.at("accepted");
     c.verdict = checks_from(object.at("verdict"));
     c.software = object.at("software");
+    for (const CalibratedEffect& e : c.effects) {
+      if (make_effect(e.effect)) continue;
+      return fail(ErrorCode::bad_input,
+                  fmt::format("it holds an effect that this version cannot remove: {}", e.effect),
+                  "use the version of mgt that wrote it");
+    }
   } catch (const json::exception& error) {
     return fail(ErrorCode::bad_input, fmt::format("not a calibration: {}", error.what()),
                 "give a CAL.json written by mgt fit -o");

@@ -33,6 +33,9 @@ void apply(const Noise& noise, JointProblem& problem) {
   }
 }
 
+/// Changes of an estimate that its own uncertainty makes meaningless: a tenth of it.
+double settled(double freedom) { return std::max(kSettled, 0.1 / std::sqrt(2 * std::max(freedom, 1.0))); }
+
 /// Returns whether anything moved enough to fit again.
 bool update(const PoseResiduals& residuals, const JointProblem& problem, Noise& noise) {
   bool moved = false;
@@ -44,7 +47,7 @@ bool update(const PoseResiduals& residuals, const JointProblem& problem, Noise& 
   if (problem.has_angles) {
     const double before = noise.table_sd_rad;
     noise.table_sd_rad = std::clamp(before * residuals.table_ratio, kTableFloor_rad, kTableCeiling_rad);
-    moved = moved || std::abs(noise.table_sd_rad / before - 1) > kSettled;
+    moved = moved || std::abs(noise.table_sd_rad / before - 1) > settled(residuals.attitude_freedom);
   }
   return moved;
 }
@@ -99,8 +102,10 @@ std::string describe_gauge(const JointFit& fit) {
   } else {
     const bool convention = fit.gauge.angles == AngleCoverage::one_axis && !fit.gauge.declination_known;
     text = fmt::format(
-        "table angles (sd {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, {:.2g} "
-        "about Y",
+        "{} (table angles to {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, "
+        "{:.2g} about Y",
+        fit.gauge.angles == AngleCoverage::full ? "platform frame is the table frame"
+                                                : "platform by the table's one axis",
         to_deg(fit.table_sd_rad), sd_deg(alpha), sd_deg(beta));
     text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
                        : fmt::format(", {:.2g} about Z", sd_deg(gamma));
@@ -109,6 +114,20 @@ std::string describe_gauge(const JointFit& fit) {
   if (!fit.gauge.scale_known)
     text += "; no field is known: mean scale factor of the twelve axes = 1, the overall scale is free";
   return text;
+}
+
+/// Noise of a pose mean as it was weighted, rms over the poses.
+AxisNoise assumed_noise(const JointProblem& problem) {
+  Eigen::Array<double, kChannels, 1> squares = Eigen::Array<double, kChannels, 1>::Zero();
+  Eigen::Array<double, kChannels, 1> count = squares;
+  for (const JointPose& pose : problem.poses) {
+    for (int c = 0; c < kChannels; ++c) {
+      if (!(pose.weight[c] > 0)) continue;
+      squares[c] += 1 / (pose.weight[c] * pose.weight[c]);
+      ++count[c];
+    }
+  }
+  return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(kSensors, 3);
 }
 
 Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near) {
@@ -131,18 +150,19 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   Outliers outliers;
   Result<JointSolution> solution = JointSolution{};
   PoseResiduals residuals;
-  // While weights still move the fit need not be exact.
+  // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
   double enough = kNearlyConverged;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 1;; ++round) {
     apply(noise, fit.problem);
     solution = solve(fit.problem, std::move(*state), enough);
     if (!solution) return tl::unexpected(solution.error());
     if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
     fit.iterations += solution->iterations;
     residuals = pose_residuals(fit.problem, solution->state);
+    if (round > kMaxRounds) break;
     const bool excluded = outliers.exclude(fit.problem, residuals);
     const bool moved = update(residuals, fit.problem, noise);
-    if (!excluded && !moved && !outliers.restore(fit.problem, solution->state)) {
+    if ((!excluded && !moved && !outliers.restore(fit.problem, solution->state)) || round == kMaxRounds) {
       if (enough == kConverged) break;
       enough = kConverged;
     }
@@ -152,7 +172,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   fit.outliers = outliers.nodes(fit.problem, fit.state);
   auto covariance = covariance_of(solution->reduced.S);
   if (!covariance) return tl::unexpected(covariance.error());
-  fit.pose_noise_nT = noise.pose_nT;
+  fit.pose_noise_nT = assumed_noise(fit.problem);
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
   fill_statistics(residuals, solution->reduced, fit);

@@ -126,7 +126,7 @@ JointOptions joint_options(const FitOptions& options) {
 void fill_calibration(const JointFit& fit, Calibration& c) {
   c.sensors = fit.state.sensors;
   c.covariance = fit.covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
-  c.pose_noise_nT = fit.pose_noise_nT;
+  c.pose_noise_nT = fit.pose_noise_nT * fit.spread;
   c.gauge = fit.gauge_text;
   const auto m = fit.state.coefficients.size();
   c.effect_covariance.resize(m, kArrayParameters + m);

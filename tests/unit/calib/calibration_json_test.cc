@@ -106,9 +106,9 @@ TEST(CalibrationJson, NoJsonAtAllIsRefused) {
 /// Removing only part of what it says would be silent falsehood.
 TEST(CalibrationJson, EffectsItCannotRemoveAreRefused) {
   nlohmann::json object = to_json(random_calibration(1));
-  object["effects"].push_back({{"effect", "axis.offset.temperature"}});
+  object["effects"].push_back({{"effect", "axis.of.evil"}, {"coefficients", nlohmann::json::array()}});
   object["id"] = content_id(object);
-  EXPECT_THAT(calibration_from_json(object).error().message, HasSubstr("axis.offset.temperature"));
+  EXPECT_THAT(calibration_from_json(object).error().message, HasSubstr("axis.of.evil"));
 }
 
 /// A file of the right shape whose values are of the wrong type is an error, never an exception.

@@ -39,6 +39,12 @@ Vector estimate_of(const Calibration& c) {
   return out;
 }
 
+FitOptions two_step_options() {
+  FitOptions options;
+  options.method = Method::two_step;
+  return options;
+}
+
 struct Honesty {
   double nees{0};                ///< mean of e' C^-1 e over the runs; 48 when C is the real covariance
   Vector ratio{Vector::Zero()};  ///< rms error over stated sd, per parameter
@@ -83,31 +89,31 @@ void expect_honest(const Honesty& h) {
 constexpr testing::Site kSite{53'907.7, 60, -5};
 
 TEST(Influence, IsTheScatterOfManyRunsWithAPoorTable) {
-  const Honesty h = honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, {}, kSite);
+  const Honesty h = honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, two_step_options(), kSite);
   expect_honest(h);
   EXPECT_NEAR(h.declination, 1, kVarianceBand);
   EXPECT_NEAR(h.inclination, 1, kVarianceBand);
 }
 
 TEST(Influence, IsTheScatterOfManyRunsWhereTheReadingsDominate) {
-  FitOptions options;
+  FitOptions options = two_step_options();
   options.table_sd_rad = to_rad(0.001);
   expect_honest(honesty({Noise::Kind::gaussian, 5, 0.001, 2}, options, kSite));
 }
 
 TEST(Influence, IsTheScatterOfManyRunsWithAGivenDeclination) {
-  FitOptions options;
+  FitOptions options = two_step_options();
   options.declination_rad = to_rad(-5.0);
   expect_honest(honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, options, kSite));
 }
 
 TEST(Influence, IsTheScatterOfManyRunsWhereTheFieldPointsUp) {
-  expect_honest(honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, {}, {48'000, -40, 12}));
+  expect_honest(honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, two_step_options(), {48'000, -40, 12}));
 }
 
 /// A covariance without the table's errors is not honest: the test above can fail.
 TEST(Influence, LeavingTheTableOutIsNoticed) {
-  FitOptions options;
+  FitOptions options = two_step_options();
   options.table_sd_rad = to_rad(0.05);
   const Honesty h = honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, options, kSite);
   EXPECT_GT(h.nees, kArrayParameters + kBand);
@@ -118,10 +124,9 @@ TEST(Influence, AGivenFieldIsOneErrorCommonToAllPoses) {
   PoseTable table = testing::measure(testing::table6_rig(), kSite, testing::standard_run(121, 5), 36,
                                      {Noise::Kind::gaussian, 0.01, 0}, 1);
   for (Pose& pose : table.poses) pose.f_nT.reset();
-  FitOptions options;
+  FitOptions options = two_step_options();
   options.field_nT = kSite.f_nT;
   options.field_sd_nT = 20;
-  options.method = Method::two_step;
   const auto report = fit(table, options);
   ASSERT_TRUE(report);
   const ArrayCovariance& C = report->calibration.covariance;
@@ -137,9 +142,7 @@ TEST(Influence, TheConventionOfMeanGammaHasNoError) {
   for (Pose& pose : table.poses) {
     if (pose.set != "standard") pose.azimuth_rad.reset(), pose.pitch_rad.reset(), pose.roll_rad.reset();
   }
-  FitOptions options;
-  options.method = Method::two_step;
-  const auto report = fit(table, options);
+  const auto report = fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   Vector mean = Vector::Zero();
   double sum = 0;
