@@ -39,10 +39,17 @@ std::vector<Cell> cells_of(std::string_view line) {
   }
 }
 
+/// What every row must have: readings, or the attitude at which they will be taken.
+enum class Rows { measured, planned };
+
+bool is_angle(std::string_view name) {
+  return name == "azimuth_deg" || name == "pitch_deg" || name == "roll_deg";
+}
+
 /// Reads line by line; knows where it is for every complaint.
 class Reader {
  public:
-  Reader(std::string_view text, std::string_view file) : text_(text), file_(file) {
+  Reader(std::string_view text, std::string_view file, Rows rows) : text_(text), file_(file), rows_(rows) {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
   [[nodiscard]] Result<PoseTable> read();
@@ -62,7 +69,13 @@ class Reader {
     return found == names_.end() ? kNowhere : static_cast<std::size_t>(found - names_.begin());
   }
 
+  [[nodiscard]] bool required(const PoseColumn* column) const {
+    if (column == nullptr) return false;
+    return rows_ == Rows::measured ? column->required : is_angle(column->name);
+  }
+
   std::string_view text_, file_, line_;
+  Rows rows_;
   std::size_t line_number_{0};
   std::vector<std::string> names_;
   std::vector<const PoseColumn*> known_;  ///< beside names_; null: not one of pose_columns()
@@ -99,7 +112,7 @@ Result<void> Reader::read_header() {
   }
   std::string missing;
   for (const PoseColumn& column : pose_columns()) {
-    if (column.required && column_of(column.name) == kNowhere)
+    if (required(&column) && column_of(column.name) == kNowhere)
       missing += (missing.empty() ? "" : ", ") + column.name;
   }
   if (column_of("pose") == kNowhere) missing = "pose" + (missing.empty() ? "" : ", " + missing);
@@ -139,9 +152,10 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
     const std::string& name = names_[i];
     if (name == "pose" || name == "set" || name == "t_utc") continue;
     if (cells[i].text.empty()) {
-      if (known_[i] == nullptr || !known_[i]->required) continue;
+      if (!required(known_[i])) continue;
       return complain(cells[i].column, fmt::format("{} is empty", name),
-                      "leave the whole pose out when a sensor was not read");
+                      rows_ == Rows::measured ? "leave the whole pose out when a sensor was not read"
+                                              : "every planned pose needs its three angles");
     }
     const auto value = parse_number(cells[i].text);
     if (!value) {
@@ -188,7 +202,11 @@ Result<PoseTable> Reader::read() {
 }  // namespace
 
 Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file) {
-  return Reader(text, file).read();
+  return Reader(text, file, Rows::measured).read();
+}
+
+Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file) {
+  return Reader(text, file, Rows::planned).read();
 }
 
 std::string format_pose_table(const PoseTable& table) {

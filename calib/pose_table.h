@@ -17,6 +17,10 @@ namespace mgtd::calib {
 /// is for the messages.
 [[nodiscard]] Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file);
 
+/// The same of poses that are still to be measured: the three angles are required, readings are not looked
+/// for.
+[[nodiscard]] Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file);
+
 /// Every number in the shortest form that reads back to the same bits; columns nobody filled are left out.
 [[nodiscard]] std::string format_pose_table(const PoseTable& table);
 

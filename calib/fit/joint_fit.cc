@@ -112,7 +112,8 @@ std::string describe_gauge(const JointFit& fit) {
     if (fit.gauge.declination_known) text += "; declination as given";
   }
   if (!fit.gauge.scale_known)
-    text += "; no field is known: mean scale factor of the twelve axes = 1, the overall scale is free";
+    text +=
+        fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}", kScaleIsFree);
   return text;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/fit/joint_setup.h"
@@ -16,6 +17,9 @@
 /// in nT, and a sensor whose gain collapses or explodes is refused by its determinant. Does not decide
 /// whether a calibration is acceptable.
 namespace mgtd::calib {
+
+/// Stands in the gauge's text of a fit that knew no field.
+inline constexpr std::string_view kScaleIsFree = "the overall scale is free";
 
 struct JointFit {
   JointProblem problem;  ///< final weights; points into the pose table

@@ -167,6 +167,14 @@ void turn_free(const JointProblem& problem, Placement& p) {
   }
 }
 
+Placement best_placement(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+  Placement p;
+  const AngleCoverage coverage = angle_coverage(problem);
+  if (coverage != AngleCoverage::none) p = place(problem, u);
+  if (coverage == AngleCoverage::one_axis) turn_free(problem, p);
+  return p;
+}
+
 }  // namespace
 
 AngleCoverage angle_coverage(const JointProblem& problem) {
@@ -201,16 +209,26 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   if (!aligned) return tl::unexpected(aligned.error());
   const double hand = handedness(*aligned);
   for (Eigen::Vector3d& u : aligned->u) u *= hand;
-  Placement p;
-  const AngleCoverage coverage = angle_coverage(problem);
-  if (coverage != AngleCoverage::none) p = place(problem, aligned->u);
-  if (coverage == AngleCoverage::one_axis) turn_free(problem, p);
+  const Placement p = best_placement(problem, aligned->u);
   std::array<SensorModel, kSensors> sensors;
   for (std::size_t i = 0; i < kCount; ++i) {
     sensors[i] =
         sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
   }
   return joint_state(problem, sensors, p.n, f_nT);
+}
+
+PlacedState placed_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
+                         double f_nT) {
+  std::vector<Eigen::Vector3d> u(problem.poses.size(), Eigen::Vector3d::Zero());
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    for (std::size_t i = 0; i < kCount; ++i)
+      u[k] += sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / kSensors;
+  }
+  const Placement p = best_placement(problem, u);
+  std::array<SensorModel, kSensors> placed = sensors;
+  for (SensorModel& sensor : placed) sensor = turned(sensor, p.Q);
+  return {joint_state(problem, placed, p.n, f_nT), p.Q};
 }
 
 }  // namespace mgtd::calib

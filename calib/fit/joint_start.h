@@ -26,4 +26,13 @@ enum class AngleCoverage { none, one_axis, full };
                                      const std::array<SensorModel, kSensors>& sensors,
                                      const Eigen::Vector3d& direction, double f_nT);
 
+/// The same around sensors of an earlier calibration that may stand turned on the table since: they are turned
+/// together by the rotation Q that brings them to these poses' angles (identity without angles).
+struct PlacedState {
+  JointState state;
+  Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
+};
+[[nodiscard]] PlacedState placed_state(const JointProblem& problem,
+                                       const std::array<SensorModel, kSensors>& sensors, double f_nT);
+
 }  // namespace mgtd::calib

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/change_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json parameter_json(const ParameterChange& p) {
+  json out{{"name", p.name}, {"change", p.change}, {"sd", p.sd},
+           {"unit", p.unit}, {"sigmas", p.sigmas}, {"log10_p", p.log10_p}};
+  if (p.seen > 0) out["smallest_seen"] = p.seen;
+  return out;
+}
+
+/// Scale factors are written in parts per million, where their changes live.
+std::string amount(double value, const std::string& unit, bool sign) {
+  const double shown = unit.empty() ? 1e6 * value : value;
+  return fmt::format("{}{:.3g} {}", sign && value > 0 ? "+" : "", shown, unit.empty() ? "ppm" : unit);
+}
+
+}  // namespace
+
+json to_json(const Change& c) {
+  json sensors = json::array(), named = json::array(), parameters = json::array();
+  for (std::size_t i = 0; i < kSensors; ++i)
+    sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"log10_p", c.sensor_log10_p[i]}});
+  for (const ParameterChange& p : c.named) named.push_back(parameter_json(p));
+  for (const ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
+  const auto degrees = [](const Eigen::Vector3d& v) {
+    return json{to_deg(v[0]), to_deg(v[1]), to_deg(v[2])};
+  };
+  return {{"chi2", c.chi2},
+          {"dof", c.dof},
+          {"log10_p", c.log10_p},
+          {"log10_p_single", c.log10_p_single},
+          {"p", c.p()},
+          {"sensors", std::move(sensors)},
+          {"named", std::move(named)},
+          {"parameters", std::move(parameters)},
+          {"common_rotation_deg", degrees(c.common_rotation_rad)},
+          {"common_rotation_sd_deg", degrees(c.common_rotation_sd_rad)}};
+}
+
+std::string named_text(const Change& change) {
+  std::string out;
+  for (const ParameterChange& n : change.named) {
+    out += fmt::format("{}{} by {} ({:.1f} sigma)", out.empty() ? "" : ", ", n.name,
+                       amount(n.change, n.unit, true), std::abs(n.sigmas));
+  }
+  return out;
+}
+
+std::string change_table(const Change& change, std::size_t rows) {
+  std::string out = "log10 p of no change, by sensor:";
+  for (std::size_t i = 0; i < kSensors; ++i)
+    out += fmt::format("  s{} {:.1f}", i + 1, change.sensor_log10_p[i]);
+  out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "parameter", "change", "sd", "sigmas",
+                     "smallest to be seen");
+  for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
+    const ParameterChange& p = change.parameters[j];
+    out += fmt::format("{:<26}{:>14}{:>14}{:>9.1f}{:>22}\n", p.name, amount(p.change, p.unit, true),
+                       amount(p.sd, p.unit, false), p.sigmas,
+                       std::isfinite(p.seen) ? amount(p.seen, p.unit, false) : "none");
+  }
+  return out;
+}
+
+std::string seen_text(const Change& change) {
+  struct Kind {
+    const char* what;
+    const char* keys;
+    std::string unit;
+    double worst{0};
+  };
+  std::array<Kind, 4> kinds{{{"offset", " ix iy iz ", "nT"},
+                             {"scale factor", " cx cy cz ", ""},
+                             {"angle between axes", " theta phi psi ", "deg"},
+                             {"turn of a sensor", " alpha beta gamma ", "deg"}}};
+  for (const ParameterChange& p : change.parameters) {
+    if (p.name.size() < 4 || p.name[0] != 's' || p.name[2] != ' ') continue;
+    for (Kind& kind : kinds) {
+      if (std::string_view(kind.keys).find(p.name.substr(2) + " ") != std::string_view::npos)
+        kind.worst = std::max(kind.worst, p.seen);
+    }
+  }
+  std::string out;
+  for (const Kind& kind : kinds) {
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", kind.what,
+                       std::isfinite(kind.worst) ? amount(kind.worst, kind.unit, false) : "not at all");
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

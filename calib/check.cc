@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/change_report.h"
+#include "calib/fit/joint_errors.h"
+#include "calib/fit/joint_report.h"
+#include "calib/fit/outliers.h"
+#include "calib/frozen.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Scatter beyond the noise that a calibration may show and still be called valid: its own run set the noise,
+/// so more than this is something new.
+constexpr double kMaxExcess = 1.5;
+constexpr double kLeastNoise_nT = 1e-3;
+
+/// The poses as the test wants them: none set aside, and without table angles unless an effect needs them.
+PoseTable prepared(const PoseTable& table, bool needs_angles) {
+  PoseTable out = table;
+  for (Pose& pose : out.poses) {
+    pose.set.clear();
+    if (!needs_angles) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
+  }
+  return out;
+}
+
+/// Each axis as noisy as its dwells say; without them, as a pose of the calibration's own run.
+bool weight(const Calibration& c, const PoseTable& poses, JointProblem& problem) {
+  const auto sample = sample_noise(poses);
+  if (sample) {
+    weight_by_samples(problem, *sample);
+  } else {
+    weight_by_pose(problem, c.pose_noise_nT.cwiseMax(kLeastNoise_nT));
+  }
+  return sample.has_value();
+}
+
+/// A gauge is no evidence; a known field is.
+void keep_field_prior(JointProblem& problem) {
+  std::erase_if(problem.priors, [](const LinearPrior& prior) { return prior.row[kFieldSlot] == 0; });
+}
+
+/// Best site and field for sensors that stay as they are.
+void refit_site(const JointProblem& problem, const std::vector<Eigen::Index>& slots, JointState& state) {
+  constexpr int kSteps = 4;  // almost linear
+  for (int i = 0; i < kSteps; ++i) {
+    const Reduced reduced = reduce(problem, state, 0);
+    const Eigen::MatrixXd S = reduced.S(slots, slots);
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(problem.fixed());
+    const Eigen::VectorXd g = reduced.g(slots);
+    const Eigen::VectorXd x = S.ldlt().solve(g);
+    step(slots) = x;
+    state = state.moved(step);
+    refit_nuisances(problem, state);
+  }
+}
+
+/// Score and information of the tested slots, everything else eliminated.
+struct Score {
+  Eigen::MatrixXd S;
+  Eigen::VectorXd g;
+  JointCost cost;
+};
+
+Score score_of(const Reduced& reduced, const Frozen& frozen) {
+  const auto &t = frozen.tested, &n = frozen.nuisance;
+  const Eigen::MatrixXd border = reduced.S(t, n);
+  const Eigen::LDLT<Eigen::MatrixXd> corner(Eigen::MatrixXd(reduced.S(n, n)));
+  const Eigen::VectorXd g = reduced.g(n);
+  return {reduced.S(t, t) - border * corner.solve(border.transpose()),
+          reduced.g(t) - border * corner.solve(g), reduced.cost};
+}
+
+/// Chi-square that no change of the tested parameters explains, and its degrees of freedom.
+struct Rest {
+  double chi2{0}, dof{0};
+};
+
+Rest rest_of(const JointProblem& problem, const JointState& state, const Frozen& frozen, const Score& score) {
+  const PoseResiduals residuals = pose_residuals(problem, state);
+  const Eigen::VectorXd d = score.S.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(d.asDiagonal() * score.S *
+                                                                       d.asDiagonal());
+  const Eigen::VectorXd g = d.cwiseProduct(score.g);
+  double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
+  for (const JointPose& pose : problem.poses)
+    observed += (pose.has_angles ? -1 : -3) + (problem.common_field ? 1 : 0);
+  const double site = (problem.has_angles ? 2 : 0) +
+                      (problem.common_field && problem.priors.empty() ? 1 : 0) +
+                      static_cast<double>(frozen.nuisance.size()) - kGlobals;
+  return {score.cost.readings + score.cost.scalar - g.dot(solver.solve(g)),
+          observed - site - static_cast<double>(solver.rank())};
+}
+
+/// What the poses tell of a change x: (S + W)^-1 g, with the spread that noise and calibration give it.
+Evidence evidence_of(const Frozen& frozen, const std::array<SensorModel, kSensors>& sensors,
+                     const Score& score, double noise_variance, bool free_scale) {
+  const auto n = static_cast<Eigen::Index>(frozen.tested.size());
+  Eigen::MatrixXd damped = score.S / noise_variance;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double wide = frozen.wide[static_cast<std::size_t>(j)];
+    damped(j, j) += 1 / (wide * wide);
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
+  const Eigen::MatrixXd gain = solver.solve(Eigen::MatrixXd(score.S / noise_variance));
+  const Eigen::MatrixXd C = solver.solve(gain.transpose()) + gain * frozen.covariance * gain.transpose();
+  return {.difference = solver.solve(Eigen::VectorXd(score.g / noise_variance)),
+          .covariance = 0.5 * (C + C.transpose()),
+          .gain = gain,
+          .common = gain * common_freedoms(sensors, n, free_scale),
+          .slots = shown_slots(frozen.instrument)};
+}
+
+std::string verdict_text(const ValidityReport& r, bool changed) {
+  const Change& c = r.change;
+  const std::string figures =
+      fmt::format("p = {:.2g}; chi-square {:.1f} for {:.0f} directions", c.p(), c.chi2, c.dof);
+  if (changed) {
+    const auto worst = std::min_element(c.sensor_log10_p.begin(), c.sensor_log10_p.end());
+    const std::string where = fmt::format("most of it in sensor s{}", worst - c.sensor_log10_p.begin() + 1);
+    return fmt::format(
+        "no longer valid ({}), {}{}; calibrate again", figures, where,
+        c.named.empty() ? ", spread over many parameters" : ": accounted for by " + named_text(c));
+  }
+  if (!r.valid) {
+    return fmt::format(
+        "no longer valid: the poses scatter {:.1f} times more than the noise, and no change of the "
+        "parameters explains "
+        "it; a disturbance while they were measured, or an effect that is not in the model",
+        r.excess);
+  }
+  return fmt::format("still valid ({})", figures);
+}
+
+void explain(ValidityReport& r) {
+  const bool changed = r.change.p() < kChanged;
+  r.valid = !changed && r.excess <= kMaxExcess;
+  r.reasons.push_back(verdict_text(r, changed));
+  r.reasons.push_back("smallest change that these poses show in 80 of 100 cases: " + seen_text(r.change));
+  if (r.excess > 1 && r.valid) {
+    r.reasons.push_back(
+        fmt::format("the poses scatter {:.2f} times more than the noise; the test allows for it", r.excess));
+  }
+  if (!r.noise_from_dwells)
+    r.reasons.emplace_back(
+        "the noise is that of the calibration's own run: the poses have no spreads or counts");
+  for (const OutlierNode& o : r.outliers) {
+    r.reasons.push_back(fmt::format("pose {}, {}: {:.4g} {} off, left out; measure it again", o.pose, o.where,
+                                    o.shift, o.unit));
+  }
+}
+
+double rms_noise(const JointProblem& problem) {
+  double variance = 0;
+  for (const JointPose& pose : problem.poses)
+    variance += pose.weight.cwiseMax(1e-9).cwiseAbs2().cwiseInverse().mean();
+  return std::sqrt(variance / static_cast<double>(problem.poses.size()));
+}
+
+/// The frozen calibration among the poses: problem and state, poses that contradict set aside.
+struct Settled {
+  JointProblem problem;
+  PlacedState placed;
+  Outliers outliers;
+};
+
+Result<Settled> settle(const Calibration& c, const PoseTable& poses, const Frozen& frozen,
+                       const FitOptions& options, ValidityReport& report) {
+  JointOptions joint = joint_options(options);
+  joint.inclination_rad = joint.declination_rad = std::nullopt;
+  joint.geometry = c.geometry;
+  joint.effects = frozen.effects;
+  auto problem = joint_problem(poses, joint);
+  if (!problem) return tl::unexpected(problem.error());
+  fix_gauge(*problem, joint);
+  keep_field_prior(*problem);
+  report.noise_from_dwells = weight(c, poses, *problem);
+  report.noise_nT = rms_noise(*problem);
+  const double f_nT = options.field_nT.value_or(c.reference.f_nT.value_or(start_field_nT(*problem, joint)));
+  Settled out{.problem = std::move(*problem), .placed = {}, .outliers = {}};
+  out.placed = placed_state(out.problem, c.sensors, f_nT);
+  JointState& state = out.placed.state;
+  state.coefficients = frozen.coefficients;
+  refit_nuisances(out.problem, state);
+  do {
+    refit_site(out.problem, frozen.nuisance, state);
+  } while (out.outliers.exclude(out.problem, pose_residuals(out.problem, state)));
+  return out;
+}
+
+/// The covariance in the platform frame in which the array stands now.
+void turn_covariance(const Calibration& c, const Eigen::Matrix3d& Q, Frozen& frozen) {
+  const ArrayCovariance J = turned(c.sensors, Q).jacobian;
+  const Eigen::MatrixXd rows = J * frozen.covariance.topRows<kArrayParameters>();
+  frozen.covariance.topRows<kArrayParameters>() = rows;
+  const Eigen::MatrixXd columns = frozen.covariance.leftCols<kArrayParameters>() * J.transpose();
+  frozen.covariance.leftCols<kArrayParameters>() = columns;
+}
+
+}  // namespace
+
+Result<ValidityReport> check(const Calibration& calibration, const PoseTable& table,
+                             const FitOptions& options) {
+  auto frozen = freeze(calibration, options.effects);
+  if (!frozen) return tl::unexpected(frozen.error());
+  const PoseTable poses = prepared(table, frozen->needs_angles);
+  ValidityReport report;
+  report.calibration = calibration.id;
+  report.poses = static_cast<int>(poses.poses.size());
+  const auto settled = settle(calibration, poses, *frozen, options, report);
+  if (!settled) return tl::unexpected(settled.error());
+  const JointProblem& problem = settled->problem;
+  const JointState& state = settled->placed.state;
+  report.outliers = settled->outliers.nodes(problem, state);
+  turn_covariance(calibration, settled->placed.Q, *frozen);
+  const Score score = score_of(reduce(problem, state, 0), *frozen);
+  const Rest rest = rest_of(problem, state, *frozen, score);
+  if (rest.dof > 0 && std::abs(rest.chi2 / rest.dof - 1) > 3 * std::sqrt(2 / rest.dof))
+    report.excess = std::sqrt(rest.chi2 / rest.dof);
+  const double variance =
+      report.noise_from_dwells ? std::max(1.0, report.excess * report.excess) : report.excess * report.excess;
+  const bool free_scale = problem.common_field && !options.field_nT;
+  report.change = judge(evidence_of(*frozen, state.sensors, score, variance, free_scale));
+  const JointErrors errors = joint_errors(problem, state);
+  report.errors = errors.summary;
+  report.residual_nT = errors.residual_rms_nT;
+  explain(report);
+  return report;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/frozen.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/fit/joint_problem.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Sizes beyond any change worth a name: they keep directions finite that these poses do not see.
+constexpr double kWideScale = 0.02, kWideOffset_nT = 500, kWideEffect = 100;
+const double kWideAngle_rad = to_rad(1);
+void freeze_sensors(Frozen& out) {
+  for (int slot = 0; slot < kSensorBlock; ++slot) {
+    const int p = slot % kSensorParameters;
+    out.tested.push_back(slot);
+    out.wide.push_back(p >= cx && p <= cz   ? kWideScale
+                       : p >= ix && p <= iz ? kWideOffset_nT
+                                            : kWideAngle_rad);
+  }
+  for (int slot = kSiteSlot; slot < kEffectSlot; ++slot) out.nuisance.push_back(slot);
+}
+
+/// Rows of effect_covariance that are under test, after the 48.
+void freeze_covariance(const Calibration& c, const std::vector<Eigen::Index>& rows, Frozen& out) {
+  const auto m = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(kArrayParameters + m, kArrayParameters + m);
+  C.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const auto row = c.effect_covariance.row(rows[static_cast<std::size_t>(i)]);
+    C.row(kArrayParameters + i).head<kArrayParameters>() = row.head<kArrayParameters>();
+    C.col(kArrayParameters + i).head<kArrayParameters>() = row.head<kArrayParameters>().transpose();
+    for (Eigen::Index j = 0; j < m; ++j)
+      C(kArrayParameters + i, kArrayParameters + j) =
+          row[kArrayParameters + rows[static_cast<std::size_t>(j)]];
+  }
+  out.covariance = C;
+}
+
+void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, std::vector<double>& values,
+                   std::vector<Eigen::Index>& rows, Frozen& out) {
+  const bool of_site = effect->level() == Level::site;
+  out.needs_angles = out.needs_angles || effect->level() != Level::axis;
+  out.effects.push_back(effect);
+  if (!of_site) out.instrument.push_back(e);
+  for (std::size_t j = 0; j < e.coefficients.size(); ++j) {
+    const auto row = static_cast<Eigen::Index>(values.size());
+    (of_site ? out.nuisance : out.tested).push_back(kEffectSlot + row);
+    if (!of_site) {
+      rows.push_back(row);
+      out.wide.push_back(kWideEffect * effect->coefficients()[j].typical);
+    }
+    values.push_back(e.coefficients[j].value);
+  }
+}
+
+Result<void> add_site_effect(const EffectPtr& effect, std::vector<double>& values, Frozen& out) {
+  if (effect->level() != Level::site) {
+    return fail(ErrorCode::usage, fmt::format("{} is not in the calibration", effect->name()),
+                "only effects of the site can be added to a check; for others calibrate again");
+  }
+  out.needs_angles = true;
+  out.effects.push_back(effect);
+  for (std::size_t j = 0; j < effect->coefficients().size(); ++j) {
+    out.nuisance.push_back(kEffectSlot + static_cast<Eigen::Index>(values.size()));
+    values.push_back(0);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Frozen> freeze(const Calibration& c, const std::vector<EffectPtr>& added) {
+  Frozen out;
+  freeze_sensors(out);
+  std::vector<double> values;
+  std::vector<Eigen::Index> rows;
+  for (const CalibratedEffect& e : c.effects) {
+    const auto effect = make_effect(e.effect);
+    if (!effect) return tl::unexpected(effect.error());
+    freeze_effect(e, *effect, values, rows, out);
+  }
+  for (const EffectPtr& effect : added) {
+    const auto same = [&](const CalibratedEffect& e) { return e.effect == effect->name(); };
+    if (std::any_of(c.effects.begin(), c.effects.end(), same)) continue;
+    if (auto ok = add_site_effect(effect, values, out); !ok) return tl::unexpected(ok.error());
+  }
+  out.coefficients =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  freeze_covariance(c, rows, out);
+  return out;
+}
+
+}  // namespace mgtd::calib
