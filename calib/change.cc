@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +21,7 @@ constexpr double kSingular = 1e-9;
 /// Share of a parameter's evidence that must be its own before it can be told from those already named.
 constexpr double kOwnEvidence = 1e-4;
 constexpr std::size_t kMaxNamed = 8;
-const double kPower80 = 0.8416212;  ///< upper 20 % point of the normal distribution
+constexpr double kPower80 = 0.8416212;  ///< upper 20 % point of the normal distribution
 
 /// Inverse on the range of a covariance or an information, in units of its diagonal.
 struct Inverse {
@@ -45,13 +45,29 @@ Inverse inverse_of(const Eigen::MatrixXd& C) {
   return out;
 }
 
+/// Weight of a difference with the common freedoms projected out: N (N' C N)^-1 N', N orthogonal to them.
+Inverse weight_of(const Evidence& e) {
+  const Eigen::Index n = e.difference.size();
+  const Eigen::VectorXd sd = e.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 1.0);
+  Eigen::MatrixXd N = scale.asDiagonal();
+  if (e.common.cols() > 0) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scale.asDiagonal() * e.common);
+    const Eigen::MatrixXd Q = qr.householderQ();
+    N *= Q.rightCols(n - qr.rank());
+  }
+  const Inverse inner = inverse_of(N.transpose() * e.covariance * N);
+  return {N * inner.W * N.transpose(), inner.rank};
+}
+
 /// W with the columns X fitted and taken out.
 Eigen::MatrixXd without(const Eigen::MatrixXd& W, const Eigen::MatrixXd& X) {
+  if (X.cols() == 0) return W;
   const Eigen::MatrixXd WX = W * X;
   return W - WX * inverse_of(X.transpose() * WX).W * WX.transpose();
 }
 
-/// Chi-square of the change of one parameter alone; 0 when it cannot be told from the columns taken out.
+/// Chi-square of the change of one parameter alone; 0 when it cannot be told from what was taken out of W.
 Eigen::VectorXd single_chi2(const Evidence& e, const Eigen::MatrixXd& W, const Eigen::MatrixXd& M) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(e.gain.cols());
   const Eigen::VectorXd pull = e.gain.transpose() * (M * e.difference);
@@ -70,7 +86,7 @@ double corrected_log10_p(double chi2, Eigen::Index choices) {
 /// One parameter after the other, as long as the next is beyond chance.
 std::vector<Eigen::Index> account_for(const Evidence& e, const Eigen::MatrixXd& W) {
   std::vector<Eigen::Index> chosen;
-  Eigen::MatrixXd X = e.common;
+  Eigen::MatrixXd X(e.difference.size(), 0);
   while (chosen.size() < kMaxNamed) {
     Eigen::Index best = 0;
     const double chi2 = single_chi2(e, W, without(W, X)).maxCoeff(&best);
@@ -83,7 +99,7 @@ std::vector<Eigen::Index> account_for(const Evidence& e, const Eigen::MatrixXd& 
 }
 
 ParameterChange shown(const ShownSlot& slot, double change, double sd, Eigen::Index choices) {
-  const double sigmas = sd > 0 ? change / sd : 0;
+  const double sigmas = std::isfinite(sd) && sd > 0 ? change / sd : 0;
   return {.name = slot.name,
           .change = change * slot.factor,
           .sd = sd * slot.factor,
@@ -92,13 +108,12 @@ ParameterChange shown(const ShownSlot& slot, double change, double sd, Eigen::In
           .log10_p = corrected_log10_p(sigmas * sigmas, choices)};
 }
 
-std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::MatrixXd& W,
-                                           const Eigen::MatrixXd& M) {
+std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::MatrixXd& W) {
   const std::vector<Eigen::Index> chosen = account_for(e, W);
   if (chosen.empty()) return {};
   const Eigen::MatrixXd A = e.gain(Eigen::all, chosen);
-  const Eigen::MatrixXd C = inverse_of(A.transpose() * M * A).W;
-  const Eigen::VectorXd x = C * (A.transpose() * (M * e.difference));
+  const Eigen::MatrixXd C = inverse_of(A.transpose() * W * A).W;
+  const Eigen::VectorXd x = C * (A.transpose() * (W * e.difference));
   std::vector<ParameterChange> out;
   for (std::size_t n = 0; n < chosen.size(); ++n) {
     const auto at = static_cast<Eigen::Index>(n);
@@ -108,11 +123,12 @@ std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::Matri
   return out;
 }
 
-double sensor_log10_p(const Eigen::VectorXd& r, const Eigen::MatrixXd& C, int sensor) {
-  const int at = kSensorParameters * sensor;
-  const auto part = inverse_of(C.block<kSensorParameters, kSensorParameters>(at, at));
-  const auto x = r.segment<kSensorParameters>(at);
-  return chi_square_log10_p(x.dot(part.W * x), static_cast<double>(part.rank));
+/// What the twelve parameters of one sensor account for.
+double sensor_log10_p(const Evidence& e, const Eigen::MatrixXd& W, int sensor) {
+  const Eigen::MatrixXd A = e.gain.middleCols<kSensorParameters>(kSensorParameters * sensor);
+  const Inverse spread = inverse_of(A.transpose() * W * A);
+  const Eigen::VectorXd pull = A.transpose() * (W * e.difference);
+  return chi_square_log10_p(pull.dot(spread.W * pull), static_cast<double>(spread.rank));
 }
 
 }  // namespace
@@ -169,30 +185,23 @@ Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors
 }
 
 Change judge(const Evidence& e) {
-  const Inverse inverse = inverse_of(e.covariance);
-  const Inverse spread = inverse_of(e.common.transpose() * inverse.W * e.common);
-  const Eigen::VectorXd taken = spread.W * (e.common.transpose() * (inverse.W * e.difference));
-  const Eigen::VectorXd rest = e.difference - e.common * taken;
-  const Eigen::MatrixXd C = e.covariance - e.common * spread.W * e.common.transpose();
-  const Eigen::MatrixXd M = without(inverse.W, e.common);
-
-  Change out;
-  out.common_rotation_rad = taken.head<3>();
-  out.common_rotation_sd_rad = spread.W.diagonal().head<3>().cwiseMax(0).cwiseSqrt();
-  out.chi2 = rest.dot(inverse.W * rest);
-  out.dof = static_cast<double>(inverse.rank - spread.rank);
-  out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+  const auto [W, rank] = weight_of(e);
   const Eigen::Index choices = e.gain.cols();
-  out.log10_p_single = corrected_log10_p(single_chi2(e, inverse.W, M).maxCoeff(), choices);
-  out.named = named_changes(e, inverse.W, M);
+  Change out;
+  out.chi2 = e.difference.dot(W * e.difference);
+  out.dof = static_cast<double>(rank);
+  out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+  out.log10_p_single = corrected_log10_p(single_chi2(e, W, W).maxCoeff(), choices);
+  out.named = named_changes(e, W);
   for (int i = 0; i < kSensors; ++i)
-    out.sensor_log10_p[static_cast<std::size_t>(i)] = sensor_log10_p(rest, C, i);
+    out.sensor_log10_p[static_cast<std::size_t>(i)] = sensor_log10_p(e, W, i);
   const double limit = std::sqrt(chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
   for (Eigen::Index j = 0; j < choices; ++j) {
-    const ShownSlot& slot = e.slots[static_cast<std::size_t>(j)];
-    out.parameters.push_back(shown(slot, rest[j], std::sqrt(std::max(0.0, C(j, j))), choices));
     const auto a = e.gain.col(j);
-    out.parameters.back().seen = (limit + kPower80) / std::sqrt(a.dot(M * a)) * slot.factor;
+    const double information = a.dot(W * a), sd = 1 / std::sqrt(information);
+    const ShownSlot& slot = e.slots[static_cast<std::size_t>(j)];
+    out.parameters.push_back(shown(slot, a.dot(W * e.difference) / information, sd, choices));
+    out.parameters.back().seen = (limit + kPower80) * sd * slot.factor;
   }
   std::stable_sort(out.parameters.begin(), out.parameters.end(),
                    [](const auto& a, const auto& b) { return std::abs(a.sigmas) > std::abs(b.sigmas); });

@@ -13,26 +13,24 @@ namespace mgtd::calib {
 /// Probability below which a difference is called a change.
 inline constexpr double kChanged = 0.01;
 
+/// A change of one parameter, all others as they were: what it would have to be, and how likely.
 struct ParameterChange {
   std::string name;  ///< "s3 iz", "site.gradient Gxx"
   double change{0}, sd{0};
   std::string unit;   ///< "deg", "nT", "" for scale factors
   double sigmas{0};   ///< change / sd, signed
   double log10_p{0};  ///< of so many sigmas or more somewhere among all parameters compared
-  double seen{0};     ///< smallest change of this parameter alone that is found in 80 of 100 cases
+  double seen{0};     ///< smallest change that is found in 80 of 100 cases; infinite when it cannot show
 };
 
 struct Change {
   double chi2{0}, dof{0}, log10_p{0};  ///< that nothing changed: all parameters together
-  double log10_p_single{
-      0};  ///< the same by the one parameter that accounts for most, corrected for the choice
-  std::array<double, kSensors> sensor_log10_p{};  ///< of each sensor alone
+  double log10_p_single{0};  ///< the same by the parameter that accounts for most, corrected for the choice
+  std::array<double, kSensors> sensor_log10_p{};  ///< by the twelve parameters of each sensor alone
   std::vector<ParameterChange> parameters;        ///< largest |sigmas| first
   /// The fewest parameters that account for the difference, in the order in which they were found, each with
   /// its change when these alone changed. Empty when nothing changed or when it is spread over many.
   std::vector<ParameterChange> named;
-  Eigen::Vector3d common_rotation_rad{Eigen::Vector3d::Zero()};  ///< of the array on its table, taken out
-  Eigen::Vector3d common_rotation_sd_rad{Eigen::Vector3d::Zero()};
 
   /// That nothing changed: the better of both tests, corrected for having two. Changed below kChanged.
   [[nodiscard]] double p() const;
@@ -58,15 +56,15 @@ struct TurnedArray {
 [[nodiscard]] Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors,
                                               Eigen::Index slots, bool free_scale);
 
-/// An estimate of a difference: E(difference) = gain * (what really changed) + common * (anything).
+/// Observed: difference = gain * (what changed) + common * (anything) + an error with this covariance.
 struct Evidence {
   Eigen::VectorXd difference;
   Eigen::MatrixXd covariance, gain, common;
   std::vector<ShownSlot> slots;
 };
 
-/// Generalised least squares with the common freedoms fitted and taken out. Directions in which the
-/// covariance vanishes (a convention both sides share) carry no evidence.
+/// Likelihood ratios, with the common freedoms projected out. Directions in which the covariance vanishes (a
+/// convention both sides share) carry no evidence.
 [[nodiscard]] Change judge(const Evidence& evidence);
 
 }  // namespace mgtd::calib

@@ -6,17 +6,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/units.h"
-
 namespace mgtd::calib {
 namespace {
 
 using nlohmann::json;
 
+/// JSON has no infinity: what cannot show is null.
+json number(double value) { return std::isfinite(value) ? json(value) : json(); }
+
 json parameter_json(const ParameterChange& p) {
-  json out{{"name", p.name}, {"change", p.change}, {"sd", p.sd},
-           {"unit", p.unit}, {"sigmas", p.sigmas}, {"log10_p", p.log10_p}};
-  if (p.seen > 0) out["smallest_seen"] = p.seen;
+  json out{{"name", p.name}, {"change", number(p.change)}, {"sd", number(p.sd)},
+           {"unit", p.unit}, {"sigmas", p.sigmas},         {"log10_p", p.log10_p}};
+  if (p.seen > 0 && std::isfinite(p.seen)) out["smallest_seen"] = p.seen;
   return out;
 }
 
@@ -34,9 +35,6 @@ json to_json(const Change& c) {
     sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"log10_p", c.sensor_log10_p[i]}});
   for (const ParameterChange& p : c.named) named.push_back(parameter_json(p));
   for (const ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
-  const auto degrees = [](const Eigen::Vector3d& v) {
-    return json{to_deg(v[0]), to_deg(v[1]), to_deg(v[2])};
-  };
   return {{"chi2", c.chi2},
           {"dof", c.dof},
           {"log10_p", c.log10_p},
@@ -44,9 +42,14 @@ json to_json(const Change& c) {
           {"p", c.p()},
           {"sensors", std::move(sensors)},
           {"named", std::move(named)},
-          {"parameters", std::move(parameters)},
-          {"common_rotation_deg", degrees(c.common_rotation_rad)},
-          {"common_rotation_sd_deg", degrees(c.common_rotation_sd_rad)}};
+          {"parameters", std::move(parameters)}};
+}
+
+std::string figures_text(const Change& c) {
+  constexpr double kTiny = 1e-15;
+  const double p = c.p();
+  return fmt::format("p {}; chi-square {:.1f} for {:.0f} directions",
+                     p < kTiny ? std::string("< 1e-15") : fmt::format("= {:.2g}", p), c.chi2, c.dof);
 }
 
 std::string named_text(const Change& change) {
@@ -62,7 +65,7 @@ std::string change_table(const Change& change, std::size_t rows) {
   std::string out = "log10 p of no change, by sensor:";
   for (std::size_t i = 0; i < kSensors; ++i)
     out += fmt::format("  s{} {:.1f}", i + 1, change.sensor_log10_p[i]);
-  out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "parameter", "change", "sd", "sigmas",
+  out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "as if it alone changed", "by", "sd", "sigmas",
                      "smallest to be seen");
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
     const ParameterChange& p = change.parameters[j];

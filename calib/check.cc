@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -79,50 +79,63 @@ Score score_of(const Reduced& reduced, const Frozen& frozen) {
           reduced.g(t) - border * corner.solve(g), reduced.cost};
 }
 
-/// Chi-square that no change of the tested parameters explains, and its degrees of freedom.
-struct Rest {
-  double chi2{0}, dof{0};
+/// The directions of the tested slots that these poses see, whitened: z = A (change) + unit noise.
+struct Seen {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd z;
 };
 
-Rest rest_of(const JointProblem& problem, const JointState& state, const Frozen& frozen, const Score& score) {
+Seen seen_of(const Score& score) {
+  constexpr double kUnseen = 1e-10;  // of the largest eigenvalue; rounding leaves 1e-13
+  const Eigen::VectorXd d = score.S.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (d.array() > 0).select(d.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * score.S *
+                                                             inverse.asDiagonal());
+  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const auto unseen = (values.array() < kUnseen * values.maxCoeff()).count();
+  const Eigen::Index seen = values.size() - unseen;
+  const Eigen::MatrixXd V = eigen.eigenvectors().rightCols(seen);
+  const Eigen::VectorXd root = values.tail(seen).cwiseSqrt();
+  return {root.asDiagonal() * V.transpose() * d.asDiagonal(),
+          root.cwiseInverse().asDiagonal() * (V.transpose() * inverse.cwiseProduct(score.g))};
+}
+
+/// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance.
+double excess_of(const JointProblem& problem, const JointState& state, const Frozen& frozen,
+                 const JointCost& cost, const Seen& seen) {
   const PoseResiduals residuals = pose_residuals(problem, state);
-  const Eigen::VectorXd d = score.S.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(d.asDiagonal() * score.S *
-                                                                       d.asDiagonal());
-  const Eigen::VectorXd g = d.cwiseProduct(score.g);
   double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
   for (const JointPose& pose : problem.poses)
     observed += (pose.has_angles ? -1 : -3) + (problem.common_field ? 1 : 0);
   const double site = (problem.has_angles ? 2 : 0) +
                       (problem.common_field && problem.priors.empty() ? 1 : 0) +
                       static_cast<double>(frozen.nuisance.size()) - kGlobals;
-  return {score.cost.readings + score.cost.scalar - g.dot(solver.solve(g)),
-          observed - site - static_cast<double>(solver.rank())};
+  const double dof = observed - site - static_cast<double>(seen.z.size());
+  const double chi2 = cost.readings + cost.scalar - seen.z.squaredNorm();
+  return dof > 0 && std::abs(chi2 / dof - 1) > 3 * std::sqrt(2 / dof) ? std::sqrt(chi2 / dof) : 1;
 }
 
-/// What the poses tell of a change x: (S + W)^-1 g, with the spread that noise and calibration give it.
 Evidence evidence_of(const Frozen& frozen, const std::array<SensorModel, kSensors>& sensors,
-                     const Score& score, double noise_variance, bool free_scale) {
-  const auto n = static_cast<Eigen::Index>(frozen.tested.size());
-  Eigen::MatrixXd damped = score.S / noise_variance;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double wide = frozen.wide[static_cast<std::size_t>(j)];
-    damped(j, j) += 1 / (wide * wide);
+                     const Score& score, const Seen& seen, double noise, bool free_scale) {
+  const Eigen::MatrixXd A = seen.A / noise;
+  const Eigen::Index n = A.rows();
+  const Eigen::MatrixXd freedoms = common_freedoms(sensors, A.cols(), free_scale);
+  // A freedom that these poses do not see at all is out already.
+  std::vector<Eigen::Index> visible;
+  for (Eigen::Index j = 0; j < freedoms.cols(); ++j) {
+    const double whole = freedoms.col(j).cwiseAbs2().dot(score.S.diagonal());
+    if ((seen.A * freedoms.col(j)).squaredNorm() > 1e-8 * whole) visible.push_back(j);
   }
-  const Eigen::LDLT<Eigen::MatrixXd> solver(damped);
-  const Eigen::MatrixXd gain = solver.solve(Eigen::MatrixXd(score.S / noise_variance));
-  const Eigen::MatrixXd C = solver.solve(gain.transpose()) + gain * frozen.covariance * gain.transpose();
-  return {.difference = solver.solve(Eigen::VectorXd(score.g / noise_variance)),
-          .covariance = 0.5 * (C + C.transpose()),
-          .gain = gain,
-          .common = gain * common_freedoms(sensors, n, free_scale),
+  return {.difference = seen.z / noise,
+          .covariance = Eigen::MatrixXd::Identity(n, n) + A * frozen.covariance * A.transpose(),
+          .gain = A,
+          .common = A * freedoms(Eigen::all, visible),
           .slots = shown_slots(frozen.instrument)};
 }
 
 std::string verdict_text(const ValidityReport& r, bool changed) {
   const Change& c = r.change;
-  const std::string figures =
-      fmt::format("p = {:.2g}; chi-square {:.1f} for {:.0f} directions", c.p(), c.chi2, c.dof);
+  const std::string figures = figures_text(c);
   if (changed) {
     const auto worst = std::min_element(c.sensor_log10_p.begin(), c.sensor_log10_p.end());
     const std::string where = fmt::format("most of it in sensor s{}", worst - c.sensor_log10_p.begin() + 1);
@@ -222,13 +235,11 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   report.outliers = settled->outliers.nodes(problem, state);
   turn_covariance(calibration, settled->placed.Q, *frozen);
   const Score score = score_of(reduce(problem, state, 0), *frozen);
-  const Rest rest = rest_of(problem, state, *frozen, score);
-  if (rest.dof > 0 && std::abs(rest.chi2 / rest.dof - 1) > 3 * std::sqrt(2 / rest.dof))
-    report.excess = std::sqrt(rest.chi2 / rest.dof);
-  const double variance =
-      report.noise_from_dwells ? std::max(1.0, report.excess * report.excess) : report.excess * report.excess;
+  const Seen seen = seen_of(score);
+  report.excess = excess_of(problem, state, *frozen, score.cost, seen);
+  const double noise = report.noise_from_dwells ? std::max(1.0, report.excess) : report.excess;
   const bool free_scale = problem.common_field && !options.field_nT;
-  report.change = judge(evidence_of(*frozen, state.sensors, score, variance, free_scale));
+  report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
   const JointErrors errors = joint_errors(problem, state);
   report.errors = errors.summary;
   report.residual_nT = errors.residual_rms_nT;

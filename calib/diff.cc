@@ -124,20 +124,27 @@ bool name_remounted(const Calibration& a, const TurnedArray& b, std::vector<std:
   return any;
 }
 
-std::string turn_text(const Eigen::Matrix3d& Q, const Change& change) {
+/// The turn of the platform frame, with the uncertainty of the four sensors' mean.
+std::string turn_text(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) {
   const Eigen::AngleAxisd turn(Q);
-  const Eigen::Vector3d w = -turn.angle() * turn.axis();  // passive, like alpha, beta and gamma
-  const Eigen::Vector3d& sd = change.common_rotation_sd_rad;
-  return fmt::format(
-      "turn of the whole array on its table, which is no change of it: {:.4f} ± {:.4f}, {:.4f} ± {:.4f}, "
-      "{:.4f} ± {:.4f} deg about X, Y, Z",
-      to_deg(-w[0]), to_deg(sd[0]), to_deg(-w[1]), to_deg(sd[1]), to_deg(-w[2]), to_deg(sd[2]));
+  std::string out = "turn of the whole array on its table, which is no change of it:";
+  for (int axis = 0; axis < 3; ++axis) {
+    double variance = 0;
+    for (int i = 0; i < kSensors; ++i) {
+      for (int j = 0; j < kSensors; ++j) {
+        variance += covariance(kSensorParameters * i + alpha + axis, kSensorParameters * j + alpha + axis) /
+                    (kSensors * kSensors);
+      }
+    }
+    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.angle() * turn.axis()[axis]),
+                       to_deg(std::sqrt(variance)));
+  }
+  return out + " deg about X, Y, Z";
 }
 
 std::string conclusion_of(const DiffReport& report, bool remounted) {
   const Change& c = report.change;
-  const std::string figures =
-      fmt::format("p = {:.2g}; chi-square {:.1f} for {:.0f} directions", c.p(), c.chi2, c.dof);
+  const std::string figures = figures_text(c);
   if (!report.changed) return fmt::format("nothing changed that these runs can tell ({})", figures);
   if (remounted) return "changed: a sensor stands differently";
   if (c.named.empty()) return fmt::format("changed, spread over many parameters ({})", figures);
@@ -158,13 +165,14 @@ DiffReport diff(const Calibration& a, const Calibration& b) {
   J.topLeftCorner<kArrayParameters, kArrayParameters>() = placed.jacobian;
   const bool free_scale = scale_is_free(a) || scale_is_free(b);
   if (free_scale) out.remarks.emplace_back("a common scale is taken out, because one of them knows no field");
+  const Eigen::MatrixXd C = from.C + J * to.C * J.transpose();
   out.change = judge({.difference = to.x - from.x,
-                      .covariance = from.C + J * to.C * J.transpose(),
+                      .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),
                       .common = common_freedoms(a.sensors, n, free_scale),
                       .slots = shown_slots(shared)});
   out.changed = remounted || out.change.p() < kChanged;
-  out.remarks.push_back(turn_text(Q, out.change));
+  out.remarks.push_back(turn_text(Q, C));
   out.conclusion = conclusion_of(out, remounted);
   return out;
 }

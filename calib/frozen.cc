@@ -10,16 +10,9 @@
 namespace mgtd::calib {
 namespace {
 
-/// Sizes beyond any change worth a name: they keep directions finite that these poses do not see.
-constexpr double kWideScale = 0.02, kWideOffset_nT = 500, kWideEffect = 100;
-const double kWideAngle_rad = to_rad(1);
 void freeze_sensors(Frozen& out) {
   for (int slot = 0; slot < kSensorBlock; ++slot) {
-    const int p = slot % kSensorParameters;
     out.tested.push_back(slot);
-    out.wide.push_back(p >= cx && p <= cz   ? kWideScale
-                       : p >= ix && p <= iz ? kWideOffset_nT
-                                            : kWideAngle_rad);
   }
   for (int slot = kSiteSlot; slot < kEffectSlot; ++slot) out.nuisance.push_back(slot);
 }
@@ -49,10 +42,7 @@ void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, std::vect
   for (std::size_t j = 0; j < e.coefficients.size(); ++j) {
     const auto row = static_cast<Eigen::Index>(values.size());
     (of_site ? out.nuisance : out.tested).push_back(kEffectSlot + row);
-    if (!of_site) {
-      rows.push_back(row);
-      out.wide.push_back(kWideEffect * effect->coefficients()[j].typical);
-    }
+    if (!of_site) rows.push_back(row);
     values.push_back(e.coefficients[j].value);
   }
 }

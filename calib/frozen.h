@@ -16,7 +16,6 @@ struct Frozen {
   std::vector<CalibratedEffect> instrument;    ///< those under test
   std::vector<Eigen::Index> tested, nuisance;  ///< slots of the fixed block
   Eigen::MatrixXd covariance;                  ///< of the tested slots
-  std::vector<double> wide;                    ///< of each tested slot
   bool needs_angles{false};
 };
 

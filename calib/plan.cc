@@ -139,6 +139,15 @@ std::string gauge_text(const Gauge& gauge) {
   return gauge.scale_known ? out : fmt::format("{}; no field is known: {}", out, kScaleIsFree);
 }
 
+std::string assumed_text(const PlanRequest& r) {
+  const std::string field =
+      r.scalar_sd_nT  ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
+      : r.field_known ? fmt::format("known to {} nT", std::max(r.field_sd_nT, kCommonFieldSpread_nT))
+                      : std::string("not known");
+  return fmt::format("field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg",
+                     r.f_nT, field, to_deg(r.inclination_rad), r.pose_noise_nT, to_deg(r.table_sd_rad));
+}
+
 }  // namespace
 
 Result<PlanReport> plan(const PlanRequest& request) {
@@ -157,6 +166,7 @@ Result<PlanReport> plan(const PlanRequest& request) {
   report.poses = static_cast<int>(table.poses.size());
   report.noise_sd_nT_per_m = noise_of_tensor(request);
   report.tensor_sd_nT_per_m = unknown();
+  report.assumed = assumed_text(request);
   report.gauge = gauge_text(gauge);
   report.known = identifiability(*problem, state, S, request.f_nT);
   const auto covariance = covariance_of(S);

@@ -55,6 +55,7 @@ struct PlanReport {
   std::vector<Separation> separations;
   Gradient tensor_sd_nT_per_m;  ///< by the calibration alone, rms over attitudes; NaN unless determined
   Gradient noise_sd_nT_per_m;   ///< of a tensor from pose means, for comparison
+  std::string assumed;          ///< field, noise and table that these figures rest on
   std::string gauge;            ///< what holds the common rotation and the scale
   Identifiability known;        ///< weak directions, coverage, poses that would help
   /// The attitudes that lower the mean tensor variance most, each with the share of the variance it takes

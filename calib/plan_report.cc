@@ -99,6 +99,7 @@ json to_json(const PlanReport& r) {
   return {{"schema", "mgt.plan/1"},
           {"poses", r.poses},
           {"determined", r.determined},
+          {"assumed", r.assumed},
           {"gauge", r.gauge},
           {"parameters", std::move(parameters)},
           {"separations", std::move(separations)},
@@ -114,7 +115,7 @@ std::string to_text(const PlanReport& r) {
   std::string out = fmt::format("{} poses: {}\n", r.poses,
                                 r.determined ? "every parameter would be determined"
                                              : "NOT ENOUGH, some parameters would stay unknown");
-  out += fmt::format("gauge: {}\n", r.gauge);
+  out += fmt::format("assumed: {}\ngauge: {}\n", r.assumed, r.gauge);
   if (r.determined) {
     out += fmt::format("\n{:<34}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "standard error of the tensor, nT/m", "xx",
                        "yy", "zz", "xy", "xz", "yz");

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/pose_source.h"
 
@@ -16,14 +17,8 @@ struct Arguments {
 };
 
 int run_apply(const Session& session, const Arguments& args) {
-  const auto text = read_file(args.calibration);
-  if (!text) return report(session, text.error());
-  const auto calibration = calib::calibration_from_json_text(*text);
-  if (!calibration) {
-    Error error = calibration.error();
-    error.message = args.calibration + ": " + error.message;
-    return report(session, error);
-  }
+  const auto calibration = read_calibration(args.calibration);
+  if (!calibration) return report(session, calibration.error());
   const auto table = daemon::read_poses(args.run);
   if (!table) return report(session, table.error());
   const auto rows = calib::apply(*calibration, *table);

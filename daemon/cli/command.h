@@ -35,10 +35,13 @@ CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, 
 
 void add_apply(CLI::App& app, Session& session);
 void add_calibrations(CLI::App& app, Session& session);
+void add_check(CLI::App& app, Session& session);
 void add_check_config(CLI::App& app, Session& session);
+void add_diff(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
+void add_plan(CLI::App& app, Session& session);
 void add_ports(CLI::App& app, Session& session);
 void add_run(CLI::App& app, Session& session);
 void add_status(CLI::App& app, Session& session);

@@ -5,6 +5,11 @@
 
 namespace mgtd::cli {
 
+void add_field_flags(CLI::App* command, FitFlags& flags) {
+  command->add_option("--field", flags.field_nT, "total field in nT, for poses without f_nT");
+  command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT");
+}
+
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   command->add_option("--method", f->method, "simplified, two-step or joint")
@@ -12,8 +17,7 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
       ->capture_default_str();
   command->add_option("--with", f->with, "effect to put in the model, by name; may be given again (joint)")
       ->allow_extra_args(false);
-  command->add_option("--field", f->field_nT, "total field in nT, for poses without f_nT");
-  command->add_option("--field-sd", f->field_sd_nT, "its standard uncertainty in nT");
+  add_field_flags(command, *f);
   command->add_option("--baseline", f->baseline_m, "distance of opposite sensors in m (0.4)");
   command->add_option("--inclination", f->inclination_deg,
                       "of the field in the platform frame at zero table angles, deg, positive towards +Z");

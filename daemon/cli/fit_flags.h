@@ -21,6 +21,8 @@ struct FitFlags {
 };
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);
+/// Those about the field alone.
+void add_field_flags(CLI::App* command, FitFlags& flags);
 
 /// What the command line says goes before what the run file says, and that before the defaults.
 [[nodiscard]] Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source);

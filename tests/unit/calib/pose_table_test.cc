@@ -187,6 +187,21 @@ TEST(PoseTable, AnglesSurviveToAMillionthOfADegreeAndTheTextIsStable) {
   EXPECT_EQ(format_pose_table(*again), format_pose_table(table));
 }
 
+TEST(PoseList, NeedsAnglesAndNoReadings) {
+  const auto list =
+      parse_pose_list("pose,azimuth_deg,pitch_deg,roll_deg,s1_T_degC\n7,90,-45,180,21.5\n", "list.csv");
+  ASSERT_TRUE(list) << list.error().text();
+  EXPECT_EQ(list->poses.front().number, 7);
+  EXPECT_NEAR(*list->poses.front().pitch_rad, to_rad(-45), 1e-15);
+  EXPECT_EQ(list->poses.front().T_degC[0], 21.5);
+  const auto missing = parse_pose_list("pose,azimuth_deg,pitch_deg\n1,0,0\n", "list.csv");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("list.csv:1:1: missing column: roll_deg"), std::string::npos);
+  const auto empty = parse_pose_list("pose,azimuth_deg,pitch_deg,roll_deg\n1,0,,0\n", "list.csv");
+  ASSERT_FALSE(empty);
+  EXPECT_NE(empty.error().message.find("list.csv:2:5: pitch_deg is empty"), std::string::npos);
+}
+
 TEST(PoseTable, TheHashIsOfTheContent) {
   PoseTable table =
       testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(2, 3), 36, {}, 1);

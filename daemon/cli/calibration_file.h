@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "calib/calibration.h"
+#include "daemon/cli/fit_flags.h"
+
+namespace mgtd::cli {
+
+/// A CAL.json. Refusals name the file.
+[[nodiscard]] Result<calib::Calibration> read_calibration(const std::string& path);
+
+/// A CAL.json as it is, or a run fitted with these flags; told apart by content.
+[[nodiscard]] Result<calib::Calibration> calibration_of(const std::string& path, const FitFlags& flags);
+
+}  // namespace mgtd::cli

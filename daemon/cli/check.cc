@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/check.h"
+
+#include <fmt/format.h>
+
+#include "calib/change_report.h"
+#include "calib/fit/fit_report_json.h"
+#include "daemon/cli/calibration_file.h"
+#include "daemon/cli/command.h"
+
+namespace mgtd::cli {
+namespace {
+
+constexpr const char* kHelp =
+    "is this calibration still valid?\n\n"
+    "A dozen poses in different attitudes suffice; table angles are not needed unless the calibration holds "
+    "an\n"
+    "effect of the site, platform or table. The whole array may have been mounted again, and elsewhere. The "
+    "answer\n"
+    "weighs both the noise of these poses and the uncertainty of the calibration: an unchanged rig is "
+    "called\n"
+    "changed in about one case of a hundred. Printed beside it: the smallest change that would have been "
+    "seen, and\n"
+    "which sensor and parameter moved.\n\n"
+    "  mgt check cal.json dozen.csv && echo go on\n\n"
+    "Exit code 0: valid. 1: not valid, calibrate again.";
+constexpr std::size_t kRows = 8;
+
+struct Arguments {
+  std::string calibration, run;
+  std::shared_ptr<FitFlags> flags;
+};
+
+nlohmann::json json_of(const calib::ValidityReport& r) {
+  nlohmann::json outliers = nlohmann::json::array();
+  for (const calib::OutlierNode& o : r.outliers)
+    outliers.push_back({{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}});
+  return {{"schema", "mgt.check/1"},
+          {"calibration", r.calibration},
+          {"poses", r.poses},
+          {"valid", r.valid},
+          {"reasons", r.reasons},
+          {"change", calib::to_json(r.change)},
+          {"errors", calib::to_json(r.errors)},
+          {"residual_nT", r.residual_nT},
+          {"noise_nT", r.noise_nT},
+          {"excess", r.excess},
+          {"outliers", std::move(outliers)}};
+}
+
+int run_check(const Session& session, const Arguments& args) {
+  const auto calibration = read_calibration(args.calibration);
+  if (!calibration) return report(session, calibration.error());
+  const auto source = daemon::read_run(args.run);
+  if (!source) return report(session, source.error());
+  const auto options = fit_options(*args.flags, *source);
+  if (!options) return report(session, options.error());
+  const auto checked = calib::check(*calibration, source->table, *options);
+  if (!checked) return report(session, checked.error());
+  if (session.json) {
+    print_json(json_of(*checked));
+  } else {
+    fmt::print("calibration {} against {} poses: {}\n", checked->calibration, checked->poses,
+               checked->valid ? "VALID" : "NOT VALID");
+    fmt::print("residual {:.3f} nT, noise of a pose mean {:.3f} nT\n", checked->residual_nT,
+               checked->noise_nT);
+    fmt::print("{}\n", calib::change_table(checked->change, kRows));
+    for (const std::string& reason : checked->reasons) fmt::print("note: {}\n", reason);
+  }
+  return checked->valid ? 0 : 1;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command =
+      add_command(app, session, "check", "is this calibration still valid? (a dozen poses suffice)",
+                  [args, &session] { return run_check(session, *args); });
+  command->description(kHelp);
+  command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
+  command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  args->flags = std::make_shared<FitFlags>();
+  command
+      ->add_option("--with", args->flags->with,
+                   "effect of the site to allow for, by name; may be given again")
+      ->allow_extra_args(false);
+  add_field_flags(command, *args->flags);
+  command->add_option("--table-sd", args->flags->table_sd_deg,
+                      "standard deviation of a table angle in deg (0.1)");
+}
+
+}  // namespace mgtd::cli

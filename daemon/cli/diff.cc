@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/diff.h"
+
+#include <fmt/format.h>
+
+#include "calib/change_report.h"
+#include "daemon/cli/calibration_file.h"
+#include "daemon/cli/command.h"
+
+namespace mgtd::cli {
+namespace {
+
+constexpr const char* kHelp =
+    "has the calibration changed, which parameter, by how many standard errors?\n\n"
+    "Both runs are fitted with the same options (or taken as they are when a file is a CAL.json) and "
+    "compared with\n"
+    "the uncertainty of both. A turn of the whole array on its table is taken out first: it is no change of "
+    "the\n"
+    "array. The answer allows for the number of parameters looked at: two runs of an unchanged rig are "
+    "called\n"
+    "different in about one case of a hundred. Effects that both have are compared too.\n\n"
+    "  mgt diff monday.mgtrun friday.mgtrun --with site.gradient\n\n"
+    "Exit code 0: nothing changed that these runs can tell. 1: changed.";
+constexpr std::size_t kRows = 12;
+
+struct Arguments {
+  std::string a, b;
+  std::shared_ptr<FitFlags> flags;
+};
+
+int run_diff(const Session& session, const Arguments& args) {
+  const auto a = calibration_of(args.a, *args.flags);
+  if (!a) return report(session, a.error());
+  const auto b = calibration_of(args.b, *args.flags);
+  if (!b) return report(session, b.error());
+  for (const auto* c : {&*a, &*b}) {
+    if (!c->accepted_by_checks)
+      fmt::print(stderr, "warning: {} fails its own checks; see mgt fit\n", c == &*a ? args.a : args.b);
+  }
+  const calib::DiffReport found = calib::diff(*a, *b);
+  if (session.json) {
+    print_json({{"schema", "mgt.diff/1"},
+                {"a", a->id},
+                {"b", b->id},
+                {"changed", found.changed},
+                {"conclusion", found.conclusion},
+                {"remarks", found.remarks},
+                {"change", calib::to_json(found.change)}});
+  } else {
+    fmt::print("{}\n\n{}\n", found.conclusion, calib::change_table(found.change, kRows));
+    for (const std::string& remark : found.remarks) fmt::print("note: {}\n", remark);
+  }
+  return found.changed ? 1 : 0;
+}
+
+}  // namespace
+
+void add_diff(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command =
+      add_command(app, session, "diff", "has the calibration changed between two runs, which parameter?",
+                  [args, &session] { return run_diff(session, *args); });
+  command->description(kHelp);
+  command->add_option("RUN_A", args->a, "*.mgtrun, a pose table in CSV, or a CAL.json")->required();
+  command->add_option("RUN_B", args->b, "the later one")->required();
+  args->flags = add_fit_flags(command);
+}
+
+}  // namespace mgtd::cli

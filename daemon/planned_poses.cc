@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/planned_poses.h"
+
+#include <numbers>
+
+#include "daemon/run_duration.h"
+#include "daemon/run_plan.h"
+
+namespace mgtd::daemon {
+namespace {
+
+drivers::TableLimits limits_of(const Config& config) {
+  constexpr double kPi = std::numbers::pi;
+  const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
+  if (table != nullptr) return table->limits();
+  return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
+}
+
+}  // namespace
+
+Result<PoseTable> planned_poses(const Config& config) {
+  const RunDefaults& d = config.run;
+  const auto plan = make_plan({.step_deg = d.step_deg,
+                               .random = d.random,
+                               .revisits = d.revisits,
+                               .dwell_short_s = d.dwell_short_s,
+                               .dwell_long_s = d.dwell_long_s,
+                               .seed = d.seed},
+                              limits_of(config));
+  if (!plan) return tl::unexpected(plan.error());
+  PoseTable out;
+  double t_s = 0;
+  for (std::size_t k = 0; k < plan->poses.size(); ++k) {
+    const PlannedPose& planned = plan->poses[k];
+    t_s += pose_s(Pace{}, *plan, k);
+    Pose pose;
+    pose.number = planned.number;
+    pose.set = planned.set;
+    pose.t_s = t_s - planned.dwell_s / 2;
+    pose.azimuth_rad = planned.target.azimuth_rad;
+    pose.pitch_rad = planned.target.pitch_rad;
+    pose.roll_rad = planned.target.roll_rad;
+    pose.dwell_s = planned.dwell_s;
+    if (planned.sense != 0) pose.sense = planned.sense;
+    out.poses.push_back(std::move(pose));
+  }
+  return out;
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// mgt plan, check and diff as an operator uses them, on pose tables of the simulated rig.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/child_process.h"
+
+namespace mgtd::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Validity : public ::testing::Test {
+ protected:
+  /// A clean rig's run; another seed is another day.
+  void measure(const std::string& file, int seed) {
+    std::ofstream(dir_ / "rig.toml") << "[rig]\nname = \"r\"\nparameters = \"table6\"\nseed = " << seed
+                                     << "\n";
+    const Finished made = run_program(
+        {std::string(MGTD_BIN_DIR) + "/mgt-rig", "table", "--scenario", dir_ / "rig.toml", "-o", dir_ / file},
+        dir_.path());
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  /// Header and twelve of the random poses; `shift_nT` is added to s3_z_nT.
+  void dozen(const std::string& from, const std::string& to, double shift_nT) {
+    std::istringstream in(slurp(dir_ / from));
+    std::ofstream out(dir_ / to);
+    std::string line;
+    std::getline(in, line);
+    out << line << "\n";
+    std::istringstream header(line);
+    int column = 0;
+    for (std::string name; std::getline(header, name, ',') && name != "s3_z_nT";) ++column;
+    for (int row = 0; std::getline(in, line); ++row) {
+      if (row < 60 || row >= 72) continue;
+      std::istringstream cells(line);
+      std::string cell;
+      for (int c = 0; std::getline(cells, cell, ','); ++c)
+        out << (c == 0 ? "" : ",") << (c == column ? std::to_string(std::stod(cell) + shift_nT) : cell);
+      out << "\n";
+    }
+  }
+  Finished mgt(std::vector<std::string> words) {
+    words.insert(words.begin(), std::string(MGTD_BIN_DIR) + "/mgt");
+    return run_program(std::move(words), dir_.path());
+  }
+  TemporaryDirectory dir_;
+};
+
+TEST_F(Validity, LastWeeksCalibrationAgainstADozenPoses) {
+  measure("monday.csv", 1);
+  measure("friday.csv", 2);
+  ASSERT_EQ(mgt({"fit", dir_ / "monday.csv", "-o", dir_ / "cal.json"}).exit_code, 0);
+  dozen("friday.csv", "same.csv", 0);
+  dozen("friday.csv", "moved.csv", 1);
+  const Finished same = mgt({"check", dir_ / "cal.json", dir_ / "same.csv"});
+  EXPECT_EQ(same.exit_code, 0) << same.out;
+  EXPECT_THAT(same.out, HasSubstr("VALID"));
+  EXPECT_THAT(same.out, HasSubstr("smallest change that these poses show"));
+  const Finished moved = mgt({"check", dir_ / "cal.json", dir_ / "moved.csv", "--json"});
+  EXPECT_EQ(moved.exit_code, 1);
+  const json report = json::parse(moved.out);
+  EXPECT_FALSE(report.at("valid").get<bool>());
+  EXPECT_EQ(report.at("change").at("named").at(0).at("name"), "s3 iz");
+}
+
+TEST_F(Validity, TwoRunsAndAFileOfACalibration) {
+  measure("monday.csv", 1);
+  measure("friday.csv", 2);
+  ASSERT_EQ(mgt({"fit", dir_ / "monday.csv", "-o", dir_ / "cal.json"}).exit_code, 0);
+  const Finished same = mgt({"diff", dir_ / "cal.json", dir_ / "friday.csv", "--json"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  EXPECT_FALSE(json::parse(same.out).at("changed").get<bool>());
+  const Finished wrong = mgt({"diff", dir_ / "rig.toml", dir_ / "friday.csv"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("rig.toml:1:1"));
+}
+
+TEST_F(Validity, APlanBeforeAnythingIsMeasured) {
+  const Finished plan = mgt({"plan", "--with", "site.gradient", "--json"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const json report = json::parse(plan.out);
+  EXPECT_EQ(report.at("poses"), 157);
+  EXPECT_EQ(report.at("parameters").size(), 53U);
+  EXPECT_EQ(mgt({"plan", "--config", std::string(MGTD_SOURCE_DIR) + "/systemd/mgtd.toml"}).exit_code, 0);
+  std::ofstream level(dir_ / "level.csv");
+  level << "pose,azimuth_deg,pitch_deg,roll_deg\n";
+  for (int k = 1; k <= 36; ++k) level << k << "," << 10 * k << ",0,0\n";
+  level.close();
+  const Finished one_axis = mgt({"plan", dir_ / "level.csv"});
+  EXPECT_EQ(one_axis.exit_code, 1);
+  EXPECT_THAT(one_axis.out, HasSubstr("not at all"));
+}
+
+}  // namespace
+}  // namespace mgtd::testing

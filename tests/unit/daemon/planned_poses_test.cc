@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/planned_poses.h"
+
+#include <gtest/gtest.h>
+
+#include "daemon/run_plan.h"
+
+namespace mgtd::daemon {
+namespace {
+
+TEST(PlannedPoses, AreThoseOfTheRunWithTheirTimes) {
+  const auto poses = planned_poses(Config{});
+  ASSERT_TRUE(poses) << poses.error().text();
+  ASSERT_EQ(poses->poses.size(), 157U);
+  const drivers::TableLimits anywhere{{-3.2, 3.2}, {-1.6, 1.6}, {-3.2, 3.2}};
+  const auto plan = make_plan({}, anywhere);
+  ASSERT_TRUE(plan);
+  double before = 0;
+  for (std::size_t k = 0; k < plan->poses.size(); ++k) {
+    const Pose& pose = poses->poses[k];
+    EXPECT_EQ(pose.number, plan->poses[k].number);
+    EXPECT_EQ(pose.set, plan->poses[k].set);
+    EXPECT_EQ(*pose.dwell_s, plan->poses[k].dwell_s);
+    EXPECT_GT(*pose.t_s, before);
+    before = *pose.t_s;
+  }
+  EXPECT_GT(before, 1000);  // a run takes its time
+}
+
+TEST(PlannedPoses, ARunThatCannotBePlannedIsRefused) {
+  Config config;
+  config.run.step_deg = 7;
+  EXPECT_FALSE(planned_poses(config));
+}
+
+}  // namespace
+}  // namespace mgtd::daemon
