@@ -22,7 +22,7 @@ struct Pose {
   std::optional<double> azimuth_rad, pitch_rad, roll_rad;
   std::optional<double> f_nT, f_sd_nT;
   std::optional<double> n, n_eff;
-  std::array<Eigen::Vector3d, kSensors> y_nT{};  ///< raw mean reading, nT at nominal scale
+  std::array<Eigen::Vector3d, kSensors> y_nT{no_readings()};  ///< raw mean reading, nT at nominal scale
   std::array<std::array<std::optional<double>, 3>, kSensors> sd_nT{};  ///< of one sample within the dwell
   std::optional<int> mount, sense;
   std::optional<double> dwell_s, since_stop_s;

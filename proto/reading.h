@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -14,6 +15,13 @@
 namespace mgtd {
 
 inline constexpr int kSensors = 4;
+
+/// Four readings nobody has made: NaN, so that a forgotten one cannot pass for a measurement. (Eigen's
+/// vectors are not initialised by {}.)
+[[nodiscard]] inline std::array<Eigen::Vector3d, kSensors> no_readings() {
+  const Eigen::Vector3d none = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  return {none, none, none, none};
+}
 
 /// One sample of one fluxgate. `y_nT` is not a vector in a frame: three readings at nominal scale, along axes
 /// that are neither orthogonal nor aligned. Nothing is corrected here.

@@ -46,6 +46,8 @@ TEST(RunFile, KeepsEverythingBitForBit) {
     Pose sparse;
     sparse.number = 9;
     sparse.set = "check";
+    EXPECT_FALSE(file.append_pose(sparse));  // nobody has measured it
+    sparse.y_nT.fill(Eigen::Vector3d{1, 2, 3});
     ASSERT_TRUE(file.append_pose(sparse));
     const TableReading r{{Instant{Duration{5}}, {6}}, {0.1, 0.2, 0.3}, true, false, true};
     ASSERT_TRUE(file.append_path(std::vector<TableReading>(3, r)));
