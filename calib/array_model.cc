@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "calib/field_derivative.h"
 #include "calib/sensor_equations.h"
 
 namespace mgtd::calib {
@@ -25,11 +26,22 @@ Eigen::Vector3d undo(const Eigen::Vector3d& target, const auto& term) {
   return x;
 }
 
+using PlatformInput = Eigen::Matrix<double, 6, 1>;
+
+/// Field and unit gravity; none where the attitude is unknown.
+PlatformInput platform_input(const Eigen::Vector3d& b_P_nT, const std::optional<Eigen::Matrix3d>& R) {
+  PlatformInput in = PlatformInput::Zero();
+  in.head<3>() = b_P_nT;
+  if (R) in.tail<3>() = R->col(2);
+  return in;
+}
+
 }  // namespace
 
 ArrayModel::ArrayModel(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
                        const std::vector<EffectPtr>& effects, Eigen::VectorXd coefficients)
     : effects_(effects),
+      sensors_(sensors),
       positions_P_m_(geometry.positions_P_m()),
       table_(effects_, Level::table),
       site_(effects_, Level::site),
@@ -76,9 +88,7 @@ FieldVector ArrayModel::correct(const Conditions& at, const FieldVector& y_nT,
     Eigen::Vector3d b = gain_[s] * v;
     if (!platform_.empty()) {
       b = undo(b, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-        Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
-        in.head<3>() = x;
-        if (R) in.tail<3>() = R->col(2);
+        const PlatformInput in = platform_input(x, R);
         return platform_.value(at, i, {in.data(), 6}, coefficients_);
       });
     }
@@ -94,6 +104,31 @@ FieldVector ArrayModel::site_field(const Conditions& at, const Eigen::Matrix3d& 
     out.segment<3>(3 * i) = R * Eigen::Vector3d(site_.value(at, i, {x_S_m.data(), 3}, coefficients_));
   }
   return out;
+}
+
+Eigen::MatrixXd ArrayModel::derivative(const Conditions& at, const FieldVector& b_P_nT,
+                                       const std::optional<Eigen::Matrix3d>& R, bool site_removed) const {
+  const Eigen::Index m = coefficients_.size();
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(kChannels, kArrayParameters + m);
+  for (int i = 0; i < kSensors; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    const Eigen::Vector3d b = b_P_nT.segment<3>(3 * i);
+    d.block<3, kSensorParameters>(3 * i, kSensorParameters * i) = field_derivative(sensors_[s], b);
+    auto columns = d.block(3 * i, kArrayParameters, 3, m);
+    if (!axis_.empty()) {
+      const Eigen::Vector3d v = sensors_[s].response() * sensors_[s].R_PS().transpose() * b;
+      columns -= gain_[s] * axis_.sum(at, i, {v.data(), 3}, coefficients_).d_coefficient;
+    }
+    if (!platform_.empty()) {
+      const PlatformInput in = platform_input(b, R);
+      columns -= platform_.sum(at, i, {in.data(), 6}, coefficients_).d_coefficient;
+    }
+    if (site_removed && R) {
+      const Eigen::Vector3d x_S_m = R->transpose() * positions_P_m_[s];
+      columns -= *R * site_.sum(at, i, {x_S_m.data(), 3}, coefficients_).d_coefficient;
+    }
+  }
+  return d;
 }
 
 Eigen::Matrix3d ArrayModel::attitude(const Conditions& at) const {

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "calib/calibration.h"
+#include "calib/channels.h"
 #include "calib/effects/level_terms.h"
 #include "calib/geometry.h"
 #include "calib/sensor_model.h"
-#include "calib/tensor.h"
 
 /// Four sensors and the effects of a model, from readings back to fields: the inverse of what the fit
-/// predicts.
+/// predicts. An effect whose inputs were not measured at a pose (Effect::missing) is not removed there.
 namespace mgtd::calib {
 
 class ArrayModel {
@@ -33,11 +33,17 @@ class ArrayModel {
   /// What the site's effects add to a uniform field at each sensor, platform frame.
   [[nodiscard]] FieldVector site_field(const Conditions& at, const Eigen::Matrix3d& R) const;
   [[nodiscard]] bool has_site_effects() const { return !site_.empty(); }
+  [[nodiscard]] bool has_instrument_effects() const { return !axis_.empty() || !platform_.empty(); }
   /// Site to platform as the table truly stood, for recorded angles.
   [[nodiscard]] Eigen::Matrix3d attitude(const Conditions& at) const;
+  /// Derivative of the corrected field by the 48 parameters and then by all coefficients, readings held, to
+  /// first order in the effects. `site_removed`: of the corrected field less site_field.
+  [[nodiscard]] Eigen::MatrixXd derivative(const Conditions& at, const FieldVector& b_P_nT,
+                                           const std::optional<Eigen::Matrix3d>& R, bool site_removed) const;
 
  private:
-  std::vector<EffectPtr> effects_;              ///< kept alive for the terms
+  std::vector<EffectPtr> effects_;  ///< kept alive for the terms
+  std::array<SensorModel, kSensors> sensors_;
   std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R (CA)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
   std::array<Eigen::Vector3d, kSensors> positions_P_m_;

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,7 @@ struct Reference {
   std::array<std::optional<double>, kSensors> T_degC;  ///< mean head temperature during the run
   std::string t_utc;                                   ///< start of the run; empty when unknown
   std::optional<double> f_nT;                          ///< mean total field
+  std::map<std::string, double> currents_A;            ///< means of the columns ending in _A
 };
 
 /// A coefficient of an effect as it was fitted.
@@ -39,6 +41,9 @@ struct EffectCoefficient {
 struct CalibratedEffect {
   std::string effect;
   std::vector<EffectCoefficient> coefficients;
+  /// What leaving it out changes in the corrected components (sensor by sensor), rms over the poses of the
+  /// fit: what its absence costs where its inputs are not measured.
+  std::array<double, 3 * static_cast<std::size_t>(kSensors)> size_nT{};
 };
 
 struct Calibration {

@@ -85,7 +85,7 @@ json effects_json(const std::vector<CalibratedEffect>& effects) {
     for (const EffectCoefficient& c : e.coefficients) {
       coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
     }
-    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}});
+    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}, {"size_nT", e.size_nT}});
   }
   return out;
 }
@@ -93,7 +93,7 @@ json effects_json(const std::vector<CalibratedEffect>& effects) {
 std::vector<CalibratedEffect> effects_from(const json& list) {
   std::vector<CalibratedEffect> out;
   for (const json& e : list) {
-    CalibratedEffect effect{e.at("effect"), {}};
+    CalibratedEffect effect{e.at("effect"), {}, e.at("size_nT").get<decltype(CalibratedEffect::size_nT)>()};
     for (const json& c : e.at("coefficients")) {
       effect.coefficients.push_back({c.at("name"), c.at("value"), c.at("sd"), c.at("unit")});
     }
@@ -129,7 +129,7 @@ json reference_json(const Reference& r) {
   return {{"T_degC", T},
           {"t_utc", r.t_utc},
           {"F_nT", r.f_nT ? json(*r.f_nT) : json()},
-          {"currents", json::object()}};
+          {"currents", r.currents_A}};
 }
 
 Reference reference_from(const json& object) {
@@ -138,6 +138,7 @@ Reference reference_from(const json& object) {
     if (const json& t = object.at("T_degC").at(i); !t.is_null()) r.T_degC.at(i) = t.get<double>();
   }
   r.t_utc = object.at("t_utc");
+  r.currents_A = object.at("currents").get<std::map<std::string, double>>();
   if (const json& f = object.at("F_nT"); !f.is_null()) r.f_nT = f.get<double>();
   return r;
 }

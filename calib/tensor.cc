@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/effect_correction.h"
 #include "calib/field_derivative.h"
 
 namespace mgtd::calib {
@@ -18,6 +19,23 @@ FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
   FieldVector out;
   for (std::size_t i = 0; i < kCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
   return out;
+}
+
+double closure_chi2(const Closure& closure, const Eigen::Matrix4d& covariance) {
+  Eigen::Vector4d values;
+  values << closure.curl_nT_per_m, closure.center_nT;
+  return values.dot(covariance.llt().solve(values));
+}
+
+/// What a live sample knows of its circumstances.
+Pose pose_of(const Epoch& epoch) {
+  Pose pose;
+  pose.y_nT = epoch.y_nT;
+  pose.t_utc = epoch.t.wall;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (std::isfinite(epoch.T_degC[i])) pose.T_degC[i] = epoch.T_degC[i];
+  }
+  return pose;
 }
 
 }  // namespace
@@ -82,6 +100,7 @@ TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration)
     gain_[i] = sensor.R_PS() * sensor.response().inverse();
     offset_nT_[i] = sensor.offset_nT;
   }
+  if (!calibration_->effects.empty()) effects_ = std::make_shared<const EffectCorrection>(*calibration_);
   noise_known_ = (calibration_->sample_noise_nT.array() > 0).all();
   prepare_uncertainty();
 }
@@ -104,17 +123,16 @@ void TensorPipeline::prepare_uncertainty() {
     }
     return rows;
   };
-  Eigen::Matrix<double, kChannels, kChannels> noise = Eigen::Matrix<double, kChannels, kChannels>::Zero();
   for (std::size_t i = 0; i < kCount; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    noise.block<3, 3>(3 * at, 3 * at) =
+    noise_.block<3, 3>(3 * at, 3 * at) =
         gain_[i] * calibration_->sample_noise_nT.row(at).array().square().matrix().asDiagonal() *
         gain_[i].transpose();
   }
   const auto covariance = [&](const Eigen::Matrix<double, 1, kChannels>& u,
                               const Eigen::Matrix<double, 1, kChannels>& v) {
     const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
-    return Variance{u.dot(noise * v.transpose()), 0.5 * (Q + Q.transpose())};
+    return Variance{u.dot(noise_ * v.transpose()), 0.5 * (Q + Q.transpose())};
   };
   const auto G = gradient_rows(geometry_);
   for (Eigen::Index i = 0; i < 6; ++i)
@@ -132,20 +150,21 @@ FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>&
   return stacked(b);
 }
 
-TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
-  const FieldAndGradient computed = field_and_gradient(correct(epoch.y_nT), geometry_);
-  TensorSample out{.seq = epoch.seq,
-                   .t = epoch.t,
-                   .calibration_id = id_,
-                   .b_P_nT = computed.b_P_nT,
-                   .f_nT = computed.b_P_nT.norm(),
-                   .g_nT_per_m = computed.g_nT_per_m,
-                   .g_sd_nT_per_m = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN},
-                   .closure = computed.closure,
-                   .skew_bound_s = epoch.skew_bound_s,
-                   .flags = epoch.flags};
+TensorSample TensorPipeline::sample_of(const FieldVector& b_P_nT) const {
+  const FieldAndGradient computed = field_and_gradient(b_P_nT, geometry_);
+  TensorSample out;
+  out.calibration_id = id_;
+  out.b_P_nT = computed.b_P_nT;
+  out.f_nT = computed.b_P_nT.norm();
+  out.g_nT_per_m = computed.g_nT_per_m;
+  out.g_sd_nT_per_m = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+  out.closure = computed.closure;
   if (calibration_ == nullptr) out.flags |= Flag::uncalibrated;
-  if (calibration_ == nullptr || !noise_known_) return out;
+  return out;
+}
+
+/// By the quadratic forms: parameters and noise only.
+void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   Eigen::Vector4d q;
   q << 1, out.b_P_nT;
   std::array<double, 6> sd{};
@@ -156,9 +175,50 @@ TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
   for (int i = 0; i < 4; ++i) {
     for (int j = i; j < 4; ++j) S(i, j) = S(j, i) = closure_covariance_[pair++].at(q, samples);
   }
-  Eigen::Vector4d closure;
-  closure << out.closure.curl_nT_per_m, out.closure.center_nT;
-  out.closure.chi2 = closure.dot(S.llt().solve(closure));
+  out.closure.chi2 = closure_chi2(out.closure, S);
+}
+
+void TensorPipeline::add_uncertainty(const ChannelCovariance& covariance, TensorSample& out) const {
+  const auto G = gradient_rows(geometry_);
+  const Eigen::Matrix<double, 6, 1> sd = (G * covariance * G.transpose()).diagonal().cwiseSqrt();
+  out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+  const auto C = closure_rows(geometry_);
+  out.closure.chi2 = closure_chi2(out.closure, C * covariance * C.transpose());
+}
+
+TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,
+                                   FieldVector* fields_P_nT) const {
+  const bool with_effects = effects_ && (remove_site || effects_->has_instrument_effects());
+  Corrected corrected;
+  if (with_effects) {
+    corrected = effects_->correct(pose, stacked(pose.y_nT), remove_site, previous);
+  } else {
+    corrected.b_P_nT = correct(pose.y_nT);
+  }
+  if (fields_P_nT != nullptr) *fields_P_nT = corrected.b_P_nT;
+  TensorSample out = sample_of(corrected.b_P_nT);
+  if (with_effects && !effects_->left_out(pose, remove_site).empty()) out.flags |= Flag::incomplete;
+  if (calibration_ == nullptr || !noise_known_) return out;
+  if (with_effects) {
+    add_uncertainty(corrected.covariance + noise_ / samples, out);
+  } else {
+    add_uncertainty(samples, out);
+  }
+  return out;
+}
+
+TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
+  TensorSample out;
+  if (effects_ && effects_->has_instrument_effects()) {
+    out = apply(pose_of(epoch), samples);
+  } else {
+    out = sample_of(correct(epoch.y_nT));
+    if (calibration_ != nullptr && noise_known_) add_uncertainty(samples, out);
+  }
+  out.seq = epoch.seq;
+  out.t = epoch.t;
+  out.skew_bound_s = epoch.skew_bound_s;
+  out.flags |= epoch.flags;
   return out;
 }
 

@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "calib/calibration.h"
+#include "calib/channels.h"
 #include "proto/epoch.h"
+#include "proto/pose.h"
 #include "proto/tensor.h"
 
 /// Field, gradient tensor and closure of one set of four readings.
@@ -18,9 +20,7 @@
 /// Does not remove site effects: a gradient of the site is real field.
 namespace mgtd::calib {
 
-inline constexpr int kChannels = 3 * kSensors;
-/// The corrected components, sensor by sensor, nT.
-using FieldVector = Eigen::Matrix<double, kChannels, 1>;
+class EffectCorrection;
 
 struct FieldAndGradient {
   Eigen::Vector3d b_P_nT;
@@ -48,11 +48,19 @@ class TensorPipeline {
   explicit TensorPipeline(Geometry geometry);
   explicit TensorPipeline(std::shared_ptr<const Calibration> calibration);
 
+  /// Effects of the instrument are removed with the temperatures and the time of the epoch; one whose inputs
+  /// are not measured live is left out, widens g_sd by its size, and flags the sample `incomplete`.
   /// g_sd holds sample noise and calibration covariance together, the latter at the field of this very
   /// sample. `samples` is the number of samples averaged into the readings.
   [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1) const;
-  /// The corrected field at each sensor, platform frame.
+  /// The same for a pose of a table, with everything it knows and the pose before it. `remove_site` takes the
+  /// effects of the site out, for which the pose needs its table angles. seq and time stay empty.
+  [[nodiscard]] TensorSample apply(const Pose& pose, double samples, bool remove_site = false,
+                                   const Pose* previous = nullptr, FieldVector* fields_P_nT = nullptr) const;
+  /// The corrected field at each sensor, platform frame, by the 48 parameters alone.
   [[nodiscard]] FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
+  /// Null without a calibration or without effects in it.
+  [[nodiscard]] const EffectCorrection* effects() const { return effects_.get(); }
   [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const { return calibration_; }
 
  private:
@@ -66,12 +74,17 @@ class TensorPipeline {
   };
 
   void prepare_uncertainty();
+  [[nodiscard]] TensorSample sample_of(const FieldVector& b_P_nT) const;
+  void add_uncertainty(double samples, TensorSample& out) const;
+  void add_uncertainty(const ChannelCovariance& covariance, TensorSample& out) const;
 
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
   Geometry geometry_;
   std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R_PS (C A)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
+  std::shared_ptr<const EffectCorrection> effects_;
+  ChannelCovariance noise_{ChannelCovariance::Zero()};  ///< of one sample, in the corrected components
   bool noise_known_{false};
   std::array<Variance, 6> gradient_variance_;
   /// Covariance of each pair of closure quantities, upper triangle by rows.

@@ -16,6 +16,7 @@ enum class Flag : std::uint16_t {
   uncalibrated = 1U << 3U,     ///< no active calibration: the numbers are raw readings
   suspect = 1U << 4U,          ///< the closure test fails
   clock_unsettled = 1U << 5U,  ///< the clock model of a device is still being learnt
+  incomplete = 1U << 6U,       ///< an effect of the calibration is not removed: its inputs are not measured
 };
 
 class Flags {
@@ -36,13 +37,14 @@ class Flags {
   std::uint16_t bits_{0};
 };
 
-inline constexpr std::array<std::pair<Flag, std::string_view>, 6> kFlagNames{{
+inline constexpr std::array<std::pair<Flag, std::string_view>, 7> kFlagNames{{
     {Flag::saturated, "saturated"},
     {Flag::interpolated, "interpolated"},
     {Flag::calibrating, "calibrating"},
     {Flag::uncalibrated, "uncalibrated"},
     {Flag::suspect, "suspect"},
     {Flag::clock_unsettled, "clock_unsettled"},
+    {Flag::incomplete, "incomplete"},
 }};
 
 /// Calls use(std::string_view) with the name of every flag that is set, in the order of their bits.

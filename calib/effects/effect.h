@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,16 +41,23 @@ struct Coefficient {
   double prior_sd{0};  ///< of a Gaussian prior about zero; 0: no prior
 };
 
+/// Mean of covariates over the run a calibration was fitted to, by name: the zero of effects of currents.
+using CovariateMeans = std::map<std::string, double>;
+
 /// What is known of the pose at which a term is evaluated.
 struct Conditions {
   const Pose& pose;
-  double t_h{0};                  ///< middle of the dwell since the run's start, hours
+  double t_h{0};                  ///< since the start of the run that was fitted, hours
   const Pose* previous{nullptr};  ///< the pose before it; null for the first
+  const CovariateMeans* means{nullptr};
 };
 
 /// Slots: inputs of a level (at most 6), then the coefficients that act at one sensor (at most 10).
 inline constexpr int kJetSlots = 16;
 using Jet = Dual<kJetSlots>;
+
+/// The first table angle that a pose lacks, as a column name; empty when it has all three.
+[[nodiscard]] std::string_view missing_angle(const Pose& pose);
 
 class Effect {
  public:
@@ -59,8 +67,11 @@ class Effect {
   [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
   /// Indices of the coefficients that act at sensor `sensor`, in the order `c` has in term().
   [[nodiscard]] virtual std::span<const int> at(int sensor) const = 0;
-  /// What the term needs of the poses is there; refuses with what is missing.
-  [[nodiscard]] virtual Result<void> check(const PoseTable& table) const = 0;
+  /// The first column that the term needs and this pose has not ("s3_T_degC", "azimuth_deg"); empty when the
+  /// term can be evaluated. Where it is not empty the term counts as zero and term() is not called.
+  [[nodiscard]] virtual std::string_view missing(const Pose& pose) const = 0;
+  /// What the term needs of the poses of a fit is there; refuses with what is missing.
+  [[nodiscard]] virtual Result<void> check(const PoseTable& table) const;
   virtual void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
                     std::span<double> out) const = 0;
   virtual void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,

@@ -42,6 +42,7 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
     x[i].v = in[i];
   }
   for (const Entry& entry : entries_) {
+    if (!entry.effect->missing(at.pose).empty()) continue;
     const std::span<const int> active = entry.effect->at(sensor);
     std::array<Jet, kJetSlots> c;
     std::array<Jet, kMaxTermOutputs> out;
@@ -69,6 +70,7 @@ TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const do
   const auto outputs = static_cast<std::size_t>(outputs_of(level_));
   TermValue total = TermValue::Zero(outputs_of(level_));
   for (const Entry& entry : entries_) {
+    if (!entry.effect->missing(at.pose).empty()) continue;
     const std::span<const int> active = entry.effect->at(sensor);
     std::array<double, kJetSlots> c{};
     std::array<double, kMaxTermOutputs> out{};

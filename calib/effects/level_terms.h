@@ -18,7 +18,8 @@ struct TermSum {
       d_coefficient;  ///< one column per coefficient of the model
 };
 
-/// Effects of a model by level. Coefficients of all effects stand in one vector, in the order of the effects.
+/// Effects of a model by level. An effect that a pose cannot feed (Effect::missing) adds nothing there.
+/// Coefficients of all effects stand in one vector, in the order of the effects.
 class LevelTerms {
  public:
   LevelTerms(const std::vector<EffectPtr>& effects, Level level);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/site_gradient.h"
 
-#include <fmt/format.h>
-
 #include <array>
 
 namespace mgtd::calib {
@@ -18,17 +16,5 @@ SiteGradient::SiteGradient() {
 }
 
 std::span<const int> SiteGradient::at(int) const { return kAll; }
-
-Result<void> SiteGradient::check(const PoseTable& table) const {
-  for (const Pose& pose : table.poses) {
-    if (!pose.angles()) {
-      return fail(ErrorCode::refused,
-                  fmt::format("site.gradient turns with the table, but pose {} has no complete table angles",
-                              pose.number),
-                  "give azimuth_deg, pitch_deg and roll_deg of every pose, or fit without site.gradient");
-    }
-  }
-  return {};
-}
 
 }  // namespace mgtd::calib

@@ -17,7 +17,7 @@ class SiteGradient final : public EffectOf<SiteGradient> {
   [[nodiscard]] Level level() const override { return Level::site; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
   [[nodiscard]] std::span<const int> at(int sensor) const override;
-  [[nodiscard]] Result<void> check(const PoseTable& table) const override;
+  [[nodiscard]] std::string_view missing(const Pose& pose) const override { return missing_angle(pose); }
 
   template <class S>
   void equation(const Conditions&, int, std::span<const S> x, std::span<const S> g, std::span<S> out) const {

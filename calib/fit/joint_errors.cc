@@ -35,7 +35,7 @@ void add(const JointProblem& problem, const JointState& state, Sums& sums) {
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const JointPose& pose = problem.poses[k];
     const Nuisance& x = state.nuisances[k];
-    const Conditions at{*pose.pose, pose.t_h, pose.previous};
+    const Conditions at = pose.conditions();
     std::optional<Eigen::Matrix3d> R;
     if (pose.has_angles) R = turn_by<double>(x.head<3>()) * array.attitude(at);
     FieldVector b = array.correct(at, pose.y_nT, R);

@@ -45,6 +45,9 @@ struct JointPose {
   bool has_angles{false};
   Eigen::Matrix3d T{Eigen::Matrix3d::Identity()};  ///< table rotation at the recorded angles
   double attitude_weight{0};                       ///< 1/rad, of each component of w_k
+  const CovariateMeans* means{nullptr};            ///< those of the problem
+
+  [[nodiscard]] Conditions conditions() const { return {*pose, t_h, previous, means}; }
 };
 
 /// A Gaussian observation of a linear form of the fixed block: row' x = target.
@@ -57,6 +60,7 @@ struct LinearPrior {
 struct JointProblem {
   Geometry geometry;
   std::vector<EffectPtr> effects;
+  std::shared_ptr<const CovariateMeans> means;  ///< over the poses that are fitted
   std::vector<JointPose> poses;
   bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
   bool has_angles{false};           ///< at least one pose has table angles

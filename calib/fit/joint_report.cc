@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/array_model.h"
 #include "calib/fit/error_summary.h"
 #include "calib/fit/joint_errors.h"
 #include "calib/fit/joint_verdict.h"
@@ -109,6 +110,26 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
   }
 }
 
+/// What an effect does to the corrected components, rms over the poses.
+decltype(CalibratedEffect::size_nT) size_of(const JointFit& fit, const EffectPtr& effect, int first) {
+  const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
+  const ArrayModel alone(fit.state.sensors, fit.problem.geometry, {effect},
+                         fit.state.coefficients.segment(first, m));
+  const ArrayModel none(fit.state.sensors, fit.problem.geometry, {}, {});
+  FieldVector squares = FieldVector::Zero();
+  for (const JointPose& pose : fit.problem.poses) {
+    const Conditions at = pose.conditions();
+    std::optional<Eigen::Matrix3d> R;
+    if (pose.has_angles) R = pose.T;
+    FieldVector change = alone.correct(at, pose.y_nT, R) - none.correct(at, pose.y_nT, R);
+    if (R) change -= alone.site_field(at, *R);
+    squares += change.cwiseAbs2();
+  }
+  decltype(CalibratedEffect::size_nT) out{};
+  FieldVector::Map(out.data()) = (squares / static_cast<double>(fit.problem.poses.size())).cwiseSqrt();
+  return out;
+}
+
 }  // namespace
 
 JointOptions joint_options(const FitOptions& options) {
@@ -134,7 +155,7 @@ void fill_calibration(const JointFit& fit, Calibration& c) {
       fit.covariance.bottomRightCorner(m, m);
   int slot = 0;
   for (const EffectPtr& effect : fit.problem.effects) {
-    CalibratedEffect out{std::string(effect->name()), {}};
+    CalibratedEffect out{std::string(effect->name()), {}, size_of(fit, effect, slot)};
     for (const Coefficient& coefficient : effect->coefficients()) {
       const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
       out.coefficients.push_back(

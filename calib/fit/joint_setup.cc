@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/run_time.h"
 #include "calib/sensor_equations.h"
 
 namespace mgtd::calib {
@@ -17,12 +18,10 @@ constexpr double kMinFieldSd_nT = 1e-3;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
 constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
 
-double hours_of(const Pose& pose) { return pose.t_s.value_or(0) / 3600; }
-
-JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field) {
+JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field, const RunTime& time) {
   JointPose out;
   out.pose = &pose;
-  out.t_h = hours_of(pose);
+  out.t_h = time.hours(pose);
   for (int i = 0; i < kSensors; ++i) out.y_nT.segment<3>(3 * i) = pose.y_nT[static_cast<std::size_t>(i)];
   out.weight.setConstant(1 / kStartNoise_nT);
   if (common_field) {
@@ -69,6 +68,16 @@ void add_coefficient_priors(JointProblem& problem) {
 
 }  // namespace
 
+CovariateMeans covariate_means(const PoseTable& table) {
+  CovariateMeans sum, count;
+  for (const Pose& pose : table.poses) {
+    if (pose.set == "check") continue;
+    for (const auto& [name, value] : pose.covariates) sum[name] += value, ++count[name];
+  }
+  for (auto& [name, mean] : sum) mean /= count[name];
+  return sum;
+}
+
 Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options, PoseUse use) {
   JointProblem problem;
   problem.geometry = options.geometry;
@@ -90,10 +99,13 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
                 "give f_nT for every pose, or give the field of the others with --field");
   }
   problem.common_field = with_f == 0;
+  problem.means = std::make_shared<const CovariateMeans>(covariate_means(table));
+  const RunTime time = RunTime::of(table);
   const Pose* previous = nullptr;
   for (const Pose& pose : table.poses) {
     if (fitted(pose)) {
-      problem.poses.push_back(joint_pose(pose, options, problem.common_field));
+      problem.poses.push_back(joint_pose(pose, options, problem.common_field, time));
+      problem.poses.back().means = problem.means.get();
       problem.poses.back().previous = previous;
       problem.has_angles = problem.has_angles || problem.poses.back().has_angles;
     }

@@ -34,6 +34,9 @@ inline constexpr double kStartNoise_nT = 1.0;
 [[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options,
                                                  PoseUse use = PoseUse::fit);
 
+/// Over the poses that are fitted.
+[[nodiscard]] CovariateMeans covariate_means(const PoseTable& table);
+
 /// What holds the freedoms that the data leave.
 struct Gauge {
   AngleCoverage angles{AngleCoverage::none};

@@ -77,7 +77,7 @@ void PoseModel::set_attitude(const JointPose& pose, const Nuisance& nuisance, At
   if (!table_.empty()) {
     const TableAngles angles = *pose.pose->angles();
     const std::array<double, 5> in{angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0, 0};
-    const TermSum terms = table_.sum({*pose.pose, pose.t_h, pose.previous}, 0, in, state_.coefficients);
+    const TermSum terms = table_.sum(pose.conditions(), 0, in, state_.coefficients);
     a.state_d_coefficient = terms.d_coefficient;
     using S = Dual<5>;
     std::array<S, 5> s;
@@ -122,8 +122,7 @@ void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, F
   Eigen::Matrix3d dB_dx = Eigen::Matrix3d::Zero();
   if (!site_.empty()) {
     const Eigen::Vector3d x_S_m = a.R.transpose() * r_P_m;
-    const TermSum terms =
-        site_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {x_S_m.data(), 3}, state_.coefficients);
+    const TermSum terms = site_.sum(pose.conditions(), sensor, {x_S_m.data(), 3}, state_.coefficients);
     B_S += terms.value;
     dB_dx = terms.d_input;
     field.d_global.rightCols(globals_ - kGlobals) += a.R * terms.d_coefficient;
@@ -137,8 +136,7 @@ void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int senso
   Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
   in.head<3>() = field.b_P_nT;
   if (a.known) in.tail<3>() = a.R.col(2);
-  const TermSum terms =
-      platform_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {in.data(), 6}, state_.coefficients);
+  const TermSum terms = platform_.sum(pose.conditions(), sensor, {in.data(), 6}, state_.coefficients);
   const Eigen::Matrix3d by_b = Eigen::Matrix3d::Identity() + terms.d_input.leftCols<3>();
   const Eigen::Matrix3d by_g = terms.d_input.rightCols<3>();
   field.b_P_nT += terms.value;
@@ -164,8 +162,7 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
   Eigen::Vector3d B_S = a.f_nT * state_.direction;
   if (!site_.empty()) {
     const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    const TermSum terms =
-        site_.sum({*pose.pose, pose.t_h, pose.previous}, 0, {centre.data(), 3}, state_.coefficients);
+    const TermSum terms = site_.sum(pose.conditions(), 0, {centre.data(), 3}, state_.coefficients);
     B_S += terms.value;
     out.f_global.tail(globals_ - kGlobals) = B_S.transpose() / B_S.norm() * terms.d_coefficient;
   }
@@ -186,8 +183,7 @@ void PoseModel::read(const JointPose& pose, int sensor, const Field& field, Pose
   out.d_nuisance.middleRows<3>(row) = g.gain * field.d_nuisance;
   out.d_global.middleRows<3>(row).noalias() = g.gain * field.d_global;
   if (!axis_.empty()) {
-    const TermSum terms =
-        axis_.sum({*pose.pose, pose.t_h, pose.previous}, sensor, {v_nT.data(), 3}, state_.coefficients);
+    const TermSum terms = axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients);
     const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
     out.y_nT.segment<3>(row) += terms.value;
     d_sensor = (by_v * d_sensor).eval();

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "calib/fit/joint_setup.h"
 #include "calib/pose_table.h"
+#include "calib/run_time.h"
 
 namespace mgtd::calib {
 
@@ -19,7 +21,10 @@ Reference reference_of(const PoseTable& table, const Readings& readings) {
     }
     if (count > 0) out.T_degC[i] = sum / count;
   }
-  if (!table.poses.empty() && table.poses.front().t_utc) out.t_utc = format_utc(*table.poses.front().t_utc);
+  if (const RunTime time = RunTime::of(table); time.start) out.t_utc = format_utc(*time.start);
+  for (const auto& [name, mean] : covariate_means(table)) {
+    if (name.ends_with("_A")) out.currents_A[name] = mean;
+  }
   return out;
 }
 

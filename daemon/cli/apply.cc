@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
 
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
@@ -14,6 +15,7 @@ namespace {
 
 struct Arguments {
   std::string calibration, run, output;
+  calib::ApplyOptions options;
 };
 
 int run_apply(const Session& session, const Arguments& args) {
@@ -21,15 +23,21 @@ int run_apply(const Session& session, const Arguments& args) {
   if (!calibration) return report(session, calibration.error());
   const auto table = daemon::read_poses(args.run);
   if (!table) return report(session, table.error());
-  const auto rows = calib::apply(*calibration, *table);
-  const std::string csv = calib::format_applied(rows);
+  const auto rows = calib::apply(*calibration, *table, args.options);
+  if (!rows) return report(session, rows.error());
+  const std::string csv = calib::format_applied(*rows);
+  std::set<std::string> left_out;
+  for (const calib::AppliedPose& row : *rows) left_out.insert(row.left_out.begin(), row.left_out.end());
+  for (const std::string& effect : left_out)
+    fmt::print(stderr, "{} was left out where its inputs are missing: see the column left_out\n", effect);
   if (!args.output.empty()) {
     if (auto written = write_file(args.output, csv); !written) return report(session, written.error());
   }
   if (session.json) {
     print_json({{"schema", "mgt.apply/1"},
                 {"calibration", calibration->id},
-                {"poses", rows.size()},
+                {"poses", rows->size()},
+                {"left_out", left_out},
                 {"output", args.output.empty() ? nlohmann::json() : nlohmann::json(args.output)}});
   } else if (args.output.empty()) {
     fmt::print("{}", csv);
@@ -47,6 +55,10 @@ void add_apply(CLI::App& app, Session& session) {
   command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "file; standard output when absent");
+  command->add_flag("--remove-site", args->options.remove_site,
+                    "take the site's effects out too; needs the table angles");
+  command->add_flag("--missing-ok", args->options.missing_ok,
+                    "leave effects out whose inputs the table lacks, with wider standard deviations");
 }
 
 }  // namespace mgtd::cli

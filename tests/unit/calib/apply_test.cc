@@ -33,7 +33,7 @@ PoseTable clean_run() {
 }
 
 TEST(Apply, TrueParametersLeaveTheFieldAndNoGradient) {
-  const auto rows = apply(true_calibration(testing::table3_rig()), clean_run());
+  const auto rows = *apply(true_calibration(testing::table3_rig()), clean_run());
   ASSERT_EQ(rows.size(), 56U);
   constexpr double kRounding_nT = 1e-8;  // a few bits of 50 000 nT
   for (const AppliedPose& row : rows) {
@@ -44,7 +44,7 @@ TEST(Apply, TrueParametersLeaveTheFieldAndNoGradient) {
 }
 
 TEST(Apply, ColumnsAreTheDocumentedOnes) {
-  const std::string csv = format_applied(apply(true_calibration(testing::table3_rig()), clean_run()));
+  const std::string csv = format_applied(*apply(true_calibration(testing::table3_rig()), clean_run()));
   EXPECT_THAT(csv, StartsWith("pose,t_s,s1_bx_nT,s1_by_nT,s1_bz_nT,s2_bx_nT"));
   EXPECT_THAT(csv, HasSubstr(",s4_bz_nT,Bx_nT,By_nT,Bz_nT,F_nT,Gxx_nT_per_m,Gyy_nT_per_m,Gzz_nT_per_m,"
                              "Gxy_nT_per_m,Gxz_nT_per_m,Gyz_nT_per_m,curl_nT_per_m,center_x_nT,center_y_nT,"
@@ -57,14 +57,14 @@ TEST(Apply, UncertaintyStandsBesideItWhereTheNoiseIsKnown) {
   c.sample_noise_nT.setConstant(2);
   PoseTable table = clean_run();
   for (Pose& pose : table.poses) pose.n_eff = 100;
-  const auto averaged = apply(c, table);
+  const auto averaged = *apply(c, table);
   for (Pose& pose : table.poses) pose.n_eff = 1;
-  const auto single = apply(c, table);
+  const auto single = *apply(c, table);
   // Without calibration covariance only the noise counts, and it averages.
   EXPECT_NEAR(single[3].sample.g_sd_nT_per_m.xx / averaged[3].sample.g_sd_nT_per_m.xx, 10, 1e-9);
   EXPECT_THAT(format_applied(averaged), HasSubstr("center_z_nT,Gxx_sd_nT_per_m,"));
   for (Pose& pose : table.poses) pose.t_s.reset();
-  EXPECT_THAT(format_applied(apply(c, table)), StartsWith("pose,s1_bx_nT"));
+  EXPECT_THAT(format_applied(*apply(c, table)), StartsWith("pose,s1_bx_nT"));
 }
 
 }  // namespace

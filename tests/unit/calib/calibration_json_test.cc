@@ -106,7 +106,9 @@ TEST(CalibrationJson, NoJsonAtAllIsRefused) {
 /// Removing only part of what it says would be silent falsehood.
 TEST(CalibrationJson, EffectsItCannotRemoveAreRefused) {
   nlohmann::json object = to_json(random_calibration(1));
-  object["effects"].push_back({{"effect", "axis.of.evil"}, {"coefficients", nlohmann::json::array()}});
+  object["effects"].push_back({{"effect", "axis.of.evil"},
+                               {"coefficients", nlohmann::json::array()},
+                               {"size_nT", std::vector<double>(12)}});
   object["id"] = content_id(object);
   EXPECT_THAT(calibration_from_json(object).error().message, HasSubstr("axis.of.evil"));
 }

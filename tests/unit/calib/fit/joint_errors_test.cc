@@ -56,7 +56,7 @@ class Bend final : public EffectOf<Bend> {
   [[nodiscard]] Level level() const override { return level_; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
   [[nodiscard]] std::span<const int> at(int) const override { return at_; }
-  [[nodiscard]] Result<void> check(const PoseTable&) const override { return {}; }
+  [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   template <class S>
   void equation(const Conditions&, int, std::span<const S> in, std::span<const S> c, std::span<S> out) const {
     for (std::size_t o = 0; o < out.size(); ++o) out[o] = c[0] * in[o] * in[o] * (1 / 2.5e9);

@@ -23,7 +23,7 @@ class Probe final : public EffectOf<Probe<kLevel>> {
   [[nodiscard]] Level level() const override { return kLevel; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
   [[nodiscard]] std::span<const int> at(int) const override { return at_; }
-  [[nodiscard]] Result<void> check(const PoseTable&) const override { return {}; }
+  [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   template <class S>
   void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
                 std::span<S> out) const {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effect_correction.h"
+
+namespace mgtd::calib {
+namespace {
+
+std::vector<EffectPtr> effects_of(const Calibration& c) {
+  std::vector<EffectPtr> out;
+  for (const CalibratedEffect& e : c.effects) out.push_back(*make_effect(e.effect));
+  return out;
+}
+
+Eigen::MatrixXd joint_covariance(const Calibration& c) {
+  const Eigen::Index m = c.effect_covariance.rows(), n = kArrayParameters + m;
+  Eigen::MatrixXd out(n, n);
+  out.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
+  out.bottomRows(m) = c.effect_covariance;
+  out.topRightCorner(kArrayParameters, m) = c.effect_covariance.leftCols<kArrayParameters>().transpose();
+  return out;
+}
+
+}  // namespace
+
+EffectCorrection::EffectCorrection(const Calibration& c)
+    : effects_(effects_of(c)),
+      array_(*ArrayModel::of(c)),
+      covariance_(joint_covariance(c)),
+      means_(c.reference.currents_A) {
+  for (const CalibratedEffect& e : c.effects)
+    size2_nT2_.push_back(Eigen::Map<const FieldVector>(e.size_nT.data()).cwiseAbs2());
+  if (const auto start = parse_utc(c.reference.t_utc)) time_.start = *start;
+}
+
+bool EffectCorrection::acts(const Effect& effect, bool remove_site) const {
+  return effect.level() == Level::axis || effect.level() == Level::platform ||
+         (remove_site && effect.level() == Level::site);
+}
+
+std::vector<EffectCorrection::LeftOut> EffectCorrection::left_out(const Pose& pose, bool remove_site) const {
+  std::vector<LeftOut> out;
+  for (const EffectPtr& effect : effects_) {
+    const std::string_view column = effect->missing(pose);
+    if (!column.empty() && acts(*effect, remove_site)) out.push_back({effect->name(), column});
+  }
+  return out;
+}
+
+Corrected EffectCorrection::correct(const Pose& pose, const FieldVector& y_nT, bool remove_site,
+                                    const Pose* previous) const {
+  const Conditions at{pose, time_.hours(pose), previous, &means_};
+  std::optional<Eigen::Matrix3d> R;
+  if (pose.angles()) R = array_.attitude(at);
+  Corrected out{.b_P_nT = array_.correct(at, y_nT, R), .covariance = ChannelCovariance::Zero()};
+  const Eigen::MatrixXd d = array_.derivative(at, out.b_P_nT, R, remove_site);
+  out.covariance = d * covariance_ * d.transpose();
+  for (std::size_t e = 0; e < effects_.size(); ++e) {
+    if (acts(*effects_[e], remove_site) && !effects_[e]->missing(pose).empty())
+      out.covariance.diagonal() += size2_nT2_[e];
+  }
+  if (remove_site && R) out.b_P_nT -= array_.site_field(at, *R);
+  return out;
+}
+
+}  // namespace mgtd::calib
