@@ -123,12 +123,13 @@ std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::Matri
   return out;
 }
 
-/// What the twelve parameters of one sensor account for.
-double sensor_log10_p(const Evidence& e, const Eigen::MatrixXd& W, int sensor) {
+/// What is left when one sensor may have changed in any way.
+double others_log10_p(const Evidence& e, const Eigen::MatrixXd& W, Eigen::Index rank, int sensor) {
   const Eigen::MatrixXd A = e.gain.middleCols<kSensorParameters>(kSensorParameters * sensor);
   const Inverse spread = inverse_of(A.transpose() * W * A);
   const Eigen::VectorXd pull = A.transpose() * (W * e.difference);
-  return chi_square_log10_p(pull.dot(spread.W * pull), static_cast<double>(spread.rank));
+  return chi_square_log10_p(e.difference.dot(W * e.difference) - pull.dot(spread.W * pull),
+                            static_cast<double>(rank - spread.rank));
 }
 
 }  // namespace
@@ -146,6 +147,12 @@ std::vector<ShownSlot> shown_slots(const std::vector<CalibratedEffect>& effects)
       out.push_back({fmt::format("{} {}", effect.effect, c.name), c.unit, 1});
   }
   return out;
+}
+
+double small_sample_factor(int poses) {
+  // Twelve readings a pose less three of its field, less the four that each axis fits.
+  const double freedom = 0.75 * poses - 4;
+  return freedom > 4 ? freedom / (freedom - 2) : 2;
 }
 
 TurnedArray turned(const std::array<SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q) {
@@ -194,7 +201,7 @@ Change judge(const Evidence& e) {
   out.log10_p_single = corrected_log10_p(single_chi2(e, W, W).maxCoeff(), choices);
   out.named = named_changes(e, W);
   for (int i = 0; i < kSensors; ++i)
-    out.sensor_log10_p[static_cast<std::size_t>(i)] = sensor_log10_p(e, W, i);
+    out.others_log10_p[static_cast<std::size_t>(i)] = others_log10_p(e, W, rank, i);
   const double limit = std::sqrt(chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
   for (Eigen::Index j = 0; j < choices; ++j) {
     const auto a = e.gain.col(j);

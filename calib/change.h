@@ -26,7 +26,7 @@ struct ParameterChange {
 struct Change {
   double chi2{0}, dof{0}, log10_p{0};  ///< that nothing changed: all parameters together
   double log10_p_single{0};  ///< the same by the parameter that accounts for most, corrected for the choice
-  std::array<double, kSensors> sensor_log10_p{};  ///< by the twelve parameters of each sensor alone
+  std::array<double, kSensors> others_log10_p{};  ///< that nothing but this sensor changed
   std::vector<ParameterChange> parameters;        ///< largest |sigmas| first
   /// The fewest parameters that account for the difference, in the order in which they were found, each with
   /// its change when these alone changed. Empty when nothing changed or when it is spread over many.
@@ -43,6 +43,10 @@ struct ShownSlot {
   double factor;
 };
 [[nodiscard]] std::vector<ShownSlot> shown_slots(const std::vector<CalibratedEffect>& effects);
+
+/// Expected true over estimated variance when the noise of each axis comes from the residuals of so many
+/// poses: a covariance taken at its word would call an unchanged rig changed a little too often.
+[[nodiscard]] double small_sample_factor(int poses);
 
 /// Four sensors in a platform frame turned by Q, and what that does to their 48 parameters.
 struct TurnedArray {

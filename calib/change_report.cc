@@ -27,12 +27,17 @@ std::string amount(double value, const std::string& unit, bool sign) {
   return fmt::format("{}{:.3g} {}", sign && value > 0 ? "+" : "", shown, unit.empty() ? "ppm" : unit);
 }
 
+/// "= 0.32" or "< 1e-15".
+std::string probability(double log10_p) {
+  return log10_p < -15 ? std::string("< 1e-15") : fmt::format("= {:.2g}", std::pow(10.0, log10_p));
+}
+
 }  // namespace
 
 json to_json(const Change& c) {
   json sensors = json::array(), named = json::array(), parameters = json::array();
   for (std::size_t i = 0; i < kSensors; ++i)
-    sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"log10_p", c.sensor_log10_p[i]}});
+    sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"others_log10_p", c.others_log10_p[i]}});
   for (const ParameterChange& p : c.named) named.push_back(parameter_json(p));
   for (const ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
   return {{"chi2", c.chi2},
@@ -46,10 +51,8 @@ json to_json(const Change& c) {
 }
 
 std::string figures_text(const Change& c) {
-  constexpr double kTiny = 1e-15;
-  const double p = c.p();
-  return fmt::format("p {}; chi-square {:.1f} for {:.0f} directions",
-                     p < kTiny ? std::string("< 1e-15") : fmt::format("= {:.2g}", p), c.chi2, c.dof);
+  return fmt::format("p {}; chi-square {:.1f} for {:.0f} directions", probability(std::log10(c.p())), c.chi2,
+                     c.dof);
 }
 
 std::string named_text(const Change& change) {
@@ -62,9 +65,9 @@ std::string named_text(const Change& change) {
 }
 
 std::string change_table(const Change& change, std::size_t rows) {
-  std::string out = "log10 p of no change, by sensor:";
+  std::string out = "probability that nothing changed but this sensor:";
   for (std::size_t i = 0; i < kSensors; ++i)
-    out += fmt::format("  s{} {:.1f}", i + 1, change.sensor_log10_p[i]);
+    out += fmt::format("   s{} p {}", i + 1, probability(change.others_log10_p[i]));
   out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "as if it alone changed", "by", "sd", "sigmas",
                      "smallest to be seen");
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {

@@ -16,7 +16,7 @@ namespace mgtd::calib {
 [[nodiscard]] std::string named_text(const Change& change);
 /// "p = 0.32; chi-square 41.0 for 45 directions"
 [[nodiscard]] std::string figures_text(const Change& change);
-/// The sensors by their evidence, then the `rows` parameters that differ most.
+/// By sensor whether its change alone would do, then the `rows` parameters that differ most.
 [[nodiscard]] std::string change_table(const Change& change, std::size_t rows);
 /// Smallest change that would be found in 80 of 100 cases, worst over the sensors, by kind of parameter.
 [[nodiscard]] std::string seen_text(const Change& change);

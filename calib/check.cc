@@ -21,12 +21,13 @@ namespace {
 /// so more than this is something new.
 constexpr double kMaxExcess = 1.5;
 constexpr double kLeastNoise_nT = 1e-3;
+constexpr std::size_t kMinPoses = 4;
 
-/// The poses as the test wants them: none set aside, and without table angles unless an effect needs them.
+/// The poses as the test wants them: all alike, and without table angles unless an effect needs them.
 PoseTable prepared(const PoseTable& table, bool needs_angles) {
   PoseTable out = table;
   for (Pose& pose : out.poses) {
-    pose.set.clear();
+    pose.set = "check";  // predicted, never fitted: as few as there are
     if (!needs_angles) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
   }
   return out;
@@ -137,11 +138,13 @@ std::string verdict_text(const ValidityReport& r, bool changed) {
   const Change& c = r.change;
   const std::string figures = figures_text(c);
   if (changed) {
-    const auto worst = std::min_element(c.sensor_log10_p.begin(), c.sensor_log10_p.end());
-    const std::string where = fmt::format("most of it in sensor s{}", worst - c.sensor_log10_p.begin() + 1);
+    const auto best = std::max_element(c.others_log10_p.begin(), c.others_log10_p.end());
+    const std::string where = *best > std::log10(kChanged) ? fmt::format("sensor s{} alone would explain it",
+                                                                         best - c.others_log10_p.begin() + 1)
+                                                           : std::string("more than one sensor");
     return fmt::format(
-        "no longer valid ({}), {}{}; calibrate again", figures, where,
-        c.named.empty() ? ", spread over many parameters" : ": accounted for by " + named_text(c));
+        "no longer valid ({}): {}{}; calibrate again", figures, where,
+        c.named.empty() ? ", spread over many parameters" : ", accounted for by " + named_text(c));
   }
   if (!r.valid) {
     return fmt::format(
@@ -191,7 +194,7 @@ Result<Settled> settle(const Calibration& c, const PoseTable& poses, const Froze
   joint.inclination_rad = joint.declination_rad = std::nullopt;
   joint.geometry = c.geometry;
   joint.effects = frozen.effects;
-  auto problem = joint_problem(poses, joint);
+  auto problem = joint_problem(poses, joint, PoseUse::check);
   if (!problem) return tl::unexpected(problem.error());
   fix_gauge(*problem, joint);
   keep_field_prior(*problem);
@@ -222,6 +225,11 @@ void turn_covariance(const Calibration& c, const Eigen::Matrix3d& Q, Frozen& fro
 
 Result<ValidityReport> check(const Calibration& calibration, const PoseTable& table,
                              const FitOptions& options) {
+  if (table.poses.size() < kMinPoses) {
+    return fail(ErrorCode::refused,
+                fmt::format("{} poses to check with; at least {} are needed", table.poses.size(), kMinPoses),
+                "measure a dozen poses with the field in different directions");
+  }
   auto frozen = freeze(calibration, options.effects);
   if (!frozen) return tl::unexpected(frozen.error());
   const PoseTable poses = prepared(table, frozen->needs_angles);
@@ -237,7 +245,10 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   const Score score = score_of(reduce(problem, state, 0), *frozen);
   const Seen seen = seen_of(score);
   report.excess = excess_of(problem, state, *frozen, score.cost, seen);
-  const double noise = report.noise_from_dwells ? std::max(1.0, report.excess) : report.excess;
+  const double factor = small_sample_factor(calibration.poses);
+  frozen->covariance *= factor;
+  const double noise =
+      report.noise_from_dwells ? std::max(1.0, report.excess) : report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
   report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
   const JointErrors errors = joint_errors(problem, state);

@@ -165,7 +165,8 @@ DiffReport diff(const Calibration& a, const Calibration& b) {
   J.topLeftCorner<kArrayParameters, kArrayParameters>() = placed.jacobian;
   const bool free_scale = scale_is_free(a) || scale_is_free(b);
   if (free_scale) out.remarks.emplace_back("a common scale is taken out, because one of them knows no field");
-  const Eigen::MatrixXd C = from.C + J * to.C * J.transpose();
+  const Eigen::MatrixXd C =
+      small_sample_factor(a.poses) * from.C + small_sample_factor(b.poses) * (J * to.C * J.transpose());
   out.change = judge({.difference = to.x - from.x,
                       .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),

@@ -21,7 +21,20 @@ Vec turn_z(const Vec& v, double g) {
   return {std::cos(g) * v[0] + std::sin(g) * v[1], -std::sin(g) * v[0] + std::cos(g) * v[1], v[2]};
 }
 
-/// Eq. 5 after the inverse of eqs. 13-14: platform field to reading.
+/// The gradient's share at the sensor: positions on the arms of the cross, s1 +X, s2 +Y, s3 -X, s4 -Y.
+Vec gradient_at(const Site& site, std::size_t sensor, const Vec& angles_rad) {
+  constexpr std::array<double, 4> kX{1, 0, -1, 0}, kY{0, 1, 0, -1};
+  const Vec r_P{kX.at(sensor) * site.baseline_m / 2, kY.at(sensor) * site.baseline_m / 2, 0};
+  const Vec x = turn_x(turn_y(turn_z(r_P, -angles_rad[0]), -angles_rad[1]), -angles_rad[2]);
+  const auto& g = site.gradient_nT_per_m;
+  const Vec b{g[0] * x[0] + g[2] * x[1] + g[3] * x[2], g[2] * x[0] + g[1] * x[1] + g[4] * x[2],
+              g[3] * x[0] + g[4] * x[1] - (g[0] + g[1]) * x[2]};
+  return turn_z(turn_y(turn_x(b, angles_rad[2]), angles_rad[1]), angles_rad[0]);
+}
+
+}  // namespace
+
+// Eq. 5 after the inverse of eqs. 13-14: platform field to reading.
 Vec reading(const SensorTruth& p, const Vec& b_P) {
   const Vec s = turn_x(turn_y(turn_z(b_P, -p[11] * kDeg), -p[10] * kDeg), -p[9] * kDeg);
   const double t = p[0] * kDeg, f = p[1] * kDeg, q = p[2] * kDeg;
@@ -29,8 +42,6 @@ Vec reading(const SensorTruth& p, const Vec& b_P) {
               p[6],
           p[4] * (std::cos(q) * s[1] + std::sin(q) * s[2]) + p[7], p[5] * s[2] + p[8]};
 }
-
-}  // namespace
 
 RigTruth table3_rig() {
   return {{{-1.9, 1.6, 2.3, 0.988, 1.105, 1.054, 234, 114, -218, 2.5, -2.2, 1.7},
@@ -63,7 +74,8 @@ PoseTable measure(const RigTruth& rig, const Site& site, const std::vector<Attit
     const auto wrong = [&](double angle_deg) {
       return (angle_deg + noise.table_sd_deg * normal(random)) * kDeg;
     };
-    const Vec b_P = turn_z(turn_y(turn_x(B, wrong(a.roll)), wrong(a.pitch)), wrong(a.azimuth));
+    const double azimuth = wrong(a.azimuth), pitch = wrong(a.pitch), roll = wrong(a.roll);
+    const Vec b_P = turn_z(turn_y(turn_x(B, roll), pitch), azimuth);
     Pose pose;
     pose.number = static_cast<int>(k) + 1;
     pose.set = k < standard ? "standard" : "random";
@@ -78,7 +90,8 @@ PoseTable measure(const RigTruth& rig, const Site& site, const std::vector<Attit
     }
     pose.n = 1;
     for (std::size_t i = 0; i < rig.size(); ++i) {
-      const Vec y = reading(rig[i], b_P);
+      const Vec extra = gradient_at(site, i, {azimuth, pitch, roll});
+      const Vec y = reading(rig[i], {b_P[0] + extra[0], b_P[1] + extra[1], b_P[2] + extra[2]});
       for (std::size_t axis = 0; axis < 3; ++axis) {
         pose.y_nT.at(i)[static_cast<Eigen::Index>(axis)] = y[axis] + draw();
         if (noise.size_nT > 0) {

@@ -19,6 +19,9 @@ using RigTruth = std::array<SensorTruth, 4>;
 
 struct Site {
   double f_nT{50'000}, inclination_deg{60}, declination_deg{-5};
+  /// Gxx, Gyy, Gxy, Gxz, Gyz in the site frame: the field at x is B + G x, F and B are those at the centre.
+  std::array<double, 5> gradient_nT_per_m{};
+  double baseline_m{0.4};
 };
 
 struct AttitudeDeg {
@@ -31,6 +34,9 @@ struct Noise {
   double table_sd_deg{0};  ///< true angles less the reported ones
   double f_sd_nT{0};       ///< of the scalar reference; zero: exact, and no f_sd_nT is reported
 };
+
+/// What a sensor reads in this field of the platform frame.
+[[nodiscard]] std::array<double, 3> reading(const SensorTruth& sensor, const std::array<double, 3>& b_P_nT);
 
 /// One run: a pose per attitude; the first `standard` ones belong to the standard set.
 [[nodiscard]] PoseTable measure(const RigTruth& rig, const Site& site,

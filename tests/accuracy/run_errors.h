@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "calib/fit/fit.h"
+#include "tests/support/paper_rigs.h"
+
+namespace mgtd::testing {
+
+/// One simulated run by every method: errors on its own poses, as the paper counts them.
+struct RunErrors {
+  calib::ErrorSummary before, step1, two_step, joint;
+  calib::ErrorSummary floor;  ///< that the true parameters leave
+  std::optional<calib::ErrorSummary> simplified, odd, even;
+  calib::FitReport two_step_report, joint_report;
+};
+
+[[nodiscard]] RunErrors run_errors(const RigTruth& rig, const PoseTable& table,
+                                   const calib::FitOptions& options);
+
+/// Root of the mean square of several runs.
+[[nodiscard]] RunErrors mean_of(const std::vector<RunErrors>& runs);
+
+}  // namespace mgtd::testing
