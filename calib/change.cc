@@ -23,28 +23,6 @@ constexpr double kOwnEvidence = 1e-4;
 constexpr std::size_t kMaxNamed = 8;
 constexpr double kPower80 = 0.8416212;  ///< upper 20 % point of the normal distribution
 
-/// Inverse on the range of a covariance or an information, in units of its diagonal.
-struct Inverse {
-  Eigen::MatrixXd W;
-  Eigen::Index rank{0};
-};
-
-Inverse inverse_of(const Eigen::MatrixXd& C) {
-  const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
-  const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * C * scale.asDiagonal());
-  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(C.rows());
-  Inverse out;
-  for (Eigen::Index j = 0; j < C.rows(); ++j) {
-    if (eigen.eigenvalues()[j] < kSingular) continue;
-    inverse[j] = 1 / eigen.eigenvalues()[j];
-    ++out.rank;
-  }
-  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
-  out.W = V * inverse.asDiagonal() * V.transpose();
-  return out;
-}
-
 /// Weight of a difference with the common freedoms projected out: N (N' C N)^-1 N', N orthogonal to them.
 Inverse weight_of(const Evidence& e) {
   const Eigen::Index n = e.difference.size();
@@ -133,6 +111,22 @@ double others_log10_p(const Evidence& e, const Eigen::MatrixXd& W, Eigen::Index 
 }
 
 }  // namespace
+
+Inverse inverse_of(const Eigen::MatrixXd& C) {
+  const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * C * scale.asDiagonal());
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(C.rows());
+  Inverse out;
+  for (Eigen::Index j = 0; j < C.rows(); ++j) {
+    if (eigen.eigenvalues()[j] < kSingular) continue;
+    inverse[j] = 1 / eigen.eigenvalues()[j];
+    ++out.rank;
+  }
+  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  out.W = V * inverse.asDiagonal() * V.transpose();
+  return out;
+}
 
 double Change::p() const { return std::min(1.0, 2 * std::pow(10.0, std::min(log10_p, log10_p_single))); }
 

@@ -60,6 +60,14 @@ struct TurnedArray {
 [[nodiscard]] Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors,
                                               Eigen::Index slots, bool free_scale);
 
+/// Inverse on the range of a covariance or an information, in units of its diagonal: directions whose
+/// eigenvalue is nothing but rounding (or a convention) are left out.
+struct Inverse {
+  Eigen::MatrixXd W;
+  Eigen::Index rank{0};
+};
+[[nodiscard]] Inverse inverse_of(const Eigen::MatrixXd& C);
+
 /// Observed: difference = gain * (what changed) + common * (anything) + an error with this covariance.
 struct Evidence {
   Eigen::VectorXd difference;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -33,20 +32,22 @@ PoseTable prepared(const PoseTable& table, bool needs_angles) {
   return out;
 }
 
-/// Each axis as noisy as its dwells say; without them, as a pose of the calibration's own run.
+/// Each axis as noisy as its dwells say, and no less than it scattered in the calibration's own run: what
+/// that run's model left out is not news.
 bool weight(const Calibration& c, const PoseTable& poses, JointProblem& problem) {
+  const AxisNoise own = c.pose_noise_nT.cwiseMax(kLeastNoise_nT);
+  weight_by_pose(problem, own);
   const auto sample = sample_noise(poses);
-  if (sample) {
-    weight_by_samples(problem, *sample);
-  } else {
-    weight_by_pose(problem, c.pose_noise_nT.cwiseMax(kLeastNoise_nT));
-  }
-  return sample.has_value();
+  if (!sample) return false;
+  weight_by_samples(problem, *sample);
+  for (JointPose& pose : problem.poses)
+    pose.weight = pose.weight.cwiseMin(own.reshaped<Eigen::RowMajor>().cwiseInverse());
+  return true;
 }
 
-/// A gauge is no evidence; a known field is.
-void keep_field_prior(JointProblem& problem) {
-  std::erase_if(problem.priors, [](const LinearPrior& prior) { return prior.row[kFieldSlot] == 0; });
+/// A gauge is no evidence; a known field and what is known of the site are.
+void keep_site_priors(const std::vector<Eigen::Index>& tested, JointProblem& problem) {
+  std::erase_if(problem.priors, [&](const LinearPrior& prior) { return !prior.row(tested).isZero(); });
 }
 
 /// Best site and field for sensors that stay as they are.
@@ -54,11 +55,8 @@ void refit_site(const JointProblem& problem, const std::vector<Eigen::Index>& sl
   constexpr int kSteps = 4;  // almost linear
   for (int i = 0; i < kSteps; ++i) {
     const Reduced reduced = reduce(problem, state, 0);
-    const Eigen::MatrixXd S = reduced.S(slots, slots);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(problem.fixed());
-    const Eigen::VectorXd g = reduced.g(slots);
-    const Eigen::VectorXd x = S.ldlt().solve(g);
-    step(slots) = x;
+    step(slots) = inverse_of(reduced.S(slots, slots)).W * reduced.g(slots);
     state = state.moved(step);
     refit_nuisances(problem, state);
   }
@@ -74,10 +72,9 @@ struct Score {
 Score score_of(const Reduced& reduced, const Frozen& frozen) {
   const auto &t = frozen.tested, &n = frozen.nuisance;
   const Eigen::MatrixXd border = reduced.S(t, n);
-  const Eigen::LDLT<Eigen::MatrixXd> corner(Eigen::MatrixXd(reduced.S(n, n)));
-  const Eigen::VectorXd g = reduced.g(n);
-  return {reduced.S(t, t) - border * corner.solve(border.transpose()),
-          reduced.g(t) - border * corner.solve(g), reduced.cost};
+  const Eigen::MatrixXd corner = inverse_of(reduced.S(n, n)).W;
+  return {reduced.S(t, t) - border * corner * border.transpose(),
+          reduced.g(t) - border * corner * reduced.g(n), reduced.cost};
 }
 
 /// The directions of the tested slots that these poses see, whitened: z = A (change) + unit noise.
@@ -101,6 +98,11 @@ Seen seen_of(const Score& score) {
           root.cwiseInverse().asDiagonal() * (V.transpose() * inverse.cwiseProduct(score.g))};
 }
 
+bool field_known(const JointProblem& problem) {
+  return std::any_of(problem.priors.begin(), problem.priors.end(),
+                     [](const LinearPrior& prior) { return prior.row[kFieldSlot] != 0; });
+}
+
 /// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance.
 double excess_of(const JointProblem& problem, const JointState& state, const Frozen& frozen,
                  const JointCost& cost, const Seen& seen) {
@@ -108,8 +110,7 @@ double excess_of(const JointProblem& problem, const JointState& state, const Fro
   double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
   for (const JointPose& pose : problem.poses)
     observed += (pose.has_angles ? -1 : -3) + (problem.common_field ? 1 : 0);
-  const double site = (problem.has_angles ? 2 : 0) +
-                      (problem.common_field && problem.priors.empty() ? 1 : 0) +
+  const double site = (problem.has_angles ? 2 : 0) + (problem.common_field && !field_known(problem) ? 1 : 0) +
                       static_cast<double>(frozen.nuisance.size()) - kGlobals;
   const double dof = observed - site - static_cast<double>(seen.z.size());
   const double chi2 = cost.readings + cost.scalar - seen.z.squaredNorm();
@@ -197,7 +198,7 @@ Result<Settled> settle(const Calibration& c, const PoseTable& poses, const Froze
   auto problem = joint_problem(poses, joint, PoseUse::check);
   if (!problem) return tl::unexpected(problem.error());
   fix_gauge(*problem, joint);
-  keep_field_prior(*problem);
+  keep_site_priors(frozen.tested, *problem);
   report.noise_from_dwells = weight(c, poses, *problem);
   report.noise_nT = rms_noise(*problem);
   const double f_nT = options.field_nT.value_or(c.reference.f_nT.value_or(start_field_nT(*problem, joint)));
@@ -247,8 +248,7 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   report.excess = excess_of(problem, state, *frozen, score.cost, seen);
   const double factor = small_sample_factor(calibration.poses);
   frozen->covariance *= factor;
-  const double noise =
-      report.noise_from_dwells ? std::max(1.0, report.excess) : report.excess * std::sqrt(factor);
+  const double noise = report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
   report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
   const JointErrors errors = joint_errors(problem, state);

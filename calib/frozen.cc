@@ -33,17 +33,18 @@ void freeze_covariance(const Calibration& c, const std::vector<Eigen::Index>& ro
   out.covariance = C;
 }
 
-void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, std::vector<double>& values,
-                   std::vector<Eigen::Index>& rows, Frozen& out) {
+void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, Eigen::Index row,
+                   std::vector<double>& values, std::vector<Eigen::Index>& rows, Frozen& out) {
   const bool of_site = effect->level() == Level::site;
   out.needs_angles = out.needs_angles || effect->level() != Level::axis;
   out.effects.push_back(effect);
   if (!of_site) out.instrument.push_back(e);
-  for (std::size_t j = 0; j < e.coefficients.size(); ++j) {
-    const auto row = static_cast<Eigen::Index>(values.size());
-    (of_site ? out.nuisance : out.tested).push_back(kEffectSlot + row);
+  for (const EffectCoefficient& coefficient : e.coefficients) {
+    const Eigen::Index slot = kEffectSlot + static_cast<Eigen::Index>(values.size());
+    (of_site ? out.nuisance : out.tested).push_back(slot);
     if (!of_site) rows.push_back(row);
-    values.push_back(e.coefficients[j].value);
+    values.push_back(coefficient.value);
+    ++row;
   }
 }
 
@@ -68,10 +69,13 @@ Result<Frozen> freeze(const Calibration& c, const std::vector<EffectPtr>& added)
   freeze_sensors(out);
   std::vector<double> values;
   std::vector<Eigen::Index> rows;
+  Eigen::Index row = 0;
   for (const CalibratedEffect& e : c.effects) {
     const auto effect = make_effect(e.effect);
     if (!effect) return tl::unexpected(effect.error());
-    freeze_effect(e, *effect, values, rows, out);
+    // Another table is another table: its own errors are no part of what is under test.
+    if ((*effect)->level() != Level::table) freeze_effect(e, *effect, row, values, rows, out);
+    row += static_cast<Eigen::Index>(e.coefficients.size());
   }
   for (const EffectPtr& effect : added) {
     const auto same = [&](const CalibratedEffect& e) { return e.effect == effect->name(); };

@@ -102,7 +102,8 @@ std::vector<Separation> separations(const JointProblem& problem, const Eigen::Ma
 
 /// Tried one by one: the tensor variance with each candidate added.
 std::vector<PlanReport::Helpful> most_helpful(const JointProblem& problem, const JointState& state,
-                                              const Eigen::MatrixXd& S, double f_nT) {
+                                              const Eigen::MatrixXd& S, double f_nT,
+                                              const std::vector<TableAngles>& candidates) {
   const auto variance = [&](const Eigen::MatrixXd& information) {
     const auto covariance = covariance_of(information);
     if (!covariance) return std::numeric_limits<double>::infinity();
@@ -110,7 +111,7 @@ std::vector<PlanReport::Helpful> most_helpful(const JointProblem& problem, const
   };
   const double now = variance(S);
   std::vector<PlanReport::Helpful> out;
-  for (const TableAngles& angles : candidate_attitudes())
+  for (const TableAngles& angles : candidates)
     out.push_back({angles, 1 - variance(S + information_of(problem, state, angles, f_nT)) / now});
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
   out.resize(std::min(out.size(), kHelpful));
@@ -168,7 +169,7 @@ Result<PlanReport> plan(const PlanRequest& request) {
   report.tensor_sd_nT_per_m = unknown();
   report.assumed = assumed_text(request);
   report.gauge = gauge_text(gauge);
-  report.known = identifiability(*problem, state, S, request.f_nT);
+  report.known = identifiability(*problem, state, S, request.f_nT, request.candidates);
   const auto covariance = covariance_of(S);
   report.determined = covariance && report.known.worst_nT() < kUnusable * request.f_nT;
   if (!report.determined) return report;
@@ -176,7 +177,7 @@ Result<PlanReport> plan(const PlanRequest& request) {
   report.separations = separations(*problem, S, *covariance);
   report.tensor_sd_nT_per_m =
       calibration_tensor_sd(request.sensors, request.geometry, *covariance, request.f_nT);
-  report.helpful = most_helpful(*problem, state, S, request.f_nT);
+  report.helpful = most_helpful(*problem, state, S, request.f_nT, request.candidates);
   return report;
 }
 

@@ -32,6 +32,7 @@ struct PlanRequest {
   Geometry geometry;
   std::array<SensorModel, kSensors> sensors{};  ///< an earlier calibration, or nominal sensors
   std::vector<EffectPtr> effects;
+  std::vector<TableAngles> candidates{candidate_attitudes()};  ///< attitudes that may be proposed
 };
 
 struct Expected {

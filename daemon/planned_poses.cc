@@ -47,4 +47,24 @@ Result<PoseTable> planned_poses(const Config& config) {
   return out;
 }
 
+std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles> attitudes) {
+  constexpr double kSlack_rad = 1e-9;
+  const drivers::TableLimits limits = limits_of(config);
+  // 270 degrees is -90 to a table that ends at 180.
+  const auto inside = [](double& angle_rad, const drivers::TableLimits::Range& range) {
+    for (const double turns : {0.0, -1.0, 1.0}) {
+      const double other = angle_rad + 2 * std::numbers::pi * turns;
+      if (other < range.min_rad - kSlack_rad || other > range.max_rad + kSlack_rad) continue;
+      angle_rad = other;
+      return true;
+    }
+    return false;
+  };
+  std::erase_if(attitudes, [&](TableAngles& a) {
+    return !inside(a.azimuth_rad, limits.azimuth) || !inside(a.pitch_rad, limits.pitch) ||
+           !inside(a.roll_rad, limits.roll);
+  });
+  return attitudes;
+}
+
 }  // namespace mgtd::daemon

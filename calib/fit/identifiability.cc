@@ -134,17 +134,18 @@ std::string coverage_text(const JointProblem& problem, const JointState& state) 
 /// Greedy: each time the attitude that takes most variance out of the weak directions.
 std::vector<TableAngles> best_additions(const JointProblem& problem, const JointState& state,
                                         const Eigen::MatrixXd& S, const Eigen::MatrixXd& weak,
-                                        const Eigen::VectorXd& d, double f_nT) {
+                                        const Eigen::VectorXd& d, double f_nT,
+                                        const std::vector<TableAngles>& candidates) {
   // Directions without any information would be infinite; a trace of it makes them comparable.
   Eigen::MatrixXd information = d.cwiseInverse().asDiagonal() * S * d.cwiseInverse().asDiagonal();
   information.diagonal().array() += 1e-12 * information.diagonal().maxCoeff();
   std::vector<Eigen::MatrixXd> offers;
-  for (const TableAngles& angles : candidate_attitudes()) {
+  for (const TableAngles& angles : candidates) {
     offers.push_back(d.cwiseInverse().asDiagonal() * information_of(problem, state, angles, f_nT) *
                      d.cwiseInverse().asDiagonal());
   }
   std::vector<TableAngles> out;
-  while (static_cast<int>(out.size()) < kMaxAdd) {
+  while (!offers.empty() && static_cast<int>(out.size()) < kMaxAdd) {
     const Eigen::MatrixXd x = information.ldlt().solve(weak);  // C w: rate of the variances with information
     std::size_t best = 0;
     double best_gain = -1;
@@ -156,7 +157,7 @@ std::vector<TableAngles> best_additions(const JointProblem& problem, const Joint
       }
     }
     information += offers[best];
-    out.push_back(candidate_attitudes()[best]);
+    out.push_back(candidates[best]);
   }
   return out;
 }
@@ -210,7 +211,8 @@ Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& st
 }
 
 Identifiability identifiability(const JointProblem& problem, const JointState& state,
-                                const Eigen::MatrixXd& S, double f_nT) {
+                                const Eigen::MatrixXd& S, double f_nT,
+                                const std::vector<TableAngles>& candidates) {
   const Eigen::VectorXd d = nanotesla(problem, f_nT);
   Eigen::MatrixXd information = d.cwiseInverse().asDiagonal() * S * d.cwiseInverse().asDiagonal();
   // The common rotation is made known, so that only what matters for the tensor can be weak.
@@ -229,8 +231,9 @@ Identifiability identifiability(const JointProblem& problem, const JointState& s
   }
   out.coverage = coverage_text(problem, state);
   if (out.weak.empty()) return out;
-  out.add = best_additions(
-      problem, state, S, eigen.eigenvectors().leftCols(static_cast<Eigen::Index>(out.weak.size())), d, f_nT);
+  out.add = best_additions(problem, state, S,
+                           eigen.eigenvectors().leftCols(static_cast<Eigen::Index>(out.weak.size())), d, f_nT,
+                           candidates);
   return out;
 }
 

@@ -31,15 +31,18 @@ struct Identifiability {
   [[nodiscard]] double worst_nT() const { return weak.empty() ? 0 : weak.front().sd_nT; }
 };
 
-[[nodiscard]] Identifiability identifiability(const JointProblem& problem, const JointState& state,
-                                              const Eigen::MatrixXd& S, double f_nT);
+/// Attitudes over the whole sphere that a two- or three-axis table can take, none twice.
+[[nodiscard]] const std::vector<TableAngles>& candidate_attitudes();
+
+/// `candidates` are the attitudes that may be proposed.
+[[nodiscard]] Identifiability identifiability(
+    const JointProblem& problem, const JointState& state, const Eigen::MatrixXd& S, double f_nT,
+    const std::vector<TableAngles>& candidates = candidate_attitudes());
 
 /// Information about the fixed block that one more pose at these table angles would bring, with the noise,
 /// the scalar reference and the table of the problem's first pose.
 [[nodiscard]] Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& state,
                                              const TableAngles& angles, double f_nT);
-/// Attitudes over the whole sphere that a two- or three-axis table can take, none twice.
-[[nodiscard]] const std::vector<TableAngles>& candidate_attitudes();
 
 /// "azimuth 90, pitch -45, roll 0 deg"
 [[nodiscard]] std::string to_text(const TableAngles& angles);

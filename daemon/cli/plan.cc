@@ -45,6 +45,7 @@ Result<void> take_config(const Arguments& args, calib::PlanRequest& request) {
   auto poses = daemon::planned_poses(*config);
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);
+  request.candidates = daemon::reachable(*config, std::move(request.candidates));
   request.geometry.baseline_m = config->baseline_m;
   request.table_sd_rad = to_rad(config->table_sd_deg);
   request.f_nT = config->field_nT.value_or(request.f_nT);

@@ -83,6 +83,29 @@ TEST(Check, DriftOfOneOffsetIsFoundAndNamed) {
   EXPECT_THAT(report->reasons.front(), HasSubstr("sensor s3"));
 }
 
+TEST(Check, LackOfFitOfTheOwnRunIsNoNews) {
+  // Both runs show a gradient that nobody models; the dozen scatters no more than the calibration's own run.
+  Simulation somewhere = rig();
+  somewhere.G_nT_per_m = testing::gradient_50();
+  int alarms = 0;
+  for (std::uint64_t run = 0; run < 20; ++run)
+    alarms += check(calibrated(somewhere, 900 + run), dozen(somewhere, 950 + run), {})->valid ? 0 : 1;
+  EXPECT_LE(alarms, 3);
+}
+
+TEST(Check, ACalibrationByTheLinearMethodIsCheckedToo) {
+  FitOptions linear;
+  linear.method = Method::two_step;
+  const auto old = fit(simulate(rig(), 36, 121, 71), linear);
+  ASSERT_TRUE(old) << old.error().text();
+  EXPECT_TRUE(check(old->calibration, dozen(rig(), 72), {})->valid);
+  Simulation later = rig();
+  later.rig[3].scale[1] *= 1.0005;
+  const auto moved = check(old->calibration, dozen(later, 73), {});
+  ASSERT_FALSE(moved->change.named.empty());
+  EXPECT_EQ(moved->change.named.front().name, "s4 cy");
+}
+
 TEST(Check, FewPosesSeeLessAndSaySo) {
   const Calibration old = calibrated(rig(), 61);
   const auto offset_seen = [&](int poses) {

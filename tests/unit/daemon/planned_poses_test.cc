@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/run_plan.h"
+#include "proto/units.h"
 
 namespace mgtd::daemon {
 namespace {
@@ -31,6 +32,15 @@ TEST(PlannedPoses, ARunThatCannotBePlannedIsRefused) {
   Config config;
   config.run.step_deg = 7;
   EXPECT_FALSE(planned_poses(config));
+}
+
+TEST(PlannedPoses, OnlyAttitudesWithinTheLimitsAreProposed) {
+  auto config = load_config(MGTD_SOURCE_DIR "/systemd/mgtd.toml");
+  ASSERT_TRUE(config);
+  const auto left =
+      reachable(*config, {{to_rad(270), 0, 0}, {0, 0, to_rad(180)}, {to_rad(45), to_rad(-90), to_rad(90)}});
+  ASSERT_EQ(left.size(), 2U);  // roll ends at 90
+  EXPECT_NEAR(left[0].azimuth_rad, to_rad(-90), 1e-12);
 }
 
 }  // namespace
