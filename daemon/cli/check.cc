@@ -12,18 +12,15 @@ namespace mgtd::cli {
 namespace {
 
 constexpr const char* kHelp =
-    "is this calibration still valid?\n\n"
-    "A dozen poses in different attitudes suffice; table angles are not needed unless the calibration holds "
-    "an\n"
-    "effect of the site, platform or table. The whole array may have been mounted again, and elsewhere. The "
-    "answer\n"
-    "weighs both the noise of these poses and the uncertainty of the calibration: an unchanged rig is "
-    "called\n"
-    "changed in about one case of a hundred. Printed beside it: the smallest change that would have been "
-    "seen, and\n"
-    "which sensor and parameter moved.\n\n"
-    "  mgt check cal.json dozen.csv && echo go on\n\n"
-    "Exit code 0: valid. 1: not valid, calibrate again.";
+    R"(A dozen poses in different attitudes suffice; table angles are not needed unless the calibration holds an
+effect of the site, platform or table. The whole array may have been mounted again, and elsewhere. The answer
+weighs both the noise of these poses and the uncertainty of the calibration: an unchanged rig is called
+changed in about one case of a hundred. Printed beside it: the smallest change that would have been seen, and
+which sensor and parameter moved.
+
+  mgt check cal.json dozen.csv && echo go on
+
+Exit code 0: valid. 1: not valid, calibrate again.)";
 constexpr std::size_t kRows = 8;
 
 struct Arguments {
@@ -77,7 +74,7 @@ void add_check(CLI::App& app, Session& session) {
   CLI::App* const command =
       add_command(app, session, "check", "is this calibration still valid? (a dozen poses suffice)",
                   [args, &session] { return run_check(session, *args); });
-  command->description(kHelp);
+  command->footer(kHelp);
   command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = std::make_shared<FitFlags>();

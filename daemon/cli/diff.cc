@@ -11,16 +11,14 @@ namespace mgtd::cli {
 namespace {
 
 constexpr const char* kHelp =
-    "has the calibration changed, which parameter, by how many standard errors?\n\n"
-    "Both runs are fitted with the same options (or taken as they are when a file is a CAL.json) and "
-    "compared with\n"
-    "the uncertainty of both. A turn of the whole array on its table is taken out first: it is no change of "
-    "the\n"
-    "array. The answer allows for the number of parameters looked at: two runs of an unchanged rig are "
-    "called\n"
-    "different in about one case of a hundred. Effects that both have are compared too.\n\n"
-    "  mgt diff monday.mgtrun friday.mgtrun --with site.gradient\n\n"
-    "Exit code 0: nothing changed that these runs can tell. 1: changed.";
+    R"(Both runs are fitted with the same options (or taken as they are when a file is a CAL.json) and compared with
+the uncertainty of both. A turn of the whole array on its table is taken out first: it is no change of the
+array. The answer allows for the number of parameters looked at: two runs of an unchanged rig are called
+different in about one case of a hundred. Effects that both have are compared too.
+
+  mgt diff monday.mgtrun friday.mgtrun --with site.gradient
+
+Exit code 0: nothing changed that these runs can tell. 1: changed.)";
 constexpr std::size_t kRows = 12;
 
 struct Arguments {
@@ -60,7 +58,7 @@ void add_diff(CLI::App& app, Session& session) {
   CLI::App* const command =
       add_command(app, session, "diff", "has the calibration changed between two runs, which parameter?",
                   [args, &session] { return run_diff(session, *args); });
-  command->description(kHelp);
+  command->footer(kHelp);
   command->add_option("RUN_A", args->a, "*.mgtrun, a pose table in CSV, or a CAL.json")->required();
   command->add_option("RUN_B", args->b, "the later one")->required();
   args->flags = add_fit_flags(command);

@@ -13,19 +13,16 @@ namespace mgtd::cli {
 namespace {
 
 constexpr const char* kHelp =
-    "before anything is measured: what would a list of poses tell?\n\n"
-    "Prints the standard error that every parameter and the tensor would have, what stays weakly known and "
-    "which\n"
-    "poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg "
-    "and\n"
-    "whatever an effect needs; readings are not looked at), or those of the run that a configuration "
-    "describes, or\n"
-    "of the default run. With an effect: how well its coefficients would be known, and told from the "
-    "rest.\n\n"
-    "  mgt plan                                    the default run of 157 poses\n"
-    "  mgt plan --config rig.toml --noise 0.3      the run this rig would do, 0.3 nT a pose mean\n"
-    "  mgt plan poses.csv --with site.gradient     a list of your own\n\n"
-    "Exit code 0: every parameter would be determined. 1: not; the poses to add are printed.";
+    R"(Prints the standard error that every parameter and the tensor would have, what stays weakly known and which
+poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg and
+whatever an effect needs; readings are not looked at), or those of the run that a configuration describes, or
+of the default run. With an effect: how well its coefficients would be known, and told from the rest.
+
+  mgt plan                                    the default run of 157 poses
+  mgt plan --config rig.toml --noise 0.3      the run this rig would do, 0.3 nT a pose mean
+  mgt plan poses.csv --with site.gradient     a list of your own
+
+Exit code 0: every parameter would be determined. 1: not; the poses to add are printed.)";
 
 struct Arguments {
   std::string poses, config, calibration;
@@ -124,7 +121,7 @@ void add_plan(CLI::App& app, Session& session) {
   CLI::App* const command =
       add_command(app, session, "plan", "before measuring: what a pose list can and cannot determine",
                   [args, &session] { return run_plan(session, *args); });
-  command->description(kHelp);
+  command->footer(kHelp);
   auto* const poses =
       command->add_option("POSES", args->poses, "pose list in CSV; the default run when absent");
   command->add_option("--config", args->config, "take poses, limits and site from this configuration")
