@@ -119,8 +119,9 @@ PoseTable Scene::run(std::uint64_t seed) const {
   if (gradient) there.gradient_nT_per_m = kGradient;
   PoseTable table = measure(rig, there, standard_run(poses - kStandard, 2 * seed + 1), kStandard,
                             {Noise::Kind::gaussian, noise_nT, table_sd_deg, f_sd_nT}, 2 * seed);
-  // The fit finds the noise from the residuals, which is the harder way.
-  for (Pose& pose : table.poses) pose.sd_nT = {};
+  for (Pose& pose : table.poses) {
+    if (!spreads) pose.sd_nT = {};
+  }
   return table;
 }
 

@@ -19,7 +19,8 @@ struct Scene {
   Site site{.f_nT = 53'907.7};
   std::size_t poses{157};
   double noise_nT{1}, table_sd_deg{0.1}, f_sd_nT{0.05};
-  bool gradient{false};  ///< 50 nT/m at the site, and in the model
+  bool gradient{false};  ///< up to 50 nT/m at the site, and in the model
+  bool spreads{false};   ///< the poses say how their samples scattered; else the residuals must tell
 
   [[nodiscard]] PoseTable run(std::uint64_t seed) const;
 };

@@ -43,6 +43,18 @@ TEST(Campaigns, AWrongBaselineIsCaught) {
   EXPECT_GT(c.nees, 2 * c.band_high);
 }
 
+TEST(Campaigns, NoiseFromTheDwellsIsAsGood) {
+  Scene scene;
+  scene.spreads = true;
+  const Consistency c = consistency(scene, 60);
+  EXPECT_GT(c.nees, c.band_low);
+  EXPECT_LT(c.nees, c.band_high);
+  const Alarms a = alarms(scene, 40);
+  EXPECT_LE(a.false_check, 3);
+  EXPECT_LE(a.false_diff, 3);
+  EXPECT_NEAR(a.seen_check, 32, 10);
+}
+
 TEST(Campaigns, AlarmsAndForecasts) {
   const Alarms a = alarms({}, 40);
   EXPECT_LE(a.false_check, 3);  // 1 %: four or more of 40 in one case of a thousand
