@@ -221,6 +221,9 @@ Identifiability identifiability(const JointProblem& problem, const JointState& s
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
   Identifiability out;
   const double rounding = 1e-14 * eigen.eigenvalues().tail<1>()[0];
+  const double least = eigen.eigenvalues()[0];
+  out.condition = least > rounding ? std::sqrt(eigen.eigenvalues().tail<1>()[0] / least)
+                                   : std::numeric_limits<double>::infinity();
   for (int j = 0; j < kMaxWeak; ++j) {
     const double lambda = eigen.eigenvalues()[j];
     const double sd = lambda > rounding ? 1 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();

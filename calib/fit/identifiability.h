@@ -21,11 +21,12 @@ struct WeakDirection {
 
 /// Above this a direction is worth naming: 1e-3 of 50 000 nT, which is 125 nT/m across a 0.4 m cross.
 inline constexpr double kWeak_nT = 50;
-/// Above this the calibration has no meaning: three percent of the field.
-inline constexpr double kUnusable = 0.03;
+/// Above this the calibration has no meaning: half a percent of the field, more than a fluxgate as bought.
+inline constexpr double kUnusable = 0.005;
 
 struct Identifiability {
   std::vector<WeakDirection> weak;  ///< weakest first, those above kWeak_nT
+  double condition{1};              ///< of what the rig's parameters do to the field; infinite when singular
   std::string coverage;  ///< where the field went in the platform frame, in degrees; says what is missing
   std::vector<TableAngles> add;  ///< poses that would help most, best first; empty when nothing is weak
   [[nodiscard]] double worst_nT() const { return weak.empty() ? 0 : weak.front().sd_nT; }

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "calib/fit/joint_fit.h"
 
 namespace mgtd::calib {
 namespace {
@@ -13,6 +17,8 @@ namespace {
 constexpr double kMaxTableSigmas = 5;  ///< of the uncertainty the operator gives the table
 constexpr double kMaxOutlierShare = 0.1;
 constexpr double kMaxDirectionSigmas = 5;
+constexpr double kMaxCondition = 1e6;  ///< its square is what double precision has left of ten digits
+constexpr double kMaxTurn_rad = to_rad(35);
 
 std::string additions(const Identifiability& known) {
   std::vector<std::string> texts;
@@ -24,15 +30,49 @@ std::string sd_text(double sd_nT) {
   return std::isfinite(sd_nT) ? fmt::format("{:.0f} nT", sd_nT) : "unlimited";
 }
 
-Check determined_check(const FitReport& r, const Identifiability& known) {
+Check coverage_check(const FitReport& r, const Identifiability& known) {
   const double limit = kUnusable * r.site.f_nT;
   const bool passed = known.worst_nT() <= limit;
-  return {"determined by the poses", passed,
+  return {"coverage", passed,
           known.weak.empty()
               ? std::string("every combination of parameters to better than 0.1 % of the field")
               : fmt::format("{}: {} of field uncertainty; {}", known.weak.front().what,
                             sd_text(known.worst_nT()), known.coverage),
           sd_text(limit), known.add.empty() ? std::string() : "add poses: " + additions(known)};
+}
+
+Check condition_check(const Identifiability& known) {
+  return {
+      "condition", known.condition <= kMaxCondition,
+      fmt::format("{:.2g} between the best and the worst known combination of parameters", known.condition),
+      fmt::format("{:.0e}", kMaxCondition),
+      known.add.empty() ? std::string("turn the rig about a second and a third axis")
+                        : "add poses: " + additions(known)};
+}
+
+/// The turn from a sensor to the signed permutation that names its mounting: half way to the next one the
+/// name means nothing.
+Check mounting_check(const FitReport& r) {
+  double worst = 0;
+  std::size_t which = 0;
+  int mirrored = 0;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const SensorModel& s = r.calibration.sensors[i];
+    const Eigen::Matrix3d turn = s.R_PS() * s.mounting.transpose();
+    const double angle = std::acos(std::clamp((turn.trace() - 1) / 2, -1.0, 1.0));
+    if (angle > worst) worst = angle, which = i;
+    mirrored += s.mounting.determinant() < 0 ? 1 : 0;
+  }
+  const bool tie = 2 * mirrored == kSensors;
+  return {
+      "mounting", worst <= kMaxTurn_rad && !tie,
+      tie ? fmt::format("two sensors are mirror images of the other two: which are right-handed cannot be "
+                        "told from the field")
+          : fmt::format("s{} stands {:.1f} deg from the nearest whole quarter turns", which + 1,
+                        to_deg(worst)),
+      fmt::format("{:.0f} deg, and fewer than two mirrored sensors", to_deg(kMaxTurn_rad)),
+      tie ? "check the wiring of each sensor with a magnet"
+          : "mount the sensor square to the platform, or check that it sat still"};
 }
 
 Check table_check(const FitReport& r, const FitOptions& options) {
@@ -67,7 +107,9 @@ Check direction_check(const char* name, double found, double sd, double given, d
 std::vector<Check> joint_verdict(const FitReport& r, const Identifiability& known,
                                  const FitOptions& options) {
   std::vector<Check> out = common_checks(r);
-  out.push_back(determined_check(r, known));
+  out.push_back(coverage_check(r, known));
+  out.push_back(condition_check(known));
+  out.push_back(mounting_check(r));
   if (r.table_sd_rad > 0) {
     out.push_back(table_check(r, options));
     const SiteField& s = r.site;
@@ -89,6 +131,12 @@ std::vector<std::string> joint_remarks(const FitReport& report, const Identifiab
   if (spread > 1) {
     out.push_back(fmt::format(
         "all uncertainties are widened by {:.2f}, so that they cover what the model leaves out", spread));
+  }
+  if (report.calibration.gauge.find(kScaleIsFree) != std::string::npos) {
+    out.push_back(
+        fmt::format("no field is known, so {}: fields and gradients are in units of the mean scale "
+                    "factor; give the field of the site with --field, or measure it",
+                    kScaleIsFree));
   }
   for (const OutlierNode& node : report.outliers) {
     out.push_back(

@@ -5,9 +5,9 @@
 
 namespace mgtd::calib {
 
-/// Checks of a joint fit: the common ones, that the poses determine every parameter, that the table's angles
-/// are what they say, that the bad poses are few, and that a given inclination and declination are those of
-/// the data.
+/// Checks of a joint fit: the common ones, that the poses determine every parameter, that no sensor stands
+/// between two mountings, that the table's angles are what they say, that the bad poses are few, and that a
+/// given inclination and declination are those of the data.
 [[nodiscard]] std::vector<Check> joint_verdict(const FitReport& report, const Identifiability& known,
                                                const FitOptions& options);
 
