@@ -26,6 +26,7 @@ Reply Rig::answer(const ControlRequest& request) {
     case ControlCommand::run_dry_run:
     case ControlCommand::run_pause:
     case ControlCommand::run_resume:
+    case ControlCommand::run_finish:
     case ControlCommand::run_abort:
     case ControlCommand::run_status:
       return answer_run(request);
@@ -50,6 +51,8 @@ Reply Rig::answer_run(const ControlRequest& request) {
     done = run_.request(Request::pause, now);
   } else if (request.command == ControlCommand::run_resume) {
     done = run_.request(Request::resume, now);
+  } else if (request.command == ControlCommand::run_finish) {
+    done = run_.request(Request::finish, now);
   } else if (request.command == ControlCommand::run_abort) {
     done = run_.request(Request::abort, now);
   }

@@ -32,7 +32,7 @@ PlanOptions plan_options(const RunDefaults& d, const RunRequest& r) {
           .seed = r.seed.value_or(d.seed)};
 }
 
-RunOptions run_options(const Config& c) {
+RunOptions run_options(const Config& c, const RunRequest& r) {
   RunOptions out;
   out.baseline_m = c.baseline_m;
   out.field_nT = c.field_nT;
@@ -40,6 +40,7 @@ RunOptions run_options(const Config& c) {
   if (c.inclination_deg) out.inclination_rad = to_rad(*c.inclination_deg);
   if (c.declination_deg) out.declination_rad = to_rad(*c.declination_deg);
   out.table_sd_rad = to_rad(c.table_sd_deg);
+  out.until_tensor_sd_nT_per_m = r.until_tensor_sd_nT_per_m;
   return out;
 }
 
@@ -129,7 +130,7 @@ Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
                                                             .plan = to_json(*planned).dump(),
                                                             .seed = planned->options.seed,
                                                             .source = "measured",
-                                                            .options = run_options(config_)});
+                                                            .options = run_options(config_, request)});
   if (!file) return tl::unexpected(file.error());
   begin(*std::move(file), run_config(id, request), *std::move(planned), now, std::nullopt);
   return {};
@@ -138,6 +139,11 @@ Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
 void RunConductor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
                          const std::optional<EarlierLife>& earlier) {
   file_ = std::move(file);
+  config.until_tensor_sd_nT_per_m = file_->header().options.until_tensor_sd_nT_per_m;
+  auto stored = file_->poses();
+  poses_ = std::make_shared<PoseTable>(stored ? *std::move(stored) : PoseTable{});
+  near_.reset();
+  learning_ = false;
   solved_.reset();
   answers_.clear();
   ++generation_;
@@ -212,7 +218,33 @@ void RunConductor::act(const StopTable&, Stamp) {
 }
 
 void RunConductor::act(const StorePose& action, Stamp) {
-  answers_.push_back(PoseStored{action.pose.number, file_->append_pose(action.pose)});
+  auto stored = file_->append_pose(action.pose);
+  if (stored) {
+    if (poses_.use_count() > 1) poses_ = std::make_shared<PoseTable>(*poses_);
+    poses_->poses.push_back(action.pose);
+    learn_accuracy();
+  }
+  answers_.push_back(PoseStored{action.pose.number, std::move(stored)});
+}
+
+/// One fit at a time; what was stored meanwhile is fitted after it.
+void RunConductor::learn_accuracy() {
+  if (learning_) return;
+  learning_ = true;
+  worker_.run(
+      [poses = std::shared_ptr<const PoseTable>(poses_), near = near_,
+       options = fit_options(file_->header().options)](std::stop_token) {
+        return calib::accuracy_so_far(*poses, options, near.get());
+      },
+      [this, generation = generation_, count = poses_->poses.size()](Result<calib::AccuracySoFar> known) {
+        if (generation != generation_ || !active()) return;
+        learning_ = false;
+        if (known) {
+          answers_.push_back(AccuracyKnown{known->poses, known->worst_nT_per_m()});
+          near_ = std::make_shared<const calib::JointState>(std::move(known->state));
+        }
+        if (poses_->poses.size() != count) learn_accuracy();
+      });
 }
 
 void RunConductor::act(const StorePath& action, Stamp) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/fit/accuracy_so_far.h"
 #include "daemon/calibration_store.h"
 #include "daemon/config.h"
 #include "daemon/run_duration.h"
@@ -16,7 +17,8 @@
 
 /// Carries out what the run's state machine asks for: moves the table, keeps the run file, has the worker
 /// solve, proposes the calibration. One run at a time; the last one stays readable. A run that a dead daemon
-/// left behind is found at start and offered.
+/// left behind is found at start and offered. After each pose the worker says what the calibration would be
+/// worth so far.
 namespace mgtd::daemon {
 
 struct RunHooks {
@@ -59,6 +61,7 @@ class RunConductor {
   void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
   void carry_out(const std::vector<Action>& actions, Stamp now);
+  void learn_accuracy();
   void act(const HomeTable&, Stamp);
   void act(const MoveTable& action, Stamp);
   void act(const StopTable&, Stamp);
@@ -79,6 +82,9 @@ class RunConductor {
   RunHooks hooks_;
   std::unique_ptr<RunFsm> fsm_;
   std::optional<RunFile> file_;
+  std::shared_ptr<PoseTable> poses_;  ///< stored so far; a new table whenever the worker holds the old one
+  std::shared_ptr<const calib::JointState> near_;  ///< of the last fit while measuring
+  bool learning_{false};                           ///< the worker is at such a fit
   std::optional<calib::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
   std::vector<Event> answers_;  ///< of actions carried out at once, fed after them

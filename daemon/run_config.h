@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 
 #include "daemon/dwell.h"
@@ -20,6 +21,8 @@ struct RunConfig {
   DwellConfig dwell;    ///< length_s is that of each planned pose
   Pace pace;
 
+  /// Measure no further pose once the tensor is known so well (nT/m, worst component); empty: the whole plan.
+  std::optional<double> until_tensor_sd_nT_per_m;
   int retries{3};                  ///< of one pose, before the run pauses and asks
   double approach_rad{to_rad(5)};  ///< overshoot that gives the azimuth its planned sense; 0: none
   double reach_rad{to_rad(1)};     ///< a table at rest further from its target has not reached it

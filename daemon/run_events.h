@@ -14,9 +14,9 @@
 /// All that can happen to a run. Devices are named as in the configuration: "s1" .. "s4", "table", "scalar".
 namespace mgtd::daemon {
 
-enum class Request { pause, resume, abort, retry };  ///< of the operator
+enum class Request { pause, resume, abort, retry, finish };  ///< of the operator
 [[nodiscard]] constexpr std::string_view name(Request request) {
-  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "retry"};
+  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "retry", "finish"};
   return kNames[static_cast<std::size_t>(request)];
 }
 
@@ -46,6 +46,12 @@ struct PoseStored {
   Result<void> result;
 };
 
+/// What a calibration from the poses stored so far would be worth. Comes when it is known, after some poses.
+struct AccuracyKnown {
+  int poses{0};
+  double tensor_sd_nT_per_m{0};  ///< worst component, by the calibration alone
+};
+
 /// The answer to StartSolve: a calibration, whether it passed its checks, and which.
 struct Solution {
   bool accepted{false};
@@ -61,7 +67,8 @@ struct CalibrationProposed {
   Result<void> result;
 };
 
-using Event = std::variant<Tick, Request, Epoch, Gap, ScalarReading, TableReading, LinkSeen, DeviceLost,
-                           DeviceBack, DeviceFaulted, PoseStored, SolveDone, CalibrationProposed>;
+using Event =
+    std::variant<Tick, Request, Epoch, Gap, ScalarReading, TableReading, LinkSeen, DeviceLost, DeviceBack,
+                 DeviceFaulted, PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
 
 }  // namespace mgtd::daemon

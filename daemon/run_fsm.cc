@@ -104,6 +104,16 @@ void RunFsm::on(const PoseStored& stored) {
   }
 }
 
+void RunFsm::on(const AccuracyKnown& known) {
+  tensor_sd_nT_per_m_ = known.tensor_sd_nT_per_m;
+  changed_ = true;
+  const auto wanted = config_.until_tensor_sd_nT_per_m;
+  if (!wanted || known.tensor_sd_nT_per_m > *wanted || enough_) return;
+  act(Record{fmt::format("with {} poses the tensor is known to {:.3g} nT/m, {:.3g} was wanted: no more poses",
+                         known.poses, known.tensor_sd_nT_per_m, *wanted)});
+  finish_early();
+}
+
 void RunFsm::on(const SolveDone& solved) {
   if (phase_ != Phase::solving) return;
   if (!solved.result) {
@@ -226,6 +236,8 @@ RunStatus RunFsm::status(Instant now) const {
   s.message = message_;
   s.proposed = final_ == RunState::done ? proposed_ : "";
   s.checks = checks_;
+  s.tensor_sd_nT_per_m = tensor_sd_nT_per_m_;
+  s.wanted_tensor_sd_nT_per_m = config_.until_tensor_sd_nT_per_m;
   return s;
 }
 

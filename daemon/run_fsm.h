@@ -26,6 +26,8 @@
 ///   stops the table; the pose is repeated when it comes back within lost_max_s, else the run fails.
 /// - Abort stops the table in every state; the run is `aborted` once the table was seen at rest, or after
 ///   stop_max_s. Nothing is proposed then.
+/// - The run ends early, with the fit of the poses so far, when the operator says so (finish), or when the
+///   tensor is known as well as wanted. A dwell under way is then still used, a move is not.
 /// - Every target lies within the limits, or the table is not moved.
 /// - Poses stored by an earlier life of the run are skipped. A new run whose preflight fails is `failed`; one
 ///   that has poses already pauses instead.
@@ -78,6 +80,7 @@ class RunFsm {
   void on(const DeviceBack& back);
   void on(const DeviceFaulted& faulted);
   void on(const PoseStored& stored);
+  void on(const AccuracyKnown& known);
   void on(const SolveDone& solved);
   void on(const CalibrationProposed& proposed);
   void on_sample(const EpochOrGap& item);
@@ -86,6 +89,7 @@ class RunFsm {
   void pause();
   void abort();
   void retry();
+  void finish_early();
 
   /// Decisions that time or new data make possible.
   void advance();
@@ -155,6 +159,8 @@ class RunFsm {
   std::vector<TableAngles> at_rest_;  ///< reported during the dwell
   std::optional<int> unanswered_;     ///< number of the pose whose PoseStored is awaited
 
+  std::optional<double> tensor_sd_nT_per_m_;
+  bool enough_{false};  ///< no further pose
   std::vector<Check> checks_;
   std::string proposed_;
   RunState final_{RunState::idle};

@@ -32,6 +32,10 @@ Result<void> RunFsm::possible(Request request) const {
       if (phase_ == Phase::paused) return possible(Request::resume);
       if (phase_ == Phase::approaching || phase_ == Phase::moving || phase_ == Phase::dwelling) return {};
       return refuse("no pose is under way that could be measured again", "");
+    case Request::finish:
+      if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
+      if (progress_.done() == 0) return refuse("no pose is measured yet", "mgt run abort ends the run");
+      return {};
   }
   return refuse("no such request", "");
 }
@@ -49,6 +53,8 @@ void RunFsm::on(const Request& request) {
       return go_on();
     case Request::retry:
       return retry();
+    case Request::finish:
+      return finish_early();
   }
 }
 
@@ -63,6 +69,15 @@ void RunFsm::retry() {
     ++retries_;
     act(StopTable{});
   }
+  go_on();
+}
+
+/// What is being measured is kept, what is only under way is not.
+void RunFsm::finish_early() {
+  enough_ = true;
+  if (phase_ == Phase::dwelling || phase_ == Phase::storing) return;
+  if (phase_ != Phase::paused && !measuring()) return;
+  act(StopTable{});
   go_on();
 }
 

@@ -40,7 +40,7 @@ std::string in_words(const TableAngles& a) {
 }  // namespace
 
 void RunFsm::go_on() {
-  const auto next = progress_.next();
+  const auto next = enough_ ? std::nullopt : progress_.next();
   if (unanswered_) {
     enter(Phase::storing, fmt::format("storing pose {}", *unanswered_));
   } else if (next && !preflight_passed_) {
@@ -51,7 +51,7 @@ void RunFsm::go_on() {
     enter_pose(*next);
   } else {
     flush_path();
-    enter(Phase::solving, fmt::format("fitting {} poses", plan_.poses.size()));
+    enter(Phase::solving, fmt::format("fitting {} poses", progress_.done()));
     act(StartSolve{});
   }
 }

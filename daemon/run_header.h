@@ -17,6 +17,7 @@ struct RunOptions {
   std::optional<double> field_nT, field_sd_nT;  ///< of the site, when no scalar reference is in the poses
   std::optional<double> inclination_rad, declination_rad;
   std::optional<double> table_sd_rad;
+  std::optional<double> until_tensor_sd_nT_per_m;  ///< at which the run was to end; a resumed one still does
   std::array<std::string, kSensors> sensor_names{"s1", "s2", "s3", "s4"};
 };
 

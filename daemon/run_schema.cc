@@ -62,6 +62,7 @@ Meta to_meta(const RunHeader& h) {
   put(meta, "inclination_rad", h.options.inclination_rad);
   put(meta, "declination_rad", h.options.declination_rad);
   put(meta, "table_sd_rad", h.options.table_sd_rad);
+  put(meta, "until_tensor_sd_nT_per_m", h.options.until_tensor_sd_nT_per_m);
   for (std::size_t i = 0; i < kSensors; ++i) meta[fmt::format("s{}_name", i + 1)] = h.options.sensor_names[i];
   return meta;
 }
@@ -91,6 +92,7 @@ RunHeader from_meta(const Meta& meta) {
   h.options.inclination_rad = number_of(meta, "inclination_rad");
   h.options.declination_rad = number_of(meta, "declination_rad");
   h.options.table_sd_rad = number_of(meta, "table_sd_rad");
+  h.options.until_tensor_sd_nT_per_m = number_of(meta, "until_tensor_sd_nT_per_m");
   for (std::size_t i = 0; i < kSensors; ++i) {
     const std::string name = text_of(meta, fmt::format("s{}_name", i + 1));
     if (!name.empty()) h.options.sensor_names[i] = name;

@@ -20,7 +20,7 @@
 ///   status               STATUS (status_codec.h)
 ///   run.start            args: run_request.h            -> RUN
 ///   run.dry-run          args: run_request.h            -> {"poses","minutes","list":[...]}
-///   run.pause, run.resume, run.abort, run.status       -> RUN
+///   run.pause, run.resume, run.finish, run.abort, run.status       -> RUN
 ///   calibrations.list                                  -> {"calibrations":[{"id","state","since","origin"}]}
 ///   calibrations.show, calibrations.accept  args: {"id":".."}
 ///   calibrations.rollback
@@ -37,6 +37,7 @@ enum class ControlCommand : std::uint8_t {
   run_dry_run,
   run_pause,
   run_resume,
+  run_finish,
   run_abort,
   run_status,
   calibrations_list,
@@ -44,12 +45,13 @@ enum class ControlCommand : std::uint8_t {
   calibrations_accept,
   calibrations_rollback,
 };
-inline constexpr std::array<std::string_view, 12> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 13> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
                                                                        "run.pause",
                                                                        "run.resume",
+                                                                       "run.finish",
                                                                        "run.abort",
                                                                        "run.status",
                                                                        "calibrations.list",

@@ -88,6 +88,7 @@ Result<RunRequest> parse_run_request(const Json& args) {
   arguments.number("dwell_short_s", 0.05, 3600, request.dwell_short_s);
   arguments.number("dwell_long_s", 0.05, 3600, request.dwell_long_s);
   arguments.seed("seed", request.seed);
+  arguments.number("until_tensor_sd_nT_per_m", 1e-3, 1e6, request.until_tensor_sd_nT_per_m);
   if (auto objection = arguments.objection()) return tl::unexpected(std::move(*objection));
   return request;
 }
@@ -104,6 +105,7 @@ Json to_json(const RunRequest& request) {
   put("dwell_short_s", request.dwell_short_s);
   put("dwell_long_s", request.dwell_long_s);
   put("seed", request.seed);
+  put("until_tensor_sd_nT_per_m", request.until_tensor_sd_nT_per_m);
   return args;
 }
 

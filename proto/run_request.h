@@ -16,6 +16,7 @@ struct RunRequest {
   std::optional<int> random, revisits, retries;
   std::optional<double> dwell_short_s, dwell_long_s;
   std::optional<std::uint64_t> seed;
+  std::optional<double> until_tensor_sd_nT_per_m;  ///< end the run once the tensor is known so well
   bool operator==(const RunRequest&) const = default;
 };
 

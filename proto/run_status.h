@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,9 @@ struct RunStatus {
   std::string message;   ///< one sentence for the operator: what is happening, or why it ended and what to do
   std::string proposed;  ///< calibration id when done
   std::vector<Check> checks;  ///< of preflight and verdict
+  /// Of the tensor by the calibration, from the poses so far, worst component; empty until they tell.
+  std::optional<double> tensor_sd_nT_per_m;
+  std::optional<double> wanted_tensor_sd_nT_per_m;  ///< at which the run ends early
 };
 
 }  // namespace mgtd

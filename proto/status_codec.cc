@@ -63,6 +63,11 @@ class Reader {
   void read(const char* key, int& out) {
     take(key, "a whole number", &nlohmann::json::is_number_integer, out);
   }
+  /// Absent and null are the same: not known.
+  void read(const char* key, std::optional<double>& out) {
+    if (!object_.contains(key) || object_[key].is_null()) return;
+    read(key, out.emplace());
+  }
   void read(const char* key, double& out) { take(key, "a number", &nlohmann::json::is_number, out); }
   [[nodiscard]] const std::string& objection() const { return objection_; }
 
@@ -109,6 +114,8 @@ Json to_json(const RunStatus& run) {
           {"elapsed_s", number(run.elapsed_s)},
           {"remaining_s", number(run.remaining_s)},
           {"message", run.message},
+          {"tensor_sd_nT_per_m", optional(run.tensor_sd_nT_per_m)},
+          {"wanted_tensor_sd_nT_per_m", optional(run.wanted_tensor_sd_nT_per_m)},
           {"proposed", run.proposed.empty() ? Json(nullptr) : Json(run.proposed)},
           {"checks", std::move(checks)}};
 }
@@ -155,6 +162,8 @@ Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
   if (object.contains("remaining_s") && !object["remaining_s"].is_null()) {
     reader.read("remaining_s", run.remaining_s);
   }
+  reader.read("tensor_sd_nT_per_m", run.tensor_sd_nT_per_m);
+  reader.read("wanted_tensor_sd_nT_per_m", run.wanted_tensor_sd_nT_per_m);
   reader.read("message", run.message);
   if (object.contains("proposed") && !object["proposed"].is_null()) reader.read("proposed", run.proposed);
   if (!reader.objection().empty()) return not_a_status(reader.objection());

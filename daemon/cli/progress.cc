@@ -25,6 +25,9 @@ std::string progress_line(const RunStatus& status, int width) {
   line += fmt::format("  {}", name(status.state));
   if (status.retries > 0) line += fmt::format("  {} repeated", status.retries);
   if (is_active(status.state)) line += fmt::format("  {} left", duration_text(status.remaining_s));
+  if (status.tensor_sd_nT_per_m) line += fmt::format("  tensor to {:.2f} nT/m", *status.tensor_sd_nT_per_m);
+  if (status.wanted_tensor_sd_nT_per_m)
+    line += fmt::format(" (wanted {:.2f})", *status.wanted_tensor_sd_nT_per_m);
   if (static_cast<int>(line.size()) > width) line.resize(static_cast<std::size_t>(std::max(width, 0)));
   return line;
 }

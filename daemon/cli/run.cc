@@ -120,13 +120,15 @@ void add_plan_options(CLI::App* command, RunRequest& r) {
 
 void add_run(CLI::App& app, Session& session) {
   CLI::App* const group =
-      app.add_subcommand("run", "a calibration run: start, dry-run, follow, pause, resume, abort");
+      app.add_subcommand("run", "a calibration run: start, dry-run, follow, pause, resume, finish, abort");
   group->require_subcommand(1);
   auto args = std::make_shared<Arguments>();
   CLI::App* const begin = add_command(
       *group, session, "start", "preflight, home, measure every pose, solve, propose; shows the progress",
       [args, &session] { return start(session, *args); });
   add_plan_options(begin, args->request);
+  begin->add_option("--until-tensor-sd", args->request.until_tensor_sd_nT_per_m,
+                    "end the run once the calibration leaves so little in the tensor, nT/m, worst component");
   begin->add_flag("--detach", args->detach, "do not wait for the end");
   CLI::App* const dry = add_command(*group, session, "dry-run",
                                     "what a run would do, and how long it would take; moves nothing",
@@ -140,6 +142,8 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return simple(session, ControlCommand::run_pause, false); });
   add_command(*group, session, "resume", "go on after a pause, or with a run that a dead daemon left",
               [&session] { return simple(session, ControlCommand::run_resume, true); });
+  add_command(*group, session, "finish", "measure no more, fit the poses so far",
+              [&session] { return simple(session, ControlCommand::run_finish, true); });
   add_command(*group, session, "abort", "end the run; the active calibration stays",
               [&session] { return simple(session, ControlCommand::run_abort, false); });
 }

@@ -77,6 +77,48 @@ TEST(RunFsm, TheEstimateOfTheRestLearnsFromThePoses) {
   EXPECT_NEAR(foreseen_s, bench.t_s - at_s, 0.25 * (bench.t_s - at_s));  // 20 random travels scatter by 10 %
 }
 
+// ---- ends early
+
+TEST(RunFsm, EndsWhenTheTensorIsKnownAsWellAsWanted) {
+  auto config = bench_config();
+  config.until_tensor_sd_nT_per_m = 2;
+  RunBench bench(bench_plan(6), config);
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 2; }));
+  bench.send(AccuracyKnown{2, 2.5});
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 3; }));
+  EXPECT_EQ(bench.status->tensor_sd_nT_per_m, 2.5);
+  EXPECT_EQ(bench.status->wanted_tensor_sd_nT_per_m, 2);
+  bench.run(0.5);
+  ASSERT_EQ(bench.status->state, RunState::moving);  // to the fourth: not worth the way
+  bench.send(AccuracyKnown{3, 1.9});
+  ASSERT_TRUE(ends(bench, RunState::done));
+  EXPECT_EQ(bench.stored.size(), 3u);
+  EXPECT_EQ(bench.solves, 1);
+}
+
+TEST(RunFsm, WithoutAWishTheAccuracyChangesNothing) {
+  RunBench bench(bench_plan(3));
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  bench.send(AccuracyKnown{1, 1e-6});
+  ASSERT_TRUE(ends(bench, RunState::done));
+  EXPECT_EQ(bench.stored.size(), 3u);
+}
+
+TEST(RunFsm, TheOperatorMayFinishEarly) {
+  for (const RunState state : {RunState::moving, RunState::dwelling, RunState::paused}) {
+    SCOPED_TRACE(name(state));
+    RunBench bench(bench_plan(6));
+    EXPECT_FALSE(bench.fsm.possible(Request::finish));  // nothing to fit
+    ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 2; }));
+    if (state == RunState::paused) bench.send(Request::pause);
+    ASSERT_TRUE(bench.run_to(state));
+    bench.send(Request::finish);
+    ASSERT_TRUE(ends(bench, RunState::done));
+    EXPECT_EQ(bench.stored.size(), state == RunState::dwelling ? 3u : 2u);
+    EXPECT_EQ(bench.solves, 1);
+  }
+}
+
 // ---- preflight
 
 TEST(RunFsm, FailedPreflightMovesNothingAndSaysWhatToDo) {

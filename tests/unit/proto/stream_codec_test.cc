@@ -23,6 +23,7 @@ RunStatus run_status() {
   run.retries = 2;
   run.elapsed_s = 512.5;
   run.remaining_s = 250;
+  run.tensor_sd_nT_per_m = 1.25;
   run.message = "pose 71: dwelling";
   run.checks = {{"rate s1", true, "50.0 Hz", "50 Hz", ""},
                 {"noise s3", false, "2 nT", "1 nT", "look for iron"}};
@@ -63,6 +64,8 @@ TEST(StreamCodec, RunComesBackWhole) {
   EXPECT_EQ(back->retries, run.retries);
   EXPECT_EQ(back->elapsed_s, run.elapsed_s);
   EXPECT_EQ(back->remaining_s, run.remaining_s);
+  EXPECT_EQ(back->tensor_sd_nT_per_m, 1.25);
+  EXPECT_FALSE(back->wanted_tensor_sd_nT_per_m);
   EXPECT_EQ(back->message, run.message);
   EXPECT_EQ(back->proposed, run.proposed);
   ASSERT_EQ(back->checks.size(), run.checks.size());
