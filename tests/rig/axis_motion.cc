@@ -28,7 +28,7 @@ double covered(double t, double distance, double v, double a) {
 double AxisMotion::progress(double t_s) const {
   const double distance = std::abs(to_deg_ - from_deg_);
   if (distance == 0 || t_s >= end_s_) return 1;
-  return covered(std::max(0.0, t_s - start_s_), distance, velocity_, acceleration_) / distance;
+  return covered(std::max(0.0, t_s - start_s_), distance, move_velocity_, acceleration_) / distance;
 }
 
 double AxisMotion::indicated_deg(double t_s) const {
@@ -47,8 +47,10 @@ void AxisMotion::move_to(double target_deg, double now_s, std::mt19937_64& rando
   from_error_deg_ = error;
   to_error_deg_ = accuracy_ > 0 ? accuracy_ * std::normal_distribution<double>()(random) : 0.0;
   to_deg_ = target_deg;
+  if (to_deg_ != from_deg_) sense_ = to_deg_ > from_deg_ ? 1 : -1;
+  move_velocity_ = velocity_;
   start_s_ = now_s;
-  end_s_ = now_s + duration(std::abs(to_deg_ - from_deg_), velocity_, acceleration_);
+  end_s_ = now_s + duration(std::abs(to_deg_ - from_deg_), move_velocity_, acceleration_);
   if (jammed_) jammed_at_s_ = now_s;
 }
 

@@ -10,10 +10,20 @@
 #include "tests/rig/obsdaq_instrument.h"
 
 namespace mgtd::rig {
+namespace {
+
+constexpr double kClockStep_s = 3;  ///< leap seconds learnt late
+constexpr std::array kLasting{FaultKind::unplug, FaultKind::torn, FaultKind::freeze, FaultKind::stall,
+                              FaultKind::saturate};
+
+}  // namespace
 
 BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)) {
-  for (int slot = 0; slot < 4; ++slot)
-    instruments_.push_back(std::make_unique<ObsdaqInstrument>(world_, slot, utc_s));
+  for (int slot = 0; slot < 4; ++slot) {
+    auto digitiser = std::make_unique<ObsdaqInstrument>(world_, slot, utc_s);
+    if (world_.scenario().autostart) digitiser->autostart(0);
+    instruments_.push_back(std::move(digitiser));
+  }
   instruments_.push_back(std::make_unique<Gcs2Instrument>(world_));
   if (world_.scenario().scalar) instruments_.push_back(std::make_unique<GsmInstrument>(world_, utc_s));
   for (std::size_t i = 0; i < instruments_.size(); ++i)
@@ -21,80 +31,82 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
   plugged_.assign(instruments_.size(), true);
 }
 
+void BenchRig::advance(std::size_t port, double now_s) {
+  instruments_.at(port)->advance(now_s);
+  for (Utterance& said : instruments_[port]->take_utterances()) {
+    if (plugged_[port]) wires_[port].push(std::move(said));
+  }
+}
+
 void BenchRig::write(std::size_t port, std::string_view bytes, double now_s) {
-  if (plugged_.at(port) && !bytes.empty()) instruments_.at(port)->receive(bytes, now_s);
+  if (!plugged_.at(port) || bytes.empty()) return;
+  // What was measured before a command must not know of it.
+  for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
+  instruments_[port]->receive(bytes, now_s);
 }
 
 std::string BenchRig::read(std::size_t port, double now_s) {
-  Instrument& instrument = *instruments_.at(port);
-  instrument.advance(now_s);
-  Wire& wire = wires_.at(port);
-  std::string said = instrument.take_output();
-  if (!plugged_.at(port)) return {};
-  wire.push(std::move(said));
-  return wire.pull(now_s);
+  advance(port, now_s);
+  return wires_[port].pull(now_s);
+}
+
+void BenchRig::drop(std::size_t port, double now_s) {
+  advance(port, now_s);
+  wires_[port].clear();
 }
 
 tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s) {
-  const auto found = std::find(kPortNames.begin(), kPortNames.end(), fault.port);
+  const auto* const found = std::find(kPortNames.begin(), kPortNames.end(), fault.port);
   const auto port = static_cast<std::size_t>(found - kPortNames.begin());
-  if (port >= ports())
-    return tl::unexpected(
-        fmt::format("no port '{}'; there are: {}", fault.port, fmt::join(kPortNames, ", ")));
-  switch (fault.kind) {
-    case FaultKind::unplug:
-      plugged_[port] = false;
-      wires_[port].clear();
-      break;
-    case FaultKind::garbage:
-      wires_[port].garbage();
-      break;
-    case FaultKind::torn:
-      wires_[port].set_torn(true);
-      break;
-    case FaultKind::freeze:
-      instruments_[port]->set_frozen(true);
-      break;
-    case FaultKind::stall:
-      instruments_[port]->set_silent(true);
-      break;
-    case FaultKind::restore:
-      for (const FaultKind kind : {FaultKind::unplug, FaultKind::torn, FaultKind::freeze, FaultKind::stall})
-        end(port, kind);
-      break;
+  if (port >= ports()) return tl::unexpected(fmt::format("this rig has no {}", fault.port));
+  for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
+  if (fault.kind == FaultKind::restore) {
+    for (const FaultKind kind : kLasting) {
+      set(port, kind, false);
+      forget_endings(port, kind);
+    }
+  } else if (fault.kind == FaultKind::garbage) {
+    if (plugged_[port]) wires_[port].garbage(now_s);
+  } else if (fault.kind == FaultKind::clock) {
+    instruments_[port]->step_clock(kClockStep_s);
+  } else {
+    set(port, fault.kind, true);
+    forget_endings(port, fault.kind);
+    if (fault.for_s) endings_.push_back({now_s + *fault.for_s, port, fault.kind});
   }
-  if (fault.for_s) endings_.push_back({now_s + *fault.for_s, port, fault.kind});
   return {};
 }
 
-void BenchRig::end(std::size_t port, FaultKind kind) {
-  switch (kind) {
-    case FaultKind::unplug:
-      plugged_[port] = true;
-      break;
-    case FaultKind::torn:
-      wires_[port].set_torn(false);
-      break;
-    case FaultKind::freeze:
-      instruments_[port]->set_frozen(false);
-      break;
-    case FaultKind::stall:
-      instruments_[port]->set_silent(false);
-      break;
-    case FaultKind::garbage:
-    case FaultKind::restore:
-      break;
+void BenchRig::set(std::size_t port, FaultKind kind, bool on) {
+  Instrument& instrument = *instruments_[port];
+  if (kind == FaultKind::unplug) {
+    plugged_[port] = !on;
+    wires_[port].clear();
+  } else if (kind == FaultKind::torn) {
+    wires_[port].set_torn(on);
+  } else if (kind == FaultKind::freeze) {
+    instrument.set_frozen(on);
+  } else if (kind == FaultKind::stall) {
+    instrument.set_silent(on);
+  } else if (kind == FaultKind::saturate) {
+    instrument.set_saturated(on);
   }
+}
+
+void BenchRig::forget_endings(std::size_t port, FaultKind kind) {
+  std::erase_if(endings_, [&](const Ending& e) { return e.port == port && e.kind == kind; });
 }
 
 void BenchRig::run_script(double now_s) {
   const auto& script = world_.scenario().faults;
   for (; next_fault_ < script.size() && script[next_fault_].at_s <= now_s; ++next_fault_) {
-    if (const auto fault = parse_fault(script[next_fault_].text)) static_cast<void>(apply(*fault, now_s));
+    const auto fault = parse_fault(script[next_fault_].text);
+    // The scenario's words were checked when it was read; a port it has not got is not there to fail.
+    if (fault) static_cast<void>(apply(*fault, now_s));
   }
   std::erase_if(endings_, [&](const Ending& ending) {
     if (ending.at_s > now_s) return false;
-    end(ending.port, ending.kind);
+    set(ending.port, ending.kind, false);
     return true;
   });
 }

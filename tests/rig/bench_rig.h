@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,11 +11,8 @@
 #include "tests/rig/world.h"
 
 /// The whole rig in virtual time: one world, six instruments, six cables. Tests drive it byte by byte; the
-/// server puts it on ptys.
+/// server puts it on ptys. The same scenario and the same bytes at the same times give the same bytes back.
 namespace mgtd::rig {
-
-inline constexpr std::array<std::string_view, 6> kPortNames{"fluxgate1", "fluxgate2", "fluxgate3",
-                                                            "fluxgate4", "table",     "scalar"};
 
 class BenchRig {
  public:
@@ -28,14 +24,17 @@ class BenchRig {
   void write(std::size_t port, std::string_view bytes, double now_s);
   /// Everything that has come out of the cable by now; empty while unplugged.
   [[nodiscard]] std::string read(std::size_t port, double now_s);
+  /// The same when no host listens: the bytes are gone.
+  void drop(std::size_t port, double now_s);
   [[nodiscard]] bool plugged(std::size_t port) const { return plugged_.at(port); }
 
-  /// Applies a fault at once; refuses a port that does not exist, in words.
+  /// Applies a fault at once; refuses a port this rig has not got, in words.
   [[nodiscard]] tl::expected<void, std::string> apply(const Fault& fault, double now_s);
   /// Ends faults whose time is over and starts those of the scenario; call before read().
   void run_script(double now_s);
 
   [[nodiscard]] World& world() { return world_; }
+  [[nodiscard]] const World& world() const { return world_; }
 
  private:
   struct Ending {
@@ -43,7 +42,10 @@ class BenchRig {
     std::size_t port;
     FaultKind kind;
   };
-  void end(std::size_t port, FaultKind kind);
+  /// Lets a port's instrument speak up to now, onto its cable.
+  void advance(std::size_t port, double now_s);
+  void set(std::size_t port, FaultKind kind, bool on);
+  void forget_endings(std::size_t port, FaultKind kind);
 
   World world_;
   std::vector<std::unique_ptr<Instrument>> instruments_;

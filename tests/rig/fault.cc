@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <sstream>
@@ -11,12 +12,28 @@
 namespace mgtd::rig {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, FaultKind>, 6> kKinds{{{"unplug", FaultKind::unplug},
-                                                                        {"garbage", FaultKind::garbage},
-                                                                        {"torn", FaultKind::torn},
-                                                                        {"freeze", FaultKind::freeze},
-                                                                        {"stall", FaultKind::stall},
-                                                                        {"restore", FaultKind::restore}}};
+struct Word {
+  std::string_view name;
+  FaultKind kind;
+  bool lasts;
+};
+
+constexpr std::array<Word, 8> kWords{{{"unplug", FaultKind::unplug, true},
+                                      {"garbage", FaultKind::garbage, false},
+                                      {"torn", FaultKind::torn, true},
+                                      {"freeze", FaultKind::freeze, true},
+                                      {"stall", FaultKind::stall, true},
+                                      {"saturate", FaultKind::saturate, true},
+                                      {"clock", FaultKind::clock, false},
+                                      {"restore", FaultKind::restore, false}}};
+
+std::optional<double> seconds(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value > 0 && value < 1e9))
+    return std::nullopt;
+  return value;
+}
 
 }  // namespace
 
@@ -24,22 +41,22 @@ tl::expected<Fault, std::string> parse_fault(std::string_view text) {
   std::istringstream in{std::string(text)};
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
-  constexpr const char* kUsage = "say: unplug|garbage|torn|freeze|stall|restore PORT [for SECONDS]";
-  if (words.size() != 2 && words.size() != 4) return tl::unexpected(std::string(kUsage));
-  Fault fault;
-  fault.port = words[1];
-  bool known = false;
-  for (const auto& [name, kind] : kKinds) {
-    if (words[0] == name) fault.kind = kind, known = true;
-  }
-  if (!known) return tl::unexpected(fmt::format("no fault '{}'; {}", words[0], kUsage));
-  if (words.size() == 4) {
-    double seconds = 0;
-    const auto [end, error] = std::from_chars(words[3].data(), words[3].data() + words[3].size(), seconds);
-    if (words[2] != "for" || error != std::errc{} || *end != '\0' || !(seconds > 0))
-      return tl::unexpected(std::string(kUsage));
-    fault.for_s = seconds;
-  }
+  const auto usage = [](const std::string& what) {
+    return tl::unexpected(fmt::format("{}; say: {}", what, kFaultUsage));
+  };
+  if (words.size() != 2 && words.size() != 4)
+    return usage(fmt::format("'{}' is not a fault and a port", text));
+  const auto* const found =
+      std::find_if(kWords.begin(), kWords.end(), [&](const Word& w) { return w.name == words[0]; });
+  if (found == kWords.end()) return usage(fmt::format("no fault '{}'", words[0]));
+  if (std::find(kPortNames.begin(), kPortNames.end(), words[1]) == kPortNames.end())
+    return usage(fmt::format("no port '{}'; there are: {}", words[1], fmt::join(kPortNames, ", ")));
+  Fault fault{found->kind, words[1], std::nullopt};
+  if (words.size() == 2) return fault;
+  if (!found->lasts) return usage(fmt::format("{} does not last, so no 'for'", words[0]));
+  fault.for_s = seconds(words[3]);
+  if (words[2] != "for" || !fault.for_s)
+    return usage(fmt::format("'{} {}' is not 'for SECONDS'", words[2], words[3]));
   return fault;
 }
 

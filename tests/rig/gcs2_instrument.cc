@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
-#include <vector>
 
 namespace mgtd::rig {
 namespace {
@@ -14,15 +13,21 @@ namespace {
 enum Gcs2Error : int {
   kSyntax = 1,
   kUnknownCommand = 2,
+  kTooLong = 3,
   kNotReferenced = 5,
   kOutOfLimits = 7,
   kVelocity = 8,
   kStopped = 10,
   kInvalidAxis = 15,
+  kOutOfRange = 17,
   kMissingParameter = 26
 };
 
-constexpr double kReferenceTravel_deg = 20;
+constexpr double kReferenceTravel_deg = 20;  ///< the way past the reference mark and back
+constexpr double kMaxVelocity_deg_per_s = 720;
+constexpr double kEncoder_deg = 1e-4;  ///< sd of a position read
+constexpr std::size_t kMaxLine = 255;
+constexpr double kNever = 1e300;
 
 TableAxis which(std::size_t i) { return static_cast<TableAxis>(i); }
 
@@ -39,26 +44,37 @@ std::vector<std::string_view> words(std::string_view text) {
 }
 
 std::optional<double> number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
+std::string flag(bool on) { return on ? "1" : "0"; }
+std::string decimal(double value) { return fmt::format("{:.7f}", value); }
+
 }  // namespace
 
+Gcs2Instrument::Gcs2Instrument(World& world) : world_(world), random_(world.scenario().seed ^ 0x6c5c'0002U) {}
+
 void Gcs2Instrument::advance(double now_s) {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (axes_[i].reference_done_s >= 0 && now_s >= axes_[i].reference_done_s) {
-      axes_[i].referenced = true;
-      axes_[i].reference_done_s = -1;
-    }
-    if (jam_pending_) {
-      world_.axis(which(i)).jam(now_s);
-    } else {
-      world_.axis(which(i)).release(now_s);
-    }
+  for (Axis& axis : axes_) {
+    if (axis.reference_done_s < 0 || now_s < axis.reference_done_s || jammed_) continue;
+    axis.referenced = true;
+    axis.reference_done_s = -1;
   }
+  if (jammed_ == frozen_) return;
+  jammed_ = frozen_;
+  world_.set_jammed(jammed_, now_s);
+}
+
+double Gcs2Instrument::next_s() const {
+  double next = kNever;
+  for (const Axis& axis : axes_) {
+    if (axis.reference_done_s >= 0) next = std::min(next, axis.reference_done_s);
+  }
+  return next;
 }
 
 void Gcs2Instrument::receive(std::string_view bytes, double now_s) {
@@ -69,33 +85,31 @@ void Gcs2Instrument::receive(std::string_view bytes, double now_s) {
       immediate(c, now_s);
     } else if (c == '\n') {
       command(std::exchange(line_, {}), now_s);
-    } else {
+    } else if (line_.size() <= kMaxLine) {
       line_ += c;
     }
   }
 }
 
 void Gcs2Instrument::immediate(char byte, double now_s) {
-  if (byte == '\x18') return stop_all(now_s);
-  if (byte == '\x07') return put(referencing(now_s) ? "\xb0\n" : "\xb1\n");
+  if (byte == '\x18') return stop({0, 1, 2}, now_s);
+  if (byte == '\x07') {
+    const bool ready =
+        std::all_of(axes_.begin(), axes_.end(), [](const Axis& a) { return a.reference_done_s < 0; });
+    return put(ready ? "\xb1\n" : "\xb0\n", now_s);
+  }
   unsigned mask = 0;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const bool moving = world_.axis(which(i)).moving(now_s) || axes_[i].reference_done_s >= 0;
-    mask |= static_cast<unsigned>(moving) << i;
-  }
-  put(fmt::format("{:X}\n", mask));
+  for (std::size_t i = 0; i < axes_.size(); ++i) mask |= static_cast<unsigned>(busy(i, now_s)) << i;
+  put(fmt::format("{:X}\n", mask), now_s);
 }
 
-bool Gcs2Instrument::referencing(double now_s) const {
-  for (const Axis& axis : axes_) {
-    if (axis.reference_done_s > now_s) return true;
-  }
-  return false;
+bool Gcs2Instrument::busy(std::size_t axis, double now_s) const {
+  return world_.axis(which(axis)).moving(now_s) || axes_.at(axis).reference_done_s >= 0;
 }
 
-void Gcs2Instrument::stop_all(double now_s) {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    world_.axis(which(i)).halt(now_s);
+void Gcs2Instrument::stop(const std::vector<std::size_t>& axes, double now_s) {
+  for (const std::size_t i : axes) {
+    world_.halt(which(i), now_s);
     axes_[i].reference_done_s = -1;
   }
   error_ = kStopped;
@@ -105,118 +119,132 @@ double Gcs2Instrument::limit_deg(std::size_t axis) const {
   return axis == azimuth ? 360 : world_.scenario().tilt_limit_deg;
 }
 
-int Gcs2Instrument::axis_named(std::string_view name) {
-  if (name.size() == 1 && name[0] >= '1' && name[0] <= '3') return name[0] - '1';
-  error_ = kInvalidAxis;
-  return -1;
+std::optional<std::vector<std::size_t>> Gcs2Instrument::axes_named(std::string_view names) {
+  std::vector<std::size_t> out;
+  for (const std::string_view name : words(names)) {
+    if (name.size() != 1 || name[0] < '1' || name[0] > '3') {
+      error_ = kInvalidAxis;
+      return std::nullopt;
+    }
+    out.push_back(static_cast<std::size_t>(name[0] - '1'));
+  }
+  if (out.empty()) out = {0, 1, 2};
+  return out;
 }
 
 void Gcs2Instrument::command(std::string_view line, double now_s) {
   const std::size_t space = std::min(line.find(' '), line.size());
   const std::string_view verb = line.substr(0, space), rest = line.substr(space);
   if (verb.empty()) return;
-  if (verb == "*IDN?") return put("(c)2024 Physik Instrumente (PI) GmbH & Co. KG, C-867.simulated, 0, 1.0\n");
-  if (verb == "ERR?") return put(fmt::format("{}\n", std::exchange(error_, 0)));
-  if (verb == "SAI?") return put("1 \n2 \n3\n");
-  if (verb == "STP" || verb == "HLT") return stop_all(now_s);
-  if (verb.ends_with('?')) return query(verb, rest, now_s);
-  set(verb, rest, now_s);
+  if (line.size() > kMaxLine) {
+    error_ = kTooLong;
+  } else if (verb == "*IDN?") {
+    put("(c)2024 Physik Instrumente (PI) GmbH & Co. KG, C-867.simulated, 0, 1.0\n", now_s);
+  } else if (verb == "ERR?") {
+    put(fmt::format("{}\n", std::exchange(error_, 0)), now_s);
+  } else if (verb == "SAI?") {
+    put("1 \n2 \n3\n", now_s);
+  } else if (verb == "STP" || verb == "HLT") {
+    if (const auto axes = axes_named(verb == "HLT" ? rest : std::string_view())) stop(*axes, now_s);
+  } else if (verb.ends_with('?')) {
+    query(verb, rest, now_s);
+  } else if (verb == "FRF") {
+    reference(rest, now_s);
+  } else {
+    assign(verb, rest, now_s);
+  }
 }
 
 void Gcs2Instrument::query(std::string_view verb, std::string_view rest, double now_s) {
-  std::vector<std::string_view> names = words(rest);
-  if (names.empty()) names = {"1", "2", "3"};
+  const auto axes = axes_named(rest);
+  if (!axes) return;
   std::string out;
-  for (const std::string_view name : names) {
-    const int found = axis_named(name);
-    if (found < 0) return;
-    const auto i = static_cast<std::size_t>(found);
-    const AxisMotion& motion = world_.axis(which(i));
-    double value = 0;
-    bool flag = true;
-    if (verb == "POS?")
-      value = motion.indicated_deg(now_s), flag = false;
-    else if (verb == "ONT?")
-      value = !motion.moving(now_s) && axes_[i].reference_done_s < 0;
-    else if (verb == "FRF?")
-      value = axes_[i].referenced;
-    else if (verb == "SVO?")
-      value = axes_[i].servo;
-    else if (verb == "VEL?")
-      value = motion.velocity(), flag = false;
-    else if (verb == "TMN?")
-      value = -limit_deg(i), flag = false;
-    else if (verb == "TMX?")
-      value = limit_deg(i), flag = false;
-    else {
+  for (const std::size_t i : *axes) {
+    const auto value = answer(verb, i, now_s);
+    if (!value) {
       error_ = kUnknownCommand;
       return;
     }
     if (!out.empty()) out += " \n";
-    out += flag ? fmt::format("{}={:.0f}", name, value) : fmt::format("{}={:.7f}", name, value);
+    out += fmt::format("{}={}", i + 1, *value);
   }
-  put(out + "\n");
+  put(out + "\n", now_s);
 }
 
-void Gcs2Instrument::set(std::string_view verb, std::string_view rest, double now_s) {
-  std::vector<std::string_view> args = words(rest);
-  if (verb == "FRF") {
-    if (args.empty()) args = {"1", "2", "3"};
-    for (const std::string_view name : args) {
-      const int i = axis_named(name);
-      if (i < 0) return;
-      Axis& axis = axes_.at(static_cast<std::size_t>(i));
-      if (!axis.servo) {
-        error_ = kNotReferenced;
-        return;
-      }
-      AxisMotion& motion = world_.axis(which(static_cast<std::size_t>(i)));
-      motion.move_to(0, now_s, world_.random());
-      axis.referenced = false;
-      axis.reference_done_s =
-          now_s + (kReferenceTravel_deg + std::abs(motion.indicated_deg(now_s))) / motion.velocity() + 1;
-    }
+std::optional<std::string> Gcs2Instrument::answer(std::string_view verb, std::size_t i, double now_s) {
+  const AxisMotion& motion = world_.axis(which(i));
+  const Axis& axis = axes_.at(i);
+  if (verb == "POS?") return decimal(motion.indicated_deg(now_s) + kEncoder_deg * encoder_(random_));
+  if (verb == "MOV?") return decimal(axis.target_deg);
+  if (verb == "ONT?") return flag(!busy(i, now_s) && axis.servo);
+  if (verb == "FRF?") return flag(axis.referenced);
+  if (verb == "SVO?") return flag(axis.servo);
+  if (verb == "VEL?") return decimal(motion.velocity());
+  if (verb == "TMN?") return decimal(-limit_deg(i));
+  if (verb == "TMX?") return decimal(limit_deg(i));
+  return std::nullopt;
+}
+
+void Gcs2Instrument::reference(std::string_view rest, double now_s) {
+  const auto axes = axes_named(rest);
+  if (!axes) return;
+  if (std::any_of(axes->begin(), axes->end(), [&](std::size_t i) { return !axes_[i].servo; })) {
+    error_ = kNotReferenced;
     return;
   }
+  for (const std::size_t i : *axes) {
+    const AxisMotion& motion = world_.axis(which(i));
+    const double travel_deg = kReferenceTravel_deg + std::abs(motion.indicated_deg(now_s));
+    world_.move(which(i), 0, now_s);
+    axes_[i].referenced = false;
+    axes_[i].target_deg = 0;
+    axes_[i].reference_done_s = now_s + travel_deg / motion.velocity() + 1;
+  }
+}
+
+void Gcs2Instrument::assign(std::string_view verb, std::string_view rest, double now_s) {
   if (verb != "SVO" && verb != "MOV" && verb != "VEL") {
     error_ = kUnknownCommand;
     return;
   }
-  if (args.empty() || args.size() % 2 != 0) {
-    error_ = kMissingParameter;
+  const std::vector<std::string_view> args = words(rest);
+  int error = args.empty() || args.size() % 2 != 0 ? kMissingParameter : 0;
+  std::vector<Assignment> all;
+  for (std::size_t k = 0; error == 0 && k < args.size(); k += 2) {
+    const auto axis = axes_named(args[k]);
+    const auto value = number(args[k + 1]);
+    if (!axis) return;
+    all.push_back({axis->front(), value.value_or(0)});
+    error = value ? refusal(verb, all.back()) : kSyntax;
+  }
+  if (error != 0) {
+    error_ = error;
     return;
   }
-  for (std::size_t k = 0; k + 1 < args.size(); k += 2) {
-    const int i = axis_named(args[k]);
-    const auto value = number(args[k + 1]);
-    if (i < 0) return;
-    if (!value) {
-      error_ = kSyntax;
-      return;
-    }
-    const auto at = static_cast<std::size_t>(i);
-    if (verb == "SVO") {
-      axes_[at].servo = *value != 0;
-      if (!axes_[at].servo) world_.axis(which(at)).halt(now_s);
-    } else if (verb == "VEL") {
-      if (*value <= 0 || *value > 720) {
-        error_ = kVelocity;
-        return;
-      }
-      world_.axis(which(at)).set_velocity(*value);
-    } else {
-      move(at, *value, now_s);
-    }
-  }
+  for (const Assignment& wanted : all) carry_out(verb, wanted, now_s);
 }
 
-void Gcs2Instrument::move(std::size_t axis, double target_deg, double now_s) {
-  if (!axes_[axis].servo || !axes_[axis].referenced) {
-    error_ = kNotReferenced;
-  } else if (std::abs(target_deg) > limit_deg(axis) + 1e-9) {
-    error_ = kOutOfLimits;
+int Gcs2Instrument::refusal(std::string_view verb, const Assignment& wanted) const {
+  if (verb == "SVO") return wanted.value == 0 || wanted.value == 1 ? 0 : kOutOfRange;
+  if (verb == "VEL") return wanted.value > 0 && wanted.value <= kMaxVelocity_deg_per_s ? 0 : kVelocity;
+  const Axis& axis = axes_.at(wanted.axis);
+  if (!axis.servo || !axis.referenced) return kNotReferenced;
+  return std::abs(wanted.value) > limit_deg(wanted.axis) + 1e-9 ? kOutOfLimits : 0;
+}
+
+void Gcs2Instrument::carry_out(std::string_view verb, const Assignment& wanted, double now_s) {
+  Axis& axis = axes_.at(wanted.axis);
+  if (verb == "VEL") {
+    world_.set_velocity(which(wanted.axis), wanted.value);
+  } else if (verb == "MOV") {
+    axis.target_deg = wanted.value;
+    world_.move(which(wanted.axis), wanted.value, now_s);
   } else {
-    world_.axis(which(axis)).move_to(target_deg, now_s, world_.random());
+    axis.servo = wanted.value != 0;
+    if (axis.servo) return;
+    // Without servo nothing drives it on.
+    if (busy(wanted.axis, now_s)) world_.halt(which(wanted.axis), now_s);
+    axis.reference_done_s = -1;
   }
 }
 

@@ -3,10 +3,17 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 /// One simulated instrument, seen from its serial connector: bytes and time in, bytes out. All times are
 /// simulated seconds since the rig was switched on and never go back.
 namespace mgtd::rig {
+
+/// What an instrument says, and the moment it begins to.
+struct Utterance {
+  double at_s{0};
+  std::string bytes;
+};
 
 class Instrument {
  public:
@@ -18,22 +25,33 @@ class Instrument {
   /// When advance() has something to do next; for the executor's timer.
   [[nodiscard]] virtual double next_s() const = 0;
   [[nodiscard]] virtual int baud() const = 0;
-  [[nodiscard]] std::string take_output() { return std::exchange(output_, {}); }
+
+  /// What was said since the last call, one after the other; the cable wants the times, most tests do not.
+  [[nodiscard]] std::vector<Utterance> take_utterances() { return std::exchange(said_, {}); }
+  [[nodiscard]] std::string take_output() {
+    std::string out;
+    for (const Utterance& u : take_utterances()) out += u.bytes;
+    return out;
+  }
 
   /// Faults that the instrument itself can have. A silent one neither speaks nor listens; a frozen one
-  /// repeats its last values.
+  /// repeats its last values; a saturated one is at the end of its range.
   virtual void set_silent(bool silent) { silent_ = silent; }
   virtual void set_frozen(bool frozen) { frozen_ = frozen; }
+  virtual void set_saturated(bool saturated) { saturated_ = saturated; }
+  /// Its clock jumps.
+  virtual void step_clock(double /*by_s*/) {}
 
  protected:
-  void put(std::string_view bytes) {
-    if (!silent_) output_ += bytes;
+  void put(std::string bytes, double at_s) {
+    if (!silent_) said_.push_back({at_s, std::move(bytes)});
   }
   bool silent_{false};
   bool frozen_{false};
+  bool saturated_{false};
 
  private:
-  std::string output_;
+  std::vector<Utterance> said_;
 };
 
 }  // namespace mgtd::rig

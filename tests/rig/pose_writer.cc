@@ -81,38 +81,53 @@ Means dwell(World& world, double from_s, double length_s) {
   return out;
 }
 
+constexpr double kSettle_s = 1;
+
+std::string header() {
+  std::string out = "pose,set,t_s,azimuth_deg,pitch_deg,roll_deg,f_nT,n";
+  for (int i = 1; i <= 4; ++i) out += fmt::format(",s{0}_x_nT,s{0}_y_nT,s{0}_z_nT", i);
+  for (int i = 1; i <= 4; ++i) out += fmt::format(",s{0}_sd_x_nT,s{0}_sd_y_nT,s{0}_sd_z_nT", i);
+  for (int i = 1; i <= 4; ++i) out += fmt::format(",s{}_T_degC", i);
+  return out + ",sense,dwell_s,since_stop_s\n";
+}
+
+/// Goes to a pose; returns when the table stands there.
+double go(World& world, const PlannedPose& pose, double t_s) {
+  for (const TableAxis axis : {azimuth, pitch, roll}) world.move(axis, pose.angles_deg.at(axis), t_s);
+  double arrived_s = t_s;
+  while (world.moving(arrived_s)) arrived_s += 0.05;
+  return arrived_s;
+}
+
+std::string row(const World& world, int number, const PlannedPose& pose, double begin_s, const Means& means) {
+  const double middle_s = begin_s + pose.dwell_s / 2;
+  std::string out = fmt::format("{},{},{:.3f},{:.6f},{:.6f},{:.6f},{:.3f},{}", number,
+                                pose.standard ? "standard" : "random", middle_s, pose.angles_deg[azimuth],
+                                pose.angles_deg[pitch], pose.angles_deg[roll], means.f_nT, means.n);
+  for (const auto& y : means.mean) out += fmt::format(",{:.5f},{:.5f},{:.5f}", y[0], y[1], y[2]);
+  for (const auto& sd : means.sd)
+    out += means.n > 1 ? fmt::format(",{:.5f},{:.5f},{:.5f}", sd[0], sd[1], sd[2]) : ",,,";
+  for (int i = 0; i < 4; ++i) out += fmt::format(",{:.4f}", world.head_degC(i, middle_s));
+  const int sense = world.axis(azimuth).sense();
+  return out + fmt::format(",{},{},{:.3f}\n", sense == 0 ? std::string() : std::to_string(sense),
+                           pose.dwell_s, kSettle_s + pose.dwell_s / 2);
+}
+
 }  // namespace
 
 std::string pose_table_csv(const Scenario& scenario, PoseSet set) {
   Scenario used = scenario;
   if (set == PoseSet::grid5832) used.table_accuracy_deg = 0;
   World world(used);
-  const auto poses = set == PoseSet::grid5832 ? grid_of_5832() : run_of_157(used.seed, used.tilt_limit_deg);
-  std::string out = "pose,set,t_s,azimuth_deg,pitch_deg,roll_deg,f_nT,n";
-  for (int i = 1; i <= 4; ++i) out += fmt::format(",s{0}_x_nT,s{0}_y_nT,s{0}_z_nT", i);
-  for (int i = 1; i <= 4; ++i) out += fmt::format(",s{0}_sd_x_nT,s{0}_sd_y_nT,s{0}_sd_z_nT", i);
-  for (int i = 1; i <= 4; ++i) out += fmt::format(",s{}_T_degC", i);
-  out += ",dwell_s\n";
+  std::string out = header();
   double t_s = 0;
   int number = 0;
-  for (const PlannedPose& pose : poses) {
-    double arrived = t_s;
-    for (const TableAxis axis : {azimuth, pitch, roll}) {
-      world.axis(axis).move_to(pose.angles_deg.at(axis), t_s, world.random());
-      while (world.axis(axis).moving(arrived)) arrived += 0.1;
-    }
-    const double begin = arrived + 1;
-    const Means means = dwell(world, begin, pose.dwell_s);
-    t_s = begin + pose.dwell_s;
-    out +=
-        fmt::format("{},{},{:.3f},{:.6f},{:.6f},{:.6f},{:.3f},{}", ++number,
-                    pose.standard ? "standard" : "random", begin + pose.dwell_s / 2, pose.angles_deg[azimuth],
-                    pose.angles_deg[pitch], pose.angles_deg[roll], means.f_nT, means.n);
-    for (const auto& y : means.mean) out += fmt::format(",{:.5f},{:.5f},{:.5f}", y[0], y[1], y[2]);
-    for (const auto& sd : means.sd)
-      out += means.n > 1 ? fmt::format(",{:.5f},{:.5f},{:.5f}", sd[0], sd[1], sd[2]) : ",,,";
-    for (int i = 0; i < 4; ++i) out += fmt::format(",{:.4f}", world.head_degC(i, begin));
-    out += fmt::format(",{}\n", pose.dwell_s);
+  for (const PlannedPose& pose :
+       set == PoseSet::grid5832 ? grid_of_5832() : run_of_157(used.seed, used.tilt_limit_deg)) {
+    const double begin_s = go(world, pose, t_s) + kSettle_s;
+    const Means means = dwell(world, begin_s, pose.dwell_s);
+    t_s = begin_s + pose.dwell_s;
+    out += row(world, ++number, pose, begin_s, means);
   }
   return out;
 }

@@ -14,49 +14,57 @@ namespace mgtd::rig {
 
 Pty::Pty(std::string link) : link_(std::move(link)) { open(); }
 
-void Pty::open() {
-  if (is_open()) return;
+bool Pty::make(std::string& terminal) {
   std::array<char, 128> name{};
-  if (openpty(&master_, &slave_, name.data(), nullptr, nullptr) != 0) {
+  int slave = -1;
+  if (openpty(&master_, &slave, name.data(), nullptr, nullptr) != 0) {
     why_ = std::string("openpty: ") + std::strerror(errno);
-    master_ = slave_ = -1;
-    return;
+    master_ = -1;
+    return false;
   }
+  terminal = name.data();
   termios raw{};
-  tcgetattr(slave_, &raw);
+  tcgetattr(slave, &raw);
   cfmakeraw(&raw);
-  tcsetattr(slave_, TCSANOW, &raw);
+  tcsetattr(slave, TCSANOW, &raw);
   fcntl(master_, F_SETFL, fcntl(master_, F_GETFL) | O_NONBLOCK);
   fcntl(master_, F_SETFD, FD_CLOEXEC);
-  fcntl(slave_, F_SETFD, FD_CLOEXEC);
+  // From now on a read of the master tells whether anybody else has the other side open. The settings stay
+  // with the terminal.
+  ::close(slave);
+  return true;
+}
+
+void Pty::open() {
+  std::string terminal;
+  if (is_open() || !make(terminal)) return;
   unlink(link_.c_str());
-  if (symlink(name.data(), link_.c_str()) != 0) {
-    why_ = link_ + ": " + std::strerror(errno);
-    close();
-  }
+  if (symlink(terminal.c_str(), link_.c_str()) == 0) return;
+  why_ = link_ + ": " + std::strerror(errno);
+  ::close(master_);
+  master_ = -1;
 }
 
 void Pty::close() {
-  if (master_ < 0) return;
+  if (!is_open()) return;
   unlink(link_.c_str());
-  ::close(slave_);
   ::close(master_);
-  master_ = slave_ = -1;
+  master_ = -1;
+  listened_ = false;
 }
 
 std::string Pty::read() {
   std::string out;
   std::array<char, 4096> buffer;
-  while (master_ >= 0) {
-    const ssize_t n = ::read(master_, buffer.data(), buffer.size());
-    if (n <= 0) break;
+  ssize_t n = 0;
+  while (is_open() && (n = ::read(master_, buffer.data(), buffer.size())) > 0)
     out.append(buffer.data(), static_cast<std::size_t>(n));
-  }
+  listened_ = is_open() && n < 0 && errno == EAGAIN;
   return out;
 }
 
 std::size_t Pty::write(std::string_view bytes) {
-  if (master_ < 0 || bytes.empty()) return 0;
+  if (!is_open() || bytes.empty()) return 0;
   const ssize_t n = ::write(master_, bytes.data(), bytes.size());
   return n > 0 ? static_cast<std::size_t>(n) : 0;
 }

@@ -23,12 +23,17 @@ class Pty {
 
   /// Bytes the host wrote since the last call; never blocks.
   [[nodiscard]] std::string read();
+  /// Whether a host had the port open at the last read(). What is said to nobody is lost.
+  [[nodiscard]] bool listened() const { return listened_; }
   /// Writes what fits and returns how much that was; never blocks.
   [[nodiscard]] std::size_t write(std::string_view bytes);
 
  private:
+  [[nodiscard]] bool make(std::string& terminal);
+
   std::string link_, why_;
-  int master_{-1}, slave_{-1};
+  int master_{-1};
+  bool listened_{false};
 };
 
 }  // namespace mgtd::rig

@@ -7,220 +7,199 @@
 #include <algorithm>
 #include <set>
 
-#include "tests/rig/effects/axis_effects.h"
-#include "tests/rig/effects/site_gradient.h"
+#include "tests/rig/effect_list.h"
 #include "tests/rig/fault.h"
+#include "tests/rig/section.h"
 
 namespace mgtd::rig {
 namespace {
 
-/// Reads one table; remembers which keys were asked for, so that the others can be named.
-class Section {
- public:
-  Section(const toml::table* table, std::string name, std::string_view file, std::vector<std::string>& errors)
-      : table_(table), name_(std::move(name)), file_(file), errors_(errors) {}
-
-  template <class T>
-  void read(std::string_view key, T& value) {
-    const toml::node* const node = find(key);
-    if (node == nullptr) return;
-    if (const auto got = node->value<T>()) {
-      value = *got;
-    } else {
-      complain(*node, fmt::format("{} has the wrong type", key));
-    }
-  }
-  template <std::size_t N>
-  void read(std::string_view key, std::array<double, N>& value) {
-    const toml::node* const node = find(key);
-    if (node == nullptr) return;
-    const toml::array* const list = node->as_array();
-    if (list == nullptr || list->size() != N)
-      return complain(*node, fmt::format("{} must be a list of {} numbers", key, N));
-    for (std::size_t i = 0; i < N; ++i) value.at(i) = list->get(i)->value<double>().value_or(0);
-  }
-  [[nodiscard]] bool has(std::string_view key) { return find(key) != nullptr; }
-  void complain(const toml::node& where, const std::string& what) {
-    errors_.push_back(fmt::format("{}:{}: [{}] {}", file_, where.source().begin.line, name_, what));
-  }
-  void refuse_rest() {
-    if (table_ == nullptr) return;
-    for (const auto& [key, node] : *table_) {
-      if (!asked_.contains(std::string(key.str()))) {
-        complain(node, fmt::format("unknown key '{}'; there are: {}", key.str(), fmt::join(asked_, ", ")));
-      }
-    }
-  }
-  [[nodiscard]] const toml::table* table() const { return table_; }
-
- private:
-  const toml::node* find(std::string_view key) {
-    asked_.insert(std::string(key));
-    return table_ == nullptr ? nullptr : table_->get(key);
-  }
-
-  const toml::table* table_;
-  std::string name_;
-  std::string_view file_;
-  std::vector<std::string>& errors_;
-  std::set<std::string> asked_;
-};
-
-std::shared_ptr<Effect> make_effect(Section& s) {
-  std::string name, where_text = "all";
-  s.read("name", name);
-  s.read("where", where_text);
-  const auto where = Where::parse(where_text);
-  if (!where)
-    s.complain(*s.table(), fmt::format("where = '{}' must be all, s1 .. s4 or s1.x .. s4.z", where_text));
-  const Where at = where.value_or(Where{});
-  const auto amount = [&](std::string_view key) {
-    double value = 0;
-    if (!s.has(key)) s.complain(*s.table(), fmt::format("{} needs {}", name, key));
-    s.read(key, value);
-    return value;
-  };
-  if (name == "site.gradient") {
-    std::array<double, 5> g{};
-    if (!s.has("nT_per_m")) s.complain(*s.table(), "site.gradient needs nT_per_m = [xx, yy, xy, xz, yz]");
-    s.read("nT_per_m", g);
-    return std::make_shared<SiteGradient>(g);
-  }
-  if (name == "axis.offset.temperature")
-    return std::make_shared<OffsetTemperature>(at, amount("nT_per_degC"));
-  if (name == "axis.gain.temperature") return std::make_shared<GainTemperature>(at, amount("ppm_per_degC"));
-  if (name == "axis.quadratic") return std::make_shared<Nonlinearity>(at, 2, amount("nT_at_F0"));
-  if (name == "axis.cubic") return std::make_shared<Nonlinearity>(at, 3, amount("nT_at_F0"));
-  if (name == "axis.hysteresis") {
-    double width = 0.1;
-    s.read("width", width);
-    return std::make_shared<Hysteresis>(at, amount("h_nT"), width);
-  }
-  s.complain(
-      *s.table(),
-      fmt::format("no effect '{}'; there are: site.gradient, axis.offset.temperature, axis.gain.temperature, "
-                  "axis.quadratic, axis.cubic, axis.hysteresis",
-                  name));
-  return nullptr;
-}
-
 class Reader {
  public:
-  Reader(const toml::table& root, std::string_view file) : root_(root), file_(file) {}
-  tl::expected<Scenario, std::vector<std::string>> read();
+  explicit Reader(const toml::table& root) : root_(root) {}
+  [[nodiscard]] Scenario read();
+  /// In the order of the lines.
+  [[nodiscard]] std::vector<Mistake> mistakes() &&;
 
  private:
-  Section section(std::string_view name) {
-    const toml::node* const node = root_.get(name);
-    return {node == nullptr ? nullptr : node->as_table(), std::string(name), file_, errors_};
-  }
+  Section section(std::string_view name) { return {root_.get(name), std::string(name), mistakes_}; }
+  void refuse_unknown_sections();
   void read_rig(Scenario& s);
+  void read_sensor(std::size_t i, SensorTruth& truth);
   void read_site(Scenario& s);
-  void read_instruments(Scenario& s);
-  void read_lists(Scenario& s);
+  void read_temperature(TemperatureScript& script);
+  void read_sensors(Scenario& s);
+  void read_table(Scenario& s);
+  void read_scalar(Scenario& s);
+  void read_effects(Scenario& s);
+  void read_faults(Scenario& s);
+  template <class Body>
+  void for_each(std::string_view name, Body body);
 
   const toml::table& root_;
-  std::string_view file_;
-  std::vector<std::string> errors_;
+  std::vector<Mistake> mistakes_;
 };
+
+void Reader::refuse_unknown_sections() {
+  static const std::set<std::string_view> kSections{
+      "rig", "site", "temperature", "sensors", "s1", "s2", "s3", "s4", "table", "scalar", "effect", "fault"};
+  for (const auto& [key, node] : root_) {
+    if (!kSections.contains(key.str())) {
+      mistakes_.push_back({node.source().begin.line, fmt::format("unknown section '{}'; there are: {}",
+                                                                 key.str(), fmt::join(kSections, ", "))});
+    }
+  }
+}
 
 void Reader::read_rig(Scenario& s) {
   Section rig = section("rig");
-  std::int64_t seed = 1;
   rig.read("name", s.name);
   rig.read("parameters", s.rig);
-  rig.read("seed", seed);
-  rig.read("baseline_m", s.baseline_m);
-  s.seed = static_cast<std::uint64_t>(seed);
+  rig.read("seed", s.seed);
+  rig.read("baseline_m", s.baseline_m, {0.01, 100});
   if (const auto truth = rig_named(s.rig, s.seed)) {
     s.truth = *truth;
   } else {
-    rig.complain(*rig.table(),
+    rig.complain("parameters",
                  fmt::format("parameters = '{}' must be table3, table6, ideal or random", s.rig));
   }
   rig.refuse_rest();
+  for (std::size_t i = 0; i < s.truth.size(); ++i) read_sensor(i, s.truth.at(i));
+}
+
+/// What differs from the named rig.
+void Reader::read_sensor(std::size_t i, SensorTruth& truth) {
+  Section sensor = section(fmt::format("s{}", i + 1));
+  for (auto& [key, value] : named_parameters(truth)) sensor.read(key, *value);
+  std::string mounting;
+  sensor.read("mounting", mounting);
+  if (!mounting.empty()) {
+    if (const auto found = parse_mounting(mounting)) {
+      truth.mounting = *found;
+    } else {
+      sensor.complain("mounting",
+                      fmt::format("mounting = '{}' must say where the sensor's x, y and z point on the "
+                                  "platform, e.g. \"y -x z\"",
+                                  mounting));
+    }
+  }
+  sensor.refuse_rest();
 }
 
 void Reader::read_site(Scenario& s) {
   Section site = section("site");
-  site.read("f_nT", s.f_nT);
-  site.read("inclination_deg", s.inclination_deg);
-  site.read("declination_deg", s.declination_deg);
+  site.read("f_nT", s.f_nT, {1000, 1e6});
+  site.read("inclination_deg", s.inclination_deg, {-90, 90});
+  site.read("declination_deg", s.declination_deg, {-360, 360});
   site.read("drift_nT_per_h", s.field_drift_nT_per_h);
+  site.read("diurnal_nT", s.diurnal_nT);
+  site.read("diurnal_period_h", s.diurnal_period_h, {0.01, 1000});
   site.refuse_rest();
+}
+
+void Reader::read_temperature(TemperatureScript& script) {
   Section temperature = section("temperature");
-  temperature.read("start_degC", s.temperature.start_degC);
-  temperature.read("ramp_degC_per_h", s.temperature.ramp_degC_per_h);
-  temperature.read("head_degC", s.temperature.head_degC);
+  temperature.read("start_degC", script.start_degC, {-60, 80});
+  temperature.read("ramp_degC_per_h", script.ramp_degC_per_h, {-1000, 1000});
+  temperature.read("head_degC", script.head_degC);
+  temperature.read("pulse_degC", script.pulse_degC, {-60, 60});
+  temperature.read("pulse_at_s", script.pulse_at_s);
+  temperature.read("pulse_tau_s", script.pulse_tau_s, {1, 1e6});
+  temperature.read("pulse_head", script.pulse_head);
+  if (script.pulse_head > 4) temperature.complain("pulse_head", "pulse_head must be 1 .. 4, or 0 for all");
   temperature.refuse_rest();
 }
 
-void Reader::read_instruments(Scenario& s) {
+void Reader::read_sensors(Scenario& s) {
   Section sensors = section("sensors");
   std::string kind = "gaussian";
   sensors.read("noise", kind);
-  if (kind != "gaussian" && kind != "uniform")
-    sensors.complain(*sensors.table(), "noise must be gaussian or uniform");
+  if (kind != "gaussian" && kind != "uniform") sensors.complain("noise", "noise must be gaussian or uniform");
   s.noise = kind == "uniform" ? NoiseKind::uniform : NoiseKind::gaussian;
-  sensors.read("noise_nT", s.noise_nT);
-  sensors.read("rate_hz", s.rate_hz);
+  sensors.read("noise_nT", s.noise_nT, {0, 1e5});
+  sensors.read("rate_hz", s.rate_hz, {1, 1000});
   sensors.read("range_V", s.range_V);
-  sensors.read("uT_full_scale", s.uT_full_scale);
+  if (s.range_V != 10 && s.range_V != 5 && s.range_V != 2.5)
+    sensors.complain("range_V", "range_V must be 10, 5 or 2.5");
+  sensors.read("uT_full_scale", s.uT_full_scale, {1, 10'000});
   sensors.read("palmacq", s.palmacq);
   sensors.read("common_trigger", s.common_trigger);
-  sensors.read("oscillator_ppm", s.oscillator_ppm);
+  sensors.read("autostart", s.autostart);
+  sensors.read("oscillator_ppm", s.oscillator_ppm, {0, 10'000});
   sensors.refuse_rest();
+}
+
+void Reader::read_table(Scenario& s) {
   Section table = section("table");
-  table.read("accuracy_deg", s.table_accuracy_deg);
-  table.read("velocity_deg_per_s", s.table_velocity_deg_per_s);
-  table.read("acceleration_deg_per_s2", s.table_acceleration_deg_per_s2);
-  table.read("tilt_limit_deg", s.tilt_limit_deg);
+  table.read("accuracy_deg", s.table_accuracy_deg, {0, 10});
+  table.read("velocity_deg_per_s", s.table_velocity_deg_per_s, {0.01, 720});
+  table.read("acceleration_deg_per_s2", s.table_acceleration_deg_per_s2, {0.01, 10'000});
+  table.read("tilt_limit_deg", s.tilt_limit_deg, {1, 360});
   table.refuse_rest();
+}
+
+void Reader::read_scalar(Scenario& s) {
   Section scalar = section("scalar");
   scalar.read("present", s.scalar);
-  scalar.read("noise_nT", s.scalar_noise_nT);
+  scalar.read("noise_nT", s.scalar_noise_nT, {0, 1e5});
+  scalar.read("period_s", s.scalar_period_s, {0.05, 60});
+  scalar.read("bad_every", s.scalar_bad_every);
   scalar.refuse_rest();
 }
 
-void Reader::read_lists(Scenario& s) {
-  if (const toml::node* node = root_.get("effect"); node != nullptr && node->is_array()) {
-    for (const toml::node& item : *node->as_array()) {
-      Section effect(item.as_table(), "[effect]", file_, errors_);
-      if (auto made = make_effect(effect)) s.effects.push_back(std::move(made));
-      effect.refuse_rest();
-    }
+/// Every table of an array of tables.
+template <class Body>
+void Reader::for_each(std::string_view name, Body body) {
+  const toml::node* const node = root_.get(name);
+  if (node == nullptr) return;
+  if (!node->is_array()) {
+    Section(node, std::string(name), mistakes_)
+        .complain("", fmt::format("write [[{}]], with two brackets", name));
+    return;
   }
-  if (const toml::node* node = root_.get("fault"); node != nullptr && node->is_array()) {
-    for (const toml::node& item : *node->as_array()) {
-      Section fault(item.as_table(), "[fault]", file_, errors_);
-      TimedFault timed;
-      fault.read("at_s", timed.at_s);
-      fault.read("do", timed.text);
-      fault.refuse_rest();
-      if (const auto parsed = parse_fault(timed.text); !parsed) fault.complain(item, parsed.error());
-      s.faults.push_back(std::move(timed));
-    }
+  for (const toml::node& item : *node->as_array()) {
+    Section section(&item, std::string(name), mistakes_);
+    body(section);
+    section.refuse_rest();
   }
+}
+
+void Reader::read_effects(Scenario& s) {
+  for_each("effect", [&](Section& section) {
+    if (auto effect = read_effect(section)) s.effects.push_back(std::move(effect));
+  });
+}
+
+void Reader::read_faults(Scenario& s) {
+  for_each("fault", [&](Section& section) {
+    TimedFault timed;
+    section.read("at_s", timed.at_s, {0, 1e9});
+    section.read("do", timed.text);
+    if (const auto parsed = parse_fault(timed.text); !parsed) section.complain("do", parsed.error());
+    s.faults.push_back(std::move(timed));
+  });
   std::stable_sort(s.faults.begin(), s.faults.end(),
                    [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
 }
 
-tl::expected<Scenario, std::vector<std::string>> Reader::read() {
-  static const std::set<std::string_view> kSections{"rig",   "site",   "temperature", "sensors",
-                                                    "table", "scalar", "effect",      "fault"};
-  for (const auto& [key, node] : root_) {
-    if (!kSections.contains(key.str())) {
-      errors_.push_back(fmt::format("{}:{}: unknown section '{}'; there are: {}", file_,
-                                    node.source().begin.line, key.str(), fmt::join(kSections, ", ")));
-    }
-  }
+Scenario Reader::read() {
   Scenario scenario;
+  refuse_unknown_sections();
   read_rig(scenario);
   read_site(scenario);
-  read_instruments(scenario);
-  read_lists(scenario);
-  if (!errors_.empty()) return tl::unexpected(std::move(errors_));
+  read_temperature(scenario.temperature);
+  read_sensors(scenario);
+  read_table(scenario);
+  read_scalar(scenario);
+  read_effects(scenario);
+  read_faults(scenario);
   return scenario;
+}
+
+std::vector<Mistake> Reader::mistakes() && {
+  std::stable_sort(mistakes_.begin(), mistakes_.end(),
+                   [](const Mistake& a, const Mistake& b) { return a.line < b.line; });
+  return std::move(mistakes_);
 }
 
 }  // namespace
@@ -229,43 +208,17 @@ tl::expected<Scenario, std::vector<std::string>> parse_scenario(std::string_view
                                                                 std::string_view file) {
   try {
     const toml::table root = toml::parse(text, file);
-    return Reader(root, file).read();
+    Reader reader(root);
+    Scenario scenario = reader.read();
+    std::vector<std::string> lines;
+    for (const Mistake& m : std::move(reader).mistakes())
+      lines.push_back(fmt::format("{}:{}: {}", file, m.line, m.text));
+    if (!lines.empty()) return tl::unexpected(std::move(lines));
+    return scenario;
   } catch (const toml::parse_error& error) {
     return tl::unexpected(std::vector<std::string>{fmt::format(
         "{}:{}:{}: {}", file, error.source().begin.line, error.source().begin.column, error.description())});
   }
-}
-
-nlohmann::json truth_json(const Scenario& s) {
-  nlohmann::json sensors = nlohmann::json::array();
-  for (const SensorTruth& t : s.truth) {
-    sensors.push_back({{"theta_deg", t.theta_deg},
-                       {"phi_deg", t.phi_deg},
-                       {"psi_deg", t.psi_deg},
-                       {"cx", t.scale[0]},
-                       {"cy", t.scale[1]},
-                       {"cz", t.scale[2]},
-                       {"ix_nT", t.offset_nT[0]},
-                       {"iy_nT", t.offset_nT[1]},
-                       {"iz_nT", t.offset_nT[2]},
-                       {"alpha_deg", t.alpha_deg},
-                       {"beta_deg", t.beta_deg},
-                       {"gamma_deg", t.gamma_deg}});
-  }
-  nlohmann::json effects = nlohmann::json::array();
-  for (const auto& effect : s.effects) effects.push_back(effect->truth());
-  return {
-      {"schema", "mgt-rig.truth/1"},
-      {"scenario", s.name},
-      {"rig", s.rig},
-      {"seed", s.seed},
-      {"baseline_m", s.baseline_m},
-      {"site",
-       {{"f_nT", s.f_nT}, {"inclination_deg", s.inclination_deg}, {"declination_deg", s.declination_deg}}},
-      {"noise_nT", s.noise_nT},
-      {"table_accuracy_deg", s.table_accuracy_deg},
-      {"sensors", sensors},
-      {"effects", effects}};
 }
 
 }  // namespace mgtd::rig

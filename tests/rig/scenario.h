@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -21,6 +22,10 @@ struct TemperatureScript {
   double start_degC{20};
   double ramp_degC_per_h{0};
   std::array<double, 4> head_degC{};  ///< each head's own difference
+  double pulse_degC{0};               ///< peak of one warm spell (hands, sun), p s/tau exp(1 - s/tau) ...
+  double pulse_at_s{0};               ///< ... begun here
+  double pulse_tau_s{300};
+  std::uint64_t pulse_head{0};  ///< 1 .. 4; 0: all of them
 };
 
 struct TimedFault {
@@ -34,31 +39,41 @@ struct Scenario {
   RigTruth truth;
   std::uint64_t seed{1};
   double baseline_m{0.4};
+
   double f_nT{53'907.7}, inclination_deg{60}, declination_deg{-5};
   double field_drift_nT_per_h{0};  ///< of the magnitude
+  double diurnal_nT{0};            ///< amplitude of a sine of the magnitude, ...
+  double diurnal_period_h{24};
+
   NoiseKind noise{NoiseKind::gaussian};
   double noise_nT{0.3};  ///< sd of one sample, or half width when uniform
   TemperatureScript temperature;
+  double rate_hz{50};         ///< when nobody commands one
+  double range_V{10};         ///< the digitiser's range, for the printed configuration
+  double uT_full_scale{100};  ///< of the sensors, for their 10 V
+  bool palmacq{true};
+  bool common_trigger{false};
+  bool autostart{false};      ///< already streaming when the host opens the port
+  double oscillator_ppm{20};  ///< free-running devices differ by up to this
+
   double table_accuracy_deg{0.1};
   double table_velocity_deg_per_s{20}, table_acceleration_deg_per_s2{40};
   double tilt_limit_deg{180};  ///< travel of pitch and roll
-  double scalar_noise_nT{0.02};
+
   bool scalar{true};
-  double rate_hz{50};
-  double range_V{10};
-  double uT_full_scale{100};  ///< of the sensors, for range_V
-  bool palmacq{true};
-  bool common_trigger{false};
-  double oscillator_ppm{20};  ///< free-running devices differ by up to this
-  std::vector<std::shared_ptr<Effect>> effects;
-  std::vector<TimedFault> faults;
+  double scalar_noise_nT{0.02};
+  double scalar_period_s{1};
+  std::uint64_t scalar_bad_every{0};  ///< every so many readings one has a poor quality; 0: none
+
+  std::vector<std::shared_ptr<const Effect>> effects;
+  std::vector<TimedFault> faults;  ///< in the order of their times
 };
 
 /// Errors are all reported at once, "file:line: ...".
 [[nodiscard]] tl::expected<Scenario, std::vector<std::string>> parse_scenario(std::string_view text,
                                                                               std::string_view file);
 
-/// The truth as JSON: parameters under the paper's names, effects, site.
+/// The truth as JSON: parameters under the paper's names, mountings, effects, site.
 [[nodiscard]] nlohmann::json truth_json(const Scenario& scenario);
 
 }  // namespace mgtd::rig

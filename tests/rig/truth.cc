@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/truth.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "tests/rig/rotations.h"
 
@@ -54,6 +56,48 @@ std::optional<RigTruth> rig_named(std::string_view name, std::uint64_t seed) {
         sensor(0.814, 3.174, 2.515, 1.006, 1.004, 0.998, -301.0, -298.8, -29.7, 0.693, -0.160, 1.902)};
   }
   return std::nullopt;
+}
+
+std::array<std::pair<const char*, double*>, 12> named_parameters(SensorTruth& t) {
+  return {{{"theta_deg", &t.theta_deg},
+           {"phi_deg", &t.phi_deg},
+           {"psi_deg", &t.psi_deg},
+           {"cx", &t.scale[0]},
+           {"cy", &t.scale[1]},
+           {"cz", &t.scale[2]},
+           {"ix_nT", &t.offset_nT[0]},
+           {"iy_nT", &t.offset_nT[1]},
+           {"iz_nT", &t.offset_nT[2]},
+           {"alpha_deg", &t.alpha_deg},
+           {"beta_deg", &t.beta_deg},
+           {"gamma_deg", &t.gamma_deg}}};
+}
+
+std::optional<Eigen::Matrix3d> parse_mounting(std::string_view text) {
+  std::istringstream in{std::string(text)};
+  Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
+  int column = 0;
+  for (std::string word; in >> word; ++column) {
+    const bool against = word.front() == '-';
+    const std::string_view letter = std::string_view(word).substr(against ? 1 : 0);
+    if (column > 2 || letter.size() != 1 || letter[0] < 'x' || letter[0] > 'z') return std::nullopt;
+    out(letter[0] - 'x', column) = against ? -1 : 1;
+  }
+  if (column != 3 || out.determinant() == 0) return std::nullopt;
+  return out;
+}
+
+std::string mounting_text(const Eigen::Matrix3d& mounting) {
+  std::string out;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) {
+      if (mounting(row, column) == 0) continue;
+      if (!out.empty()) out += ' ';
+      if (mounting(row, column) < 0) out += '-';
+      out += static_cast<char>('x' + row);
+    }
+  }
+  return out;
 }
 
 }  // namespace mgtd::rig

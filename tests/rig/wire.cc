@@ -2,34 +2,52 @@
 #include "tests/rig/wire.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mgtd::rig {
 namespace {
 
 constexpr std::size_t kGarbageBytes = 200;
 constexpr std::uint64_t kTornOneIn = 100;
+/// A byte is there when its end is reached to within rounding.
+constexpr double kRounding = 1e-6;
 
 }  // namespace
 
-void Wire::push(std::string bytes) {
-  if (torn_) std::erase_if(bytes, [&](char) { return random_() % kTornOneIn == 0; });
-  queue_ += bytes;
+void Wire::push(Utterance said) {
+  const double begin_s = std::max(free_s_, said.at_s);
+  free_s_ = begin_s + static_cast<double>(said.bytes.size()) * byte_s_;
+  if (torn_) std::erase_if(said.bytes, [&](char) { return random_() % kTornOneIn == 0; });
+  if (!said.bytes.empty()) bursts_.push_back({begin_s, std::move(said.bytes)});
 }
 
 std::string Wire::pull(double now_s) {
-  const double elapsed = std::max(0.0, now_s - last_s_);
-  last_s_ = now_s;
-  // An idle line saves nothing up.
-  credit_ = queue_.empty() ? 0 : credit_ + elapsed * bytes_per_s_;
-  const std::size_t n = std::min(queue_.size(), static_cast<std::size_t>(credit_));
-  credit_ -= static_cast<double>(n);
-  std::string out = queue_.substr(0, n);
-  queue_.erase(0, n);
+  std::string out;
+  while (!bursts_.empty()) {
+    Burst& first = bursts_.front();
+    const double arrived = std::floor((now_s - first.begin_s) / byte_s_ + kRounding);
+    if (arrived < 1) break;
+    const std::size_t n = std::min(first.bytes.size(), static_cast<std::size_t>(arrived));
+    out.append(first.bytes, 0, n);
+    if (n < first.bytes.size()) {
+      first.bytes.erase(0, n);
+      first.begin_s += static_cast<double>(n) * byte_s_;
+      break;
+    }
+    bursts_.pop_front();
+  }
   return out;
 }
 
-void Wire::garbage() {
-  for (std::size_t i = 0; i < kGarbageBytes; ++i) queue_ += static_cast<char>(random_() & 0xffU);
+void Wire::garbage(double now_s) {
+  std::string bytes(kGarbageBytes, '\0');
+  for (char& c : bytes) c = static_cast<char>(random_() & 0xffU);
+  push({now_s, std::move(bytes)});
+}
+
+void Wire::clear() {
+  bursts_.clear();
+  free_s_ = 0;
 }
 
 }  // namespace mgtd::rig

@@ -1,29 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <random>
 #include <string>
 
-/// The cable: bytes leave at the baud rate, and some faults live here. Pure.
+#include "tests/rig/instrument.h"
+
+/// The cable: ten bit times a byte, one byte after the other, and the faults that live in cables. Pure.
 namespace mgtd::rig {
 
 class Wire {
  public:
-  Wire(int baud, std::uint64_t seed) : bytes_per_s_(baud / 10.0), random_(seed) {}
+  Wire(int baud, std::uint64_t seed) : byte_s_(10.0 / baud), random_(seed) {}
 
-  /// What the instrument said; waits for its turn on the line.
-  void push(std::string bytes);
-  /// What has left the line by now.
+  /// What the instrument says; waits for its turn on the line. Utterances come in the order of their times.
+  void push(Utterance said);
+  /// The bytes whose last bit has arrived by now.
   [[nodiscard]] std::string pull(double now_s);
-  void garbage();
+  /// 200 random bytes, after what is on the line.
+  void garbage(double now_s);
+  /// One byte in a hundred gets lost.
   void set_torn(bool torn) { torn_ = torn; }
-  void clear() { queue_.clear(); }
+  /// Nobody is at the other end: what is on the line is lost.
+  void clear();
 
  private:
-  double bytes_per_s_;
+  struct Burst {
+    double begin_s;  ///< of the first byte not yet pulled
+    std::string bytes;
+  };
+
+  double byte_s_;
   std::mt19937_64 random_;
-  std::string queue_;
-  double last_s_{0}, credit_{0};
+  std::deque<Burst> bursts_;
+  double free_s_{0};  ///< when the line has carried all that was pushed
   bool torn_{false};
 };
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+/// The other end of a running rig's socket.
+namespace mgtd::rig {
+
+[[nodiscard]] std::string fault_socket(const std::string& dir);
+
+/// Sends one line to the rig in `dir` and returns its answer; nothing when no rig is there.
+[[nodiscard]] std::optional<std::string> ask_rig(const std::string& dir, const std::string& line);
+
+}  // namespace mgtd::rig

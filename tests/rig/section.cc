@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/rig/section.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mgtd::rig {
+
+Section::Section(const toml::node* node, std::string name, std::vector<Mistake>& mistakes)
+    : node_(node), name_(std::move(name)), mistakes_(mistakes) {
+  if (node_ == nullptr) return;
+  table_ = node_->as_table();
+  if (table_ == nullptr) complain("", "must be a table of keys");
+}
+
+void Section::complain(std::string_view key, const std::string& what) {
+  const toml::node* at = table_ == nullptr ? nullptr : table_->get(key);
+  if (at == nullptr) at = node_;
+  mistakes_.push_back({at == nullptr ? 1U : at->source().begin.line, fmt::format("[{}] {}", name_, what)});
+}
+
+const toml::node* Section::find(std::string_view key) {
+  asked_.insert(std::string(key));
+  return table_ == nullptr ? nullptr : table_->get(key);
+}
+
+void Section::need(std::string_view key) {
+  if (find(key) == nullptr) complain("", fmt::format("{} is missing", key));
+}
+
+void Section::read(std::string_view key, std::string& value) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  if (!node->is_string()) return complain(key, fmt::format("{} must be a text in quotes", key));
+  value = *node->value<std::string>();
+}
+
+void Section::read(std::string_view key, bool& value) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  if (!node->is_boolean()) return complain(key, fmt::format("{} must be true or false", key));
+  value = *node->value<bool>();
+}
+
+void Section::read(std::string_view key, std::uint64_t& value) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  if (!node->is_integer() || *node->value<std::int64_t>() < 0)
+    return complain(key, fmt::format("{} must be a whole number, 0 or more", key));
+  value = static_cast<std::uint64_t>(*node->value<std::int64_t>());
+}
+
+void Section::read(std::string_view key, double& value, const Limits& limits) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  if (!node->is_number() || !std::isfinite(*node->value<double>()))
+    return complain(key, fmt::format("{} must be a number", key));
+  const double got = *node->value<double>();
+  if (got < limits.least || got > limits.most)
+    return complain(key, fmt::format("{} = {} must be from {} to {}", key, got, limits.least, limits.most));
+  value = got;
+}
+
+void Section::read_list(std::string_view key, double* value, std::size_t n) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return;
+  const toml::array* const list = node->as_array();
+  bool good = list != nullptr && list->size() == n;
+  for (std::size_t i = 0; good && i < n; ++i) {
+    const toml::node& item = *list->get(i);
+    good = item.is_number() && std::isfinite(*item.value<double>());
+    if (good) value[i] = *item.value<double>();
+  }
+  if (!good) complain(key, fmt::format("{} must be a list of {} numbers", key, n));
+}
+
+double Section::needed(std::string_view key) {
+  double value = 0;
+  need(key);
+  read(key, value);
+  return value;
+}
+
+Where Section::where() {
+  std::string text = "all";
+  read("where", text);
+  const auto where = Where::parse(text);
+  if (!where) complain("where", fmt::format("where = '{}' must be all, s1 .. s4 or s1.x .. s4.z", text));
+  return where.value_or(Where{});
+}
+
+void Section::refuse_rest() {
+  if (table_ == nullptr || accept_rest_) return;
+  for (const auto& [key, node] : *table_) {
+    if (!asked_.contains(std::string(key.str()))) {
+      complain(key.str(), fmt::format("unknown key '{}'; there are: {}", key.str(), fmt::join(asked_, ", ")));
+    }
+  }
+}
+
+}  // namespace mgtd::rig

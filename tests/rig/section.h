@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <toml++/toml.h>
+
+#include <array>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/rig/effect.h"
+
+/// One table of a scenario file while it is read: every mistake is noted with its line, every key that was
+/// asked for is remembered, so that the others can be named.
+namespace mgtd::rig {
+
+/// What is wrong with a scenario file, and where.
+struct Mistake {
+  unsigned line;
+  std::string text;
+};
+
+struct Limits {
+  double least{-std::numeric_limits<double>::max()};
+  double most{std::numeric_limits<double>::max()};
+};
+
+class Section {
+ public:
+  /// `node` null: the section is not there and every key keeps its value.
+  Section(const toml::node* node, std::string name, std::vector<Mistake>& mistakes);
+
+  /// An absent key leaves the value as it is.
+  void read(std::string_view key, std::string& value);
+  void read(std::string_view key, bool& value);
+  void read(std::string_view key, std::uint64_t& value);
+  void read(std::string_view key, double& value, const Limits& limits = {});
+  template <std::size_t N>
+  void read(std::string_view key, std::array<double, N>& value) {
+    read_list(key, value.data(), N);
+  }
+
+  /// The same for a key that must be there.
+  [[nodiscard]] double needed(std::string_view key);
+  template <std::size_t N>
+  [[nodiscard]] std::array<double, N> needed_list(std::string_view key) {
+    std::array<double, N> value{};
+    need(key);
+    read(key, value);
+    return value;
+  }
+  /// The key "where"; all axes when absent.
+  [[nodiscard]] Where where();
+
+  /// Notes a mistake at the line of the key, or of the section when it is not there.
+  void complain(std::string_view key, const std::string& what);
+  /// Complains about every key nobody asked for.
+  void refuse_rest();
+  void accept_rest() { accept_rest_ = true; }
+
+ private:
+  const toml::node* find(std::string_view key);
+  void need(std::string_view key);
+  void read_list(std::string_view key, double* value, std::size_t n);
+
+  const toml::node* node_;
+  const toml::table* table_{nullptr};
+  std::string name_;
+  std::vector<Mistake>& mistakes_;
+  std::set<std::string> asked_;
+  bool accept_rest_{false};
+};
+
+}  // namespace mgtd::rig
