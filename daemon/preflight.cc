@@ -42,7 +42,7 @@ void Preflight::add(const EpochOrGap& item) {
   last_ = epoch.t.mono;
   Sample y;
   for (int slot = 0; slot < kSensors; ++slot)
-    y.segment<3>(3 * slot) = epoch.y_nT[static_cast<std::size_t>(slot)];
+    y.segment<3>(Eigen::Index{3} * slot) = epoch.y_nT[static_cast<std::size_t>(slot)];
   y_nT_.push_back(y);
   seq_.push_back(epoch.seq);
   if (epoch.flags.has(Flag::saturated)) ++saturated_;
@@ -54,10 +54,12 @@ void Preflight::add(const ScalarReading& reading) {
 }
 
 bool Preflight::complete(Instant now) const {
-  if (!first_) return now - begin_ >= from_seconds(config_.wait_s);
   // By the time of the data: a program that slept still has to read what came meanwhile.
-  const bool seen = last_ && *last_ - *first_ >= from_seconds(config_.length_s);
-  return seen || now - *first_ >= from_seconds(config_.length_s + config_.wait_s);
+  const bool seen = first_ && last_ && *last_ - *first_ >= from_seconds(config_.length_s);
+  const bool looked = seen || (first_ && now - *first_ >= from_seconds(config_.length_s + config_.wait_s));
+  const bool heard = first_ && table_ && (!config_.scalar || !scalar_.empty());
+  const bool waited = now - begin_ >= from_seconds(config_.wait_s);
+  return heard ? looked : waited && (!first_ || looked);
 }
 
 Preflight::Statistics Preflight::statistics() const {
@@ -135,7 +137,7 @@ Check Preflight::skew() const {
 }
 
 Check Preflight::noise(int slot, const Statistics& s) const {
-  const Eigen::Vector3d sd_nT = s.noise_nT.segment<3>(3 * slot);
+  const Eigen::Vector3d sd_nT = s.noise_nT.segment<3>(Eigen::Index{3} * slot);
   const bool known = s.pairs >= kMinPairs;
   return check(named("noise", slot), known && sd_nT.maxCoeff() <= config_.max_noise_nT,
                known ? fmt::format("{:.2f} {:.2f} {:.2f} nT", sd_nT.x(), sd_nT.y(), sd_nT.z())
@@ -175,7 +177,7 @@ Check Preflight::alive(int slot, const Statistics& s) const {
 }
 
 Check Preflight::field(int slot, const Statistics& s) const {
-  const double y_nT = s.mean_nT.segment<3>(3 * slot).norm();
+  const double y_nT = s.mean_nT.segment<3>(Eigen::Index{3} * slot).norm();
   const auto f_nT = expected_field_nT();
   const double low_nT = f_nT ? *f_nT * (1 - config_.max_field_error) : kEarthFieldMin_nT;
   const double high_nT = f_nT ? *f_nT * (1 + config_.max_field_error) : kEarthFieldMax_nT;

@@ -25,7 +25,7 @@ namespace mgtd::daemon {
 
 struct PreflightConfig {
   double length_s{5};
-  double wait_s{20};  ///< for the first epoch
+  double wait_s{20};  ///< for the first word of an instrument that has said nothing yet
   double rate_hz{50};
   double max_rate_error{0.02};  ///< relative
   double max_gap_share{0.05};
@@ -49,7 +49,7 @@ class Preflight {
   void add(const TableReading& reading) { table_ = reading; }
   void add(const std::string& device, const LinkHealth& health) { links_[device] = health; }
 
-  /// length_s of epochs and gaps, or wait_s without any (more).
+  /// length_s after the first epoch (gaps count) when every instrument was heard, else after wait_s.
   [[nodiscard]] bool complete(Instant now) const;
   [[nodiscard]] std::vector<Check> checks(const drivers::TableLimits& limits, Instant now) const;
   /// Of one sample, the largest axis; 0 when there were too few epochs.

@@ -17,7 +17,8 @@ namespace {
 using drivers::TableLimits;
 
 constexpr double kPerDegree =
-    100;  // planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit
+    100;                       // planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit
+constexpr int kMinRandom = 9;  // unknowns of a sensor by itself
 constexpr double kMinTravel_rad = to_rad(1);  // less is no axis
 
 /// Multiples of 0.01 deg inside a range of travel.
@@ -167,6 +168,16 @@ Result<void> sensible(const PlanOptions& o) {
   return {};
 }
 
+void note_sets(RunPlan& plan) {
+  if (plan.options.step_deg == 0)
+    plan.notes.emplace_back(
+        "there is no standard set: the two-step calibration needs one and will be refused");
+  if (plan.options.random < kMinRandom)
+    plan.notes.push_back(
+        fmt::format("{} random poses: a calibration needs at least {} attitudes off the vertical",
+                    plan.options.random, kMinRandom));
+}
+
 void note_axes(RunPlan& plan, const TableLimits& limits) {
   const bool pitch = exists(limits.pitch), roll = exists(limits.roll);
   if (!pitch && !roll) {
@@ -198,6 +209,7 @@ Result<RunPlan> make_plan(const PlanOptions& options, const TableLimits& limits)
   plan.options = options;
   if (options.step_deg > 0) add_standard(plan, limits);
   if (options.random > 0) add_random(plan, limits);
+  note_sets(plan);
   note_axes(plan, limits);
   return plan;
 }

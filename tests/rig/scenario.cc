@@ -134,7 +134,7 @@ void Reader::read_table(Scenario& s) {
   table.read("accuracy_deg", s.table_accuracy_deg, {0, 10});
   table.read("velocity_deg_per_s", s.table_velocity_deg_per_s, {0.01, 720});
   table.read("acceleration_deg_per_s2", s.table_acceleration_deg_per_s2, {0.01, 10'000});
-  table.read("tilt_limit_deg", s.tilt_limit_deg, {1, 360});
+  table.read("tilt_limit_deg", s.tilt_limit_deg, {0, 360});
   table.refuse_rest();
 }
 

@@ -64,7 +64,9 @@ void expect_clean(VirtualDaemon& daemon) {
       const Eigen::Vector3d b_P_nT = truth.matrix().inverse() * (pose.y_nT[i] - truth.offset_nT);
       EXPECT_NEAR(b_P_nT.norm(), scenario.f_nT, 0.5);  // 0.3 nT / sqrt(100), times the 15 axes' worst of many
       EXPECT_LT(to_deg(b_P_nT.normalized().cross(n_P).norm()), 0.7);
-      for (const auto& sd_nT : pose.sd_nT[i]) EXPECT_LT(sd_nT.value_or(99), 0.5);  // of a sample: 0.3 nT
+      // Of a sample 0.3 nT; stated larger, up to twice, where interpolation made successive epochs alike. A
+      // table not yet at rest adds several nT.
+      for (const auto& sd_nT : pose.sd_nT[i]) EXPECT_LT(sd_nT.value_or(99), 0.65);
     }
   }
 }

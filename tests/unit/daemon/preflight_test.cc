@@ -147,6 +147,7 @@ TEST(Preflight, NothingAtAllFailsWithoutInventingNumbers) {
 
 TEST(Preflight, LooksForItsLengthFromTheFirstEpoch) {
   Preflight preflight({}, at(0).mono);
+  preflight.add(TableReading{});
   Epoch epoch;
   epoch.t = at(3);
   preflight.add(epoch);
@@ -158,6 +159,20 @@ TEST(Preflight, LooksForItsLengthFromTheFirstEpoch) {
   epoch.t = at(8);
   preflight.add(epoch);
   EXPECT_TRUE(preflight.complete(at(8).mono));
+}
+
+TEST(Preflight, WaitsForTheFirstWordOfASlowInstrument) {
+  Preflight preflight({.scalar = true}, at(0).mono);
+  preflight.add(TableReading{});
+  Epoch epoch;
+  for (const double t_s : {1.0, 6.5}) {
+    epoch.t = at(t_s);
+    preflight.add(epoch);
+  }
+  EXPECT_FALSE(preflight.complete(at(9).mono));
+  EXPECT_TRUE(preflight.complete(at(20).mono));  // but not for ever
+  preflight.add(ScalarReading{at(9), 50'000, 99, true});
+  EXPECT_TRUE(preflight.complete(at(9).mono));
 }
 
 TEST(Preflight, CoarseInstrumentsMayRepeatThemselves) {

@@ -196,6 +196,12 @@ TEST(RunPlan, AnAzimuthTableGetsAPlanAndTheWordsWhatItLacks) {
   EXPECT_NE(describe(plan, {}).find("one axis only"), std::string::npos);
 }
 
+TEST(RunPlan, ASetThatIsLeftOutIsMissedInWords) {
+  EXPECT_TRUE(plan_of({}).notes.empty());
+  EXPECT_NE(describe(plan_of({.step_deg = 0}), {}).find("no standard set"), std::string::npos);
+  EXPECT_NE(describe(plan_of({.random = 0, .revisits = 0}), {}).find("0 random poses"), std::string::npos);
+}
+
 TEST(RunPlan, OptionsThatMakeNoPlanAreRefusedWithTheReason) {
   const auto refused = [](PlanOptions options, const std::string& word) {
     const auto plan = make_plan(options, full_table());

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/rig/effects/axis_effects.h"
+#include "tests/rig/effects/axis_hysteresis.h"
 #include "tests/rig/effects/site_gradient.h"
 
 namespace mgtd::rig {
@@ -24,7 +24,7 @@ constexpr double kRounding_nT = 1e-9;
 
 TEST(World, ATurnedTableSeesTheFieldTurnBack) {
   World world(ideal());
-  world.axis(azimuth).move_to(90, 0, world.random());
+  world.move(azimuth, 90, 0);
   const double t = 100;
   // b = Rz(90) B: the X of the site is the -Y of the platform.
   EXPECT_LT((world.read_sensor(0, t) - Eigen::Vector3d(0, -50'000, 0)).norm(), kRounding_nT * 50);
@@ -32,10 +32,11 @@ TEST(World, ATurnedTableSeesTheFieldTurnBack) {
 
 TEST(World, AGradientActsWhereTheSensorReallyIs) {
   Scenario scenario = ideal();
-  scenario.effects.push_back(std::make_shared<SiteGradient>(std::array<double, 5>{100, 0, 0, 0, 0}));
+  scenario.effects.push_back(
+      std::make_shared<SiteGradient>(SiteGradient::Five{100, 0, 0, 0, 0}, SiteGradient::Five{}));
   World world(scenario);
   EXPECT_NEAR(world.read_sensor(0, 0)[0], 50'000 + 100 * 0.2, kRounding_nT * 50);
-  world.axis(azimuth).move_to(180, 0, world.random());
+  world.move(azimuth, 180, 0);
   // Sensor 1 now sits at -X of the site: 20 nT less there, and the reading is turned round.
   EXPECT_NEAR(world.read_sensor(0, 100)[0], -(50'000 - 20), kRounding_nT * 50);
 }
@@ -43,8 +44,12 @@ TEST(World, AGradientActsWhereTheSensorReallyIs) {
 TEST(World, PlayFollowsThePath) {
   // w = 0.1, h = 8, by hand: up to x = 0.5 the play hangs 0.1 below, coming back to 0.45 it has not moved
   // yet.
-  Hysteresis effect(*Where::parse("s1.x"), 8, 0.1);
-  const auto at = [&](double x) { return effect.axis_nT({.v_nT = {x * kF0_nT, 0, 0}}); };
+  AxisHysteresis effect(*Where::parse("s1.x"), 8, 0.1);
+  const auto at = [&](double x) {
+    const AxisContext c{.v_nT = {x * kF0_nT, 0, 0}};
+    effect.follow(c);
+    return effect.axis_nT(c);
+  };
   EXPECT_NEAR(at(0.05), 8 * (0 - 0.05) / 0.1, 1e-12);
   EXPECT_NEAR(at(0.5), -8, 1e-12);
   EXPECT_NEAR(at(0.45), 8 * (0.4 - 0.45) / 0.1, 1e-12);
@@ -59,7 +64,7 @@ TEST(World, TheTableIsNeverQuiteWhereItSays) {
   constexpr int kMoves = 400;
   for (int i = 0; i < kMoves; ++i) {
     const double t = 100.0 * i;
-    world.axis(azimuth).move_to(i % 2 == 0 ? 10 : 0, t, world.random());
+    world.move(azimuth, i % 2 == 0 ? 10 : 0, t);
     squares += std::pow(world.axis(azimuth).true_deg(t + 50) - world.axis(azimuth).indicated_deg(t + 50), 2);
   }
   EXPECT_NEAR(std::sqrt(squares / kMoves), 0.1, 0.02);  // 3.5 % one sigma
