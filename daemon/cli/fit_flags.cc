@@ -10,20 +10,34 @@ void add_field_flags(CLI::App* command, FitFlags& flags) {
   command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT");
 }
 
+namespace {
+
+void add_shared_flags(CLI::App* command, FitFlags& f) {
+  command->add_option("--with", f.with, "effect to put in the model, by name; may be given again (joint)")
+      ->allow_extra_args(false);
+  add_field_flags(command, f);
+  command->add_option("--baseline", f.baseline_m, "distance of opposite sensors in m (0.4)");
+  command->add_option("--inclination", f.inclination_deg,
+                      "of the field in the platform frame at zero table angles, deg, positive towards +Z");
+  command->add_option("--declination", f.declination_deg, "the same, from X towards Y, deg");
+  command->add_option("--table-sd", f.table_sd_deg, "standard deviation of a table angle in deg (0.1)");
+  command->add_option("--seed", f.seed, "of everything random");
+}
+
+}  // namespace
+
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   command->add_option("--method", f->method, "simplified, two-step or joint")
       ->check(CLI::IsMember({"simplified", "two-step", "joint"}))
       ->capture_default_str();
-  command->add_option("--with", f->with, "effect to put in the model, by name; may be given again (joint)")
-      ->allow_extra_args(false);
-  add_field_flags(command, *f);
-  command->add_option("--baseline", f->baseline_m, "distance of opposite sensors in m (0.4)");
-  command->add_option("--inclination", f->inclination_deg,
-                      "of the field in the platform frame at zero table angles, deg, positive towards +Z");
-  command->add_option("--declination", f->declination_deg, "the same, from X towards Y, deg");
-  command->add_option("--table-sd", f->table_sd_deg, "standard deviation of a table angle in deg (0.1)");
-  command->add_option("--seed", f->seed, "of everything random");
+  add_shared_flags(command, *f);
+  return f;
+}
+
+std::shared_ptr<FitFlags> add_model_flags(CLI::App* command) {
+  auto f = std::make_shared<FitFlags>();
+  add_shared_flags(command, *f);
   return f;
 }
 

@@ -21,6 +21,8 @@ struct FitFlags {
 };
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);
+/// The same for commands that only know the joint fit.
+std::shared_ptr<FitFlags> add_model_flags(CLI::App* command);
 /// Those about the field alone.
 void add_field_flags(CLI::App* command, FitFlags& flags);
 

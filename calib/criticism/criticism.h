@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "calib/criticism/explain.h"
+#include "calib/criticism/null.h"
+
+/// One look at one fit: every test of every tier on the same residual.
+namespace mgtd::calib {
+
+/// Shares of the chance of a false alarm, 1 % in all.
+inline constexpr double kNamedAlarm = 0.0065, kMapAlarm = 0.0025, kOmnibusAlarm = 0.0010;
+
+struct Criticism {
+  NoiseModel noise;
+  double chi2{0}, dof{0};
+  std::vector<Untestable> untestable{};
+  std::vector<ScoredFamily> families{};  ///< testable, best first
+  double independent{1};                 ///< families, by draws
+  std::vector<MapScore> maps{};
+  double omnibus_log10_p{0};  ///< residual larger than its noise; 0 where the noise is the residual's own
+  double too_small_log10_p{0};
+  std::vector<double> by_pose_winner{};  ///< evidence of the best family, pose by pose
+
+  [[nodiscard]] bool rejects_named() const;
+  [[nodiscard]] bool rejects_map() const;
+  [[nodiscard]] bool rejects_omnibus() const;
+  [[nodiscard]] bool rejects() const { return rejects_named() || rejects_map() || rejects_omnibus(); }
+};
+
+/// `suspects` must outlive the result.
+[[nodiscard]] Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "calib/criticism/criticism.h"
+#include "calib/fit/joint_report.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kSeen = 8;           ///< d that is detected in 99.9 % and named right in nine cases of ten
+constexpr double kEnoughShare = 0.8;  ///< of the excess, where there is an excess to speak of
+constexpr double kOnePose = 0.5;      ///< of the evidence
+constexpr double kMaxNodes = 0.02;    ///< of the readings
+constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
+constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
+
+std::vector<EffectCoefficient> coefficients_of(const ScoredFamily& family) {
+  const Signature& s = family.signatures[family.winner().variant];
+  const OneStep step = one_step(s, family.where());
+  const EffectPtr& effect = family.suspect->variants[family.winner().variant];
+  std::vector<EffectCoefficient> out;
+  for (Eigen::Index j = 0; j < step.value.size(); ++j) {
+    Eigen::Index of = 0;
+    family.where().combine.col(j).maxCoeff(&of);
+    out.push_back({.name = family.where().names[static_cast<std::size_t>(j)],
+                   .value = step.value[j],
+                   .sd = std::sqrt(step.covariance(j, j)),
+                   .unit = effect->coefficients()[static_cast<std::size_t>(of)].unit});
+  }
+  return out;
+}
+
+Candidate candidate_of(const ScoredFamily& family, const Criticism& c) {
+  const Score& score = family.winner();
+  Candidate out{.effect = family.suspect->name,
+                .where = family.where().where,
+                .spec = spec_of(*family.suspect, family.where(), score.variant),
+                .k = score.k,
+                .log10_p = family.calibrated,
+                .d = score.d(),
+                .fall = score.S,
+                .coefficients = coefficients_of(family)};
+  const double excess = c.chi2 - c.dof;
+  out.share = excess > 0 ? std::clamp((score.S - score.k) / excess, 0.0, 1.0) : 0;
+  if (family.suspect->bound > 0) {
+    out.plausible = std::all_of(out.coefficients.begin(), out.coefficients.end(), [&](const auto& x) {
+      return std::abs(x.value) < family.suspect->bound + 3 * x.sd;
+    });
+  }
+  return out;
+}
+
+/// Poses that carry half of the evidence, the heaviest first.
+void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candidate& out) {
+  std::vector<std::size_t> order(by_pose.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return by_pose[a] > by_pose[b]; });
+  const double total = std::accumulate(by_pose.begin(), by_pose.end(), 0.0);
+  out.largest_pose = by_pose.empty() ? 0 : by_pose[order.front()] / total;
+  double sum = 0;
+  for (const std::size_t k : order) {
+    if (sum >= 0.5 * total) break;
+    sum += by_pose[k];
+    out.poses.push_back(fit.problem.poses[k].pose->number);
+  }
+}
+
+/// The worst of the single axes, or of the single coefficients of what has no axes.
+Detectable detectable_of(const ScoredFamily& family, double scale2) {
+  const Signature& s = family.signatures.front();
+  Detectable out{.effect = family.suspect->name};
+  for (const Hypothesis& h : family.suspect->hypotheses) {
+    if (family.suspect->level == Level::axis ? h.axes != 1 : &h != &family.suspect->hypotheses.front())
+      continue;
+    for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
+      const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
+      const double value = kSeen * std::sqrt(scale2 / left);
+      if (!(value > out.value) || !std::isfinite(value)) continue;
+      Eigen::Index of = 0;
+      h.combine.col(j).maxCoeff(&of);
+      out.value = value;
+      out.where = h.names[static_cast<std::size_t>(j)];
+      out.unit = family.suspect->variants.front()->coefficients()[static_cast<std::size_t>(of)].unit;
+    }
+  }
+  return out;
+}
+
+double rms_nT(const JointFit& fit) { return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0)); }
+
+double share_of_nodes(const JointFit& fit) {
+  return static_cast<double>(fit.outliers.size()) /
+         static_cast<double>(fit.problem.poses.size() * static_cast<std::size_t>(kChannels));
+}
+
+/// Fills what describes the model that was asked about.
+void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
+  out.noise = c.noise;
+  out.noise_nT = fit.noise_nT();
+  out.residual_nT = rms_nT(fit);
+  out.chi2 = c.chi2, out.dof = c.dof;
+  out.omnibus_log10_p = c.omnibus_log10_p;
+  out.families = c.independent;
+  out.maps = c.maps;
+  out.outliers = fit.outliers;
+  out.untestable.insert(out.untestable.end(), c.untestable.begin(), c.untestable.end());
+  for (std::size_t i = 0; i < c.families.size(); ++i) {
+    Candidate candidate = candidate_of(c.families[i], c);
+    if (i == 0) weigh_poses(fit, c.by_pose_winner, candidate);
+    candidate.rivals = i == 0 ? rivals_of(c.families, i) : std::vector<Rival>{};
+    out.candidates.push_back(std::move(candidate));
+    out.detectable.push_back(detectable_of(c.families[i], c.noise.reference.scale2));
+  }
+}
+
+/// Why a single name that accounts for the data is not yet an explanation; empty when it is.
+std::string doubt(const Round& round, const Criticism& before) {
+  const Candidate& a = round.added;
+  if (!a.plausible) return fmt::format("the size that {} would need is beyond what occurs", a.effect);
+  const double spread = 4 * std::sqrt(2 * before.dof);
+  if (before.noise.reference.known && before.chi2 - before.dof > spread && a.share < kEnoughShare)
+    return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
+  const double realised = round.chi2_before - round.chi2_after;
+  if (before.noise.reference.known &&
+      std::abs(realised - a.fall) > kRefit * a.fall + 3 * std::sqrt(2 * a.fall))
+    return fmt::format("chi-square fell by {:.0f} where {:.0f} was predicted", realised, a.fall);
+  return {};
+}
+
+Finding conclude(const ExplainReport& report, const Criticism& first, const Criticism& last,
+                 std::vector<std::string>& notes) {
+  if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
+  const Round& round = report.rounds.front();
+  if (last.rejects()) return Finding::partial;
+  if (report.rounds.size() > 1) return Finding::partial;
+  if (!round.possible.empty()) return Finding::ambiguous;
+  std::string why = doubt(round, first);
+  if (why.empty()) return Finding::explained;
+  notes.push_back(std::move(why));
+  return Finding::partial;
+}
+
+bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>& notes) {
+  const double nodes = share_of_nodes(fit);
+  if (nodes > kMaxNodes) {
+    notes.push_back(fmt::format("{:.1f} % of the readings contradict the rest; the limit is {:.0f} %",
+                                100 * nodes, 100 * kMaxNodes));
+    return true;
+  }
+  if (c.too_small_log10_p < std::log10(kTooSmall)) {
+    notes.push_back(
+        fmt::format("the residual is smaller than its noise allows (chi-square {:.0f} with {:.0f} degrees of "
+                    "freedom): spreads "
+                    "or counts in the table are wrong, or poses are copies",
+                    c.chi2, c.dof));
+    return true;
+  }
+  return false;
+}
+
+struct Search {
+  const PoseTable& table;
+  JointOptions joint;
+  Suspects suspects;
+  std::uint64_t seed;
+};
+
+void forget(Suspects& suspects, const std::string& name) {
+  std::erase_if(suspects.testable, [&](const Suspect& s) { return s.name == name; });
+}
+
+/// Adds the winner and fits again. False when the fit with it fails.
+bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
+  const ScoredFamily& best = criticism.families.front();
+  Round round{.added = candidate_of(best, criticism)};
+  weigh_poses(fit, criticism.by_pose_winner, round.added);
+  round.added.rivals = rivals_of(criticism.families, 0);
+  for (const Rival& rival : round.added.rivals)
+    if (rival.possible) round.possible.push_back(rival.effect);
+  auto effect = best.suspect->make(best.where(), best.winner().variant);
+  if (!effect) return false;
+  JointOptions wider = search.joint;
+  wider.effects.push_back(*effect);
+  auto refit = fit_joint(search.table, wider, fit.state);
+  if (!refit) {
+    report.notes.push_back(
+        fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
+    return false;
+  }
+  round.chi2_before = criticism.chi2, round.rms_before_nT = rms_nT(fit);
+  forget(search.suspects, best.suspect->name);
+  search.joint = std::move(wider);
+  fit = std::move(*refit);
+  criticism = criticise(fit, search.suspects, search.seed);
+  round.chi2_after = criticism.chi2, round.rms_after_nT = rms_nT(fit);
+  report.rounds.push_back(std::move(round));
+  return true;
+}
+
+void name(ExplainReport& report) {
+  for (const Round& round : report.rounds) report.named.push_back(round.added.effect);
+  if (report.finding == Finding::ambiguous) {
+    const auto& possible = report.rounds.front().possible;
+    report.named.insert(report.named.end(), possible.begin(), possible.end());
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Finding finding) {
+  switch (finding) {
+    case Finding::pass:
+      return "PASS";
+    case Finding::explained:
+      return "EXPLAINED";
+    case Finding::ambiguous:
+      return "AMBIGUOUS";
+    case Finding::partial:
+      return "PARTIAL";
+    case Finding::unknown:
+      return "UNKNOWN";
+    case Finding::bad_data:
+      return "BAD-DATA";
+  }
+  return "";
+}
+
+Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
+  Search search{
+      .table = table, .joint = joint_options(options.fit), .suspects = {}, .seed = options.fit.seed};
+  search.suspects =
+      options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table, options.fit.effects);
+  auto fit = fit_joint(table, search.joint);
+  if (!fit) return tl::unexpected(fit.error());
+  ExplainReport out;
+  out.untestable = search.suspects.untestable;
+  Criticism criticism = criticise(*fit, search.suspects, search.seed);
+  describe(*fit, criticism, out);
+  if (bad_data(*fit, criticism, out.notes)) {
+    out.finding = Finding::bad_data;
+    return out;
+  }
+  const Criticism first = criticism;
+  for (int round = 0; round < options.rounds && criticism.rejects_named(); ++round) {
+    Candidate weighed;
+    weigh_poses(*fit, criticism.by_pose_winner, weighed);
+    if (weighed.largest_pose > kOnePose) {
+      out.notes.push_back(fmt::format("one pose ({}) carries the evidence for {}: measure it again",
+                                      weighed.poses.front(), criticism.families.front().suspect->name));
+      if (out.rounds.empty()) {
+        out.finding = Finding::bad_data;
+        return out;
+      }
+      break;
+    }
+    if (!add_winner(search, *fit, criticism, out)) break;
+  }
+  out.maps_left = criticism.maps;
+  out.model = search.joint.effects;
+  out.finding = conclude(out, first, criticism, out.notes);
+  name(out);
+  return out;
+}
+
+}  // namespace mgtd::calib

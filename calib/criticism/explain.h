@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/criticism/maps.h"
+#include "calib/criticism/noise.h"
+#include "calib/criticism/rivals.h"
+#include "calib/criticism/suspect.h"
+#include "calib/fit/fit.h"
+#include "calib/fit/joint_fit.h"
+
+/// Which physical effect is missing from the model of a run, with the evidence, its rivals, and what the run
+/// cannot tell.
+///
+/// Three tiers, each with its own share of one chance in a hundred of a false alarm: named effects (score
+/// test, p calibrated by draws), generic maps, and the size of the residual where the noise is known. The
+/// winner is added, everything is fitted again, and the rest is judged anew, until nothing stands out.
+///
+///     PASS       nothing stands out; the smallest effects that would have been seen stand beside it
+///     EXPLAINED  one effect accounts for all of it, and no other could
+///     AMBIGUOUS  several could, and these poses do not tell them apart
+///     PARTIAL    effects were found and something remains, or more than one was needed
+///     UNKNOWN    something is there, and nothing in the library looks like it
+///     BAD-DATA   too many poses that contradict the rest, or a residual smaller than its noise
+///
+/// A name is a hypothesis about the cause; what is measured is that the residual behaves like it.
+namespace mgtd::calib {
+
+enum class Finding { pass, explained, ambiguous, partial, unknown, bad_data };
+[[nodiscard]] std::string_view to_string(Finding finding);
+
+struct Candidate {
+  std::string effect{}, where{};
+  std::string spec{};  ///< as --with reads it
+  int k{0};
+  double log10_p{0};  ///< of the family, calibrated
+  double d{0};        ///< sqrt(max(0, S - k)): its size in units of its own uncertainty
+  double fall{0};     ///< S, predicted fall of chi-square
+  double share{0};    ///< of the excess of chi-square over its degrees of freedom
+  std::vector<EffectCoefficient> coefficients{};
+  std::vector<Rival> rivals{};
+  bool plausible{true};
+  std::vector<int> poses{};  ///< numbers of those that carry half of the evidence
+  double largest_pose{0};    ///< share of the one that carries most
+};
+
+struct Detectable {
+  std::string effect{}, where{};
+  double value{0};  ///< smallest coefficient that is seen in 99 of 100 runs like this (d = 8)
+  std::string unit{};
+};
+
+/// A step of the search: the winner, and what adding it did.
+struct Round {
+  Candidate added;
+  std::vector<std::string> possible{};  ///< other effects that could stand in its place
+  double chi2_before{0}, chi2_after{0};
+  double rms_before_nT{0}, rms_after_nT{0};
+};
+
+struct ExplainReport {
+  Finding finding{Finding::pass};
+  std::vector<Candidate> candidates{};  ///< of the model that was asked about, best first
+  std::vector<std::string> named{};
+  std::vector<Round> rounds{};
+  std::vector<MapScore> maps{};       ///< of the model that was asked about
+  std::vector<MapScore> maps_left{};  ///< after the last round
+  NoiseModel noise;
+  double noise_nT{0}, residual_nT{0};
+  double chi2{0}, dof{0};
+  double omnibus_log10_p{0};
+  double families{1};  ///< independent ones, by draws
+  std::vector<OutlierNode> outliers{};
+  std::vector<Detectable> detectable{};
+  std::vector<Untestable> untestable{};
+  std::vector<std::string> notes{};
+  std::vector<EffectPtr> model{};  ///< effects of the last fit
+};
+
+struct ExplainOptions {
+  FitOptions fit;  ///< method joint; its effects are the model that is asked about
+  int rounds{4};
+  /// What is suspected instead of the library.
+  std::optional<std::vector<Suspect>> suspects{};
+};
+
+[[nodiscard]] Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/explain_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "calib/criticism/sentence.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kShown = 12, kMapsShown = 6;
+constexpr double kBar = 2;  ///< d of one character
+
+std::string bar(double d) { return std::string(static_cast<std::size_t>(std::min(d / kBar, 20.0)), '#'); }
+
+void candidates(const ExplainReport& r, std::string& out) {
+  if (r.candidates.empty()) return;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "\n{:<30} {:<11} {:>2} {:>7} {:>9} {:>6}  {:<32}\n", "effect", "where", "k", "d", "p",
+                 "share", "size");
+  const std::size_t n = std::min(kShown, r.candidates.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const Candidate& c = r.candidates[i];
+    fmt::format_to(to, "{:<30} {:<11} {:>2} {:>7.1f} {:>9} {:>6.2f}  {:<32} {}\n", c.effect, c.where, c.k,
+                   c.d, p_text(c.log10_p), c.share, size_text(c), bar(c.d));
+  }
+}
+
+void maps(const std::vector<MapScore>& all, std::string& out) {
+  const auto to = std::back_inserter(out);
+  if (all.empty()) return;
+  fmt::format_to(to, "\n{:<30} {:<11} {:>3} {:>9}\n", "residual against", "where", "k", "p");
+  for (std::size_t i = 0; i < std::min(kMapsShown, all.size()); ++i) {
+    const MapScore& m = all[i];
+    fmt::format_to(to, "{:<30} {:<11} {:>3} {:>9}\n", m.map, m.where, m.k, p_text(m.log10_p));
+  }
+}
+
+}  // namespace
+
+std::string to_text(const ExplainReport& r) {
+  std::string out;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "{}{}{}\n{}\n", to_string(r.finding), r.named.empty() ? "" : ": ",
+                 fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "), sentence(r));
+  candidates(r, out);
+  maps(r.maps, out);
+  if (!r.detectable.empty()) out += "\nsmallest size that would have been seen (d = 8):\n";
+  for (const Detectable& d : r.detectable)
+    fmt::format_to(to, "  {:<30} {:.3g} {} ({})\n", d.effect, d.value, d.unit, d.where);
+  if (!r.untestable.empty()) out += "\nthese poses cannot test:\n";
+  for (const Untestable& u : r.untestable) fmt::format_to(to, "  {:<30} {}\n", u.effect, u.why);
+  for (const OutlierNode& o : r.outliers) {
+    fmt::format_to(to, "left out: pose {}, {}: {:.4g} {} off\n", o.pose, o.where, o.shift, o.unit);
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

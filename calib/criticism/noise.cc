@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/noise.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calib/chi_square.h"
+#include "calib/f_distribution.h"
+
+namespace mgtd::calib {
+namespace {
+
+using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
+constexpr double kMaxRho = 0.95;
+/// Angles that are the same pose again.
+constexpr double kSameAngle_rad = 1e-6;
+/// The dwells are believed unless the revisits contradict them this clearly.
+constexpr double kContradicts_log10_p = -3;
+
+/// Residuals of the readings with the nuisances fitted, and how noise gets into them.
+struct Fitted {
+  Eigen::MatrixXd e;      ///< 12 x P
+  std::vector<Mixing> M;  ///< by pose
+  Eigen::MatrixXd J;      ///< 12 P x fixed, the same of the fixed block
+};
+
+Fitted fitted(const JointProblem& problem, const JointState& state) {
+  const LinearRows rows = linear_rows(problem, state);
+  const auto n = static_cast<Eigen::Index>(problem.poses.size());
+  Fitted out{
+      .e = Eigen::MatrixXd(kChannels, n), .M = {}, .J = Eigen::MatrixXd(kChannels * n, problem.fixed())};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto N = rows.nuisance.middleRows<kPoseRows>(k * kPoseRows);
+    const Eigen::Matrix4d H = N.transpose() * N;
+    const Eigen::LLT<Eigen::Matrix4d> llt(H);
+    const auto top = N.topRows<kChannels>();
+    const auto weight = problem.poses[static_cast<std::size_t>(k)].weight;
+    Mixing there = Mixing::Zero();
+    there.diagonal() = (weight.array() > 0).cast<double>();
+    out.M.push_back(there - top * llt.solve(top.transpose()));
+    out.e.col(k) = rows.residual.segment<kChannels>(k * kPoseRows);
+    const Eigen::MatrixXd block = rows.fixed.middleRows<kPoseRows>(k * kPoseRows);
+    out.J.middleRows<kChannels>(k * kChannels) =
+        block.topRows<kChannels>() - top * llt.solve(N.transpose() * block);
+  }
+  return out;
+}
+
+/// Rows whose products are the elements of the hat matrix of the fixed block.
+Eigen::MatrixXd leverages(const Fitted& f) {
+  const Eigen::VectorXd length = f.J.colwise().norm();
+  const Eigen::VectorXd scale = (length.array() > 0).select(length.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd A = f.J * scale.asDiagonal();
+  Eigen::MatrixXd G = A.transpose() * A;
+  G.diagonal().array() += 1e-9;
+  return G.llt().matrixL().solve(A.transpose()).transpose();
+}
+
+bool same_attitude(const Pose& a, const Pose& b) {
+  const auto p = a.angles(), q = b.angles();
+  const auto near = [](double x, double y) { return std::abs(x - y) < kSameAngle_rad; };
+  return p && q && a.mount == b.mount && near(p->azimuth_rad, q->azimuth_rad) &&
+         near(p->pitch_rad, q->pitch_rad) && near(p->roll_rad, q->roll_rad);
+}
+
+/// Each pose with the next visit to its attitude.
+std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const JointProblem& problem) {
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> out;
+  const auto n = problem.poses.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      if (!same_attitude(*problem.poses[i].pose, *problem.poses[j].pose)) continue;
+      out.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      break;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+double pose_correlation(const JointProblem& problem, const JointState& state) {
+  const Fitted f = fitted(problem, state);
+  const Eigen::MatrixXd hat = leverages(f);
+  const auto order = order_in_time(problem);
+  Eigen::Array<double, kChannels, 1> products = Eigen::Array<double, kChannels, 1>::Zero();
+  auto expected = products, squares = products, own = products;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Eigen::Index k = order[i];
+    const Mixing& M = f.M[static_cast<std::size_t>(k)];
+    const auto rows = hat.middleRows<kChannels>(k * kChannels);
+    squares += f.e.col(k).array().square();
+    own += (M * M.transpose()).diagonal().array() - rows.rowwise().squaredNorm().array();
+    if (i == 0) continue;
+    const Eigen::Index before = order[i - 1];
+    products += f.e.col(k).array() * f.e.col(before).array();
+    // The fit leaves residuals that are correlated the other way round.
+    products += rows.cwiseProduct(hat.middleRows<kChannels>(before * kChannels)).rowwise().sum().array() *
+                (squares / own.max(1e-9)).min(100).max(0.01);
+    expected += (M * f.M[static_cast<std::size_t>(before)].transpose()).diagonal().array();
+  }
+  // In units of each channel's own variance, which need not be that of the weights.
+  std::array<double, kChannels> rho{};
+  for (int c = 0; c < kChannels; ++c) {
+    const double variance = squares[c] / std::max(own[c], 1e-9);
+    rho[static_cast<std::size_t>(c)] =
+        variance > 0 ? products[c] / (variance * std::max(expected[c], 1e-9)) : 0;
+  }
+  std::sort(rho.begin(), rho.end());
+  return std::clamp((rho[kChannels / 2 - 1] + rho[kChannels / 2]) / 2, 0.0, kMaxRho);
+}
+
+std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
+  const auto pairs = revisits(fit.problem);
+  if (pairs.empty()) return std::nullopt;
+  const Fitted f = fitted(fit.problem, fit.state);
+  PureError out{.pairs = static_cast<int>(pairs.size())};
+  double squares = 0, expected = 0;
+  for (const auto& [u, v] : pairs) {
+    squares += (f.e.col(u) - f.e.col(v)).squaredNorm();
+    expected +=
+        f.M[static_cast<std::size_t>(u)].squaredNorm() + f.M[static_cast<std::size_t>(v)].squaredNorm();
+  }
+  out.nu = expected / 2;
+  out.ratio = squares / expected;
+  const double rest = std::max(0.0, chi2 - out.ratio * out.nu), rest_dof = dof - out.nu;
+  if (rest_dof > 0) {
+    out.F = rest / rest_dof / out.ratio;
+    out.log10_p = f_log10_p(out.F, rest_dof, out.nu);
+    out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, rest / rest_dof - out.ratio));
+  }
+  return out;
+}
+
+NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
+  NoiseModel out{
+      .rho = residual.whitener().rho(),
+      .revisits = pure_error(fit, residual.chi2(), residual.dof()),
+      .reference = {
+          .known = fit.sample_noise_nT.has_value(), .chi2 = residual.chi2(), .dof = residual.dof()}};
+  if (!out.reference.known || !out.revisits) return out;
+  const PureError& p = *out.revisits;
+  if (chi_square_log10_p(p.ratio * p.nu, p.nu) < kContradicts_log10_p) {
+    out.reference.scale2 = p.ratio;
+    out.reference.nu = p.nu;
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/criticism/score.h"
+
+/// Which other names could stand behind the same residual.
+///
+/// If a is true with fitted signature v_a, another effect b falls short of it by lambda_ab = |(I - P_b)
+/// v_a|^2 in the mean, and the difference of the two falls of chi-square is normal (lambda, 4 lambda): the
+/// right one of the two wins with probability Phi(sqrt(lambda_ab) / 2). Seen from the data: b stays possible
+/// while
+///     z = (S_a - S_b + lambda_ba) / (2 sqrt(lambda_ba)) < 2.6
+/// that is, while a deficit this large would not be strange if b were true.
+namespace mgtd::calib {
+
+struct Rival {
+  std::string effect{}, where{};
+  double z{0};
+  double p_right{1};  ///< that of these two the right one wins, at the size that was found
+  bool possible{false};
+};
+
+/// Against the winner of `families[a]`; most dangerous first. Hypotheses of one family are not rivals of each
+/// other.
+[[nodiscard]] std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/sentence.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+std::string place(const Candidate& c) {
+  if (c.where == "site" || c.where == "table" || c.where == "platform") return "";
+  if (c.where == "all") return " with one coefficient for all axes";
+  if (c.where == "each-axis" || c.where == "each-sensor") return " in several axes";
+  return fmt::format(" in {}", c.where);
+}
+
+std::string noise_text(const ExplainReport& r) {
+  std::string out = fmt::format("The residual is {:.3g} nT where the noise of a pose mean is {:.3g} nT",
+                                r.residual_nT, r.noise_nT);
+  if (!r.noise.reference.known) {
+    out =
+        fmt::format("The residual is {:.3g} nT; the table tells no noise to hold it against", r.residual_nT);
+  }
+  if (r.noise.rho > 0.2) out += fmt::format(", correlated {:.2f} from pose to pose", r.noise.rho);
+  return out + ".";
+}
+
+std::string round_text(const Round& round) {
+  const Candidate& a = round.added;
+  return fmt::format(
+      "It behaves like {}{}: {}, {:.1f} sigma, p {}; with it the residual falls from {:.3g} to {:.3g} nT.",
+      a.effect, place(a), size_text(a), a.d, p_text(a.log10_p), round.rms_before_nT, round.rms_after_nT);
+}
+
+std::string rivals_text(const Round& round) {
+  if (!round.possible.empty()) {
+    return fmt::format("These poses do not tell it from {}.", fmt::join(round.possible, ", "));
+  }
+  const auto& rivals = round.added.rivals;
+  if (rivals.empty()) return "Nothing else in the library looks like it.";
+  const auto nearest = std::min_element(rivals.begin(), rivals.end(),
+                                        [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; });
+  return fmt::format("Nearest rival: {}, told apart with probability {:.4g} at this size.", nearest->effect,
+                     nearest->p_right);
+}
+
+std::string left_text(const std::vector<MapScore>& maps) {
+  if (maps.empty()) return "";
+  const MapScore& m = maps.front();
+  return fmt::format("What is left shows most against {} ({}, p {}).", m.map, m.where, p_text(m.log10_p));
+}
+
+}  // namespace
+
+std::string p_text(double log10_p) {
+  if (log10_p > -3) return fmt::format("{:.2g}", std::pow(10.0, log10_p));
+  const double exponent = std::floor(log10_p);
+  return fmt::format("{:.0f}e{:.0f}", std::pow(10.0, log10_p - exponent), exponent);
+}
+
+std::string size_text(const Candidate& c) {
+  const auto sigmas = [](const EffectCoefficient& x) { return std::abs(x.value) / std::max(x.sd, 1e-300); };
+  const auto largest = std::max_element(c.coefficients.begin(), c.coefficients.end(),
+                                        [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
+  if (largest == c.coefficients.end()) return "";
+  const std::string what = c.coefficients.size() > 1 ? largest->name + " " : "";
+  return fmt::format("{}{:+.3g} +- {:.1g} {}", what, largest->value, largest->sd, largest->unit);
+}
+
+std::string sentence(const ExplainReport& r) {
+  std::vector<std::string> parts{noise_text(r)};
+  for (const Round& round : r.rounds) {
+    parts.push_back(round_text(round));
+    parts.push_back(rivals_text(round));
+  }
+  switch (r.finding) {
+    case Finding::pass:
+      parts.emplace_back(
+          "Nothing stands out beyond chance. That excludes only effects above the sizes listed, and nothing "
+          "of "
+          "what cannot be tested.");
+      break;
+    case Finding::unknown:
+      parts.emplace_back("Something is there, and no effect of the library looks like it.");
+      parts.push_back(left_text(r.maps));
+      break;
+    case Finding::partial:
+      parts.push_back(left_text(r.maps_left));
+      break;
+    case Finding::explained:
+      parts.emplace_back("Nothing else stands out after that. The name is a hypothesis about the cause.");
+      break;
+    default:
+      break;
+  }
+  for (const std::string& note : r.notes) parts.push_back(note + ".");
+  std::erase(parts, "");
+  return fmt::format("{}", fmt::join(parts, " "));
+}
+
+}  // namespace mgtd::calib

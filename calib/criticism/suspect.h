@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/effects/library.h"
+
+/// What is suspected: a family of effects, tested at several scales and, where it has a fixed number, at
+/// several values of it.
+namespace mgtd::calib {
+
+/// One question: coefficients of the finest scale, combined. Column j of `combine` says which of them are
+/// one.
+struct Hypothesis {
+  std::string where{};  ///< "all", "s3", "s3.z", "each-sensor", "each-axis", "site", "platform", "table"
+  int axes{12};         ///< channels it acts on
+  Eigen::MatrixXd combine{};
+  std::vector<std::string> names{};  ///< of the combined coefficients
+  int alike{1};                      ///< hypotheses of its scale: price of asking that often
+};
+
+struct Suspect {
+  std::string name{};
+  Level level{Level::axis};
+  std::vector<EffectPtr> variants{};  ///< finest scale; one, or one for each value of the fixed number
+  std::vector<double> values{};       ///< of the fixed number, as many as variants; empty without one
+  std::string parameter{};            ///< its name
+  double typical{1}, bound{0};
+  std::vector<Hypothesis> hypotheses{};
+  /// The effect of one hypothesis and one variant, for the model.
+  std::function<Result<EffectPtr>(const Hypothesis&, std::size_t variant)> make{};
+};
+
+/// What cannot be tested at all, and why.
+struct Untestable {
+  std::string effect{}, why{};
+};
+
+struct Suspects {
+  std::vector<Suspect> testable{};
+  std::vector<Untestable> untestable{};
+};
+
+/// Hypotheses of an effect at its finest scale. Effects of the axes have coefficients "s3.z" or "s3.z.name".
+[[nodiscard]] std::vector<Hypothesis> hypotheses_of(const Effect& finest);
+
+/// Every effect of the library on this run, less those that the model holds.
+[[nodiscard]] Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& in_model);
+
+/// The effect of a hypothesis, as `--with` reads it: "axis.offset.temperature@s3.z".
+[[nodiscard]] std::string spec_of(const Suspect& suspect, const Hypothesis& hypothesis, std::size_t variant);
+
+}  // namespace mgtd::calib
