@@ -83,6 +83,22 @@ TEST(Programs, ARunFromPortsToACalibratedStream) {
   EXPECT_EQ(ended->exit_code, 0);
 }
 
+/// A limit that the first tilted poses meet: the run ends long before its plan, with a calibration.
+TEST(Programs, ARunEndsWhenTheTensorIsKnownWellEnough) {
+  Bench bench;
+  bench.start_daemon();
+  std::vector<std::string> command = kShortRun;
+  command.insert(command.end(), {"--until-tensor-sd", "1000"});
+  command[5] = "60";
+  const Finished run = bench.mgt(command);
+  ASSERT_EQ(run.exit_code, 0) << run.err << bench.daemon().err();
+  const json status = bench.ask({"run", "status"});
+  EXPECT_EQ(status.at("wanted_tensor_sd_nT_per_m"), 1000);
+  EXPECT_LE(status.at("tensor_sd_nT_per_m").get<double>(), 1000);
+  EXPECT_LT(status.at("pose").get<int>(), 60);
+  EXPECT_EQ(status.at("poses"), 78);
+}
+
 TEST(Programs, AKilledDaemonOffersTheRunAndGoesOnAtTheNextPose) {
   Bench bench;
   bench.start_daemon();
