@@ -12,6 +12,8 @@ namespace {
 constexpr int kMaxRounds = 30;
 constexpr double kSettled = 0.01;  ///< relative change of a noise estimate that no longer matters
 constexpr double kNoiseFloor_nT = 1e-4;
+constexpr double kWeightsUnknown =
+    10;  ///< of chi-square: less is not worth a step before the weights are known
 const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
 
 struct Noise {
@@ -112,9 +114,18 @@ std::string describe_gauge(const JointFit& fit) {
     if (fit.gauge.declination_known) text += "; declination as given";
   }
   if (!fit.gauge.scale_known)
-    text +=
-        fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}", kScaleIsFree);
+    text += fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}", kScaleIsFree);
   return text;
+}
+
+/// The weights settle while the fixed block stays: a fraction of the cost of a fit for each.
+void settle(JointProblem& problem, JointState& state, Noise& noise) {
+  constexpr int kMost = 3;
+  for (int i = 0; i < kMost; ++i) {
+    apply(noise, problem);
+    refit_nuisances(problem, state);
+    if (!update(pose_residuals(problem, state), problem, noise)) return;
+  }
 }
 
 /// Noise of a pose mean as it was weighted, rms over the poses.
@@ -152,7 +163,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   Result<JointSolution> solution = JointSolution{};
   PoseResiduals residuals;
   // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
-  double enough = kNearlyConverged;
+  double enough = kWeightsUnknown;
   for (int round = 1;; ++round) {
     apply(noise, fit.problem);
     solution = solve(fit.problem, std::move(*state), enough);
@@ -163,6 +174,10 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
     if (round > kMaxRounds) break;
     const bool excluded = outliers.exclude(fit.problem, residuals);
     const bool moved = update(residuals, fit.problem, noise);
+    if (moved && !excluded) {
+      settle(fit.problem, solution->state, noise);
+      enough = kConverged;
+    }
     if ((!excluded && !moved && !outliers.restore(fit.problem, solution->state)) || round == kMaxRounds) {
       if (enough == kConverged) break;
       enough = kConverged;

@@ -98,6 +98,7 @@ Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>&
     return {best_turn(n), n};
   }
   constexpr int kPoints = 200, kAlternations = 100;
+  constexpr double kSettledTurn_rad = 1e-9;
   Placement best;
   double best_gain = -1;
   for (int i = 0; i < kPoints; ++i) {
@@ -111,8 +112,10 @@ Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>&
     }
   }
   for (int i = 0; i < kAlternations; ++i) {
+    const Eigen::Vector3d before = best.n;
     best.n = pull(best.Q).normalized();
     best.Q = best_turn(best.n);
+    if ((best.n - before).squaredNorm() < kSettledTurn_rad * kSettledTurn_rad) break;
   }
   return best;
 }
