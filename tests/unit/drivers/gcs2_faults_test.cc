@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/drivers/gcs2_bench.h"
+
+namespace mgtd::drivers::gcs2 {
+namespace {
+
+TEST_F(Gcs2DriverTest, ARefusedMoveIsAFaultInWords) {
+  home();
+  controller.axes["1"].max = 50;  // the controller's own idea has changed
+  move(60);
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_THAT(faults()[0].what, HasSubstr("'MOV 1 60.000000': a target lies outside the travel"));
+  EXPECT_THAT(faults()[0].what, HasSubstr("GCS error 7"));
+  EXPECT_EQ(controller.commands.back(), "stop");
+}
+
+TEST_F(Gcs2DriverTest, AStalledTableIsStoppedAfterItsDeadline) {
+  home();
+  controller.stalls = true;
+  move(50);
+  const double start = bench.t_s();
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_NEAR(bench.t_s() - start, 50 / 10.0 * 2 + 10, 0.2);
+  EXPECT_THAT(faults()[0].what, HasSubstr("azimuth at 0.000 deg for 50.000"));
+  ASSERT_TRUE(until([&] { return controller.commands.back() == "SVO 1 0"; }));
+  EXPECT_THAT(controller.commands, ::testing::Contains("stop"));
+}
+
+TEST_F(Gcs2DriverTest, ATableThatIsPushedInItsDwellIsAFault) {
+  home();
+  move(50);
+  ASSERT_TRUE(until([&] { return last().on_target; }));
+  auto& axis = controller.axes["1"];
+  axis.position = axis.target = 50.4;
+  bench.pass(3);
+  EXPECT_TRUE(faults().empty());
+  EXPECT_NEAR(to_deg(last().angles.azimuth_rad), 50.4, 1e-9) << "what is measured is told";
+  axis.position = axis.target = 52;
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_THAT(faults()[0].what,
+              HasSubstr("azimuth turned to 52.000 deg while the table should stand at 50.000"));
+  EXPECT_FALSE(last().on_target);
+  bench.pass(5);
+  EXPECT_EQ(faults().size(), 1U) << "said once";
+}
+
+/// Each answer takes a tick, so that a move can be asked for while a poll is under way.
+TEST_F(Gcs2DriverTest, AnOldPollDoesNotAnswerForANewMove) {
+  controller.axes["1"].referenced = true;
+  std::string under_way;
+  DeviceBench slow(driver, [&](std::string_view sent) {
+    under_way += controller(sent);
+    return std::string();
+  });
+  const auto step = [&] {
+    slow.feed(std::exchange(under_way, {}));
+    slow.tick();
+    controller.advance(slow.t_s());
+  };
+  const auto arrived = [&] {
+    const auto readings = slow.events<TableReading>();
+    return !readings.empty() && readings.back().on_target;
+  };
+  slow.open();
+  for (int i = 0; i < 100; ++i) step();
+  ASSERT_EQ(driver.health().state, LinkState::live);
+  for (int phase = 1; phase < 90; ++phase) {  // 10 deg take 50 ticks
+    driver.move_to({to_rad(20.0), 0, 0});
+    slow.exchange();
+    for (int i = 0; i < 2000 && !arrived(); ++i) step();
+    driver.move_to({to_rad(30.0), 0, 0});
+    slow.exchange();
+    for (int i = 0; i < phase; ++i) step();  // under way, or just there
+    driver.move_to({to_rad(-10.0), 0, 0});
+    slow.exchange();
+    slow.forget_events();
+    for (int i = 0; i < 2000 && !arrived(); ++i) step();
+    ASSERT_TRUE(arrived()) << "after " << phase << " ticks";
+    EXPECT_NEAR(controller.axes["1"].position, -10, 1e-9) << "after " << phase << " ticks";
+  }
+}
+
+TEST_F(Gcs2DriverTest, AFailedReferenceIsAFault) {
+  controller.reference_fails = true;
+  open();
+  driver.home();
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_THAT(faults()[0].what, HasSubstr("azimuth: the reference move failed"));
+}
+
+TEST_F(Gcs2DriverTest, AReferenceThatNeverEndsIsStopped) {
+  open();
+  driver.home();
+  bench.exchange();
+  controller.referencing_until = 1e9;
+  ASSERT_TRUE(until([&] { return !faults().empty(); }, 200));
+  EXPECT_THAT(faults()[0].what, HasSubstr("the reference move of azimuth did not end in time"));
+}
+
+TEST_F(Gcs2DriverTest, ALostReplyIsAskedForAgainAndALateOneIsNotMistaken) {
+  home();
+  move(45);
+  controller.mute = "POS?";
+  controller.mute_times = 1;
+  ASSERT_TRUE(until([&] { return controller.mute_times == 0; }));
+  bench.pass(2.1);           // the reply is overdue: the line must fall quiet now
+  bench.feed("1=12.345\n");  // ... and here it comes, late
+  ASSERT_TRUE(until([&] { return last().on_target; }));
+  for (const auto& reading : bench.events<TableReading>())
+    EXPECT_NE(to_deg(reading.angles.azimuth_rad), 12.345);
+  EXPECT_NEAR(to_deg(last().angles.azimuth_rad), 45, 1e-9);
+  EXPECT_TRUE(faults().empty());
+  EXPECT_TRUE(driver.health().balanced());
+}
+
+TEST_F(Gcs2DriverTest, AControllerThatStopsAnsweringIsAFaultWhileMoving) {
+  home();
+  move(45);
+  controller.mute = "";
+  controller.mute_times = 1'000'000;
+  ASSERT_TRUE(until([&] { return driver.health().state == LinkState::silent; }));
+  ASSERT_EQ(faults().size(), 1U);
+  EXPECT_THAT(faults()[0].what, HasSubstr("does not answer"));
+  EXPECT_TRUE(bench.sent().ends_with("\x18")) << "it may still listen";
+  controller.mute_times = 0;
+  ASSERT_TRUE(until([&] { return driver.health().state == LinkState::live; }));
+}
+
+TEST_F(Gcs2DriverTest, GarbageIsCountedAndTheQuestionAskedAgain) {
+  home();
+  move(45);
+  bench.feed("garbage\n");
+  ASSERT_TRUE(until([&] { return last().on_target; }));
+  EXPECT_TRUE(driver.health().balanced());
+}
+
+TEST_F(Gcs2DriverTest, LosingThePortWhileMovingIsAFault) {
+  home();
+  move(90);
+  bench.close();
+  ASSERT_EQ(faults().size(), 1U);
+  bench.forget_sent();
+  open();
+  EXPECT_TRUE(bench.sent().starts_with("\x18"));
+  bench.pass(2);
+  EXPECT_FALSE(last().moving) << "the old target is forgotten";
+}
+
+TEST_F(Gcs2DriverTest, AMissingAxisFailsWithWhatIsThere) {
+  controller.axes = {{"A", {}}, {"B", {}}};
+  bench.open();
+  ASSERT_TRUE(until([&] { return driver.health().state == LinkState::failed; }));
+  EXPECT_THAT(driver.health().detail, HasSubstr("has no axis '1'; it answers 'A', 'B'"));
+}
+
+TEST_F(Gcs2DriverTest, ADeadPortIsSilent) {
+  DeviceBench stage(driver);
+  stage.open();
+  ASSERT_TRUE(stage.pass_until([&] { return driver.health().state == LinkState::silent; }));
+  EXPECT_TRUE(stage.events<DeviceFault>().empty());
+  EXPECT_TRUE(stage.pass_until([&] { return driver.wants_reopen(); }));
+}
+
+}  // namespace
+}  // namespace mgtd::drivers::gcs2
