@@ -89,6 +89,16 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
     fit.spread = std::sqrt(fit.chi2 / fit.dof);
 }
 
+/// With readings and scalar reference worse by the spread; the table's angles have their own estimate.
+Eigen::MatrixXd widened_information(const JointFit& fit) {
+  JointProblem wide = fit.problem;
+  for (JointPose& pose : wide.poses) {
+    pose.weight /= fit.spread;
+    pose.f_weight /= fit.spread;
+  }
+  return reduce(wide, fit.state, 0).S;
+}
+
 std::string describe_gauge(const JointFit& fit) {
   const auto sd_deg = [&](int parameter) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(fit.covariance.rows());
@@ -186,13 +196,13 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   }
   fit.state = std::move(solution->state);
   fit.outliers = outliers.nodes(fit.problem, fit.state);
-  auto covariance = covariance_of(solution->reduced.S);
-  if (!covariance) return tl::unexpected(covariance.error());
   fit.pose_noise_nT = assumed_noise(fit.problem);
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
   fill_statistics(residuals, solution->reduced, fit);
-  fit.covariance = *covariance * fit.spread * fit.spread;
+  auto covariance = covariance_of(fit.spread > 1 ? widened_information(fit) : std::move(solution->reduced.S));
+  if (!covariance) return tl::unexpected(covariance.error());
+  fit.covariance = *std::move(covariance);
   fit.gauge_text = describe_gauge(fit);
   return fit;
 }

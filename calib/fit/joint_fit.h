@@ -25,7 +25,7 @@ struct JointFit {
   JointProblem problem;  ///< final weights; points into the pose table
   JointState state;
   Eigen::MatrixXd
-      covariance;  ///< of the fixed block, gauge constraints included; widened by `spread` squared
+      covariance;  ///< of the fixed block, gauge constraints included; readings taken as worse by `spread`
   AxisNoise pose_noise_nT{AxisNoise::Zero()};
   std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
   double table_sd_rad{0};                    ///< estimated; 0 without angles
