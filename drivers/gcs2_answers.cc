@@ -48,7 +48,11 @@ bool Gcs2Driver::take_error(const Question& question, std::string_view line) {
   const std::optional<int> error = parse_error(line);
   if (!error) return false;
   queue_.answered(now_.mono);
-  if (*error == 0) return true;
+  if (*error == 0) {
+    // The table has its time from when it was told, however long the telling took.
+    if (job_ == Job::moving && question.concerning.starts_with("MOV")) job_deadline_.set(now_.mono, move_s_);
+    return true;
+  }
   const ErrorText text = explain(*error);
   if (question.ask == Ask::stop_error) {  // whatever happened before the stop is history
     if (*error != kStoppedByCommand) emit(DeviceNote{now_, "when stopped: " + text.what});

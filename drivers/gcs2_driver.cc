@@ -247,7 +247,8 @@ void Gcs2Driver::begin_move(const TableAngles& target) {
   job_ = Job::moving;
   cycle_is_of_this_move_ = false;
   arrived_ = false;
-  job_deadline_.set(now_.mono, longest_deg / settings_.velocity_deg_per_s * 2 + kMoveMargin_s);
+  move_s_ = longest_deg / settings_.velocity_deg_per_s * 2 + kMoveMargin_s;
+  job_deadline_.set(now_.mono, move_s_);
   next_poll_ = now_.mono;
   report(true);
 }

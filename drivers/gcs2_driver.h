@@ -111,6 +111,7 @@ class Gcs2Driver final : public LineBased<Turntable> {
   Stamp now_;
   Instant next_poll_{};
   Deadline job_deadline_, retry_;
+  double move_s_{0};  ///< longest that the move may take
   bool wants_home_{false};
   std::optional<TableAngles> wanted_;
   std::size_t homing_axis_{0};

@@ -26,6 +26,17 @@ TEST_F(Gcs2DriverTest, AStalledTableIsStoppedAfterItsDeadline) {
   EXPECT_THAT(controller.commands, ::testing::Contains("stop"));
 }
 
+TEST_F(Gcs2DriverTest, TheDeadlineOfAMoveBeginsWhenTheTableHasBeenTold) {
+  home();
+  controller.stalls = true;
+  controller.mute = "ERR?";
+  controller.mute_times = 2;  // asked again after two seconds each
+  move(50);
+  const double start = bench.t_s();
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_GT(bench.t_s() - start, 50 / 10.0 * 2 + 10 + 4);
+}
+
 TEST_F(Gcs2DriverTest, ATableThatIsPushedInItsDwellIsAFault) {
   home();
   move(50);
