@@ -7,4 +7,13 @@ namespace mgtd::calib {
 
 void Calibration::seal() { id = content_id(to_json(*this)); }
 
+Eigen::MatrixXd full_covariance(const Calibration& c) {
+  const Eigen::Index m = c.effect_covariance.rows(), n = kArrayParameters + m;
+  Eigen::MatrixXd out(n, n);
+  out.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
+  out.bottomRows(m) = c.effect_covariance;
+  out.topRightCorner(kArrayParameters, m) = c.effect_covariance.leftCols<kArrayParameters>().transpose();
+  return out;
+}
+
 }  // namespace mgtd::calib

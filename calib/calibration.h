@@ -72,6 +72,9 @@ struct Calibration {
   void seal();
 };
 
+/// Covariance of the 48 parameters and then of all coefficients.
+[[nodiscard]] Eigen::MatrixXd full_covariance(const Calibration& calibration);
+
 /// Text form (JSON, CAL.json). Numbers round-trip bit for bit.
 [[nodiscard]] std::string to_json_text(const Calibration& calibration);
 /// Refuses a file whose id is not the hash of its content, an unknown schema, or a missing key, by name.

@@ -12,6 +12,7 @@
 #include "calib/fit/joint_report.h"
 #include "calib/fit/outliers.h"
 #include "calib/frozen.h"
+#include "calib/run_time.h"
 
 namespace mgtd::calib {
 namespace {
@@ -48,6 +49,17 @@ bool weight(const Calibration& c, const PoseTable& poses, JointProblem& problem)
 /// A gauge is no evidence; a known field and what is known of the site are.
 void keep_site_priors(const std::vector<Eigen::Index>& tested, JointProblem& problem) {
   std::erase_if(problem.priors, [&](const LinearPrior& prior) { return !prior.row(tested).isZero(); });
+}
+
+/// Effects of time and of currents count from where they counted in the run that was fitted.
+void as_in_its_run(const Calibration& c, JointProblem& problem) {
+  RunTime time;
+  if (const auto start = parse_utc(c.reference.t_utc)) time.start = *start;
+  problem.means = std::make_shared<const CovariateMeans>(c.reference.currents_A);
+  for (JointPose& pose : problem.poses) {
+    pose.t_h = time.hours(*pose.pose);
+    pose.means = problem.means.get();
+  }
 }
 
 /// Best site and field for sensors that stay as they are.
@@ -197,6 +209,7 @@ Result<Settled> settle(const Calibration& c, const PoseTable& poses, const Froze
   joint.effects = frozen.effects;
   auto problem = joint_problem(poses, joint, PoseUse::check);
   if (!problem) return tl::unexpected(problem.error());
+  as_in_its_run(c, *problem);
   fix_gauge(*problem, joint);
   keep_site_priors(frozen.tested, *problem);
   report.noise_from_dwells = weight(c, poses, *problem);

@@ -21,45 +21,28 @@ struct Side {
   Eigen::MatrixXd C;
 };
 
-/// Where the coefficients of the effects stand in effect_covariance, with their values.
-std::vector<std::pair<Eigen::Index, double>> coefficients_of(const Calibration& c,
-                                                             const std::vector<CalibratedEffect>& shared) {
-  std::vector<std::pair<Eigen::Index, double>> out;
+Side side_of(const Calibration& c, const std::array<SensorModel, kSensors>& sensors,
+             const std::vector<CalibratedEffect>& shared) {
+  std::vector<double> x;
+  std::vector<Eigen::Index> slots;
+  for (const SensorModel& sensor : sensors) {
+    for (const double value : sensor.parameters()) x.push_back(value);
+  }
+  for (Eigen::Index slot = 0; slot < kArrayParameters; ++slot) slots.push_back(slot);
   for (const CalibratedEffect& wanted : shared) {
-    Eigen::Index at = 0;
+    Eigen::Index slot = kArrayParameters;
     for (const CalibratedEffect& own : c.effects) {
       for (const EffectCoefficient& coefficient : own.coefficients) {
-        if (own.effect == wanted.effect) out.emplace_back(at, coefficient.value);
-        ++at;
+        if (own.effect == wanted.effect) {
+          x.push_back(coefficient.value);
+          slots.push_back(slot);
+        }
+        ++slot;
       }
     }
   }
-  return out;
-}
-
-Side side_of(const Calibration& c, const std::array<SensorModel, kSensors>& sensors,
-             const std::vector<CalibratedEffect>& shared) {
-  const auto coefficients = coefficients_of(c, shared);
-  const auto m = static_cast<Eigen::Index>(coefficients.size());
-  Side out{Eigen::VectorXd(kArrayParameters + m),
-           Eigen::MatrixXd::Zero(kArrayParameters + m, kArrayParameters + m)};
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    out.x.segment<kSensorParameters>(static_cast<Eigen::Index>(i) * kSensorParameters) =
-        sensors[i].parameters();
-  }
-  out.C.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const auto [row, value] = coefficients[static_cast<std::size_t>(i)];
-    const Eigen::Index to = kArrayParameters + i;
-    out.x[to] = value;
-    out.C.row(to).head<kArrayParameters>() = c.effect_covariance.row(row).head<kArrayParameters>();
-    for (Eigen::Index j = 0; j < m; ++j) {
-      out.C(to, kArrayParameters + j) =
-          c.effect_covariance(row, kArrayParameters + coefficients[static_cast<std::size_t>(j)].first);
-    }
-    out.C.col(to).head<kArrayParameters>() = out.C.row(to).head<kArrayParameters>().transpose();
-  }
-  return out;
+  return {Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())),
+          full_covariance(c)(slots, slots)};
 }
 
 std::vector<CalibratedEffect> shared_effects(const Calibration& a, const Calibration& b,

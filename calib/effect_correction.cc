@@ -10,21 +10,12 @@ std::vector<EffectPtr> effects_of(const Calibration& c) {
   return out;
 }
 
-Eigen::MatrixXd joint_covariance(const Calibration& c) {
-  const Eigen::Index m = c.effect_covariance.rows(), n = kArrayParameters + m;
-  Eigen::MatrixXd out(n, n);
-  out.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
-  out.bottomRows(m) = c.effect_covariance;
-  out.topRightCorner(kArrayParameters, m) = c.effect_covariance.leftCols<kArrayParameters>().transpose();
-  return out;
-}
-
 }  // namespace
 
 EffectCorrection::EffectCorrection(const Calibration& c)
     : effects_(effects_of(c)),
       array_(*ArrayModel::of(c)),
-      covariance_(joint_covariance(c)),
+      covariance_(full_covariance(c)),
       means_(c.reference.currents_A) {
   for (const CalibratedEffect& e : c.effects)
     size2_nT2_.push_back(Eigen::Map<const FieldVector>(e.size_nT.data()).cwiseAbs2());

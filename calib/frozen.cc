@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "calib/fit/joint_problem.h"
 
@@ -15,22 +16,6 @@ void freeze_sensors(Frozen& out) {
     out.tested.push_back(slot);
   }
   for (int slot = kSiteSlot; slot < kEffectSlot; ++slot) out.nuisance.push_back(slot);
-}
-
-/// Rows of effect_covariance that are under test, after the 48.
-void freeze_covariance(const Calibration& c, const std::vector<Eigen::Index>& rows, Frozen& out) {
-  const auto m = static_cast<Eigen::Index>(rows.size());
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(kArrayParameters + m, kArrayParameters + m);
-  C.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const auto row = c.effect_covariance.row(rows[static_cast<std::size_t>(i)]);
-    C.row(kArrayParameters + i).head<kArrayParameters>() = row.head<kArrayParameters>();
-    C.col(kArrayParameters + i).head<kArrayParameters>() = row.head<kArrayParameters>().transpose();
-    for (Eigen::Index j = 0; j < m; ++j)
-      C(kArrayParameters + i, kArrayParameters + j) =
-          row[kArrayParameters + rows[static_cast<std::size_t>(j)]];
-  }
-  out.covariance = C;
 }
 
 void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, Eigen::Index row,
@@ -84,7 +69,10 @@ Result<Frozen> freeze(const Calibration& c, const std::vector<EffectPtr>& added)
   }
   out.coefficients =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  freeze_covariance(c, rows, out);
+  std::vector<Eigen::Index> under_test(kArrayParameters);
+  std::iota(under_test.begin(), under_test.end(), 0);
+  for (const Eigen::Index coefficient : rows) under_test.push_back(kArrayParameters + coefficient);
+  out.covariance = full_covariance(c)(under_test, under_test);
   return out;
 }
 
