@@ -11,6 +11,7 @@ Eigen::MatrixXd full_covariance(const Calibration& c) {
   const Eigen::Index m = c.effect_covariance.rows(), n = kArrayParameters + m;
   Eigen::MatrixXd out(n, n);
   out.topLeftCorner<kArrayParameters, kArrayParameters>() = c.covariance;
+  if (m == 0) return out;  // then it may have no columns either
   out.bottomRows(m) = c.effect_covariance;
   out.topRightCorner(kArrayParameters, m) = c.effect_covariance.leftCols<kArrayParameters>().transpose();
   return out;
