@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "daemon/database.h"
@@ -40,6 +41,19 @@ Pose pose_of(const Statement& row) {
   return pose;
 }
 
+/// The path on the clock of the poses; empty where no pose ties that to absolute time.
+std::vector<PathPoint> path_in_run(const PoseTable& table, const std::vector<TableReading>& readings) {
+  std::vector<PathPoint> out;
+  const auto tied = std::find_if(table.poses.begin(), table.poses.end(),
+                                 [](const Pose& p) { return p.t_utc.has_value() && p.t_s.has_value(); });
+  if (tied == table.poses.end()) return out;
+  for (const TableReading& reading : readings) {
+    const double since_s = to_seconds(Duration{reading.arrival.wall.ns - tied->t_utc->ns});
+    out.push_back({*tied->t_s + since_s, reading.angles});
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<PoseTable> RunFile::poses() const {
@@ -47,7 +61,7 @@ Result<PoseTable> RunFile::poses() const {
   for (const PoseColumn& c : pose_columns()) columns += ", " + c.name;
   auto found = rows<Pose>(*db_, "SELECT " + columns + " FROM pose ORDER BY ord", pose_of);
   if (!found) return tl::unexpected(found.error());
-  PoseTable table{std::move(*found), path_.string()};
+  PoseTable table{std::move(*found), path_.string(), {}};
   std::map<int, Pose*> by_number;
   for (Pose& pose : table.poses) by_number[pose.number] = &pose;
   const auto covariates = rows<bool>(*db_, "SELECT number, name, value FROM covariate JOIN pose ON ord=pose",
@@ -58,6 +72,9 @@ Result<PoseTable> RunFile::poses() const {
                                        return true;
                                      });
   if (!covariates) return tl::unexpected(covariates.error());
+  const auto readings = path_readings();
+  if (!readings) return tl::unexpected(readings.error());
+  table.path = path_in_run(table, *readings);
   return table;
 }
 

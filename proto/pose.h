@@ -36,10 +36,17 @@ struct Pose {
   }
 };
 
+/// Where the table was while it moved.
+struct PathPoint {
+  double t_s{0};  ///< as Pose::t_s
+  TableAngles angles;
+};
+
 /// Poses in the order they were measured. Numbers are unique (the reader refuses others).
 struct PoseTable {
   std::vector<Pose> poses;
-  std::string source;  ///< file name for messages; empty when made in memory
+  std::string source;             ///< file name for messages; empty when made in memory
+  std::vector<PathPoint> path{};  ///< in order of time; empty where only the dwells are known
 };
 
 inline constexpr double kDefaultScalarSd_nT = 0.05;  ///< of f_nT when no f_sd_nT stands beside it

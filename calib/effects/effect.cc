@@ -15,6 +15,8 @@ std::string_view to_string(Level level) {
       return "platform";
     case Level::axis:
       return "axis";
+    case Level::reference:
+      return "reference";
   }
   return "";
 }

@@ -1,37 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "calib/dual.h"
+#include "calib/effects/effect_context.h"
 #include "proto/error.h"
 #include "proto/pose.h"
 
 /// One physical effect: an exact term with named coefficients, acting at exactly one level of the measurement
-/// model.
+/// model (g = unit gravity in the platform frame, x = R' r_i in metres from the array's centre, site frame):
 ///
-///     site      B(x)  = B0 + sum term(x)              x = R' r_i, metres from the array's centre, site
-///     frame; nT table     state = angles + sum term(state)      azimuth, pitch, roll, tilt_x, tilt_y of the
-///     azimuth axis; rad platform  b_i   = R B(R' r_i) + sum term(b, g)  g = unit gravity in the platform
-///     frame; nT sensor    v_i   = C_i A_i R_i' b_i              (sensor_model.h; has no terms of its own)
-///     axis      y_i   = v_i + I_i + sum term(v)       nT at nominal scale
+///     site       B(x) = B0 + sum term(x)                    nT, site frame
+///     table      angles = recorded + sum term(angles)       azimuth, pitch, roll, two tilts of the axis; rad
+///     platform   b_i = R B(R' r_i) + sum term(b, g)         nT
+///     sensor     v_i = C_i A_i R_i' b_i                     sensor_model.h; has no terms of its own
+///     axis       y_i = v_i + I_i + sum term(v)              nT at nominal scale
+///     reference  f = |B(0)| + sum term(R B(0)/|B(0)|)       nT, what the scalar magnetometer reads
 ///
 /// Terms of one level see the same input and add up. Derivatives come from dual numbers: an effect writes its
 /// equation once, templated on the scalar, and derives from EffectOf. With all coefficients zero a term must
 /// vanish.
 namespace mgtd::calib {
 
-enum class Level { site, table, platform, axis };
+enum class Level { site, table, platform, axis, reference };
 [[nodiscard]] std::string_view to_string(Level level);
 
 /// Inputs a level hands to its effects, and outputs it takes from them.
 [[nodiscard]] constexpr int inputs_of(Level level) {
   return level == Level::platform ? 6 : level == Level::table ? 5 : 3;
 }
-[[nodiscard]] constexpr int outputs_of(Level level) { return level == Level::table ? 5 : 3; }
+[[nodiscard]] constexpr int outputs_of(Level level) {
+  return level == Level::table ? 5 : level == Level::reference ? 1 : 3;
+}
 
 struct Coefficient {
   std::string name;  ///< "Gxx", "s3.z", ...
@@ -53,7 +58,7 @@ struct Conditions {
 };
 
 /// Slots: inputs of a level (at most 6), then the coefficients that act at one sensor (at most 10).
-inline constexpr int kJetSlots = 16;
+inline constexpr int kMaxActive = 10, kJetSlots = 6 + kMaxActive;
 using Jet = Dual<kJetSlots>;
 
 /// The first table angle that a pose lacks, as a column name; empty when it has all three.
@@ -62,11 +67,23 @@ using Jet = Dual<kJetSlots>;
 class Effect {
  public:
   virtual ~Effect() = default;
-  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual std::string_view name() const = 0;  ///< of its family in the library
+  /// Everything that makes this effect again (make_effect): "axis.hysteresis@s2,w=0.1".
+  [[nodiscard]] virtual std::string spec() const { return std::string(name()); }
+  /// This effect as it is on one run: with the memory of the readings before each pose, or with coefficients
+  /// for the currents and mountings that the run has. Null when the run makes no difference. Refuses, with
+  /// what is missing.
+  [[nodiscard]] virtual Result<std::shared_ptr<const Effect>> bound(const EffectContext&) const {
+    return std::shared_ptr<const Effect>();
+  }
   [[nodiscard]] virtual Level level() const = 0;
   [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
   /// Indices of the coefficients that act at sensor `sensor`, in the order `c` has in term().
   [[nodiscard]] virtual std::span<const int> at(int sensor) const = 0;
+  /// The same at one pose; at most kMaxActive.
+  [[nodiscard]] virtual std::span<const int> active(const Conditions&, int sensor) const {
+    return at(sensor);
+  }
   /// The first column that the term needs and this pose has not ("s3_T_degC", "azimuth_deg"); empty when the
   /// term can be evaluated. Where it is not empty the term counts as zero and term() is not called.
   [[nodiscard]] virtual std::string_view missing(const Pose& pose) const = 0;

@@ -43,7 +43,7 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
   }
   for (const Entry& entry : entries_) {
     if (!entry.effect->missing(at.pose).empty()) continue;
-    const std::span<const int> active = entry.effect->at(sensor);
+    const std::span<const int> active = entry.effect->active(at, sensor);
     std::array<Jet, kJetSlots> c;
     std::array<Jet, kMaxTermOutputs> out;
     for (std::size_t j = 0; j < active.size(); ++j) {
@@ -71,7 +71,7 @@ TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const do
   TermValue total = TermValue::Zero(outputs_of(level_));
   for (const Entry& entry : entries_) {
     if (!entry.effect->missing(at.pose).empty()) continue;
-    const std::span<const int> active = entry.effect->at(sensor);
+    const std::span<const int> active = entry.effect->active(at, sensor);
     std::array<double, kJetSlots> c{};
     std::array<double, kMaxTermOutputs> out{};
     for (std::size_t j = 0; j < active.size(); ++j) c[j] = coefficients[entry.first + active[j]];

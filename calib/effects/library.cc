@@ -4,40 +4,44 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
-
-#include "calib/effects/site_gradient.h"
+#include "calib/effects/effect_family.h"
 
 namespace mgtd::calib {
-namespace {
-
-struct Entry {
-  std::string_view name;
-  EffectPtr (*make)();
-};
-
-template <class E>
-EffectPtr make() {
-  return std::make_shared<const E>();
-}
-
-constexpr std::array kLibrary{Entry{"site.gradient", &make<SiteGradient>}};
-
-}  // namespace
 
 std::vector<std::string_view> effect_names() {
   std::vector<std::string_view> names;
-  for (const Entry& entry : kLibrary) names.push_back(entry.name);
+  for (const EffectFamily& family : effect_families()) names.push_back(family.name);
   return names;
 }
 
-Result<EffectPtr> make_effect(std::string_view name) {
-  const auto* found =
-      std::find_if(kLibrary.begin(), kLibrary.end(), [&](const Entry& e) { return e.name == name; });
-  if (found != kLibrary.end()) return found->make();
-  return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", name),
+Result<EffectPtr> make_effect(const EffectSpec& spec) {
+  if (const EffectFamily* family = find_family(spec.name)) return family->from_spec(spec);
+  return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", spec.name),
               fmt::format("known effects: {}", fmt::join(effect_names(), ", ")));
+}
+
+Result<EffectPtr> make_effect(std::string_view text) {
+  const auto spec = EffectSpec::parse(text);
+  if (!spec) return tl::unexpected(spec.error());
+  return make_effect(*spec);
+}
+
+Result<EffectPtr> make_effect(const EffectSpec& spec, const EffectContext& context) {
+  auto effect = make_effect(spec);
+  if (!effect) return effect;
+  auto bound = (*effect)->bound(context);
+  if (!bound) return tl::unexpected(bound.error());
+  return *bound ? *bound : *effect;
+}
+
+Result<std::vector<EffectPtr>> bind(const std::vector<EffectPtr>& effects, const EffectContext& context) {
+  std::vector<EffectPtr> out;
+  for (const EffectPtr& effect : effects) {
+    auto bound = effect->bound(context);
+    if (!bound) return tl::unexpected(bound.error());
+    out.push_back(*bound ? std::move(*bound) : effect);
+  }
+  return out;
 }
 
 }  // namespace mgtd::calib

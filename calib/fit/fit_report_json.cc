@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/calibration_json.h"
+#include "calib/effects/effect_spec.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -73,7 +74,9 @@ json effects_json(const std::vector<CalibratedEffect>& effects) {
     for (const EffectCoefficient& c : e.coefficients) {
       coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
     }
-    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}});
+    out.push_back({{"effect", family_name(e.effect)},
+                   {"spec", e.effect},
+                   {"coefficients", std::move(coefficients)}});
   }
   return out;
 }

@@ -155,7 +155,7 @@ void fill_calibration(const JointFit& fit, Calibration& c) {
       fit.covariance.bottomRightCorner(m, m);
   int slot = 0;
   for (const EffectPtr& effect : fit.problem.effects) {
-    CalibratedEffect out{std::string(effect->name()), {}, size_of(fit, effect, slot)};
+    CalibratedEffect out{effect->spec(), {}, size_of(fit, effect, slot)};
     for (const Coefficient& coefficient : effect->coefficients()) {
       const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
       out.coefficients.push_back(

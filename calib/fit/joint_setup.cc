@@ -81,8 +81,10 @@ CovariateMeans covariate_means(const PoseTable& table) {
 Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options, PoseUse use) {
   JointProblem problem;
   problem.geometry = options.geometry;
-  problem.effects = options.effects;
-  for (const EffectPtr& effect : options.effects) {
+  auto effects = bind(options.effects, {.table = &table, .offset_nT = {}});
+  if (!effects) return tl::unexpected(effects.error());
+  problem.effects = std::move(*effects);
+  for (const EffectPtr& effect : problem.effects) {
     if (const auto ok = effect->check(table); !ok) return tl::unexpected(ok.error());
   }
   const auto fitted = [use](const Pose& pose) { return (pose.set == "check") == (use == PoseUse::check); };

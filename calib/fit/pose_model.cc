@@ -44,6 +44,7 @@ PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
       site_(problem.effects, Level::site),
       platform_(problem.effects, Level::platform),
       axis_(problem.effects, Level::axis),
+      reference_(problem.effects, Level::reference),
       positions_P_m_(problem.geometry.positions_P_m()),
       tangents_(tangents(state.direction)),
       globals_(kGlobals + problem.coefficients()) {
@@ -160,15 +161,39 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
     return;
   }
   Eigen::Vector3d B_S = a.f_nT * state_.direction;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> d_coefficient;
   if (!site_.empty()) {
     const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     const TermSum terms = site_.sum(pose.conditions(), 0, {centre.data(), 3}, state_.coefficients);
     B_S += terms.value;
-    out.f_global.tail(globals_ - kGlobals) = B_S.transpose() / B_S.norm() * terms.d_coefficient;
+    d_coefficient = terms.d_coefficient;
   }
   out.f_nT = B_S.norm();
-  out.f_nuisance[3] = B_S.dot(state_.direction) / out.f_nT;
-  out.f_global.head<2>() = a.f_nT / out.f_nT * B_S.transpose() * tangents_;
+  const auto add = [&](const Eigen::RowVector3d& by_B) {
+    out.f_nuisance[3] += by_B.dot(state_.direction);
+    out.f_global.head<2>() += a.f_nT * by_B * tangents_;
+    if (!site_.empty()) out.f_global.tail(globals_ - kGlobals) += by_B * d_coefficient;
+  };
+  add(B_S.transpose() / out.f_nT);
+  if (!reference_.empty()) add(reference_terms(pose, a, B_S, out));
+}
+
+/// Adds the terms of the scalar reference; gives their derivative by B_S.
+Eigen::RowVector3d PoseModel::reference_terms(const JointPose& pose, const Attitude& a,
+                                              const Eigen::Vector3d& B_S, PoseLinear& out) const {
+  const Eigen::Vector3d u_S = B_S.normalized(), u_P = a.R * u_S;
+  const TermSum terms = reference_.sum(pose.conditions(), 0, {u_P.data(), 3}, state_.coefficients);
+  const Eigen::RowVector3d by_u = terms.d_input;
+  out.f_nT += terms.value[0];
+  out.f_global.tail(globals_ - kGlobals) += terms.d_coefficient;
+  for (int j = 0; j < Attitude::kAttitude; ++j)
+    out.f_nuisance[j] += by_u * (a.dR[static_cast<std::size_t>(j)] * u_S);
+  for (int j = 0; j < Attitude::kTable && !table_.empty(); ++j) {
+    out.f_global.tail(globals_ - kGlobals) +=
+        by_u.dot(a.dR[static_cast<std::size_t>(Attitude::kAttitude + j)] * u_S) *
+        a.state_d_coefficient.row(j);
+  }
+  return by_u * a.R * (Eigen::Matrix3d::Identity() - u_S * u_S.transpose()) / B_S.norm();
 }
 
 void PoseModel::read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const {

@@ -42,10 +42,12 @@ class PoseModel {
   void field_at(const JointPose& pose, const Attitude& a, int sensor, Field& field) const;
   void add_platform(const JointPose& pose, const Attitude& a, int sensor, Field& field) const;
   void scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const;
+  [[nodiscard]] Eigen::RowVector3d reference_terms(const JointPose& pose, const Attitude& a,
+                                                   const Eigen::Vector3d& B_S, PoseLinear& out) const;
   void read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const;
 
   const JointState& state_;
-  LevelTerms table_, site_, platform_, axis_;
+  LevelTerms table_, site_, platform_, axis_, reference_;
   std::array<SensorGain, kSensors> gains_;
   std::array<Eigen::Vector3d, kSensors> positions_P_m_;
   Eigen::Matrix<double, 3, 2> tangents_;

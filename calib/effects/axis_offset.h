@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/effects/axis_effect.h"
+#include "calib/run_time.h"
+
+/// Effects that add the same to a reading whatever the field:
+///
+///     axis.offset.temperature    y += alpha (T - T0)         nT/degC
+///     axis.offset.temperature2   y += alpha2 (T - T0)^2      nT/degC^2
+///     axis.offset.drift          y += delta (t - t0)         nT/h
+///     axis.offset.step           y += s [t >= ts]            nT, ts in hours since the start of the run
+namespace mgtd::calib {
+
+struct OffsetTemperature {
+  static constexpr std::string_view kName = "axis.offset.temperature";
+  static constexpr int kPerAxis = 1;
+  static AxisCoefficients coefficients() { return one_per_axis("nT/degC", 0.3); }
+  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
+  static void parameters(EffectSpec&) {}
+  template <class S>
+  static S shape(const Conditions& at, int sensor, int, std::span<const S>, int) {
+    return S(warmer_degC(at, sensor));
+  }
+};
+
+struct OffsetTemperature2 {
+  static constexpr std::string_view kName = "axis.offset.temperature2";
+  static constexpr int kPerAxis = 1;
+  static AxisCoefficients coefficients() { return one_per_axis("nT/degC^2", 0.02); }
+  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
+  static void parameters(EffectSpec&) {}
+  template <class S>
+  static S shape(const Conditions& at, int sensor, int, std::span<const S>, int) {
+    return S(warmer_degC(at, sensor) * warmer_degC(at, sensor));
+  }
+};
+
+struct OffsetDrift {
+  static constexpr std::string_view kName = "axis.offset.drift";
+  static constexpr int kPerAxis = 1;
+  static AxisCoefficients coefficients() { return one_per_axis("nT/h", 1); }
+  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
+  static void parameters(EffectSpec&) {}
+  template <class S>
+  static S shape(const Conditions& at, int, int, std::span<const S>, int) {
+    return S(at.t_h);
+  }
+};
+
+struct OffsetStep {
+  static constexpr std::string_view kName = "axis.offset.step";
+  static constexpr int kPerAxis = 1;
+  double ts_h{0};
+  static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
+  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
+  void parameters(EffectSpec& spec) const { spec.set("ts", ts_h); }
+  template <class S>
+  S shape(const Conditions& at, int, int, std::span<const S>, int) const {
+    return S(at.t_h >= ts_h ? 1.0 : 0.0);
+  }
+};
+
+}  // namespace mgtd::calib

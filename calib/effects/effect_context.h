@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "proto/pose.h"
+
+/// What an effect may need to know of the run it is used on, beyond the pose it is evaluated at.
+namespace mgtd::calib {
+
+inline constexpr double kReferenceT_degC = 20;        ///< T0 of every effect of temperature
+inline constexpr double kReferenceField_nT = 50'000;  ///< F0: x = v/F0
+
+struct EffectContext {
+  const PoseTable* table{nullptr};  ///< every pose in the order it was measured, those of set "check" too
+  /// Offsets of the axes where they are known (a calibration); else they are estimated from the readings.
+  std::optional<std::array<Eigen::Vector3d, kSensors>> offset_nT;
+};
+
+}  // namespace mgtd::calib

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "proto/error.h"
+
+/// Which sensors and axes an effect is laid over, and how many coefficients that takes.
+namespace mgtd::calib {
+
+struct Where {
+  enum class Scale {
+    all,          ///< one coefficient for the twelve axes
+    each_sensor,  ///< one a sensor
+    each_axis,    ///< one an axis, s1.x .. s4.z
+    sensor,       ///< one, for the axes of one sensor: "s3"
+    axis,         ///< one, for one axis: "s3.z"
+    own           ///< effects of site, table and platform as a whole
+  };
+  Scale scale{Scale::each_axis};
+  int sensor{-1}, axis{-1};  ///< 0-based, of `sensor` and `axis`
+
+  /// "all", "each-sensor", "each-axis", "s3", "s3.z"; "site", "platform" and "table" are `own`.
+  [[nodiscard]] static Result<Where> parse(std::string_view text);
+  /// `own` gives an empty text.
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] bool covers(int sensor, int axis) const;
+  bool operator==(const Where&) const = default;
+};
+
+/// "s3", "s3.z"
+[[nodiscard]] std::string sensor_name(int sensor);
+[[nodiscard]] std::string axis_name(int sensor, int axis);
+
+}  // namespace mgtd::calib
