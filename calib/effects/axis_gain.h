@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
+#include <optional>
 
 #include "calib/effects/axis_effect.h"
 #include "calib/run_time.h"
@@ -52,14 +53,17 @@ struct GainDrift {
 struct GainStep {
   static constexpr std::string_view kName = "axis.gain.step";
   static constexpr int kPerAxis = 1;
-  double c_nT{25'000};
+  static constexpr double kDefault_nT = 25'000;
+  std::optional<double> c_nT;
   static AxisCoefficients coefficients() { return one_per_axis("ppm", 50); }
   static std::string_view missing(const Pose&, int) { return {}; }
-  void parameters(EffectSpec& spec) const { spec.set("c", c_nT); }
+  void parameters(EffectSpec& spec) const {
+    if (c_nT) spec.set("c", *c_nT);
+  }
   template <class S>
   S shape(const Conditions&, int, int axis, std::span<const S> v, int) const {
     const S& own = v[static_cast<std::size_t>(axis)];
-    return own * S(std::abs(value_of(own)) > c_nT ? 1e-6 : 0.0);
+    return own * S(std::abs(value_of(own)) > c_nT.value_or(kDefault_nT) ? 1e-6 : 0.0);
   }
 };
 

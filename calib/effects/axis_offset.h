@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+
 #include "calib/effects/axis_effect.h"
 #include "calib/run_time.h"
 
@@ -47,16 +49,24 @@ struct OffsetDrift {
   }
 };
 
+/// Hours since the start of the run, half-way through its poses.
+[[nodiscard]] std::optional<double> middle_h(const EffectContext& context);
+
 struct OffsetStep {
   static constexpr std::string_view kName = "axis.offset.step";
   static constexpr int kPerAxis = 1;
-  double ts_h{0};
+  std::optional<double> ts_h;  ///< not given: the middle of the run it is bound to
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
   static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
-  void parameters(EffectSpec& spec) const { spec.set("ts", ts_h); }
+  void parameters(EffectSpec& spec) const {
+    if (ts_h) spec.set("ts", *ts_h);
+  }
+  [[nodiscard]] Result<OffsetStep> on_run(const EffectContext& context) const {
+    return OffsetStep{ts_h ? ts_h : middle_h(context)};
+  }
   template <class S>
   S shape(const Conditions& at, int, int, std::span<const S>, int) const {
-    return S(at.t_h >= ts_h ? 1.0 : 0.0);
+    return S(at.t_h >= ts_h.value_or(0) ? 1.0 : 0.0);
   }
 };
 

@@ -40,7 +40,8 @@ std::vector<double> run_values(const Scan& scan, const EffectContext& context) {
 std::span<const EffectFamily> effect_families() {
   static const std::vector<EffectFamily> all = [] {
     std::vector<EffectFamily> out;
-    for (const auto part : {axis_families(), site_families()})
+    for (const auto part :
+         {axis_families(), nonlinearity_families(), platform_families(), table_families(), site_families()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();

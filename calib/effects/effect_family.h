@@ -14,7 +14,7 @@
 namespace mgtd::calib {
 
 /// A fixed number of an effect that a score test tries one after the other, because the effect is not linear
-/// in it. A fit that has the effect in its model estimates it too (calib/fit/scan.h).
+/// in it. A fit that has the effect in its model estimates it too (calib/fit/tune.h).
 struct Scan {
   enum class Range {
     linear,       ///< from .. to
@@ -60,6 +60,9 @@ struct EffectFamily {
 /// In the order of the library's page.
 [[nodiscard]] std::span<const EffectFamily> effect_families();
 [[nodiscard]] std::span<const EffectFamily> axis_families();
+[[nodiscard]] std::span<const EffectFamily> nonlinearity_families();
+[[nodiscard]] std::span<const EffectFamily> platform_families();
+[[nodiscard]] std::span<const EffectFamily> table_families();
 [[nodiscard]] std::span<const EffectFamily> site_families();
 /// Null when there is none of that name.
 [[nodiscard]] const EffectFamily* find_family(std::string_view name);

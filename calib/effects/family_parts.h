@@ -29,14 +29,14 @@ template <class Law>
 /// One whose law has one number, set through `member`.
 template <class Law>
 [[nodiscard]] Result<EffectPtr> axis_with(const EffectSpec& spec, std::string_view parameter,
-                                          double Law::*member, double lowest, double highest) {
+                                          std::optional<double> Law::*member, double lowest, double highest) {
   if (const auto ok = spec.only({parameter}); !ok) return tl::unexpected(ok.error());
   const auto where = where_of(spec, kAxisScales);
   if (!where) return tl::unexpected(where.error());
   Law law;
-  const auto value = spec.number(parameter, law.*member, lowest, highest);
+  const auto value = spec.number(parameter, 0, lowest, highest);
   if (!value) return tl::unexpected(value.error());
-  law.*member = *value;
+  if (spec.find(parameter) != nullptr) law.*member = *value;
   return std::make_shared<const AxisEffect<Law>>(std::move(law), *where);
 }
 

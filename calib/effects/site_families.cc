@@ -1,14 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/family_parts.h"
+#include "calib/effects/reference_error.h"
+#include "calib/effects/site_curvature.h"
+#include "calib/effects/site_dipole.h"
+#include "calib/effects/site_drift.h"
 #include "calib/effects/site_gradient.h"
 
 namespace mgtd::calib {
 namespace {
 
+Result<EffectPtr> dipole(const EffectSpec& spec) {
+  if (const auto ok = spec.only({"place", "x", "y", "z"}); !ok) return tl::unexpected(ok.error());
+  if (const auto where = where_of(spec, kOwnScale); !where) return tl::unexpected(where.error());
+  if (spec.find("place") != nullptr) {
+    const auto place = spec.number("place", 0, 0, kDipolePlaces - 1);
+    if (!place) return tl::unexpected(place.error());
+    return std::make_shared<const SiteDipole>(dipole_place_S_m(static_cast<int>(*place)));
+  }
+  if (spec.parameters.empty()) return std::make_shared<const SiteDipole>(std::nullopt);
+  Eigen::Vector3d at;
+  for (int i = 0; i < 3; ++i) {
+    const auto value = spec.number(std::string(1, "xyz"[i]), 0, -1000, 1000);
+    if (!value) return tl::unexpected(value.error());
+    at[i] = *value;
+  }
+  constexpr double kInsideArray_m = 0.05;
+  if (at.norm() < kInsideArray_m) {
+    return fail(ErrorCode::usage, "site.dipole: its place is the centre of the array",
+                "give x, y, z in metres, site frame, at least 0.05 m away");
+  }
+  return std::make_shared<const SiteDipole>(at);
+}
+
+/// An effect with one optional number.
+template <class E>
+Result<EffectPtr> with_optional(const EffectSpec& spec, std::string_view parameter, double lowest) {
+  if (const auto ok = spec.only({parameter}); !ok) return tl::unexpected(ok.error());
+  if (const auto where = where_of(spec, kOwnScale); !where) return tl::unexpected(where.error());
+  const auto value = spec.number(parameter, 0, lowest, 1e6);
+  if (!value) return tl::unexpected(value.error());
+  return std::make_shared<const E>(spec.find(parameter) != nullptr ? std::optional(*value) : std::nullopt);
+}
+Result<EffectPtr> field_drift(const EffectSpec& spec) {
+  return with_optional<FieldDrift>(spec, "hours", 1e-6);
+}
+Result<EffectPtr> gradient_drift(const EffectSpec& spec) {
+  return with_optional<GradientDrift>(spec, "ts", -1e6);
+}
+
 constexpr std::array kGradientConfusions{
     Confusion{"site.dipole", "closure of the cross, or the base of the table moved by half a metre"},
     Confusion{"platform.tabletop-magnet",
               "turn the base of the table: a gradient stays, a magnet on it goes along"}};
+constexpr std::array kCurvatureConfusions{Confusion{
+    "site.dipole", "move the base: the curvature of a dipole falls with the fifth power of distance"}};
+constexpr std::array kDipoleConfusions{
+    Confusion{"site.gradient", "poses that bring a sensor close to it; move the base by half a metre"},
+    Confusion{"site.curvature", "the same"}};
+constexpr std::array kFieldDriftConfusions{
+    Confusion{"axis.gain.drift", "a scalar reference beside the table"},
+    Confusion{"axis.offset.drift", "a change of the site is the same in all sensors"}};
+constexpr std::array kGradientDriftConfusions{Confusion{
+    "axis.offset.drift", "many attitudes at each time: a gradient turns with the array, an offset does not"}};
+constexpr std::array kReferenceConfusions{Confusion{
+    "axis.gain.drift", "a second scalar reference; an error that never changes is the scale of all axes"}};
 
 constexpr std::array kFamilies{
     EffectFamily{.name = "site.gradient",
@@ -28,6 +83,109 @@ constexpr std::array kFamilies{
                  .untestable = {},
                  .experiment = {},
                  .from_spec = &plain<SiteGradient>},
+    EffectFamily{.name = "site.curvature",
+                 .level = Level::site,
+                 .title = "the gradient of the site changes over the cross",
+                 .cause = "iron a metre or two away",
+                 .equation = "B_i += 1/2 H_ijk x_j x_k, H symmetric and traceless, site frame",
+                 .coefficients = "Hxxx, Hxxy, Hxxz, Hxyy, Hxyz, Hyyy, Hyyz, nT/m^2",
+                 .typical = 50,
+                 .bound = 50000,
+                 .source = "a dipole of 1 A m^2 at 1 m: 600 nT/m and 2400 nT/m^2",
+                 .scales = kOwnScale,
+                 .scan = {},
+                 .needs = "azimuth_deg",
+                 .signature = "twice per turn and alike in opposite sensors; the closure of the cross fails",
+                 .confusions = kCurvatureConfusions,
+                 .untestable = {},
+                 .experiment = {},
+                 .from_spec = &plain<SiteCurvature>},
+    EffectFamily{
+        .name = "site.dipole",
+        .level = Level::site,
+        .title = "a magnet near the array",
+        .cause = "a motor, a tool, a parked trolley, a magnet fixed to the base of the table",
+        .equation = "B(x) += 100 (3 (m.u) u - m)/d^3 nT, u d = x - place - shift, site frame, metres",
+        .coefficients = "mx, my, mz, A m^2; dx, dy, dz, m from the best place of a grid (or of x=, y=, z=)",
+        .typical = 0.1,
+        .bound = 1000,
+        .source = "a screw 0.01, a hand tool 0.1, a motor 1 A m^2; 1 A m^2 at 1 m is 200 nT",
+        .scales = kOwnScale,
+        .scan = Scan{.parameter = "place",
+                     .unit = "",
+                     .from = 0,
+                     .to = kDipolePlaces - 1,
+                     .steps = kDipolePlaces,
+                     .range = Scan::Range::index},
+        .needs = "azimuth_deg",
+        .signature = "like a gradient with a curvature; strongest in the sensor that passes nearest",
+        .confusions = kDipoleConfusions,
+        .untestable = {},
+        .experiment = {},
+        .from_spec = &dipole},
+    EffectFamily{
+        .name = "site.field-drift",
+        .level = Level::site,
+        .title = "the field of the site changes during the run",
+        .cause = "daily variation, magnetic storms, trains",
+        .equation = "B += sum of c_k cos(k pi t/D), k = 1 to 3, D the length of the run",
+        .coefficients = "cos1.x to cos3.z, nT, site frame",
+        .typical = 20,
+        .bound = 2000,
+        .source = "tens of nT on a quiet day, hundreds within minutes in a storm",
+        .scales = kOwnScale,
+        .scan = {},
+        .needs = "t_s",
+        .signature =
+            "the same in all sensors. With a scalar reference the strength is measured pose by pose and "
+            "only the direction is left to tell",
+        .confusions = kFieldDriftConfusions,
+        .untestable = {},
+        .experiment = {},
+        .from_spec = &field_drift},
+    EffectFamily{.name = "site.gradient-drift",
+                 .level = Level::site,
+                 .title = "the gradient of the site changes during the run",
+                 .cause = "a parked car, a lift, a door of steel; with ts: it came or went at once",
+                 .equation = "G += G' (t - t0); with ts: G += dG [t >= ts]",
+                 .coefficients = "Gxx, Gyy, Gxy, Gxz, Gyz, nT/m/h; with ts nT/m",
+                 .typical = 10,
+                 .bound = 2000,
+                 .source = "a car at 10 m: some nT/m (estimate)",
+                 .scales = kOwnScale,
+                 .scan = Scan{.parameter = "ts",
+                              .unit = "h",
+                              .from = 0.05,
+                              .to = 0.95,
+                              .steps = 19,
+                              .range = Scan::Range::run,
+                              .optional = true},
+                 .needs = "t_s",
+                 .signature = "a gradient that grows with time or appears at ts",
+                 .confusions = kGradientDriftConfusions,
+                 .untestable = {},
+                 .experiment = {},
+                 .from_spec = &gradient_drift},
+    EffectFamily{
+        .name = "site.reference-error",
+        .level = Level::reference,
+        .title = "the scalar reference reads differently by direction",
+        .cause = "heading error of a magnetometer that rides on the platform, or its own iron",
+        .equation = "f += k u + u' K u, u = direction of the field in the platform frame",
+        .coefficients = "kx, ky, kz, kxx, kyy, kxy, kxz, kyz, nT",
+        .typical = 0.5,
+        .bound = 50,
+        .source = "0.05 to 1 nT for proton and caesium magnetometers (estimate)",
+        .scales = kOwnScale,
+        .scan = {},
+        .needs = "f_nT",
+        .signature =
+            "nearly that of offsets and matrices common to the four sensors, held apart by the angles of "
+            "the table only. A constant error is a common error of all scale factors: no residual shows it",
+        .confusions = kReferenceConfusions,
+        .untestable = {},
+        .experiment = "a second scalar reference, read side by side",
+        .from_spec = &plain<ReferenceError>},
 };
 
 }  // namespace

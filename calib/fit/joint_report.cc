@@ -12,6 +12,7 @@
 #include "calib/fit/joint_verdict.h"
 #include "calib/fit/report_parts.h"
 #include "calib/fit/tensor_uncertainty.h"
+#include "calib/fit/tune.h"
 #include "calib/fit/two_step.h"
 
 namespace mgtd::calib {
@@ -167,7 +168,10 @@ void fill_calibration(const JointFit& fit, Calibration& c) {
 }
 
 Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options) {
-  const JointOptions joint = joint_options(options);
+  JointOptions joint = joint_options(options);
+  auto tuned = tune(table, joint);
+  if (!tuned) return tl::unexpected(tuned.error());
+  joint.effects = std::move(*tuned);
   const auto fit = fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
   FitOptions with_field = options;

@@ -38,6 +38,7 @@ void add_calibrations(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_check_config(CLI::App& app, Session& session);
 void add_diff(CLI::App& app, Session& session);
+void add_effects(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);

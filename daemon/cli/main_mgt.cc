@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   add_check(app, session);
   add_diff(app, session);
   add_explain(app, session);
+  add_effects(app, session);
   add_import(app, session);
   add_export(app, session);
   add_check_config(app, session);

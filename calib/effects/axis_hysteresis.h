@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <unordered_map>
+
+#include "calib/effects/axis_nonlinearity.h"
+#include "calib/effects/run_memory.h"
+
+/// `axis.hysteresis`: the core remembers where the field came from. Play operator of width w over the whole
+/// run, started at p = 0:
+///
+///     p <- max(x - w, min(x + w, p)),   y += h (p - x)/w        x = v/F0, h in nT, w of F0
+///
+/// Follows the path of the table where the run kept it, else from dwell to dwell: a turn that overshoots both
+/// ends is then missed. Not bound to a run it knows the pose before and nothing else.
+namespace mgtd::calib {
+
+/// The play at one pose before the pose's own field has moved it, by sensor and axis.
+using PlayState = std::array<Eigen::Vector3d, kSensors>;
+
+/// p after x.
+[[nodiscard]] inline double play(double p, double x, double w) { return std::max(x - w, std::min(x + w, p)); }
+/// By pose number.
+[[nodiscard]] std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>& run,
+                                                             double w);
+
+struct Hysteresis {
+  static constexpr std::string_view kName = "axis.hysteresis";
+  static constexpr int kPerAxis = 1;
+  static constexpr double kDefaultWidth = 0.1;
+  std::optional<double> w;
+  std::shared_ptr<const std::unordered_map<int, PlayState>> before{};
+
+  static AxisCoefficients coefficients() { return one_per_axis("nT", 1); }
+  static std::string_view missing(const Pose&, int) { return {}; }
+  void parameters(EffectSpec& spec) const {
+    if (w) spec.set("w", *w);
+  }
+  [[nodiscard]] Result<Hysteresis> on_run(const EffectContext& context) const;
+  /// p before this pose.
+  [[nodiscard]] double memory(const Conditions& at, int sensor, int axis) const;
+
+  template <class S>
+  S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
+    const double width = w.value_or(kDefaultWidth);
+    const S x = in_F0(v, axis);
+    const S behind = (S(memory(at, sensor, axis)) - x) * S(1 / width);
+    return behind > S(1.0) ? S(1.0) : behind < S(-1.0) ? S(-1.0) : behind;
+  }
+};
+
+}  // namespace mgtd::calib

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/effects/effect.h"
+#include "calib/effects/where.h"
+
+/// The coefficients of an effect that is a vector or a matrix of each sensor: the same list for every sensor,
+/// "s3.x", for one sensor or for the four.
+namespace mgtd::calib {
+
+class PlatformScale {
+ public:
+  PlatformScale(const std::vector<std::string>& names, const char* unit, double typical, const Where& where);
+  [[nodiscard]] const std::vector<Coefficient>& coefficients() const { return coefficients_; }
+  [[nodiscard]] std::span<const int> at(int sensor) const { return at_[static_cast<std::size_t>(sensor)]; }
+  /// "NAME", or "NAME@s3"
+  [[nodiscard]] std::string spec(std::string_view name) const;
+  [[nodiscard]] const Where& where() const { return where_; }
+
+ private:
+  Where where_;
+  std::vector<Coefficient> coefficients_;
+  std::array<std::vector<int>, kSensors> at_;
+};
+
+}  // namespace mgtd::calib

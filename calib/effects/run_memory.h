@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "calib/effects/effect_context.h"
+#include "proto/error.h"
+
+/// What the sensors saw before each pose of a run, for effects with a memory.
+///
+///     at a dwell        v = reading - offset
+///     on the way        v = L(R) with L the linear map from the nine elements of the table's rotation to the
+///                       readings, fitted to the dwells; only where the run kept the path of the table
+///
+/// Offsets are those of the context, else of each sensor by itself (sensor_start.h): good to some nT, which
+/// is 1e-4 of the field that a memory is about.
+namespace mgtd::calib {
+
+using SensorReadings = std::array<Eigen::Vector3d, kSensors>;
+
+struct RememberedPose {
+  int pose{0};                             ///< number
+  SensorReadings v_nT;                     ///< at the dwell
+  std::vector<SensorReadings> on_the_way;  ///< since the dwell before, in order
+};
+
+/// In the order of the run. Refuses a context without poses.
+[[nodiscard]] Result<std::vector<RememberedPose>> run_memory(const EffectContext& context);
+
+}  // namespace mgtd::calib

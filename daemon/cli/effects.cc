@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+
+#include "calib/effects/effect_page.h"
+#include "daemon/cli/command.h"
+
+namespace mgtd::cli {
+namespace {
+
+constexpr const char* kHelp =
+    R"(Prints the library of physical effects, or the page of one: cause, formula, units, typical size, how it shows,
+what looks alike and how to tell them apart.
+
+  mgt effects                      the list
+  mgt effects axis.hysteresis      one page
+
+An effect goes into a model as NAME[@WHERE][,PARAM=VALUE]: mgt fit run.mgtrun --with axis.cubic@s3.z)";
+
+int run(const Session& session, const std::string& name) {
+  std::span<const calib::EffectFamily> families = calib::effect_families();
+  if (!name.empty()) {
+    const calib::EffectFamily* family = calib::find_family(calib::family_name(name));
+    if (family == nullptr) return report(session, calib::make_effect(name).error());
+    families = {family, 1};
+  }
+  if (session.json) {
+    print_json(calib::effects_json(families));
+  } else {
+    std::cout << (name.empty() ? calib::effect_list() : calib::effect_page(families.front()));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_effects(CLI::App& app, Session& session) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = add_command(app, session, "effects", "the library of physical effects",
+                                  [&session, name] { return run(session, *name); });
+  command->add_option("name", *name, "of one effect");
+  command->footer(kHelp);
+}
+
+}  // namespace mgtd::cli
