@@ -62,7 +62,7 @@ Result<void> usable(const TensorPipeline& pipeline, const Pose& pose, const Appl
 
 Result<std::vector<AppliedPose>> apply(const Calibration& calibration, const PoseTable& table,
                                        const ApplyOptions& options) {
-  const TensorPipeline pipeline(std::make_shared<Calibration>(calibration));
+  const TensorPipeline pipeline(std::make_shared<Calibration>(calibration), &table);
   std::vector<AppliedPose> out;
   out.reserve(table.poses.size());
   const Pose* previous = nullptr;

@@ -4,17 +4,29 @@
 namespace mgtd::calib {
 namespace {
 
-std::vector<EffectPtr> effects_of(const Calibration& c) {
+std::vector<EffectPtr> effects_of(const Calibration& c, const PoseTable* run) {
   std::vector<EffectPtr> out;
   for (const CalibratedEffect& e : c.effects) out.push_back(*make_effect(e.effect));
-  return out;
+  if (run == nullptr) return out;
+  EffectContext context{.table = run, .offset_nT = std::array<Eigen::Vector3d, kSensors>{}};
+  for (std::size_t i = 0; i < kSensors; ++i) (*context.offset_nT)[i] = c.sensors[i].offset_nT;
+  auto bound = bind(out, context);
+  return bound ? std::move(*bound) : out;
+}
+
+Eigen::VectorXd coefficients_of(const Calibration& c) {
+  std::vector<double> values;
+  for (const CalibratedEffect& e : c.effects) {
+    for (const EffectCoefficient& coefficient : e.coefficients) values.push_back(coefficient.value);
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 }  // namespace
 
-EffectCorrection::EffectCorrection(const Calibration& c)
-    : effects_(effects_of(c)),
-      array_(*ArrayModel::of(c)),
+EffectCorrection::EffectCorrection(const Calibration& c, const PoseTable* run)
+    : effects_(effects_of(c, run)),
+      array_(c.sensors, c.geometry, effects_, coefficients_of(c)),
       covariance_(full_covariance(c)),
       means_(c.reference.currents_A) {
   for (const CalibratedEffect& e : c.effects)

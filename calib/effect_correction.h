@@ -22,8 +22,9 @@ struct Corrected {
 
 class EffectCorrection {
  public:
-  /// The effects of `calibration` must be in the library (calibration_from_json makes sure).
-  explicit EffectCorrection(const Calibration& calibration);
+  /// The effects of `calibration` must be in the library (calibration_from_json makes sure). `run`: the poses
+  /// that are to be corrected, for effects with a memory; without it they know the pose before only.
+  explicit EffectCorrection(const Calibration& calibration, const PoseTable* run = nullptr);
 
   [[nodiscard]] bool has_site_effects() const { return array_.has_site_effects(); }
   [[nodiscard]] bool has_instrument_effects() const { return array_.has_instrument_effects(); }

@@ -63,7 +63,7 @@ Result<Frozen> freeze(const Calibration& c, const std::vector<EffectPtr>& added)
     row += static_cast<Eigen::Index>(e.coefficients.size());
   }
   for (const EffectPtr& effect : added) {
-    const auto same = [&](const CalibratedEffect& e) { return e.effect == effect->name(); };
+    const auto same = [&](const CalibratedEffect& e) { return e.effect == effect->spec(); };
     if (std::any_of(c.effects.begin(), c.effects.end(), same)) continue;
     if (auto ok = add_site_effect(effect, values, out); !ok) return tl::unexpected(ok.error());
   }

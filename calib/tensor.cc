@@ -91,7 +91,7 @@ TensorPipeline::TensorPipeline(Geometry geometry) : geometry_(geometry) {
   offset_nT_.fill(Eigen::Vector3d::Zero());
 }
 
-TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration)
+TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run)
     : calibration_(std::move(calibration)),
       id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
       geometry_(calibration_->geometry) {
@@ -100,7 +100,7 @@ TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration)
     gain_[i] = sensor.R_PS() * sensor.response().inverse();
     offset_nT_[i] = sensor.offset_nT;
   }
-  if (!calibration_->effects.empty()) effects_ = std::make_shared<const EffectCorrection>(*calibration_);
+  if (!calibration_->effects.empty()) effects_ = std::make_shared<const EffectCorrection>(*calibration_, run);
   noise_known_ = (calibration_->sample_noise_nT.array() > 0).all();
   prepare_uncertainty();
 }

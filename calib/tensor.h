@@ -46,7 +46,8 @@ class TensorPipeline {
   /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
   /// are NaN.
   explicit TensorPipeline(Geometry geometry);
-  explicit TensorPipeline(std::shared_ptr<const Calibration> calibration);
+  /// `run`: poses that will be applied, for effects with a memory (EffectCorrection).
+  explicit TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run = nullptr);
 
   /// Effects of the instrument are removed with the temperatures and the time of the epoch; one whose inputs
   /// are not measured live is left out, widens g_sd by its size, and flags the sample `incomplete`.

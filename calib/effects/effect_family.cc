@@ -9,22 +9,9 @@
 namespace mgtd::calib {
 namespace {
 
-/// Hours half-way between successive poses.
-std::vector<double> gaps_h(const PoseTable& table) {
-  const RunTime time = RunTime::of(table);
-  std::vector<double> t, out;
-  for (const Pose& pose : table.poses) t.push_back(time.hours(pose));
-  std::sort(t.begin(), t.end());
-  for (std::size_t k = 1; k < t.size(); ++k) {
-    if (t[k] > t[k - 1]) out.push_back((t[k] + t[k - 1]) / 2);
-  }
-  return out;
-}
-
 std::vector<double> run_values(const Scan& scan, const EffectContext& context) {
   std::vector<double> out;
-  if (context.table == nullptr) return out;
-  const std::vector<double> gaps = gaps_h(*context.table);
+  const std::vector<double> gaps = run_gaps_h(context);
   if (gaps.empty()) return out;
   const double last = static_cast<double>(gaps.size() - 1);
   for (int i = 0; i < scan.steps; ++i) {
@@ -53,6 +40,18 @@ const EffectFamily* find_family(std::string_view name) {
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const EffectFamily& f) { return f.name == name; });
   return found == all.end() ? nullptr : &*found;
+}
+
+std::vector<double> run_gaps_h(const EffectContext& context) {
+  std::vector<double> t, out;
+  if (context.table == nullptr) return out;
+  const RunTime time = RunTime::of(*context.table);
+  for (const Pose& pose : context.table->poses) t.push_back(time.hours(pose));
+  std::sort(t.begin(), t.end());
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    if (t[k] > t[k - 1]) out.push_back((t[k] + t[k - 1]) / 2);
+  }
+  return out;
 }
 
 std::vector<double> scan_values(const EffectFamily& family, const EffectContext& context) {

@@ -70,6 +70,9 @@ struct EffectFamily {
 /// The numbers a score test tries; empty for a family without a scan. `run` ranges need the context's table.
 [[nodiscard]] std::vector<double> scan_values(const EffectFamily& family, const EffectContext& context);
 
+/// Hours half-way between successive poses, ascending.
+[[nodiscard]] std::vector<double> run_gaps_h(const EffectContext& context);
+
 /// An effect of a family on a run. `where` defaults to the family's own (each-axis for sensors and axes).
 [[nodiscard]] Result<EffectPtr> make(const EffectFamily& family, std::optional<Where> where,
                                      std::optional<double> scan, const EffectContext& context);

@@ -46,6 +46,12 @@ class Search {
     const Scan::Range range = family_.scan->range;
     if (range == Scan::Range::linear || range == Scan::Range::logarithmic)
       value = refine(grid[at > 0 ? at - 1 : 0], grid[std::min(at + 1, grid.size() - 1)], value);
+    if (range == Scan::Range::run) {
+      for (const double t : run_gaps_h(context_)) {
+        if (t <= grid[at > 0 ? at - 1 : 0] || t >= grid[std::min(at + 1, grid.size() - 1)]) continue;
+        if (const double cost = cost_of(t); cost < best_cost_) best_cost_ = cost, value = t;
+      }
+    }
     return effect_at(value);
   }
 
