@@ -10,7 +10,7 @@ std::vector<EffectPtr> effects_of(const Calibration& c, const PoseTable* run) {
   if (run == nullptr) return out;
   EffectContext context{.table = run, .offset_nT = std::array<Eigen::Vector3d, kSensors>{}};
   for (std::size_t i = 0; i < kSensors; ++i) (*context.offset_nT)[i] = c.sensors[i].offset_nT;
-  auto bound = bind(out, context);
+  auto bound = bound_to_run(out, context);
   return bound ? std::move(*bound) : out;
 }
 

@@ -34,7 +34,8 @@ Result<EffectPtr> make_effect(const EffectSpec& spec, const EffectContext& conte
   return *bound ? *bound : *effect;
 }
 
-Result<std::vector<EffectPtr>> bind(const std::vector<EffectPtr>& effects, const EffectContext& context) {
+Result<std::vector<EffectPtr>> bound_to_run(const std::vector<EffectPtr>& effects,
+                                            const EffectContext& context) {
   std::vector<EffectPtr> out;
   for (const EffectPtr& effect : effects) {
     auto bound = effect->bound(context);

@@ -22,7 +22,7 @@ using EffectPtr = std::shared_ptr<const Effect>;
 /// The same, bound to a run.
 [[nodiscard]] Result<EffectPtr> make_effect(const EffectSpec& spec, const EffectContext& context);
 /// Effects as they are on one run (Effect::bound), those that do not care unchanged.
-[[nodiscard]] Result<std::vector<EffectPtr>> bind(const std::vector<EffectPtr>& effects,
-                                                  const EffectContext& context);
+[[nodiscard]] Result<std::vector<EffectPtr>> bound_to_run(const std::vector<EffectPtr>& effects,
+                                                          const EffectContext& context);
 
 }  // namespace mgtd::calib

@@ -9,7 +9,10 @@
 ///     table.eccentricity  azimuth += e1 cos az + e2 sin az + e3 cos 2az + e4 sin 2az     deg
 ///     table.angle-scale   azimuth += 1e-6 kappa azimuth        ppm; azimuth as recorded, not reduced to one
 ///     turn table.backlash      azimuth += beta sense                deg; sense = +-1 of the last approach
-///     table.wobble        tilt of the axis about X and Y: w1 cos az + w2 sin az each     deg
+///     table.wobble        tilt of the axis: w1 cos az + w2 sin az about X, w2 cos az - w1 sin az about Y deg
+///
+/// Of the four numbers of a general wobble (cos and sin about X and Y) the other two turn the array on the
+/// table by a fixed rotation, which is part of the alignment of the sensors.
 namespace mgtd::calib {
 
 /// The common part: a name, coefficients that act on the array as a whole.
@@ -77,14 +80,14 @@ class Backlash final : public TableEffect<Backlash> {
 class Wobble final : public TableEffect<Wobble> {
  public:
   static constexpr std::string_view kName = "table.wobble";
-  Wobble() : TableEffect({"x.cos", "x.sin", "y.cos", "y.sin"}, "deg", 0.02) {}
+  Wobble() : TableEffect({"w1", "w2"}, "deg", 0.02) {}
   template <class S>
   void equation(const Conditions&, int, std::span<const S> in, std::span<const S> w, std::span<S> out) const {
     using std::cos, std::sin;
     const S c = cos(in[0]) * S(to_rad(1.0)), s = sin(in[0]) * S(to_rad(1.0));
     out[0] = out[1] = out[2] = S(0.0);
     out[3] = w[0] * c + w[1] * s;
-    out[4] = w[2] * c + w[3] * s;
+    out[4] = w[1] * c - w[0] * s;
   }
 };
 

@@ -73,8 +73,10 @@ constexpr std::array kFamilies{
         .level = Level::table,
         .title = "the axis of the table wobbles",
         .cause = "run-out of the bearing",
-        .equation = "tilt of the azimuth axis about X and Y: w1 cos az + w2 sin az each",
-        .coefficients = "x.cos, x.sin, y.cos, y.sin, deg",
+        .equation = "tilt of the azimuth axis: w1 cos az + w2 sin az about X, w2 cos az - w1 sin az about Y; "
+                    "the other two "
+                    "combinations turn the array on the table by a fixed angle and are part of the alignment",
+        .coefficients = "w1, w2, deg",
         .typical = 0.02,
         .bound = 5,
         .source = "0.005 to 0.05 deg (estimate)",

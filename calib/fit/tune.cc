@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/tune.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,20 +24,60 @@ const EffectFamily* open_scan(const Effect& effect) {
   return family;
 }
 
+/// A problem with its weights, and a state near its solution.
+struct Fitted {
+  JointProblem problem;
+  JointState state;
+};
+
+/// Fit with all effects of `options`.
+Result<Fitted> fit_with(const PoseTable& table, const JointOptions& options) {
+  auto fit = fit_joint(table, options);
+  if (!fit) return tl::unexpected(fit.error());
+  return Fitted{std::move(fit->problem), std::move(fit->state)};
+}
+
+/// Fit without the effect in `slot`, which is then put in with zero coefficients: what starts at the wrong
+/// place can keep a fit from settling.
+Result<Fitted> fit_around(const PoseTable& table, const JointOptions& options, std::size_t slot) {
+  JointOptions without = options;
+  without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(slot));
+  const auto fit = fit_joint(table, without);
+  if (!fit) return tl::unexpected(fit.error());
+  auto problem = joint_problem(table, options);
+  if (!problem) return tl::unexpected(problem.error());
+  fix_gauge(*problem, options);
+  for (std::size_t k = 0; k < problem->poses.size(); ++k) {
+    problem->poses[k].weight = fit->problem.poses[k].weight;
+    problem->poses[k].attitude_weight = fit->problem.poses[k].attitude_weight;
+  }
+  Fitted out{std::move(*problem), fit->state};
+  Eigen::Index first = 0;
+  for (std::size_t i = 0; i < slot; ++i)
+    first += static_cast<Eigen::Index>(out.problem.effects[i]->coefficients().size());
+  const auto own = static_cast<Eigen::Index>(out.problem.effects[slot]->coefficients().size());
+  const Eigen::VectorXd& known = fit->state.coefficients;
+  out.state.coefficients = Eigen::VectorXd::Zero(known.size() + own);
+  out.state.coefficients.head(first) = known.head(first);
+  out.state.coefficients.tail(known.size() - first) = known.tail(known.size() - first);
+  return out;
+}
+
 /// One searched effect of a fitted problem.
 class Search {
  public:
-  Search(const JointFit& fit, const EffectContext& context, std::size_t slot, const EffectFamily& family)
-      : problem_(fit.problem),
-        state_(fit.state),
+  Search(Fitted fitted, const EffectContext& context, std::size_t slot, const EffectFamily& family)
+      : problem_(std::move(fitted.problem)),
+        state_(std::move(fitted.state)),
         context_(context),
         slot_(slot),
         family_(family),
-        spec_(*EffectSpec::parse(fit.problem.effects[slot]->spec())) {}
+        spec_(*EffectSpec::parse(problem_.effects[slot]->spec())) {}
 
   /// The effect with the value that leaves the least; null when none could be fitted.
   EffectPtr best() {
-    const std::vector<double> grid = scan_values(family_, context_);
+    std::vector<double> grid = scan_values(family_, context_);
+    if (family_.scan->range == Scan::Range::index) grid = promising(std::move(grid));
     std::size_t at = 0;
     for (std::size_t i = 0; i < grid.size(); ++i) {
       if (const double cost = cost_of(grid[i]); cost < best_cost_) best_cost_ = cost, at = i;
@@ -61,6 +102,29 @@ class Search {
     spec.set(family_.scan->parameter, value);
     auto effect = make_effect(spec, context_);
     return effect ? *effect : nullptr;
+  }
+
+  /// The places with the largest fall of the chi-square to first order.
+  std::vector<double> promising(std::vector<double> values) {
+    constexpr std::size_t kTried = 3;
+    std::vector<std::pair<double, double>> ranked;
+    for (const double value : values) {
+      if (const EffectPtr effect = effect_at(value)) {
+        problem_.effects[slot_] = effect;
+        ranked.emplace_back(-predicted_fall(), value);
+      }
+    }
+    std::sort(ranked.begin(), ranked.end());
+    values.clear();
+    for (std::size_t i = 0; i < std::min(kTried, ranked.size()); ++i) values.push_back(ranked[i].second);
+    return values;
+  }
+
+  [[nodiscard]] double predicted_fall() const {
+    const Reduced reduced = reduce(problem_, state_, 0);
+    const Eigen::VectorXd d = reduced.S.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::VectorXd g = d.cwiseProduct(reduced.g);
+    return g.dot((d.asDiagonal() * reduced.S * d.asDiagonal()).ldlt().solve(g));
   }
 
   double cost_of(double value) {
@@ -112,9 +176,11 @@ Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& 
     for (const auto& [slot, family] : open) {
       JointOptions others = tuned;
       others.effects[slot] = options.effects[slot];
-      const auto fit = fit_joint(table, others);
-      if (!fit) return tl::unexpected(fit.error());
-      if (EffectPtr best = Search(*fit, context, slot, *family).best()) tuned.effects[slot] = std::move(best);
+      auto fitted = family->scan->range == Scan::Range::index ? fit_around(table, others, slot)
+                                                              : fit_with(table, others);
+      if (!fitted) return tl::unexpected(fitted.error());
+      if (EffectPtr best = Search(std::move(*fitted), context, slot, *family).best())
+        tuned.effects[slot] = std::move(best);
     }
   }
   return tuned.effects;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <Eigen/Dense>
+
 #include "calib/effects/effect_family.h"
 #include "calib/fit/joint_fit.h"
 #include "tests/unit/calib/effects/effect_scene.h"

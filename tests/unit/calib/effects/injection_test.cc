@@ -161,12 +161,12 @@ std::vector<Case> table_cases() {
   out.push_back({"table.wobble",
                  {.attitude = [](const Pose& p) -> Eigen::Matrix3d {
                    const double c = std::cos(*p.azimuth_rad), s = std::sin(*p.azimuth_rad);
-                   const Vector3d tilt = kDeg * Vector3d(0.1 * c - 0.06 * s, 0.05 * c + 0.08 * s, 0);
+                   const Vector3d tilt = kDeg * Vector3d(0.1 * c - 0.06 * s, -0.06 * c - 0.1 * s, 0);
                    return testing::passive(*p.azimuth_rad, 2) *
                           Eigen::AngleAxisd(-tilt.norm(), tilt.normalized()) *
                           testing::passive(*p.pitch_rad, 1) * testing::passive(*p.roll_rad, 0);
                  }},
-                 {0.1, -0.06, 0.05, 0.08}});
+                 {0.1, -0.06}});
   return out;
 }
 
@@ -199,6 +199,12 @@ std::vector<Case> site_cases() {
                    return (t > 1.01 ? 0.4 : 0) * testing::gradient_50() * x;
                  }},
                  {12, -18, -8, 20, 4}});
+  out.push_back({"site.reference-error",
+                 {.reference =
+                      [](const Pose&, const Vector3d& u) {
+                        return 20 * u[0] - 10 * u[2] + 30 * (u[0] * u[0] - u[2] * u[2]);
+                      }},
+                 {20, 0, -10, 30, 0, 0, 0, 0}});
   return out;
 }
 
@@ -224,8 +230,13 @@ TEST_P(Injected, IsFoundWithinItsUncertainty) {
     // Three and a half standard deviations of a chi-square, twice the tail of three seeds of all cases.
     EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof)) << c.spec;
     const double gain = without->chi2 + without->chi2_table - fit->chi2 - fit->chi2_table;
-    const bool table_level = fit->problem.effects.front()->level() == Level::table;
-    if (!table_level) EXPECT_GT(gain, 50) << c.spec << ": too small to try the fit";
+    // Wrong angles of the table are taken for a worse table, and the heading error of a reference for offsets
+    // and matrices common to the sensors: there the chi-square falls little, the coefficients are right all
+    // the same.
+    const Level level = fit->problem.effects.front()->level();
+    if (level != Level::table && level != Level::reference) {
+      EXPECT_GT(gain, 50) << c.spec << ": too small to try the fit";
+    }
     ASSERT_EQ(fit->state.coefficients.size(), static_cast<Eigen::Index>(c.truth.size()));
     for (Eigen::Index i = 0; i < fit->state.coefficients.size(); ++i) {
       const double sd = std::sqrt(fit->covariance(kEffectSlot + i, kEffectSlot + i));

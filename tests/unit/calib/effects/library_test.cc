@@ -115,8 +115,9 @@ TEST(EffectLibrary, DerivativesAreThoseOfTheEquation) {
     }
   }
   EXPECT_GT(checked, 300);
-  // A planted error of a thousandth shows wherever the term has a derivative at all.
-  EXPECT_GT(caught, checked * 9 / 10);
+  // A planted error of a thousandth shows wherever the term has a derivative at all; a step that is still to
+  // come has none.
+  EXPECT_GT(caught, checked * 4 / 5);
 }
 
 TEST(EffectLibrary, WithoutCoefficientsEveryTermVanishes) {
