@@ -93,8 +93,12 @@ Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& 
     const bool known =
         std::any_of(in_model.begin(), in_model.end(), [&](const EffectPtr& e) { return e->name() == name; });
     if (known) continue;
-    auto effect = make_effect(name);
-    if (!effect) continue;
+    auto effect = make_effect(EffectSpec{.name = std::string(name), .where = {}, .parameters = {}},
+                              {.table = &table, .offset_nT = {}});
+    if (!effect) {
+      out.untestable.push_back({std::string(name), effect.error().message});
+      continue;
+    }
     if (const auto ok = (*effect)->check(table); !ok) {
       out.untestable.push_back({std::string(name), ok.error().message});
       continue;

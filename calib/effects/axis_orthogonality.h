@@ -5,7 +5,7 @@
 
 /// `axis.orthogonality.temperature`: the angles between the axes of a sensor move with its temperature.
 ///
-///     y_a += sum_(b != a) chi_ab (T - T0) v_b      arcsec/degC, six a sensor: "s3.z.x" is chi_zx
+///     y_a += sum_(b != a) chi_ab (T - T0) v_b      arcsec/degC, six a sensor: "s3.zx" is chi_zx
 ///
 /// Axes never share a coefficient; at `all` the four sensors share six.
 namespace mgtd::calib {
@@ -14,7 +14,7 @@ struct OrthogonalityTemperature {
   static constexpr std::string_view kName = "axis.orthogonality.temperature";
   static constexpr int kPerAxis = 2;
   static AxisCoefficients coefficients() {
-    return {.suffix = {{{".y", ".z"}, {".x", ".z"}, {".x", ".y"}}},
+    return {.suffix = {{{"y", "z"}, {"x", "z"}, {"x", "y"}}},
             .unit = "arcsec/degC",
             .typical = 1,
             .axes_alike = false};

@@ -44,7 +44,7 @@ constexpr std::array kFamilies{
                  .title = "the angles between the axes follow temperature",
                  .cause = "core holders and windings move against each other as the head warms",
                  .equation = "y_a += sum over b != a of chi_ab (T - 20 degC) v_b",
-                 .coefficients = "chi, arcsec/degC, six a sensor (s3.z.x: axis z answers to x)",
+                 .coefficients = "chi, arcsec/degC, six a sensor (s3.zx: axis z answers to x)",
                  .typical = 1,
                  .bound = 60,
                  .source = "0.1 to 2 arcsec/degC (estimate)",
