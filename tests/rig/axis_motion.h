@@ -24,6 +24,7 @@ class AxisMotion {
   [[nodiscard]] double indicated_deg(double t_s) const;
   [[nodiscard]] double true_deg(double t_s) const;
   [[nodiscard]] bool moving(double t_s) const { return (jammed_ ? jammed_at_s_ : t_s) < end_s_; }
+  [[nodiscard]] double end_s() const { return end_s_; }
   /// +1 or -1, the direction of the last move; 0 before the first.
   [[nodiscard]] int sense() const { return sense_; }
 

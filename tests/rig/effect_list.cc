@@ -3,124 +3,121 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-
-#include "tests/rig/effects/axis_hysteresis.h"
-#include "tests/rig/effects/axis_law.h"
-#include "tests/rig/effects/axis_settling.h"
-#include "tests/rig/effects/site_dipole.h"
-#include "tests/rig/effects/site_gradient.h"
-#include "tests/rig/effects/table_law.h"
 
 namespace mgtd::rig {
 namespace {
 
-double warm(const AxisContext& c) { return c.T_degC - kT0_degC; }
-double hours(const AxisContext& c) { return c.t_s / 3600; }
-
-/// y += coefficient * shape; t in hours from the start, T0 = 20 degC, x = v/F0.
-constexpr std::array<AxisLaw, 11> kLaws{{
-    {"axis.offset.temperature", "nT_per_degC", nullptr, [](const AxisContext& c, double) { return warm(c); }},
-    {"axis.offset.temperature2", "nT_per_degC2", nullptr,
-     [](const AxisContext& c, double) { return warm(c) * warm(c); }},
-    {"axis.offset.drift", "nT_per_h", nullptr, [](const AxisContext& c, double) { return hours(c); }},
-    {"axis.offset.step", "nT", "at_s",
-     [](const AxisContext& c, double at_s) { return c.t_s < at_s ? 0. : 1.; }},
-    {"axis.gain.temperature", "ppm_per_degC", nullptr,
-     [](const AxisContext& c, double) { return 1e-6 * warm(c) * c.v(); }},
-    {"axis.gain.temperature2", "ppm_per_degC2", nullptr,
-     [](const AxisContext& c, double) { return 1e-6 * warm(c) * warm(c) * c.v(); }},
-    {"axis.gain.drift", "ppm_per_h", nullptr,
-     [](const AxisContext& c, double) { return 1e-6 * hours(c) * c.v(); }},
-    {"axis.gain.step", "ppm", "above_nT",
-     [](const AxisContext& c, double above) { return std::abs(c.v()) > above ? 1e-6 * c.v() : 0.; }},
-    {"axis.quadratic", "nT_at_F0", nullptr, [](const AxisContext& c, double) { return c.x() * c.x(); }},
-    {"axis.cubic", "nT_at_F0", nullptr, [](const AxisContext& c, double) { return c.x() * c.x() * c.x(); }},
-    {"axis.zero-crossing", "nT", nullptr, [](const AxisContext& c, double) { return c.v() < 0 ? -1. : 1.; }},
-}};
-
-std::unique_ptr<Effect> axis_effect(Section& s, const AxisLaw& law) {
-  const Where where = s.where();
-  const double coefficient = s.needed(law.key);
-  const double second = law.second_key == nullptr ? 0 : s.needed(law.second_key);
-  return std::make_unique<AxisEffect>(law, where, coefficient, second);
+const EffectKind* kind_named(const std::string& name) {
+  const auto kinds = all_kinds();
+  const auto found =
+      std::find_if(kinds.begin(), kinds.end(), [&](const EffectKind* k) { return name == k->name; });
+  return found == kinds.end() ? nullptr : *found;
 }
 
-struct Entry {
-  const char* name;
-  const char* keys;
-  std::unique_ptr<Effect> (*make)(Section& s);
-};
-
-constexpr std::array<Entry, 8> kOthers{{
-    {"axis.hysteresis", "where h_nT width",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       double width = 0.1;
-       s.read("width", width, {1e-6, 10});
-       return std::make_unique<AxisHysteresis>(s.where(), s.needed("h_nT"), width);
-     }},
-    {"axis.settling", "where eta_nT tau_s",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       double tau_s = 5;
-       s.read("tau_s", tau_s, {1e-3, 1e6});
-       return std::make_unique<AxisSettling>(s.where(), s.needed("eta_nT"), tau_s);
-     }},
-    {"site.gradient", "nT_per_m = [xx, yy, xy, xz, yz]",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       return std::make_unique<SiteGradient>(s.needed_list<5>("nT_per_m"), SiteGradient::Five{});
-     }},
-    {"site.gradient-drift", "nT_per_m_per_h = [xx, yy, xy, xz, yz]",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       return std::make_unique<SiteGradient>(SiteGradient::Five{}, s.needed_list<5>("nT_per_m_per_h"));
-     }},
-    {"site.dipole", "moment_Am2 = [x, y, z] at_m = [x, y, z]",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       const auto moment_Am2 = s.needed_list<3>("moment_Am2");
-       return std::make_unique<SiteDipole>(moment_Am2, s.needed_list<3>("at_m"));
-     }},
-    {"table.eccentricity", "cos_deg sin_deg",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       const double cos_deg = s.needed("cos_deg");
-       return std::make_unique<TableEccentricity>(cos_deg, s.needed("sin_deg"));
-     }},
-    {"table.angle-scale", "ppm",
-     [](Section& s) -> std::unique_ptr<Effect> {
-       return std::make_unique<TableAngleScale>(s.needed("ppm"));
-     }},
-    {"table.backlash", "deg",
-     [](Section& s) -> std::unique_ptr<Effect> { return std::make_unique<TableBacklash>(s.needed("deg")); }},
-}};
-
 std::string names() {
-  std::vector<std::string> out;
-  for (const AxisLaw& law : kLaws) out.emplace_back(law.name);
-  for (const Entry& entry : kOthers) out.emplace_back(entry.name);
-  return fmt::format("{}", fmt::join(out, ", "));
+  std::string out;
+  for (const EffectKind* kind : all_kinds()) out += (out.empty() ? "" : ", ") + std::string(kind->name);
+  return out;
+}
+
+std::string random_where(Scope scope, std::mt19937_64& random) {
+  std::uniform_int_distribution<int> sensor(1, 4), axis(0, 2);
+  std::string out = fmt::format("s{}", sensor(random));
+  if (scope == Scope::axis) out += fmt::format(".{}", "xyz"[axis(random)]);
+  return out;
+}
+
+/// A direction at random, as long as the typical size wants it.
+std::string random_value(const Key& key, double size, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> between(key.low, key.high);
+  std::normal_distribution<double> normal;
+  const auto count = static_cast<std::size_t>(key.count);
+  std::vector<double> values(count);
+  double norm = 0;
+  for (double& v : values) {
+    v = normal(random);
+    norm += v * v;
+  }
+  for (double& v : values) {
+    // Places keep their distance from the array, on a side of chance; times and widths are as they are drawn.
+    const double drawn = key.low < key.high ? between(random) : 0;
+    v = key.low == key.high ? v * key.typical * size / std::sqrt(norm)
+                            : drawn * (count == 1 ? 1 : v / std::sqrt(norm));
+  }
+  if (key.low < key.high && count == 1 && key.low == std::floor(key.low) && key.high > 1000)
+    values[0] = std::floor(values[0]);
+  if (count == 1) return fmt::format("{}", values[0]);
+  return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
 }  // namespace
 
 std::shared_ptr<const Effect> read_effect(Section& s) {
-  std::string name;
+  std::string name, of;
   s.read("name", name);
-  for (const AxisLaw& law : kLaws) {
-    if (name == law.name) return axis_effect(s, law);
+  const EffectKind* const kind = kind_named(name);
+  if (kind == nullptr) {
+    s.complain("name", fmt::format("no effect '{}'; there are: {}", name, names()));
+    s.accept_rest();
+    return nullptr;
   }
-  for (const Entry& entry : kOthers) {
-    if (name == entry.name) return entry.make(s);
+  const Where where = kind->scope == Scope::none ? Where{} : s.where();
+  if (kind->scope == Scope::sensor && where.one_axis())
+    s.complain("where", fmt::format("{} acts on a whole sensor: all or s1 .. s4", name));
+  if (kind->needs_covariate) {
+    s.read("of", of);
+    if (of.empty()) s.complain("", "of is missing: the name of a [[covariate]]");
   }
-  s.complain("name", fmt::format("no effect '{}'; there are: {}", name, names()));
-  s.accept_rest();
-  return nullptr;
+  Numbers numbers;
+  for (const Key& key : kind->keys) {
+    if (key.name == nullptr) break;
+    const auto values = s.numbers(key.name, static_cast<std::size_t>(key.count), key.fallback);
+    numbers.value.insert(numbers.value.end(), values.begin(), values.end());
+  }
+  return make_effect(*kind, where, std::move(numbers), of);
+}
+
+tl::expected<std::shared_ptr<const Effect>, std::string> effect_of(std::string_view toml) {
+  try {
+    const toml::table table = toml::parse(toml);
+    std::vector<Mistake> mistakes;
+    Section section(&table, "effect", mistakes);
+    auto effect = read_effect(section);
+    section.refuse_rest();
+    if (!mistakes.empty()) return tl::unexpected(mistakes.front().text);
+    return effect;
+  } catch (const toml::parse_error& error) {
+    return tl::unexpected(std::string(error.description()));
+  }
+}
+
+std::string random_effect(const EffectKind& kind, double size, std::mt19937_64& random, std::string_view of) {
+  std::string out = fmt::format("name = \"{}\"\n", kind.name);
+  if (kind.scope != Scope::none) out += fmt::format("where = \"{}\"\n", random_where(kind.scope, random));
+  if (kind.needs_covariate) out += fmt::format("of = \"{}\"\n", of);
+  for (const Key& key : kind.keys) {
+    if (key.name == nullptr) break;
+    if (!std::isnan(key.fallback) && key.low == key.high) continue;
+    out += fmt::format("{} = {}\n", key.name, random_value(key, size, random));
+  }
+  return out;
 }
 
 std::vector<std::string> effect_help() {
   std::vector<std::string> out;
-  for (const AxisLaw& law : kLaws) {
-    out.push_back(fmt::format("{:26} where {}{}{}", law.name, law.key, law.second_key == nullptr ? "" : " ",
-                              law.second_key == nullptr ? "" : law.second_key));
+  for (const EffectKind* kind : all_kinds()) {
+    std::string line = fmt::format("{:31}", kind->name);
+    if (kind->scope != Scope::none) line += " where";
+    if (kind->needs_covariate) line += " of";
+    for (const Key& key : kind->keys) {
+      if (key.name == nullptr) break;
+      line += fmt::format(" {}", key.name);
+      if (key.count > 1) line += fmt::format("[{}]", key.count);
+    }
+    out.push_back(std::move(line));
   }
-  for (const Entry& entry : kOthers) out.push_back(fmt::format("{:26} {}", entry.name, entry.keys));
   return out;
 }
 

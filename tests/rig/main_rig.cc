@@ -12,6 +12,8 @@
 #include "tests/rig/fault_client.h"
 #include "tests/rig/pose_writer.h"
 #include "tests/rig/rig_server.h"
+#include "tests/rig/seal.h"
+#include "tests/rig/simulated_table.h"
 
 namespace {
 
@@ -25,20 +27,28 @@ and a GSM-90 scalar magnetometer. Its physics is its own; what it hides, the est
   mgt-rig config --rig table6 --dir /tmp/rig --speed-up 30 > mgtd.toml
   mgt-rig fault /tmp/rig unplug fluxgate2 for 3                  see mgt-rig fault --help
   mgt-rig table --scenario s.toml --poses run157 -o poses.csv    a pose table without ports and daemon
-  mgt-rig truth --scenario s.toml                                what the rig really is, as JSON)";
+  mgt-rig truth --scenario s.toml                                what the rig really is, as JSON
+  mgt-rig table --hide 1 --seal truth.sealed -o poses.csv        the blind game: find what it hides, then
+  mgt-rig open truth.sealed                                      see whether you were right)";
 
 constexpr const char* kScenarioHelp =
     R"(A scenario is a TOML file; every key has a default:
   [rig]          name, parameters (table3, table6, ideal, random), seed, baseline_m
   [s1] .. [s4]   theta_deg phi_deg psi_deg cx cy cz ix_nT iy_nT iz_nT alpha_deg beta_deg gamma_deg, where they differ
                  from the named rig; mounting = "y -x z": where the sensor's x, y, z point on the platform
-  [site]         f_nT, inclination_deg, declination_deg, drift_nT_per_h, diurnal_nT, diurnal_period_h
-  [temperature]  start_degC, ramp_degC_per_h, head_degC = [4], pulse_degC, pulse_at_s, pulse_tau_s, pulse_head
-  [sensors]      noise (gaussian, uniform), noise_nT (sd or half width of one sample), rate_hz, range_V,
+  [site]         f_nT, inclination_deg, declination_deg, drift_nT_per_h, diurnal_nT, diurnal_period_h,
+                 record (usgs-bou-2016-01-18, quiet, or usgs-bou-2016-01-20, a storm), record_start_h
+  [temperature]  start_degC, ramp_degC_per_h, head_degC = [4], pulse_degC, pulse_at_s, pulse_tau_s, pulse_head,
+                 law = "calib1520": the measured temperature laws of four real fluxgates
+  [sensors]      noise (gaussian, uniform, student), noise_nT (sd or half width of one sample), student_dof,
+                 ar1_rho, slow_nT, slow_tau_s, spike_share, spike_nT, lsb_nT, wiring = [4], rate_hz, range_V,
                  uT_full_scale, palmacq, common_trigger, autostart, oscillator_ppm
+  [visit]        noise, noise_nT, student_dof, rho, outlier_share, outlier_nT: what coming back to a pose does
+                 not reproduce
   [table]        accuracy_deg, velocity_deg_per_s, acceleration_deg_per_s2, tilt_limit_deg
   [scalar]       present, noise_nT, period_s, bad_every
   [[fault]]      at_s, do = "unplug fluxgate2 for 3"
+  [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern
   [[effect]]     name and coefficients; where = all, s1 .. s4, s1.x .. s4.z (default all):
 )";
 
@@ -52,7 +62,9 @@ std::string footer() {
 
 struct Arguments {
   std::string scenario, rig = "table6", dir = "/tmp/mgt-rig", state, output, poses = "run157",
-                        tcp = "127.0.0.1:7450";
+                        tcp = "127.0.0.1:7450", seal;
+  int hide{0};
+  bool samples{false};
   std::uint64_t seed{1};
   double speed_up{1};
   bool print_config{false};
@@ -100,6 +112,50 @@ int write(const std::string& path, const std::string& content) {
   return 2;
 }
 
+/// The answer, sealed before anything is measured.
+bool seal_truth(const std::string& path, const Scenario& s) {
+  std::random_device device;
+  std::mt19937_64 random((std::uint64_t{device()} << 32U) ^ device());
+  const Seal sealed = seal(truth_json(s), random);
+  if (write(path, sealed.content) != 0) return false;
+  fmt::print(stderr, "sealed in {}: sha256 {}\n", path, sealed.sha256);
+  return true;
+}
+
+/// With what the command line wants hidden; sealed where it says so.
+std::optional<Scenario> prepared(const Arguments& args, Scenario s) {
+  if (args.hide > 0) {
+    std::random_device device;
+    std::mt19937_64 random((std::uint64_t{device()} << 32U) ^ device());
+    s = with_hidden(std::move(s), args.hide, random);
+  }
+  if (!args.seal.empty() && !seal_truth(args.seal, s)) return std::nullopt;
+  return s;
+}
+
+int table(const Arguments& args, Scenario s) {
+  const bool grid = args.poses == "grid5832";
+  if (grid) s.table_accuracy_deg = 0;
+  const Design design = grid ? grid_of_5832() : run_of_157({.tilt_limit_deg = s.tilt_limit_deg}, s.seed);
+  const std::uint64_t seed = s.seed;
+  return write(args.output,
+               pose_table_csv(simulated_table(std::move(s), design, seed,
+                                              args.samples ? Sampling::samples : Sampling::means)));
+}
+
+int open(const Arguments& args) {
+  std::ifstream in(args.seal);
+  std::ostringstream content;
+  if (!in || !(content << in.rdbuf())) {
+    fmt::print(stderr, "mgt-rig: {} cannot be read\n", args.seal);
+    return 2;
+  }
+  const auto truth = open_seal(content.str());
+  if (truth) return write("", truth->dump(1) + "\n");
+  fmt::print(stderr, "mgt-rig: {}: {}\n", args.seal, truth.error());
+  return 1;
+}
+
 int ask(const Arguments& args, const std::string& line) {
   const auto answer = ask_rig(args.dir, line);
   if (!answer) {
@@ -145,29 +201,40 @@ void add_place(CLI::App* command, Arguments& args) {
   command->add_option("--tcp", args.tcp, "address of the daemon's stream")->capture_default_str();
 }
 
+void add_game(CLI::App* command, Arguments& args) {
+  command->add_option("--seal", args.seal, "write the truth to this file, sealed, and tell its hash");
+  command->add_option("--hide", args.hide, "add so many effects at random")->check(CLI::Range(0, 5));
+}
+
 void add_commands(CLI::App& app, Arguments& args) {
-  CLI::App* const run = add_scenario(
-      app, "run", "put the rig on serial ports until Ctrl-C", args,
-      [](const Arguments& a, const Scenario& s) {
-        return a.print_config ? write("", a.config(s)) : serve(s, {a.absolute_dir(), a.speed_up});
-      });
+  CLI::App* const run = add_scenario(app, "run", "put the rig on serial ports until Ctrl-C", args,
+                                     [](const Arguments& a, const Scenario& s) {
+                                       if (a.print_config) return write("", a.config(s));
+                                       const auto rig = prepared(a, s);
+                                       return rig ? serve(*rig, {a.absolute_dir(), a.speed_up}) : 2;
+                                     });
+  add_game(run, args);
   add_place(run, args);
   run->add_flag("--print-config", args.print_config, "print the mgtd.toml for this rig instead");
   add_place(add_scenario(app, "config", "print the mgtd.toml for this rig", args,
                          [](const Arguments& a, const Scenario& s) { return write("", a.config(s)); }),
             args);
-  CLI::App* const table = add_scenario(
-      app, "table", "write a pose table straight from the physics", args,
-      [](const Arguments& a, const Scenario& s) {
-        return write(a.output,
-                     pose_table_csv(s, a.poses == "grid5832" ? PoseSet::grid5832 : PoseSet::run157));
-      });
-  table->add_option("--poses", args.poses, "run157 (36 standard and 121 random poses) or grid5832")
+  CLI::App* const poses = add_scenario(app, "table", "write a pose table straight from the physics", args,
+                                       [](const Arguments& a, const Scenario& s) {
+                                         auto rig = prepared(a, s);
+                                         return rig ? table(a, *std::move(rig)) : 2;
+                                       });
+  add_game(poses, args);
+  poses->add_flag("--samples", args.samples, "every sample instead of the distribution of the means");
+  poses->add_option("--poses", args.poses, "run157 (36 standard and 121 random poses) or grid5832")
       ->check(CLI::IsMember({"run157", "standard+random", "grid5832"}))
       ->capture_default_str();
-  table->add_option("-o,--output", args.output, "file; standard output when absent");
+  poses->add_option("-o,--output", args.output, "file; standard output when absent");
   add_scenario(app, "truth", "print what the rig really is, as JSON", args,
                [](const Arguments&, const Scenario& s) { return write("", truth_json(s).dump(1) + "\n"); });
+  add(app, "open", "show the truth in a sealed file", args, &open)
+      ->add_option("FILE", args.seal, "sealed file")
+      ->required();
   CLI::App* const fault =
       add(app, "fault", "make something go wrong on a running rig", args, [](const Arguments& a) {
         const std::string lasting = a.for_s > 0 ? fmt::format(" for {}", a.for_s) : "";

@@ -8,11 +8,31 @@
 #include <set>
 
 #include "tests/rig/effect_list.h"
+#include "tests/rig/effects/site_record.h"
+#include "tests/rig/effects/temperature_law.h"
 #include "tests/rig/fault.h"
 #include "tests/rig/section.h"
 
 namespace mgtd::rig {
 namespace {
+
+void read_kind(Section& section, NoiseKind& kind) {
+  std::string text = "gaussian";
+  section.read("noise", text);
+  if (text != "gaussian" && text != "uniform" && text != "student")
+    section.complain("noise", "noise must be gaussian, uniform or student");
+  kind = text == "uniform"   ? NoiseKind::uniform
+         : text == "student" ? NoiseKind::student
+                             : NoiseKind::gaussian;
+}
+
+void read_wave(Section& section, Wave& wave) {
+  std::string text = "toggle";
+  section.read("wave", text);
+  if (text != "toggle" && text != "sine" && text != "ramp")
+    section.complain("wave", "wave must be toggle, sine or ramp");
+  wave = text == "sine" ? Wave::sine : text == "ramp" ? Wave::ramp : Wave::toggle;
+}
 
 class Reader {
  public:
@@ -27,10 +47,15 @@ class Reader {
   void read_rig(Scenario& s);
   void read_sensor(std::size_t i, SensorTruth& truth);
   void read_site(Scenario& s);
-  void read_temperature(TemperatureScript& script);
+  void read_record(Section& site, Scenario& s);
+  void read_temperature(Scenario& s);
   void read_sensors(Scenario& s);
+  void read_noise(Section& sensors, SampleNoise& noise);
+  void read_wiring(Section& sensors, Scenario& s);
+  void read_visit(Scenario& s);
   void read_table(Scenario& s);
   void read_scalar(Scenario& s);
+  void read_covariates(Scenario& s);
   void read_effects(Scenario& s);
   void read_faults(Scenario& s);
   template <class Body>
@@ -41,8 +66,9 @@ class Reader {
 };
 
 void Reader::refuse_unknown_sections() {
-  static const std::set<std::string_view> kSections{
-      "rig", "site", "temperature", "sensors", "s1", "s2", "s3", "s4", "table", "scalar", "effect", "fault"};
+  static const std::set<std::string_view> kSections{"rig",    "site",      "temperature", "sensors", "s1",
+                                                    "s2",     "s3",        "s4",          "visit",   "table",
+                                                    "scalar", "covariate", "effect",      "fault"};
   for (const auto& [key, node] : root_) {
     if (!kSections.contains(key.str())) {
       mistakes_.push_back({node.source().begin.line, fmt::format("unknown section '{}'; there are: {}",
@@ -94,10 +120,25 @@ void Reader::read_site(Scenario& s) {
   site.read("drift_nT_per_h", s.field_drift_nT_per_h);
   site.read("diurnal_nT", s.diurnal_nT);
   site.read("diurnal_period_h", s.diurnal_period_h, {0.01, 1000});
+  read_record(site, s);
   site.refuse_rest();
 }
 
-void Reader::read_temperature(TemperatureScript& script) {
+void Reader::read_record(Section& site, Scenario& s) {
+  std::string record;
+  double start_h = 18;
+  site.read("record", record);
+  site.read("record_start_h", start_h, {0, 24});
+  if (record.empty()) return;
+  if (const auto found = SiteRecord::named(record, start_h)) {
+    s.effects.push_back(std::make_shared<SiteRecord>(*found));
+  } else {
+    site.complain("record", fmt::format("record = '{}'; there are: {}", record, SiteRecord::names()));
+  }
+}
+
+void Reader::read_temperature(Scenario& s) {
+  TemperatureScript& script = s.temperature;
   Section temperature = section("temperature");
   temperature.read("start_degC", script.start_degC, {-60, 80});
   temperature.read("ramp_degC_per_h", script.ramp_degC_per_h, {-1000, 1000});
@@ -106,17 +147,21 @@ void Reader::read_temperature(TemperatureScript& script) {
   temperature.read("pulse_at_s", script.pulse_at_s);
   temperature.read("pulse_tau_s", script.pulse_tau_s, {1, 1e6});
   temperature.read("pulse_head", script.pulse_head);
+  std::string law;
+  temperature.read("law", law);
+  if (law == "calib1520") {
+    s.effects.push_back(std::make_shared<TemperatureLaw>());
+  } else if (!law.empty()) {
+    temperature.complain("law", fmt::format("law = '{}' must be calib1520", law));
+  }
   if (script.pulse_head > 4) temperature.complain("pulse_head", "pulse_head must be 1 .. 4, or 0 for all");
   temperature.refuse_rest();
 }
 
 void Reader::read_sensors(Scenario& s) {
   Section sensors = section("sensors");
-  std::string kind = "gaussian";
-  sensors.read("noise", kind);
-  if (kind != "gaussian" && kind != "uniform") sensors.complain("noise", "noise must be gaussian or uniform");
-  s.noise = kind == "uniform" ? NoiseKind::uniform : NoiseKind::gaussian;
-  sensors.read("noise_nT", s.noise_nT, {0, 1e5});
+  read_noise(sensors, s.noise);
+  read_wiring(sensors, s);
   sensors.read("rate_hz", s.rate_hz, {1, 1000});
   sensors.read("range_V", s.range_V);
   if (s.range_V != 10 && s.range_V != 5 && s.range_V != 2.5)
@@ -127,6 +172,38 @@ void Reader::read_sensors(Scenario& s) {
   sensors.read("autostart", s.autostart);
   sensors.read("oscillator_ppm", s.oscillator_ppm, {0, 10'000});
   sensors.refuse_rest();
+}
+
+void Reader::read_noise(Section& sensors, SampleNoise& noise) {
+  read_kind(sensors, noise.kind);
+  sensors.read("noise_nT", noise.noise_nT, {0, 1e5});
+  sensors.read("student_dof", noise.student_dof, {2.1, 1000});
+  sensors.read("ar1_rho", noise.ar1_rho, {-0.999, 0.999});
+  sensors.read("slow_nT", noise.slow_nT, {0, 1e5});
+  sensors.read("slow_tau_s", noise.slow_tau_s, {0.01, 1e6});
+  sensors.read("spike_share", noise.spike_share, {0, 1});
+  sensors.read("spike_nT", noise.spike_nT, {0, 1e6});
+  sensors.read("lsb_nT", noise.lsb_nT, {0, 1e5});
+}
+
+void Reader::read_wiring(Section& sensors, Scenario& s) {
+  std::array<double, 4> wiring{1, 2, 3, 4};
+  sensors.read("wiring", wiring);
+  std::set<double> seen(wiring.begin(), wiring.end());
+  if (seen != std::set<double>{1, 2, 3, 4}) sensors.complain("wiring", "wiring must be 1 to 4 in some order");
+  std::transform(wiring.begin(), wiring.end(), s.wiring.begin(),
+                 [](double w) { return static_cast<int>(w); });
+}
+
+void Reader::read_visit(Scenario& s) {
+  Section visit = section("visit");
+  read_kind(visit, s.visit.kind);
+  visit.read("noise_nT", s.visit.noise_nT, {0, 1e5});
+  visit.read("student_dof", s.visit.student_dof, {2.1, 1000});
+  visit.read("rho", s.visit.rho, {-0.999, 0.999});
+  visit.read("outlier_share", s.visit.outlier_share, {0, 1});
+  visit.read("outlier_nT", s.visit.outlier_nT, {0, 1e6});
+  visit.refuse_rest();
 }
 
 void Reader::read_table(Scenario& s) {
@@ -164,9 +241,29 @@ void Reader::for_each(std::string_view name, Body body) {
   }
 }
 
+void Reader::read_covariates(Scenario& s) {
+  for_each("covariate", [&](Section& section) {
+    Covariate c;
+    section.read("name", c.name);
+    section.read("mean", c.mean);
+    section.read("amplitude", c.amplitude);
+    read_wave(section, c.wave);
+    section.read("every_s", c.every_s, {0.1, 1e6});
+    section.read("recorded", c.recorded);
+    section.read("pattern", c.pattern);
+    s.covariates.push_back(std::move(c));
+  });
+}
+
 void Reader::read_effects(Scenario& s) {
   for_each("effect", [&](Section& section) {
-    if (auto effect = read_effect(section)) s.effects.push_back(std::move(effect));
+    auto effect = read_effect(section);
+    if (effect == nullptr) return;
+    const std::string of = effect->covariate();
+    const auto known = [&](const Covariate& c) { return c.name == of; };
+    if (!of.empty() && std::none_of(s.covariates.begin(), s.covariates.end(), known))
+      section.complain("of", fmt::format("of = '{}': there is no [[covariate]] of that name", of));
+    s.effects.push_back(std::move(effect));
   });
 }
 
@@ -187,10 +284,12 @@ Scenario Reader::read() {
   refuse_unknown_sections();
   read_rig(scenario);
   read_site(scenario);
-  read_temperature(scenario.temperature);
+  read_temperature(scenario);
   read_sensors(scenario);
+  read_visit(scenario);
   read_table(scenario);
   read_scalar(scenario);
+  read_covariates(scenario);
   read_effects(scenario);
   read_faults(scenario);
   return scenario;

@@ -9,14 +9,14 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "tests/rig/covariate.h"
 #include "tests/rig/effect.h"
+#include "tests/rig/noise.h"
 #include "tests/rig/truth.h"
 
 /// What a simulated rig is and what happens on it. Written in TOML; `mgt-rig --help` and tests/scenarios show
 /// how.
 namespace mgtd::rig {
-
-enum class NoiseKind { gaussian, uniform };
 
 struct TemperatureScript {
   double start_degC{20};
@@ -45,8 +45,10 @@ struct Scenario {
   double diurnal_nT{0};            ///< amplitude of a sine of the magnitude, ...
   double diurnal_period_h{24};
 
-  NoiseKind noise{NoiseKind::gaussian};
-  double noise_nT{0.3};  ///< sd of one sample, or half width when uniform
+  SampleNoise noise;
+  VisitNoise visit;
+  /// Whose readings come out of which connector: {2, 1, 3, 4} are two swapped sensors.
+  std::array<int, 4> wiring{1, 2, 3, 4};
   TemperatureScript temperature;
   double rate_hz{50};         ///< when nobody commands one
   double range_V{10};         ///< the digitiser's range, for the printed configuration
@@ -65,6 +67,7 @@ struct Scenario {
   double scalar_period_s{1};
   std::uint64_t scalar_bad_every{0};  ///< every so many readings one has a poor quality; 0: none
 
+  std::vector<Covariate> covariates;
   std::vector<std::shared_ptr<const Effect>> effects;
   std::vector<TimedFault> faults;  ///< in the order of their times
 };

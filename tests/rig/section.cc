@@ -75,11 +75,15 @@ void Section::read_list(std::string_view key, double* value, std::size_t n) {
   if (!good) complain(key, fmt::format("{} must be a list of {} numbers", key, n));
 }
 
-double Section::needed(std::string_view key) {
-  double value = 0;
-  need(key);
-  read(key, value);
-  return value;
+std::vector<double> Section::numbers(std::string_view key, std::size_t count, double fallback) {
+  std::vector<double> out(count, std::isnan(fallback) ? 0 : fallback);
+  if (std::isnan(fallback)) need(key);
+  if (count == 1) {
+    read(key, out[0]);
+  } else {
+    read_list(key, out.data(), count);
+  }
+  return out;
 }
 
 Where Section::where() {

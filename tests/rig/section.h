@@ -41,15 +41,8 @@ class Section {
     read_list(key, value.data(), N);
   }
 
-  /// The same for a key that must be there.
-  [[nodiscard]] double needed(std::string_view key);
-  template <std::size_t N>
-  [[nodiscard]] std::array<double, N> needed_list(std::string_view key) {
-    std::array<double, N> value{};
-    need(key);
-    read(key, value);
-    return value;
-  }
+  /// A number or a list of `count`; absent: as many fallbacks, or a mistake when the fallback is NaN.
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, double fallback);
   /// The key "where"; all axes when absent.
   [[nodiscard]] Where where();
 

@@ -11,16 +11,10 @@ namespace mgtd::rig {
 namespace {
 
 /// Longest step of the path that an effect with memory is shown while the table moves.
-constexpr double kPathStep_s = 0.02;
+constexpr double kPathStep_s = 0.05;
 
 AxisMotion make_axis(const Scenario& s) {
   return {s.table_velocity_deg_per_s, s.table_acceleration_deg_per_s2, s.table_accuracy_deg};
-}
-
-/// Neighbouring seeds give unrelated streams.
-std::mt19937_64 stream(std::uint64_t seed, std::uint32_t which) {
-  std::seed_seq words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U), which};
-  return std::mt19937_64(words);
 }
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -30,30 +24,46 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 World::World(Scenario scenario)
     : scenario_(std::move(scenario)),
       axes_{make_axis(scenario_), make_axis(scenario_), make_axis(scenario_)},
-      scalar_noise_{stream(scenario_.seed, 4), {}, {}},
-      table_random_(stream(scenario_.seed, 5)) {
-  for (const auto& effect : scenario_.effects) effects_.push_back(effect->fresh());
-  remember_ = std::any_of(effects_.begin(), effects_.end(), [](const auto& e) { return e->remembers(); });
+      scalar_random_(noise_stream(scenario_.seed, 4)),
+      table_random_(noise_stream(scenario_.seed, 5)) {
+  for (const auto& effect : scenario_.effects) {
+    effects_.push_back(effect->fresh());
+    effects_.back()->begin(scenario_);
+    if (effects_.back()->remembers()) remembering_.push_back(effects_.back().get());
+  }
   const double h = scenario_.baseline_m / 2;
   position_m_ = {Eigen::Vector3d{h, 0, 0}, Eigen::Vector3d{0, h, 0}, Eigen::Vector3d{-h, 0, 0},
                  Eigen::Vector3d{0, -h, 0}};
   for (std::size_t i = 0; i < 4; ++i) {
     matrix_.at(i) = scenario_.truth.at(i).matrix();
-    sensor_noise_.at(i).random = stream(scenario_.seed, static_cast<std::uint32_t>(i));
+    noise_.emplace_back(scenario_.noise, scenario_.visit, scenario_.seed, static_cast<std::uint32_t>(i));
   }
   const double inclination = scenario_.inclination_deg * kDeg, declination = scenario_.declination_deg * kDeg;
   direction_ = {std::cos(inclination) * std::cos(declination), std::cos(inclination) * std::sin(declination),
                 std::sin(inclination)};
 }
 
+void World::moved() {
+  moment_.known = false;
+  for (SensorNoise& noise : noise_) noise.visit();
+}
+
+void World::remount(const Eigen::Matrix3d& table_to_platform, double now_s) {
+  follow_all(now_s);
+  mount_ = table_to_platform;
+  moved();
+}
+
 void World::move(TableAxis which, double target_deg, double now_s) {
   follow_all(now_s);
   axes_.at(which).move_to(target_deg, now_s, table_random_);
+  moved();
 }
 
 void World::halt(TableAxis which, double now_s) {
   follow_all(now_s);
   axes_.at(which).halt(now_s);
+  moved();
 }
 
 void World::set_jammed(bool jammed, double now_s) {
@@ -65,21 +75,39 @@ void World::set_jammed(bool jammed, double now_s) {
       axis.release(now_s);
     }
   }
+  moved();
 }
 
 bool World::moving(double t_s) const {
   return std::any_of(axes_.begin(), axes_.end(), [&](const AxisMotion& axis) { return axis.moving(t_s); });
 }
 
-Eigen::Matrix3d World::attitude(double t_s) const {
+double World::arrival_s() const {
+  return std::max({axes_[azimuth].end_s(), axes_[pitch].end_s(), axes_[roll].end_s()});
+}
+
+const World::Moment& World::moment(double t_s) const {
+  if (moment_.known && moment_.t_s == t_s) return moment_;
   TableContext table;
   for (std::size_t a = 0; a < 3; ++a) {
     table.angle_deg.at(a) = axes_.at(a).true_deg(t_s);
     table.sense.at(a) = axes_.at(a).sense();
   }
-  double azimuth_deg = table.angle_deg[azimuth];
-  for (const auto& effect : effects_) azimuth_deg += effect->azimuth_deg(table);
-  return about_z(azimuth_deg) * about_y(table.angle_deg[pitch]) * about_x(table.angle_deg[roll]);
+  std::array<double, 3> angle_deg = table.angle_deg;
+  Eigen::Vector3d tilt(0, 0, 0);
+  for (const auto& effect : effects_) {
+    const TableError error = effect->table(table);
+    for (std::size_t a = 0; a < 3; ++a) angle_deg.at(a) += error.angle_deg.at(a);
+    tilt += kDeg * Eigen::Vector3d(error.tilt_x_deg, error.tilt_y_deg, 0);
+  }
+  moment_.t_s = t_s;
+  moment_.known = true;
+  moment_.azimuth_deg = angle_deg[azimuth];
+  moment_.R = mount_ * about_z(angle_deg[azimuth]) * turned_by(tilt) * about_y(angle_deg[pitch]) *
+              about_x(angle_deg[roll]);
+  for (std::size_t i = 0; i < 4; ++i)
+    moment_.b_nT.at(i) = moment_.R * site_field(t_s, moment_.R.transpose() * position_m_.at(i));
+  return moment_;
 }
 
 Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const {
@@ -92,58 +120,80 @@ Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const 
 }
 
 Eigen::Vector3d World::seen(int i, double t_s) const {
-  const Eigen::Matrix3d T = attitude(t_s);
-  return matrix_.at(at(i)) * (T * site_field(t_s, T.transpose() * position_m_.at(at(i))));
+  const Moment& now = moment(t_s);
+  const PlatformContext platform{i, t_s, temperature(i, t_s), now.R.col(2), mount_, now.b_nT, position_m_};
+  Eigen::Vector3d added(0, 0, 0), omega(0, 0, 0);
+  for (const auto& effect : effects_) {
+    added += effect->platform_nT(platform);
+    omega += effect->turn_rad(platform);
+  }
+  return matrix_.at(at(i)) * (turned_by(omega) * (now.b_nT.at(at(i)) + added));
+}
+
+AxisContext World::context(int i, double t_s) const {
+  const Moment& now = moment(t_s);
+  return {i, 0, t_s, temperature(i, t_s), seen(i, t_s), now.R.col(2), now.azimuth_deg};
 }
 
 void World::follow(int i, double t_s) {
-  if (!remember_) return;
+  if (remembering_.empty()) return;
   double& done_s = followed_s_.at(at(i));
   while (done_s < t_s) {
     // A standing table is left at once; what else changes, changes slowly.
     done_s = moving(done_s) ? std::min(t_s, done_s + kPathStep_s) : t_s;
-    const Eigen::Vector3d v_nT = seen(i, done_s);
-    for (int a = 0; a < 3; ++a) {
-      const AxisContext context{i, a, done_s, head_degC(i, done_s), v_nT};
-      for (const auto& effect : effects_) effect->follow(context);
+    AxisContext now = context(i, done_s);
+    for (now.axis = 0; now.axis < 3; ++now.axis) {
+      for (Effect* effect : remembering_) effect->follow(now);
     }
   }
 }
 
 void World::follow_all(double t_s) {
-  for (int i = 0; i < 4; ++i) follow(i, t_s);
+  if (remembering_.empty()) return;
+  // In step, so that the four share what is above the sensors.
+  for (double t = *std::min_element(followed_s_.begin(), followed_s_.end()); t < t_s;) {
+    t = moving(t) ? std::min(t_s, t + kPathStep_s) : t_s;
+    for (int i = 0; i < 4; ++i) follow(i, t);
+  }
 }
 
-double World::noise(NoiseSource& source) const {
-  if (scenario_.noise_nT == 0) return 0;
-  return scenario_.noise_nT * (scenario_.noise == NoiseKind::gaussian ? source.normal(source.random)
-                                                                      : source.uniform(source.random));
-}
-
-Eigen::Vector3d World::read_sensor(int i, double t_s) {
-  follow(i, t_s);
-  const Eigen::Vector3d v_nT = seen(i, t_s);
-  Eigen::Vector3d y_nT = v_nT + scenario_.truth.at(at(i)).offset_nT;
-  for (int a = 0; a < 3; ++a) {
-    const AxisContext context{i, a, t_s, head_degC(i, t_s), v_nT};
-    for (const auto& effect : effects_) y_nT[a] += effect->axis_nT(context);
-    y_nT[a] += noise(sensor_noise_.at(at(i)));
+Eigen::Vector3d World::quiet_reading(int i, double t_s) {
+  const int sensor = static_cast<int>(sensor_at(i));
+  follow(sensor, t_s);
+  AxisContext now = context(sensor, t_s);
+  Eigen::Vector3d y_nT = now.v_nT + scenario_.truth.at(at(sensor)).offset_nT;
+  for (now.axis = 0; now.axis < 3; ++now.axis) {
+    for (const auto& effect : effects_) y_nT[now.axis] += effect->axis_nT(now);
   }
   return y_nT;
 }
 
-double World::head_degC(int i, double t_s) const {
+Eigen::Vector3d World::read_sensor(int i, double t_s) {
+  const Eigen::Vector3d y_nT = quiet_reading(i, t_s);
+  return noise(i).sample(y_nT, t_s);
+}
+
+double World::temperature(int sensor, double t_s) const {
   const TemperatureScript& s = scenario_.temperature;
-  double out = s.start_degC + s.ramp_degC_per_h * t_s / 3600 + s.head_degC.at(at(i));
+  double out = s.start_degC + s.ramp_degC_per_h * t_s / 3600 + s.head_degC.at(at(sensor));
   const double since = (t_s - s.pulse_at_s) / s.pulse_tau_s;
-  if (since > 0 && (s.pulse_head == 0 || s.pulse_head == at(i) + 1))
+  if (since > 0 && (s.pulse_head == 0 || s.pulse_head == at(sensor) + 1))
     out += s.pulse_degC * since * std::exp(1 - since);
   return out;
 }
 
+double World::head_degC(int i, double t_s) const { return temperature(static_cast<int>(sensor_at(i)), t_s); }
+
+double World::quiet_scalar(double t_s) const {
+  const Eigen::Vector3d B = site_field(t_s, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d u = moment(t_s).R * B.normalized();
+  double out = B.norm();
+  for (const auto& effect : effects_) out += effect->reference_nT(u);
+  return out;
+}
+
 double World::read_scalar(double t_s) {
-  const double noise_nT = scenario_.scalar_noise_nT * scalar_noise_.normal(scalar_noise_.random);
-  return site_field(t_s, Eigen::Vector3d::Zero()).norm() + noise_nT;
+  return quiet_scalar(t_s) + scenario_.scalar_noise_nT * scalar_noise();
 }
 
 }  // namespace mgtd::rig

@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "tests/rig/axis_motion.h"
+#include "tests/rig/noise.h"
 #include "tests/rig/scenario.h"
 
 /// The physics of the rig: site, table, sensors, temperature. Everything is a function of the simulated time,
 /// asked for by the instruments sample by sample. Knows the truth; nobody else does.
 ///
 ///   B(t, x)                                     site frame, x from the centre of the array
-///   b_i = T B(t, T' r_i)                        T = Rz(azimuth) Ry(pitch) Rx(roll), the angles as they truly
-///   are y_i = M_i b_i + I_i + effects + noise       M_i from SensorTruth
+///   b_i = R B(t, R' r_i)                        R = M Rz(azimuth) Ry(pitch) Rx(roll), the angles as they
+///   truly
+///                                               are, M the mounting of the array on the table
+///   y_i = C A R_i' b_i + I_i + noise            SensorTruth; effects at their levels (effect.h)
 namespace mgtd::rig {
 
 enum TableAxis : std::size_t { azimuth, pitch, roll };
@@ -31,42 +34,62 @@ class World {
   void halt(TableAxis which, double now_s);
   void set_jammed(bool jammed, double now_s);
   [[nodiscard]] bool moving(double t_s) const;
+  /// When the last of the axes stands.
+  [[nodiscard]] double arrival_s() const;
+  /// Puts the array on the table in another way, the table standing.
+  void remount(const Eigen::Matrix3d& table_to_platform, double now_s);
 
-  /// Noisy reading of sensor i (0 .. 3) at time t, nT at nominal scale. Times of one sensor must not go back.
+  /// Noisy reading of connector i (0 .. 3) at time t, nT at nominal scale. Times of one sensor must not go
+  /// back.
   [[nodiscard]] Eigen::Vector3d read_sensor(int i, double t_s);
+  /// The same without noise.
+  [[nodiscard]] Eigen::Vector3d quiet_reading(int i, double t_s);
+  [[nodiscard]] SensorNoise& noise(int i) { return noise_.at(sensor_at(i)); }
   [[nodiscard]] double head_degC(int i, double t_s) const;
-  /// Noisy total field at the centre.
+  /// Noisy total field at the centre, and without noise.
   [[nodiscard]] double read_scalar(double t_s);
+  [[nodiscard]] double quiet_scalar(double t_s) const;
+  [[nodiscard]] double scalar_noise() { return normal_(scalar_random_); }
   /// Site frame to platform frame, by the true angles.
-  [[nodiscard]] Eigen::Matrix3d attitude(double t_s) const;
+  [[nodiscard]] Eigen::Matrix3d attitude(double t_s) const { return moment(t_s).R; }
 
  private:
-  /// A stream of its own per source, so that how often one is asked does not change the others.
-  struct NoiseSource {
-    std::mt19937_64 random;
-    std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> uniform{-1, 1};
+  /// Everything above the sensors at one time.
+  struct Moment {
+    double t_s{-1};
+    bool known{false};
+    double azimuth_deg{0};
+    Eigen::Matrix3d R{Eigen::Matrix3d::Identity()};
+    std::array<Eigen::Vector3d, 4> b_nT{};
   };
 
+  [[nodiscard]] const Moment& moment(double t_s) const;
   [[nodiscard]] Eigen::Vector3d site_field(double t_s, const Eigen::Vector3d& x_m) const;
-  /// C A R' b of sensor i, nothing added.
+  /// C A R' b of sensor i with the platform's effects, nothing added.
   [[nodiscard]] Eigen::Vector3d seen(int i, double t_s) const;
+  [[nodiscard]] AxisContext context(int i, double t_s) const;
+  [[nodiscard]] double temperature(int sensor, double t_s) const;
+  [[nodiscard]] std::size_t sensor_at(int connector) const {
+    return static_cast<std::size_t>(scenario_.wiring.at(static_cast<std::size_t>(connector)) - 1);
+  }
   /// Shows what sensor i saw on the way up to t to the effects that remember.
   void follow(int i, double t_s);
   void follow_all(double t_s);
-  [[nodiscard]] double noise(NoiseSource& source) const;
+  void moved();
 
   Scenario scenario_;
   std::vector<std::unique_ptr<Effect>> effects_;
-  bool remember_{false};
+  std::vector<Effect*> remembering_;
   std::array<double, 4> followed_s_{};
   std::array<AxisMotion, 3> axes_;
   std::array<Eigen::Matrix3d, 4> matrix_;
   std::array<Eigen::Vector3d, 4> position_m_;
   Eigen::Vector3d direction_;
-  std::array<NoiseSource, 4> sensor_noise_;
-  NoiseSource scalar_noise_;
-  std::mt19937_64 table_random_;
+  Eigen::Matrix3d mount_{Eigen::Matrix3d::Identity()};
+  std::vector<SensorNoise> noise_;
+  std::mt19937_64 scalar_random_, table_random_;
+  std::normal_distribution<double> normal_;
+  mutable Moment moment_;
 };
 
 }  // namespace mgtd::rig

@@ -9,13 +9,10 @@ namespace mgtd::rig {
 
 /// A core that remembers where it came from: the play operator p <- max(x - w, min(x + w, p)), started at 0,
 /// along the whole path; y += h (p - x)/w.
-class AxisHysteresis final : public Effect {
+class AxisHysteresis final : public EffectOf<AxisHysteresis> {
  public:
   AxisHysteresis(Where where, double h_nT, double width)
       : where_(std::move(where)), h_nT_(h_nT), width_(width) {}
-  [[nodiscard]] std::unique_ptr<Effect> fresh() const override {
-    return std::make_unique<AxisHysteresis>(where_, h_nT_, width_);
-  }
   [[nodiscard]] bool remembers() const override { return true; }
   void follow(const AxisContext& c) override {
     double& p = play_.at(at(c));

@@ -8,13 +8,10 @@
 namespace mgtd::rig {
 
 /// An axis that creeps after a change: z follows x with time constant tau, y += eta (z - x).
-class AxisSettling final : public Effect {
+class AxisSettling final : public EffectOf<AxisSettling> {
  public:
   AxisSettling(Where where, double eta_nT, double tau_s)
       : where_(std::move(where)), eta_nT_(eta_nT), tau_s_(tau_s) {}
-  [[nodiscard]] std::unique_ptr<Effect> fresh() const override {
-    return std::make_unique<AxisSettling>(where_, eta_nT_, tau_s_);
-  }
   [[nodiscard]] bool remembers() const override { return true; }
   void follow(const AxisContext& c) override {
     State& s = state_.at(at(c));

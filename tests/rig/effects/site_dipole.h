@@ -8,11 +8,10 @@ namespace mgtd::rig {
 
 /// Something of iron near the table: B += mu0/4pi (3 (m.u) u - m)/d^3 with d u = x - x_d; 100 nT at 1 m for
 /// 1 A m2 across the moment.
-class SiteDipole final : public Effect {
+class SiteDipole final : public EffectOf<SiteDipole> {
  public:
   SiteDipole(const std::array<double, 3>& moment_Am2, const std::array<double, 3>& at_m)
       : moment_Am2_(moment_Am2.data()), at_m_(at_m.data()) {}
-  [[nodiscard]] std::unique_ptr<Effect> fresh() const override { return std::make_unique<SiteDipole>(*this); }
   [[nodiscard]] Eigen::Vector3d site_nT(double, const Eigen::Vector3d& x_m) const override {
     const Eigen::Vector3d d = x_m - at_m_;
     const Eigen::Vector3d u = d.normalized();

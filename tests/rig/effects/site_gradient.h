@@ -8,14 +8,11 @@ namespace mgtd::rig {
 
 /// B += (G + G' t) x with t in hours; symmetric and traceless, each given as (xx, yy, xy, xz, yz) in nT/m and
 /// nT/m/h.
-class SiteGradient final : public Effect {
+class SiteGradient final : public EffectOf<SiteGradient> {
  public:
   using Five = std::array<double, 5>;
   /// One of the two is zero: they are effects of their own.
   SiteGradient(const Five& g, const Five& per_h) : G_(tensor(g)), per_h_(tensor(per_h)) {}
-  [[nodiscard]] std::unique_ptr<Effect> fresh() const override {
-    return std::make_unique<SiteGradient>(*this);
-  }
   [[nodiscard]] Eigen::Vector3d site_nT(double t_s, const Eigen::Vector3d& x_m) const override {
     return (G_ + per_h_ * (t_s / 3600)) * x_m;
   }

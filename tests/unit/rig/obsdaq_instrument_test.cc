@@ -14,7 +14,7 @@ Scenario ideal(bool palmacq) {
   Scenario scenario;
   scenario.truth = *rig_named("ideal", 1);
   scenario.palmacq = palmacq;
-  scenario.noise_nT = 0;
+  scenario.noise.noise_nT = 0;
   scenario.table_accuracy_deg = 0;
   return scenario;
 }

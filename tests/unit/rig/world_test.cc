@@ -12,7 +12,7 @@ namespace {
 Scenario ideal() {
   Scenario scenario;
   scenario.truth = *rig_named("ideal", 1);
-  scenario.noise_nT = 0;
+  scenario.noise.noise_nT = 0;
   scenario.table_accuracy_deg = 0;
   scenario.f_nT = 50'000;
   scenario.inclination_deg = 0;

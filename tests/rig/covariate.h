@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+/// Something that changes during a run and can be written down beside the poses, or forgotten: a motor's
+/// current, the battery.
+namespace mgtd::rig {
+
+enum class Wave {
+  toggle,  ///< mean + or - amplitude, at random every `every_s`
+  sine,    ///< mean + amplitude sin(2 pi t/every_s)
+  ramp     ///< mean + amplitude t/every_s
+};
+
+struct Covariate {
+  std::string name{"motor_A"};  ///< its column
+  double mean{0}, amplitude{1};
+  Wave wave{Wave::toggle};
+  double every_s{30};
+  bool recorded{true};
+  std::uint64_t pattern{1};  ///< of the toggling
+  [[nodiscard]] double at(double t_s) const;
+};
+
+/// +1 or -1, at random for every `every_s`; the same pattern always toggles the same way.
+[[nodiscard]] double toggled(double t_s, double every_s, std::uint64_t pattern);
+
+}  // namespace mgtd::rig
