@@ -7,7 +7,7 @@
 
 namespace mgtd::cli {
 
-/// One request to the daemon of this session: connect, ask, answer.
+/// One request to the daemon that `session` names: connect, ask, answer.
 [[nodiscard]] Result<nlohmann::json> ask(const Session& session, ControlCommand command,
                                          nlohmann::json args = nlohmann::json::object());
 
