@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/criticism.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "calib/chi_square.h"
+#include "calib/fit/pose_residuals.h"
 
 namespace mgtd::calib {
 namespace {
@@ -20,17 +23,28 @@ std::vector<double> evidence_by_pose(const ScoredFamily& family, const Residual&
   return out;
 }
 
-/// Both tails of the residual's size, where its noise is known.
+/// A residual larger than its noise, where that is known.
 void judge_size(Criticism& out) {
   const NoiseReference& n = out.noise.reference;
   if (!n.known) return;
-  const double x = out.chi2 / n.scale2;
   if (std::isinf(n.nu)) {
-    out.omnibus_log10_p = chi_square_log10_p(x, out.dof);
-    out.too_small_log10_p = std::log10(std::max(1 - chi_square_p(x, out.dof), 1e-300));
+    out.omnibus_log10_p = chi_square_log10_p(out.chi2 / n.scale2, out.dof);
   } else if (out.noise.revisits) {
     out.omnibus_log10_p = out.noise.revisits->log10_p;
   }
+}
+
+/// A channel that scatters less than its noise. The scalar reference, whose uncertainty is often only a
+/// bound, says nothing here.
+void judge_quiet(const JointFit& fit, Criticism& out) {
+  if (!out.noise.reference.known) return;
+  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  Eigen::Index sensor = 0, axis = 0;
+  out.quiet_ratio = ratio.minCoeff(&sensor, &axis);
+  out.quiet = fmt::format("s{}.{}", sensor + 1, "xyz"[axis]);
+  const double nu = out.dof / kChannels;
+  const double more = chi_square_p(std::pow(out.quiet_ratio, 2) * nu, nu);
+  out.quiet_log10_p = std::min(0.0, std::log10(kChannels * std::max(1 - more, 1e-300)));
 }
 
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
@@ -62,6 +76,7 @@ Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
   out.maps = score_maps(residual_maps(fit.problem, fit.state), residual, out.noise.reference);
   judge_size(out);
+  judge_quiet(fit, out);
   if (!out.families.empty()) out.by_pose_winner = evidence_by_pose(out.families.front(), residual);
   return out;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "calib/criticism/explain.h"
 #include "calib/criticism/null.h"
@@ -19,7 +21,9 @@ struct Criticism {
   double independent{1};                 ///< families, by draws
   std::vector<MapScore> maps{};
   double omnibus_log10_p{0};  ///< residual larger than its noise; 0 where the noise is the residual's own
-  double too_small_log10_p{0};
+  /// The channel that scatters least for its noise, "s3.z", and the probability of so little, all counted.
+  std::string quiet{};
+  double quiet_log10_p{0}, quiet_ratio{1};
   std::vector<double> by_pose_winner{};  ///< evidence of the best family, pose by pose
 
   [[nodiscard]] bool rejects_named() const;

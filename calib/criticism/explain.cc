@@ -153,12 +153,11 @@ bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>&
                                 100 * nodes, 100 * kMaxNodes));
     return true;
   }
-  if (c.too_small_log10_p < std::log10(kTooSmall)) {
+  if (c.quiet_log10_p < std::log10(kTooSmall)) {
     notes.push_back(
-        fmt::format("the residual is smaller than its noise allows (chi-square {:.0f} with {:.0f} degrees of "
-                    "freedom): spreads "
-                    "or counts in the table are wrong, or poses are copies",
-                    c.chi2, c.dof));
+        fmt::format("{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
+                    "wrong, or poses are copies",
+                    c.quiet, c.quiet_ratio));
     return true;
   }
   return false;
@@ -263,6 +262,9 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   }
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;
+  out.left = !criticism.rejects()        ? Finding::pass
+             : criticism.rejects_named() ? Finding::partial
+                                         : Finding::unknown;
   out.finding = conclude(out, first, criticism, out.notes);
   name(out);
   return out;

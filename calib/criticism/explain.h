@@ -66,6 +66,7 @@ struct ExplainReport {
   Finding finding{Finding::pass};
   std::vector<Candidate> candidates{};  ///< of the model that was asked about, best first
   std::vector<std::string> named{};
+  Finding left{Finding::pass};  ///< PASS, UNKNOWN or PARTIAL: what stands out after the last round
   std::vector<Round> rounds{};
   std::vector<MapScore> maps{};       ///< of the model that was asked about
   std::vector<MapScore> maps_left{};  ///< after the last round

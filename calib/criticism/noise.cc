@@ -13,7 +13,7 @@ namespace mgtd::calib {
 namespace {
 
 using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
-constexpr double kMaxRho = 0.95;
+constexpr double kMaxRho = 0.95, kCorrelated = 0.2;
 /// Angles that are the same pose again.
 constexpr double kSameAngle_rad = 1e-6;
 /// The dwells are believed unless the revisits contradict them this clearly.
@@ -81,35 +81,77 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const JointProblem& 
 
 }  // namespace
 
-double pose_correlation(const JointProblem& problem, const JointState& state) {
+namespace {
+
+/// sum over j of rho^|k-j| x_j: the covariance of the noise times columns over the poses.
+Eigen::MatrixXd correlated(const Eigen::MatrixXd& x, double rho) {
+  Eigen::MatrixXd out = x, back = x;
+  for (Eigen::Index k = 1; k < x.rows(); ++k) out.row(k) += rho * out.row(k - 1);
+  for (Eigen::Index k = x.rows() - 2; k >= 0; --k) back.row(k) += rho * back.row(k + 1);
+  return out + back - x;
+}
+
+/// What one channel shows: its lag-one sum of products and its sum of squares, and those that noise of a
+/// given correlation would leave after the fit.
+struct LagOne {
+  double products{0}, squares{0};
+  double by_lag{0}, own{0};  ///< of uncorrelated noise before the fit
+  Eigen::MatrixXd L;         ///< hat matrix of the channel is L L'
+
+  [[nodiscard]] std::pair<double, double> expected(double rho) const {
+    const Eigen::MatrixXd VL = correlated(L, rho), K = L.transpose() * VL, LK = L * K;
+    const Eigen::Index n = L.rows();
+    const auto lag = [n](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+      return a.bottomRows(n - 1).cwiseProduct(b.topRows(n - 1)).sum();
+    };
+    return {rho * by_lag - lag(L, VL) - lag(VL, L) + lag(LK, L),
+            own - 2 * L.cwiseProduct(VL).sum() + LK.cwiseProduct(L).sum()};
+  }
+};
+
+std::vector<LagOne> lag_one(const JointProblem& problem, const JointState& state) {
   const Fitted f = fitted(problem, state);
   const Eigen::MatrixXd hat = leverages(f);
   const auto order = order_in_time(problem);
-  Eigen::Array<double, kChannels, 1> products = Eigen::Array<double, kChannels, 1>::Zero();
-  auto expected = products, squares = products, own = products;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Eigen::Index k = order[i];
-    const Mixing& M = f.M[static_cast<std::size_t>(k)];
-    const auto rows = hat.middleRows<kChannels>(k * kChannels);
-    squares += f.e.col(k).array().square();
-    own += (M * M.transpose()).diagonal().array() - rows.rowwise().squaredNorm().array();
-    if (i == 0) continue;
-    const Eigen::Index before = order[i - 1];
-    products += f.e.col(k).array() * f.e.col(before).array();
-    // The fit leaves residuals that are correlated the other way round.
-    products += rows.cwiseProduct(hat.middleRows<kChannels>(before * kChannels)).rowwise().sum().array() *
-                (squares / own.max(1e-9)).min(100).max(0.01);
-    expected += (M * f.M[static_cast<std::size_t>(before)].transpose()).diagonal().array();
-  }
-  // In units of each channel's own variance, which need not be that of the weights.
-  std::array<double, kChannels> rho{};
+  std::vector<LagOne> out(kChannels);
   for (int c = 0; c < kChannels; ++c) {
-    const double variance = squares[c] / std::max(own[c], 1e-9);
-    rho[static_cast<std::size_t>(c)] =
-        variance > 0 ? products[c] / (variance * std::max(expected[c], 1e-9)) : 0;
+    LagOne& x = out[static_cast<std::size_t>(c)];
+    x.L.resize(static_cast<Eigen::Index>(order.size()), hat.cols());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Eigen::Index k = order[i];
+      const auto& M = f.M[static_cast<std::size_t>(k)];
+      x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * kChannels + c);
+      x.squares += f.e(c, k) * f.e(c, k);
+      x.own += M.row(c).squaredNorm();
+      if (i == 0) continue;
+      x.products += f.e(c, k) * f.e(c, order[i - 1]);
+      x.by_lag += M.row(c).dot(f.M[static_cast<std::size_t>(order[i - 1])].row(c));
+    }
   }
-  std::sort(rho.begin(), rho.end());
-  return std::clamp((rho[kChannels / 2 - 1] + rho[kChannels / 2]) / 2, 0.0, kMaxRho);
+  return out;
+}
+
+}  // namespace
+
+double pose_correlation(const JointProblem& problem, const JointState& state) {
+  const std::vector<LagOne> channels = lag_one(problem, state);
+  std::vector<double> seen;
+  for (const LagOne& c : channels) seen.push_back(c.squares > 0 ? c.products / c.squares : 0);
+  std::sort(seen.begin(), seen.end());
+  const double median = (seen[kChannels / 2 - 1] + seen[kChannels / 2]) / 2;
+  // What would show as the median: the curve rises with rho, and a step of 0.05 is straight enough.
+  double rho = 0, last = -1;
+  for (double trial = 0; trial < kMaxRho + 1e-9; trial += 0.05) {
+    double products = 0, squares = 0;
+    for (const LagOne& c : channels) {
+      const auto [lag, own] = c.expected(trial);
+      products += lag, squares += own;
+    }
+    const double shown = products / squares;
+    if (shown >= median) return trial == 0 ? 0 : rho + 0.05 * (median - last) / (shown - last);
+    rho = trial, last = shown;
+  }
+  return kMaxRho;
 }
 
 std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {

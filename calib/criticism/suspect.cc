@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 
+#include "calib/effects/where.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -53,10 +55,30 @@ Hypothesis everything(const Effect& effect, std::string where) {
   return out;
 }
 
+/// An effect of site, table or platform as a whole and, where each sensor has coefficients of its own, sensor
+/// by sensor.
+std::vector<Hypothesis> whole_and_sensors(const Effect& effect) {
+  const bool site = effect.level() == Level::site || effect.level() == Level::reference;
+  std::vector<Hypothesis> out{everything(effect, site ? "site" : std::string(to_string(effect.level())))};
+  const auto& coefficients = effect.coefficients();
+  const auto n = static_cast<Eigen::Index>(coefficients.size());
+  std::array<Groups, 4> sensor;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
+    const Place p = place_of(name);
+    if (p.sensor < 0) return out;
+    sensor[static_cast<std::size_t>(p.sensor)][name].push_back(i);
+  }
+  for (std::size_t s = 0; s < sensor.size(); ++s) {
+    if (!sensor[s].empty()) out.push_back(summed(fmt::format("s{}", s + 1), 3, 4, n, sensor[s]));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
-  if (finest.level() != Level::axis) return {everything(finest, std::string(to_string(finest.level())))};
+  if (finest.level() != Level::axis) return whole_and_sensors(finest);
   std::vector<Hypothesis> out{everything(finest, "each-axis")};
   const auto& coefficients = finest.coefficients();
   const auto n = static_cast<Eigen::Index>(coefficients.size());
@@ -87,35 +109,12 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
   return out;
 }
 
-Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& in_model) {
-  Suspects out;
-  for (const std::string_view name : effect_names()) {
-    const bool known =
-        std::any_of(in_model.begin(), in_model.end(), [&](const EffectPtr& e) { return e->name() == name; });
-    if (known) continue;
-    auto effect = make_effect(EffectSpec{.name = std::string(name), .where = {}, .parameters = {}},
-                              {.table = &table, .offset_nT = {}});
-    if (!effect) {
-      out.untestable.push_back({std::string(name), effect.error().message});
-      continue;
-    }
-    if (const auto ok = (*effect)->check(table); !ok) {
-      out.untestable.push_back({std::string(name), ok.error().message});
-      continue;
-    }
-    Suspect s{.name = std::string(name), .level = (*effect)->level(), .variants = {*effect}};
-    s.typical = (*effect)->coefficients().front().typical;
-    s.hypotheses = hypotheses_of(**effect);
-    s.make = [effect = *effect](const Hypothesis&, std::size_t) -> Result<EffectPtr> { return effect; };
-    out.testable.push_back(std::move(s));
-  }
-  return out;
-}
-
 std::string spec_of(const Suspect& suspect, const Hypothesis& hypothesis, std::size_t variant) {
   std::string out = suspect.name;
-  if (suspect.level == Level::axis) out += "@" + hypothesis.where;
-  if (!suspect.values.empty()) out += fmt::format(",{}={}", suspect.parameter, suspect.values[variant]);
+  const auto where = Where::parse(hypothesis.where);
+  if (where && where->scale != Where::Scale::own) out += "@" + hypothesis.where;
+  if (variant < suspect.values.size() && suspect.values[variant])
+    out += fmt::format(",{}={}", suspect.parameter, *suspect.values[variant]);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,8 +27,9 @@ struct Suspect {
   std::string name{};
   Level level{Level::axis};
   std::vector<EffectPtr> variants{};  ///< finest scale; one, or one for each value of the fixed number
-  std::vector<double> values{};       ///< of the fixed number, as many as variants; empty without one
-  std::string parameter{};            ///< its name
+  /// Of the searched number, as many as variants; an empty one is the form without it.
+  std::vector<std::optional<double>> values{};
+  std::string parameter{};  ///< its name
   double typical{1}, bound{0};
   std::vector<Hypothesis> hypotheses{};
   /// The effect of one hypothesis and one variant, for the model.

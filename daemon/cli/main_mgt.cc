@@ -6,7 +6,7 @@ namespace {
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations\n"
-    "Offline (files):          plan, fit, apply, check, diff, explain, import, export, check-config, ports\n\n"
+    "Offline (files):          plan, fit, apply, check, compare, diff, explain, improve, import, export, check-config, ports\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
     "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
@@ -32,9 +32,11 @@ int main(int argc, char** argv) {
   add_apply(app, session);
   add_plan(app, session);
   add_check(app, session);
+  add_compare(app, session);
   add_diff(app, session);
   add_explain(app, session);
   add_effects(app, session);
+  add_improve(app, session);
   add_import(app, session);
   add_export(app, session);
   add_check_config(app, session);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/maps.h"
+#include "calib/criticism/noise.h"
+#include "calib/fit/fit.h"
+
+/// Model against measurement: how large the noise is, whether the model fits to it, and where it fails. Names
+/// no cause; explain.h does.
+namespace mgtd::calib {
+
+/// Means of a residual over equally filled bins of a covariate, against what chance makes of them.
+struct Dependence {
+  std::string covariate{}, component{};  ///< the component of the channel that depends most
+  double log10_p{0};                     ///< analysis of variance between the bins, components counted
+  std::vector<double> means{};           ///< of that component, in the order of the covariate
+  double from{0}, to{0};                 ///< of the covariate
+};
+
+/// One way of looking at the residual.
+///     whitened      readings less prediction over their noise, channel by channel
+///     scalar        |b_i| less the field of the pose, by sensor, nT: blind to every error of angles
+///     attitude      what the table angles had to be corrected by, deg: blind to the sensors
+///     inter-sensor  b_i less the mean of the four, nT: blind to attitude and to changes of the field
+///     closure       curl in nT/m and differences of the two centres in nT: zero for any gradient
+struct ResidualChannel {
+  std::string name{}, unit{};
+  double rms{0};
+  std::vector<Dependence> against{};  ///< strongest first
+};
+
+struct Comparison {
+  NoiseModel noise;
+  double noise_nT{0}, residual_nT{0};
+  AxisNoise axis_noise_nT{AxisNoise::Zero()};     ///< of a pose mean as it was weighted
+  AxisNoise axis_residual_nT{AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
+  double chi2{0}, dof{0};
+  double log10_p{0};  ///< that noise alone makes so large a residual; 0 where the noise is the residual's own
+  double table_sd_deg{0};
+  std::vector<ResidualChannel> channels{};
+  std::vector<MapScore> maps{};
+  std::vector<OutlierNode> outliers{};
+  bool fits{true};  ///< no map and no size stands out: one clean run in two hundred fails
+};
+
+[[nodiscard]] Result<Comparison> compare(const PoseTable& table, const FitOptions& options);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/comparison_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/explain_json.h"
+#include "calib/criticism/sentence.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json axes_json(const AxisNoise& n) {
+  json out = json::array();
+  for (int i = 0; i < kSensors; ++i) out.push_back({n(i, 0), n(i, 1), n(i, 2)});
+  return out;
+}
+
+json channel_json(const ResidualChannel& c) {
+  json against = json::array();
+  for (const Dependence& d : c.against) {
+    against.push_back({{"covariate", d.covariate},
+                       {"component", d.component},
+                       {"p", std::pow(10.0, d.log10_p)},
+                       {"log10_p", d.log10_p},
+                       {"means", d.means},
+                       {"from", d.from},
+                       {"to", d.to}});
+  }
+  return {{"channel", c.name}, {"unit", c.unit}, {"rms", c.rms}, {"against", std::move(against)}};
+}
+
+/// Means as a row of blocks, lowest to highest of the row.
+std::string plot(const std::vector<double>& means) {
+  static constexpr std::array<const char*, 8> kBlocks{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  if (means.empty()) return "";
+  const auto [low, high] = std::minmax_element(means.begin(), means.end());
+  std::string out;
+  for (const double m : means) {
+    const double share = *high > *low ? (m - *low) / (*high - *low) : 0.5;
+    out += kBlocks[static_cast<std::size_t>(std::min(7.0, 8 * share))];
+  }
+  return out;
+}
+
+std::string noise_text(const Comparison& c) {
+  std::string out =
+      fmt::format("residual {:.3g} nT, noise of a pose mean {:.3g} nT ({})\n", c.residual_nT, c.noise_nT,
+                  c.noise.reference.known ? "from the dwells" : "from the residual itself");
+  out += fmt::format("chi-square {:.0f} with {:.0f} degrees of freedom{}\n", c.chi2, c.dof,
+                     c.noise.reference.known ? fmt::format(", p {}", p_text(c.log10_p)) : "");
+  if (c.noise.revisits) {
+    const PureError& p = *c.noise.revisits;
+    out += fmt::format(
+        "revisits: {} pairs, noise between them {:.2f} of the assumed; lack of fit F = {:.2f}, p {}: ",
+        p.pairs, std::sqrt(p.ratio), p.F, p_text(p.log10_p));
+    out += fmt::format("the model misses {:.2g} nT rms\n", p.model_nT);
+  } else {
+    out += "no attitude was visited twice: no lack of fit without assumptions\n";
+  }
+  out += fmt::format("correlation from pose to pose {:.2f}; table angles to {:.3g} deg\n", c.noise.rho,
+                     c.table_sd_deg);
+  return out;
+}
+
+}  // namespace
+
+json to_json(const Comparison& c) {
+  json channels = json::array(), maps = json::array(), outliers = json::array(), lack;
+  for (const ResidualChannel& channel : c.channels) channels.push_back(channel_json(channel));
+  for (const MapScore& map : c.maps) maps.push_back(to_json(map));
+  for (const OutlierNode& o : c.outliers)
+    outliers.push_back({{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}});
+  if (c.noise.revisits) {
+    const PureError& p = *c.noise.revisits;
+    lack = {{"F", p.F}, {"p", std::pow(10.0, p.log10_p)}, {"model_nT", p.model_nT}, {"pairs", p.pairs}};
+  }
+  return {{"schema", "mgt.compare/1"},
+          {"fits", c.fits},
+          {"residual_nT", c.residual_nT},
+          {"noise_nT", c.noise_nT},
+          {"noise", to_json(c.noise)},
+          {"axis_noise_nT", axes_json(c.axis_noise_nT)},
+          {"axis_residual_nT", axes_json(c.axis_residual_nT)},
+          {"chi2", c.chi2},
+          {"dof", c.dof},
+          {"p", std::pow(10.0, c.log10_p)},
+          {"table_sd_deg", c.table_sd_deg},
+          {"lack_of_fit", std::move(lack)},
+          {"channels", std::move(channels)},
+          {"maps", std::move(maps)},
+          {"outliers", std::move(outliers)}};
+}
+
+std::string to_text(const Comparison& c) {
+  std::string out = noise_text(c);
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "\n{:<13} {:>12}   {:<12} {:<9} {:>8}  means over it\n", "channel", "rms", "against",
+                 "strongest", "p");
+  for (const ResidualChannel& channel : c.channels) {
+    std::string head = fmt::format("{:<13} {:>9.3g} {:<3}", channel.name, channel.rms, channel.unit);
+    for (const Dependence& d : channel.against) {
+      fmt::format_to(to, "{:<26}  {:<12} {:<9} {:>8}  {}\n", head, d.covariate, d.component,
+                     p_text(d.log10_p), plot(d.means));
+      head.clear();
+    }
+  }
+  fmt::format_to(to, "\n{:<26}  {:<12} {:>3} {:>8}\n", "map of the residual", "where", "k", "p");
+  for (const MapScore& m : c.maps)
+    fmt::format_to(to, "{:<26}  {:<12} {:>3} {:>8}\n", m.map, m.where, m.k, p_text(m.log10_p));
+  for (const OutlierNode& o : c.outliers)
+    fmt::format_to(to, "left out: pose {}, {}: {:.4g} {} off\n", o.pose, o.where, o.shift, o.unit);
+  out += c.fits ? "\nthe model fits to the noise\n" : "\nthe model does not fit: mgt explain asks why\n";
+  return out;
+}
+
+}  // namespace mgtd::calib

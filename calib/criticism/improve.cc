@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/improve.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calib/fit/joint_errors.h"
+#include "calib/fit/joint_report.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kRounds = 8;
+/// Rise of the error on poses left out that is not chance any more.
+constexpr double kVeto = 1.01;
+
+struct Stage {
+  JointFit fit;
+  std::optional<double> held_out_nT;
+};
+
+Result<Stage> stage_of(const PoseTable& table, const JointOptions& options) {
+  auto fit = fit_joint(table, options);
+  if (!fit) return tl::unexpected(fit.error());
+  Stage out{.fit = std::move(*fit), .held_out_nT = {}};
+  if (const auto errors = held_out_errors(out.fit)) out.held_out_nT = errors->residual_rms_nT;
+  return out;
+}
+
+/// Largest ratio of the variances of the sensors' parameters, the scatter taken out.
+double price_of(const JointFit& before, const JointFit& after) {
+  double out = 1;
+  for (int i = 0; i < kSensorBlock; ++i) {
+    const double ratio = after.covariance(i, i) / std::pow(after.spread, 2) /
+                         (before.covariance(i, i) / std::pow(before.spread, 2));
+    if (std::isfinite(ratio)) out = std::max(out, ratio);
+  }
+  return out;
+}
+
+std::string stop_text(Finding left) {
+  switch (left) {
+    case Finding::unknown:
+      return "something is left that no effect of the library looks like";
+    case Finding::bad_data:
+      return "the data contradict themselves";
+    case Finding::pass:
+      return "nothing stands out any more";
+    default:
+      return "the number of rounds is reached";
+  }
+}
+
+}  // namespace
+
+Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options) {
+  const auto explained = explain(table, {.fit = options, .rounds = kRounds, .suspects = {}});
+  if (!explained) return tl::unexpected(explained.error());
+  ImproveReport out{.finding = explained->left, .stopped = stop_text(explained->left), .fit = {}};
+  JointOptions joint = joint_options(options);
+  auto before = stage_of(table, joint);
+  if (!before) return tl::unexpected(before.error());
+  FitOptions best = options;
+  for (std::size_t i = 0; i < explained->rounds.size(); ++i) {
+    const Round& round = explained->rounds[i];
+    joint.effects.push_back(explained->model[options.effects.size() + i]);
+    auto after = stage_of(table, joint);
+    if (!after) return tl::unexpected(after.error());
+    if (before->held_out_nT && after->held_out_nT && *after->held_out_nT > kVeto * *before->held_out_nT) {
+      out.stopped =
+          fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
+                      round.added.spec, *before->held_out_nT, *after->held_out_nT);
+      out.finding = Finding::partial;
+      break;
+    }
+    out.rounds.push_back({.added = round.added,
+                          .possible = round.possible,
+                          .rms_before_nT = round.rms_before_nT,
+                          .rms_after_nT = round.rms_after_nT,
+                          .held_out_before_nT = before->held_out_nT,
+                          .held_out_after_nT = after->held_out_nT,
+                          .predicted_fall = round.added.fall,
+                          .realised_fall = round.chi2_before - round.chi2_after,
+                          .price = price_of(before->fit, after->fit)});
+    best.effects = joint.effects;
+    before = std::move(after);
+  }
+  auto fitted = fit(table, best);
+  if (!fitted) return tl::unexpected(fitted.error());
+  out.fit = std::move(*fitted);
+  return out;
+}
+
+}  // namespace mgtd::calib

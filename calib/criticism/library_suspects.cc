@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/criticism/suspect.h"
+#include "calib/effects/effect_family.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Of a searched number no more values are tried: its neighbours are alike, and the fit refines it.
+constexpr std::size_t kVariants = 10;
+
+/// Values of the searched number; an empty one is the form without it.
+std::vector<std::optional<double>> variants(const EffectFamily& family, const EffectContext& context) {
+  if (!family.scan) return {std::nullopt};
+  const std::vector<double> all = scan_values(family, context);
+  std::vector<std::optional<double>> out;
+  if (family.scan->optional) out.emplace_back(std::nullopt);
+  const std::size_t n = std::min(all.size(), kVariants);
+  for (std::size_t i = 0; i < n; ++i) out.emplace_back(all[n < 2 ? 0 : i * (all.size() - 1) / (n - 1)]);
+  return out;
+}
+
+/// What a hypothesis is called in a spec; empty for an effect as a whole.
+std::optional<Where> where_of(const Hypothesis& hypothesis) {
+  const auto where = Where::parse(hypothesis.where);
+  if (!where || where->scale == Where::Scale::own) return std::nullopt;
+  return *where;
+}
+
+Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
+  Suspect out{.name = std::string(family.name),
+              .level = family.level,
+              .typical = family.typical,
+              .bound = family.bound};
+  const auto values = variants(family, context);
+  for (const auto& value : values) {
+    auto effect = make(family, std::nullopt, value, context);
+    if (!effect) continue;
+    out.variants.push_back(std::move(*effect));
+    out.values.push_back(value);
+  }
+  if (family.scan) out.parameter = family.scan->parameter;
+  if (!out.variants.empty()) out.hypotheses = hypotheses_of(*out.variants.front());
+  out.make = [&family, context, values = out.values](const Hypothesis& h, std::size_t variant) {
+    return make(family, where_of(h), values[variant], context);
+  };
+  return out;
+}
+
+}  // namespace
+
+Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& in_model) {
+  Suspects out;
+  const EffectContext context{.table = &table, .offset_nT = {}};
+  for (const EffectFamily& family : effect_families()) {
+    const bool known = std::any_of(in_model.begin(), in_model.end(),
+                                   [&](const EffectPtr& e) { return e->name() == family.name; });
+    if (known) continue;
+    if (!family.untestable.empty()) {
+      out.untestable.push_back({std::string(family.name), std::string(family.untestable)});
+      continue;
+    }
+    const auto effect = make(family, std::nullopt, variants(family, context).front(), context);
+    const auto ok = effect ? (*effect)->check(table) : tl::unexpected(effect.error());
+    if (!ok) {
+      out.untestable.push_back({std::string(family.name), ok.error().message});
+      continue;
+    }
+    out.testable.push_back(suspect_of(family, context));
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "calib/criticism/comparison.h"
+#include "calib/criticism/comparison_report.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/fit_flags.h"
+
+namespace mgtd::cli {
+namespace {
+
+constexpr const char* kHelp =
+    "Five ways of looking at what the joint fit leaves, each against time, azimuth, temperature and every\n"
+    "extra column, with the means over each as a small plot. A scalar residual with no attitude residual is "
+    "a\n"
+    "sensor; an attitude residual alone is the table; what is alike in all sensors is the site.\n\n"
+    "Exit code 0: the model fits to the noise. 1: it does not.";
+
+struct Arguments {
+  std::string run;
+  std::shared_ptr<FitFlags> flags;
+};
+
+int run_compare(const Session& session, const Arguments& args) {
+  const auto source = daemon::read_run(args.run);
+  if (!source) return report(session, source.error());
+  const auto options = fit_options(*args.flags, *source);
+  if (!options) return report(session, options.error());
+  const auto comparison = calib::compare(source->table, *options);
+  if (!comparison) return report(session, comparison.error());
+  if (session.json) {
+    print_json(calib::to_json(*comparison));
+  } else {
+    fmt::print("{}", calib::to_text(*comparison));
+  }
+  return comparison->fits ? 0 : 1;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "compare", "model against measurement: where it fails",
+                                        [args, &session] { return run_compare(session, *args); });
+  command->footer(kHelp);
+  command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  args->flags = add_model_flags(command);
+}
+
+}  // namespace mgtd::cli
