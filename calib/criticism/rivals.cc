@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kPossible = 2.6;   ///< one true name in 200 would be lost
 constexpr double kShown = 0.999;    ///< pairs that are told apart better than this are no rivals
+constexpr double kAlike = 0.98;     ///< share of one signature inside the other: see rivals.h
 constexpr double kNothing = 1e-3;   ///< of a chi-square
 constexpr double kHopeless = 0.25;  ///< of the winner's fall of chi-square: z is above kPossible then
 
@@ -37,8 +38,8 @@ Rival compare(const Score& won, const Explained& a, const ScoredFamily& family, 
   const double deficit = (won.S - won.k) - (score.S - score.k);
   Rival out{.effect = family.suspect->name, .where = family.suspect->hypotheses[score.hypothesis].where};
   out.z = (deficit + lambda_ba) / (2 * std::sqrt(std::max(lambda_ba, 1e-12)));
-  // Where nothing sets them apart both stay possible, whatever the numbers are.
-  out.possible = out.z < kPossible || lambda_ba < kNothing;
+  out.alike = 1 - lambda_ba / std::max(b.v.squaredNorm(), kNothing);
+  out.possible = out.z < kPossible || lambda_ba < kNothing || out.alike > kAlike;
   out.p_right = normal_cdf(std::sqrt(lambda_ab) / 2);
   return out;
 }

@@ -13,11 +13,16 @@
 /// while
 ///     z = (S_a - S_b + lambda_ba) / (2 sqrt(lambda_ba)) < 2.6
 /// that is, while a deficit this large would not be strange if b were true.
+///
+/// And b stays possible, however large the effect, where all but a fiftieth of its signature (in squares)
+/// lies within that of a: then only the exact form of two idealised laws would decide, not their physics. An
+/// axis' own square against the squares of the transverse axes, in one field strength, is such a pair.
 namespace mgtd::calib {
 
 struct Rival {
   std::string effect{}, where{};
   double z{0};
+  double alike{0};    ///< share of its signature, in squares, that the winner's holds too
   double p_right{1};  ///< that of these two the right one wins, at the size that was found
   bool possible{false};
 };
