@@ -28,7 +28,7 @@ void judge_size(Criticism& out) {
   const NoiseReference& n = out.noise.reference;
   if (!n.known) return;
   if (std::isinf(n.nu)) {
-    out.omnibus_log10_p = chi_square_log10_p(out.chi2 / n.scale2, out.dof);
+    out.omnibus_log10_p = chi_square_log10_p(n.chi2, out.dof);
   } else if (out.noise.revisits) {
     out.omnibus_log10_p = out.noise.revisits->log10_p;
   }
@@ -60,8 +60,9 @@ bool Criticism::rejects_map() const {
 bool Criticism::rejects_omnibus() const { return below(omnibus_log10_p, kOmnibusAlarm); }
 
 Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed) {
-  const Residual residual(fit.problem, fit.state, pose_correlation(fit.problem, fit.state));
+  Residual residual(fit.problem, fit.state, pose_correlation(fit.problem, fit.state));
   Criticism out{.noise = noise_model(fit, residual), .chi2 = residual.chi2(), .dof = residual.dof()};
+  residual.measure_by(out.noise.reference.scale2);
   for (const Suspect& suspect : suspects.testable) {
     ScoredFamily scored = score_family(fit.problem, fit.state, residual, out.noise.reference, suspect);
     if (scored.testable()) {

@@ -44,9 +44,9 @@ Candidate candidate_of(const ScoredFamily& family, const Criticism& c) {
                 .k = score.k,
                 .log10_p = family.calibrated,
                 .d = score.d(),
-                .fall = score.S,
+                .fall = score.S * c.noise.reference.scale2,
                 .coefficients = coefficients_of(family)};
-  const double excess = c.chi2 - c.dof;
+  const double excess = c.noise.reference.chi2 - c.dof;
   out.share = excess > 0 ? std::clamp((score.S - score.k) / excess, 0.0, 1.0) : 0;
   if (family.suspect->bound > 0) {
     out.plausible = std::all_of(out.coefficients.begin(), out.coefficients.end(), [&](const auto& x) {
@@ -72,7 +72,7 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
 }
 
 /// The worst of the single axes, or of the single coefficients of what has no axes.
-Detectable detectable_of(const ScoredFamily& family, double scale2) {
+Detectable detectable_of(const ScoredFamily& family) {
   const Signature& s = family.signatures.front();
   Detectable out{.effect = family.suspect->name};
   for (const Hypothesis& h : family.suspect->hypotheses) {
@@ -80,7 +80,7 @@ Detectable detectable_of(const ScoredFamily& family, double scale2) {
       continue;
     for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
       const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
-      const double value = kSeen * std::sqrt(scale2 / left);
+      const double value = kSeen / std::sqrt(left);
       if (!(value > out.value) || !std::isfinite(value)) continue;
       Eigen::Index of = 0;
       h.combine.col(j).maxCoeff(&of);
@@ -115,7 +115,7 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
     if (i == 0) weigh_poses(fit, c.by_pose_winner, candidate);
     candidate.rivals = i == 0 ? rivals_of(c.families, i) : std::vector<Rival>{};
     out.candidates.push_back(std::move(candidate));
-    out.detectable.push_back(detectable_of(c.families[i], c.noise.reference.scale2));
+    out.detectable.push_back(detectable_of(c.families[i]));
   }
 }
 
@@ -124,7 +124,7 @@ std::string doubt(const Round& round, const Criticism& before) {
   const Candidate& a = round.added;
   if (!a.plausible) return fmt::format("the size that {} would need is beyond what occurs", a.effect);
   const double spread = 4 * std::sqrt(2 * before.dof);
-  if (before.noise.reference.known && before.chi2 - before.dof > spread && a.share < kEnoughShare)
+  if (before.noise.reference.known && before.noise.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
     return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
   const double realised = round.chi2_before - round.chi2_after;
   if (before.noise.reference.known &&

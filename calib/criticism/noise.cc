@@ -177,17 +177,22 @@ std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof
 }
 
 NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
-  NoiseModel out{
-      .rho = residual.whitener().rho(),
-      .revisits = pure_error(fit, residual.chi2(), residual.dof()),
-      .reference = {
-          .known = fit.sample_noise_nT.has_value(), .chi2 = residual.chi2(), .dof = residual.dof()}};
-  if (!out.reference.known || !out.revisits) return out;
-  const PureError& p = *out.revisits;
-  if (chi_square_log10_p(p.ratio * p.nu, p.nu) < kContradicts_log10_p) {
-    out.reference.scale2 = p.ratio;
-    out.reference.nu = p.nu;
+  NoiseModel out{.rho = residual.whitener().rho(),
+                 .revisits = pure_error(fit, residual.chi2(), residual.dof()),
+                 .reference = {.dof = residual.dof()}};
+  NoiseReference& n = out.reference;
+  // What lasts from one pose to the next is not seen within a dwell: its size is that of the residual.
+  const bool lasting = out.rho > kCorrelated;
+  n.known = fit.sample_noise_nT.has_value() && !lasting;
+  if (lasting) n.scale2 = residual.chi2() / residual.dof();
+  if (n.known && out.revisits) {
+    const PureError& p = *out.revisits;
+    if (chi_square_log10_p(p.ratio * p.nu, p.nu) < kContradicts_log10_p) {
+      n.scale2 = p.ratio;
+      n.nu = p.nu;
+    }
   }
+  n.chi2 = residual.chi2() / n.scale2;
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include "calib/criticism/residual.h"
 
 #include <Eigen/QR>
+#include <cmath>
 
 namespace mgtd::calib {
 namespace {
@@ -40,12 +41,21 @@ Residual::Residual(const JointProblem& problem, const JointState& state, const L
   dof_ = whitener_.rank() + static_cast<double>(constraints) - static_cast<double>(basis_.cols());
 }
 
+void Residual::measure_by(double scale2) {
+  const double unit = std::sqrt(scale2);
+  value_ *= unit_ / unit;
+  chi2_ *= unit_ * unit_ / scale2;
+  unit_ = unit;
+}
+
 Residual::Columns Residual::project(const Eigen::MatrixXd& rows) const {
   const Eigen::MatrixXd white = whitener_.apply(rows);
   Columns out{.projected = Eigen::MatrixXd::Zero(value_.size(), rows.cols()), .norms = {}};
   out.norms = white.colwise().norm();
   out.projected.topRows(white.rows()) = white;
   out.projected.noalias() -= basis_ * (basis_.topRows(white.rows()).transpose() * white);
+  out.projected /= unit_;
+  out.norms /= unit_;
   return out;
 }
 

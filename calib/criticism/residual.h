@@ -21,6 +21,9 @@ class Residual {
   [[nodiscard]] const Whitener& whitener() const { return whitener_; }
   [[nodiscard]] Eigen::Index poses() const { return poses_; }
 
+  /// From now on everything is in units of noise with `scale2` times the variance of the weights.
+  void measure_by(double scale2);
+
   struct Columns {
     Eigen::MatrixXd projected;
     Eigen::VectorXd norms;  ///< of the columns before the model's parameters were projected out
@@ -39,6 +42,7 @@ class Residual {
   Eigen::MatrixXd basis_;  ///< orthonormal, of the space of the model's parameters
   Eigen::VectorXd value_;
   double chi2_{0}, dof_{0};
+  double unit_{1};
 };
 
 }  // namespace mgtd::calib

@@ -10,7 +10,7 @@
 namespace mgtd::calib {
 
 double NoiseReference::log10_p(double S, int k, int axes) const {
-  if (known) return f_log10_p(S / scale2 / k, k, nu);
+  if (known) return f_log10_p(S / k, k, nu);
   // The noise of the channels concerned is what they have left once the effect is taken out.
   const double own = dof * axes / kChannels;
   const double left = own * chi2 / dof - S;

@@ -7,48 +7,10 @@
 #include <vector>
 
 #include "calib/criticism/suspect.h"
-#include "tests/unit/calib/fit/simulated_poses.h"
+#include "tests/blind/hidden_run.h"
 
-/// Runs with something hidden in them, and effects to suspect that share no code with the library.
+/// Effects to suspect that share no code with the library.
 namespace mgtd::calib::testing {
-
-/// Added to the reading of axis `axis` of sensor `sensor`, whose field term is v (nT).
-using Hidden = std::function<double(const Pose& pose, int sensor, int axis, const Eigen::Vector3d& v)>;
-
-struct HiddenRun {
-  double noise_nT{0.3};
-  bool spreads{true};  ///< the table tells the noise
-  double rho{0};       ///< of the noise from pose to pose
-  Hidden hidden{};
-  Eigen::Matrix3d G_nT_per_m{Eigen::Matrix3d::Zero()};
-};
-
-/// 36 level and 121 random poses of the Table 6 rig; temperatures go up and down over the run by 3 degrees.
-inline PoseTable hidden_run(const HiddenRun& run, std::uint64_t seed) {
-  Simulation sim{.noise_nT = 0, .table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05, .f_drift_nT = 20};
-  sim.G_nT_per_m = run.G_nT_per_m;
-  PoseTable table = simulate(sim, 36, 121, seed);
-  std::mt19937_64 rng(seed ^ 0x9e3779b97f4a7c15U);
-  std::normal_distribution<double> normal;
-  Eigen::Matrix<double, 12, 1> n = Eigen::Matrix<double, 12, 1>::NullaryExpr([&] { return normal(rng); });
-  const double fresh = std::sqrt(1 - run.rho * run.rho);
-  for (std::size_t k = 0; k < table.poses.size(); ++k) {
-    Pose& pose = table.poses[k];
-    const double phase = static_cast<double>(k) / static_cast<double>(table.poses.size());
-    for (std::size_t i = 0; i < 4; ++i)
-      pose.T_degC[i] = 21 + 3 * std::sin(5 * phase + 0.3 * static_cast<double>(i)) + 0.2 * normal(rng);
-    for (int c = 0; c < 12; ++c) {
-      const auto i = static_cast<std::size_t>(c / 3);
-      n[c] = run.rho * n[c] + fresh * normal(rng);
-      const Eigen::Vector3d v = pose.y_nT[i] - sim.rig[i].offset_nT;
-      const double extra = run.hidden ? run.hidden(pose, c / 3, c % 3, v) : 0;
-      pose.y_nT[i][c % 3] += extra + run.noise_nT * n[c];
-      if (run.spreads) pose.sd_nT[i][static_cast<std::size_t>(c % 3)] = run.noise_nT;
-    }
-    if (run.spreads) pose.n = 1;
-  }
-  return table;
-}
 
 /// y += c f(pose, v, axis), one coefficient for each of the axes it is laid over.
 class AxisLaw final : public EffectOf<AxisLaw> {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <string>
+
+#include "calib/criticism/explain.h"
+#include "tests/blind/hidden_law.h"
+
+/// The blind benchmark: a law is hidden, explain is asked, the answers are counted.
+namespace mgtd::calib::testing {
+
+/// Counts of one cell.
+struct Answers {
+  int runs{0}, refused{0};
+  std::map<Finding, int> findings;
+  int detected{0};      ///< any verdict but PASS
+  int named_first{0};   ///< the first name is the right one, of those detected
+  int in_set{0};        ///< the right name is among those that are named or possible
+  int wrong_single{0};  ///< EXPLAINED by something else
+  int set_size{0};      ///< summed over detections
+  std::map<std::string, int> first;
+  double predicted_over_realised{0};
+};
+
+[[nodiscard]] Answers clean(const HiddenRun& run, int runs, std::uint64_t seed);
+/// A law hidden on axes in turn, as large as `d` of its own uncertainties in this design.
+[[nodiscard]] Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed);
+
+/// Standard deviation of the coefficient of a law on one axis with everything else free (Cramer-Rao); of the
+/// law's own signature, so that it also holds for what is in no library.
+[[nodiscard]] double crb_of(const HiddenLaw& law, int sensor, int axis, std::uint64_t seed);
+
+/// 95 % interval of a proportion (Wilson), percent.
+struct Proportion {
+  double percent{0}, low{0}, high{0};
+};
+[[nodiscard]] Proportion proportion(int hits, int of);
+
+}  // namespace mgtd::calib::testing
