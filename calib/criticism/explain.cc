@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "calib/criticism/criticism.h"
+#include "calib/criticism/next_measurement.h"
 #include "calib/fit/joint_report.h"
 
 namespace mgtd::calib {
@@ -124,7 +125,8 @@ std::string doubt(const Round& round, const Criticism& before) {
   const Candidate& a = round.added;
   if (!a.plausible) return fmt::format("the size that {} would need is beyond what occurs", a.effect);
   const double spread = 4 * std::sqrt(2 * before.dof);
-  if (before.noise.reference.known && before.noise.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
+  if (before.noise.reference.known && before.noise.reference.chi2 - before.dof > spread &&
+      a.share < kEnoughShare)
     return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
   const double realised = round.chi2_before - round.chi2_after;
   if (before.noise.reference.known &&
@@ -192,6 +194,7 @@ bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainRepo
         fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
     return false;
   }
+  if (report.rounds.empty()) report.next = next_measurements(search.table, fit, search.joint, round.added);
   round.chi2_before = criticism.chi2, round.rms_before_nT = rms_nT(fit);
   forget(search.suspects, best.suspect->name);
   search.joint = std::move(wider);

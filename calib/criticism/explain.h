@@ -54,6 +54,13 @@ struct Detectable {
   std::string unit{};
 };
 
+/// A further measurement that would settle the name: see next_measurement.h.
+struct NextMeasurement {
+  std::string action{};
+  double minutes{0};
+  double p_right_before{0}, p_right_after{0};  ///< against the rival that is hardest to tell
+};
+
 /// A step of the search: the winner, and what adding it did.
 struct Round {
   Candidate added;
@@ -78,6 +85,7 @@ struct ExplainReport {
   std::vector<OutlierNode> outliers{};
   std::vector<Detectable> detectable{};
   std::vector<Untestable> untestable{};
+  std::vector<NextMeasurement> next{};  ///< for the first name, best first
   std::vector<std::string> notes{};
   std::vector<EffectPtr> model{};  ///< effects of the last fit
 };

@@ -100,7 +100,13 @@ json to_json(const ExplainReport& r) {
                               [](const Untestable& u) {
                                 return json{{"effect", u.effect}, {"why", u.why}};
                               })},
-      {"next", json::array()},
+      {"next", array_of(r.next,
+                        [](const NextMeasurement& n) {
+                          return json{{"action", n.action},
+                                      {"minutes", n.minutes},
+                                      {"p_right_before", n.p_right_before},
+                                      {"p_right_after", n.p_right_after}};
+                        })},
       {"notes", r.notes},
       {"text", sentence(r)}};
 }

@@ -54,6 +54,12 @@ std::string to_text(const ExplainReport& r) {
     fmt::format_to(to, "  {:<30} {:.3g} {} ({})\n", d.effect, d.value, d.unit, d.where);
   if (!r.untestable.empty()) out += "\nthese poses cannot test:\n";
   for (const Untestable& u : r.untestable) fmt::format_to(to, "  {:<30} {}\n", u.effect, u.why);
+  if (!r.next.empty())
+    out += "\nwhat would settle the name (probability that the right one wins, before -> after):\n";
+  for (const NextMeasurement& n : r.next) {
+    fmt::format_to(to, "  {:.3f} -> {:.3f}  {:>3.0f} min  {}\n", n.p_right_before, n.p_right_after, n.minutes,
+                   n.action);
+  }
   for (const OutlierNode& o : r.outliers) {
     fmt::format_to(to, "left out: pose {}, {}: {:.4g} {} off\n", o.pose, o.where, o.shift, o.unit);
   }

@@ -36,7 +36,9 @@ Rival compare(const Score& won, const Explained& a, const ScoredFamily& family, 
   const double lambda_ba = (b.v - a.U * (a.U.transpose() * b.v)).squaredNorm();
   const double lambda_ab = (a.v - b.U * (b.U.transpose() * a.v)).squaredNorm();
   const double deficit = (won.S - won.k) - (score.S - score.k);
-  Rival out{.effect = family.suspect->name, .where = family.suspect->hypotheses[score.hypothesis].where};
+  Rival out{.effect = family.suspect->name,
+            .where = family.suspect->hypotheses[score.hypothesis].where,
+            .spec = spec_of(*family.suspect, family.suspect->hypotheses[score.hypothesis], score.variant)};
   out.z = (deficit + lambda_ba) / (2 * std::sqrt(std::max(lambda_ba, 1e-12)));
   out.alike = 1 - lambda_ba / std::max(b.v.squaredNorm(), kNothing);
   out.possible = out.z < kPossible || lambda_ba < kNothing || out.alike > kAlike;

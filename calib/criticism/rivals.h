@@ -21,6 +21,7 @@ namespace mgtd::calib {
 
 struct Rival {
   std::string effect{}, where{};
+  std::string spec{};  ///< as --with reads it
   double z{0};
   double alike{0};    ///< share of its signature, in squares, that the winner's holds too
   double p_right{1};  ///< that of these two the right one wins, at the size that was found

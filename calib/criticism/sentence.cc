@@ -90,6 +90,15 @@ std::string sentence(const ExplainReport& r) {
     case Finding::partial:
       parts.push_back(left_text(r.maps_left));
       break;
+    case Finding::ambiguous:
+      if (!r.next.empty()) {
+        const NextMeasurement& n = r.next.front();
+        parts.push_back(
+            fmt::format("To settle it: {}, {:.0f} minutes; the right name then wins with probability {:.3f} "
+                        "instead of {:.2f}.",
+                        n.action, n.minutes, n.p_right_after, n.p_right_before));
+      }
+      break;
     case Finding::explained:
       parts.emplace_back("Nothing else stands out after that. The name is a hypothesis about the cause.");
       break;
