@@ -29,14 +29,4 @@ Result<Hysteresis> Hysteresis::on_run(const EffectContext& context) const {
   return out;
 }
 
-double Hysteresis::memory(const Conditions& at, int sensor, int axis) const {
-  const auto s = static_cast<std::size_t>(sensor);
-  if (before) {
-    const auto found = before->find(at.pose.number);
-    if (found != before->end()) return found->second[s][axis];
-  }
-  if (at.previous == nullptr) return 0;
-  return play(0, at.previous->y_nT[s][axis] / kReferenceField_nT, w.value_or(kDefaultWidth));
-}
-
 }  // namespace mgtd::calib

@@ -12,7 +12,8 @@
 ///     p <- max(x - w, min(x + w, p)),   y += h (p - x)/w        x = v/F0, h in nT, w of F0
 ///
 /// Follows the path of the table where the run kept it, else from dwell to dwell: a turn that overshoots both
-/// ends is then missed. Not bound to a run it knows the pose before and nothing else.
+/// ends is then missed. Where the readings before a pose are not known (a live sample, an effect that is not
+/// bound to the run) the term is left out.
 namespace mgtd::calib {
 
 /// The play at one pose before the pose's own field has moved it, by sensor and axis.
@@ -32,19 +33,18 @@ struct Hysteresis {
   std::shared_ptr<const std::unordered_map<int, PlayState>> before{};
 
   static AxisCoefficients coefficients() { return one_per_axis("nT", 1); }
-  static std::string_view missing(const Pose&, int) { return {}; }
+  [[nodiscard]] std::string_view missing(const Pose& pose, int) const {
+    return before && before->contains(pose.number) ? "" : kNoMemory;
+  }
   void parameters(EffectSpec& spec) const {
     if (w) spec.set("w", *w);
   }
   [[nodiscard]] Result<Hysteresis> on_run(const EffectContext& context) const;
-  /// p before this pose.
-  [[nodiscard]] double memory(const Conditions& at, int sensor, int axis) const;
-
   template <class S>
   S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
     const double width = w.value_or(kDefaultWidth);
-    const S x = in_F0(v, axis);
-    const S behind = (S(memory(at, sensor, axis)) - x) * S(1 / width);
+    const double p = before->at(at.pose.number)[static_cast<std::size_t>(sensor)][axis];
+    const S behind = (S(p) - in_F0(v, axis)) * S(1 / width);
     return behind > S(1.0) ? S(1.0) : behind < S(-1.0) ? S(-1.0) : behind;
   }
 };

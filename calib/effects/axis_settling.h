@@ -20,23 +20,25 @@ struct Settling {
   static constexpr int kPerAxis = 1;
   static constexpr double kDefaultTau_s = 10;
   std::optional<double> tau_s;
-  std::shared_ptr<const std::unordered_map<int, SensorReadings>> before{};  ///< v of the pose before
+  /// v of the pose before; empty for the first of the run.
+  std::shared_ptr<const std::unordered_map<int, std::optional<SensorReadings>>> before{};
 
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
-  static std::string_view missing(const Pose& pose, int) { return pose.since_stop_s ? "" : "since_stop_s"; }
+  [[nodiscard]] std::string_view missing(const Pose& pose, int) const {
+    if (!pose.since_stop_s) return "since_stop_s";
+    return before && before->contains(pose.number) ? "" : kNoMemory;
+  }
   void parameters(EffectSpec& spec) const {
     if (tau_s) spec.set("tau", *tau_s);
   }
   [[nodiscard]] Result<Settling> on_run(const EffectContext& context) const;
-  /// x of the pose before; empty for the first.
-  [[nodiscard]] std::optional<double> previous(const Conditions& at, int sensor, int axis) const;
 
   template <class S>
   S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
-    const auto x_prev = previous(at, sensor, axis);
-    if (!x_prev) return S(0.0);
-    return (S(*x_prev) - in_F0(v, axis)) *
-           S(std::exp(-*at.pose.since_stop_s / tau_s.value_or(kDefaultTau_s)));
+    const auto& v_prev = before->at(at.pose.number);
+    if (!v_prev) return S(0.0);
+    const double x_prev = (*v_prev)[static_cast<std::size_t>(sensor)][axis] / kReferenceField_nT;
+    return (S(x_prev) - in_F0(v, axis)) * S(std::exp(-*at.pose.since_stop_s / tau_s.value_or(kDefaultTau_s)));
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include "calib/effects/effect_context.h"
@@ -16,6 +17,9 @@
 /// Offsets are those of the context, else of each sensor by itself (sensor_start.h): good to some nT, which
 /// is 1e-4 of the field that a memory is about.
 namespace mgtd::calib {
+
+/// What Effect::missing says of a pose that is not in the run an effect is bound to.
+inline constexpr std::string_view kNoMemory = "the readings before";
 
 using SensorReadings = std::array<Eigen::Vector3d, kSensors>;
 

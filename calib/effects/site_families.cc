@@ -105,7 +105,8 @@ constexpr std::array kFamilies{
         .level = Level::site,
         .title = "a magnet near the array",
         .cause = "a motor, a tool, a parked trolley, a magnet fixed to the base of the table",
-        .equation = "B(x) += 100 (3 (m.u) u - m)/d^3 nT, u d = x - place - shift, site frame, metres",
+        .equation = "B(x) += D(x) - D(0), D(x) = 100 (3 (m.u) u - m)/d^3 nT, u d = x - place - shift, site "
+                    "frame, metres",
         .coefficients = "mx, my, mz, A m^2; dx, dy, dz, m from the best place of a grid (or of x=, y=, z=)",
         .typical = 0.1,
         .bound = 1000,

@@ -47,7 +47,8 @@ PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
       reference_(problem.effects, Level::reference),
       positions_P_m_(problem.geometry.positions_P_m()),
       tangents_(tangents(state.direction)),
-      globals_(kGlobals + problem.coefficients()) {
+      globals_(kGlobals + problem.coefficients()),
+      common_field_(problem.common_field) {
   for (std::size_t i = 0; i < kSensors; ++i) gains_[i] = gain_of(state.sensors[i]);
 }
 
@@ -158,6 +159,12 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
   if (!a.known) {
     out.f_nT = a.b_P_nT.norm();
     out.f_nuisance.head<3>() = a.b_P_nT.transpose() / out.f_nT;
+    return;
+  }
+  if (common_field_) {
+    // What is common to the poses is the field that does not drift.
+    out.f_nT = a.f_nT;
+    out.f_nuisance[3] = 1;
     return;
   }
   Eigen::Vector3d B_S = a.f_nT * state_.direction;

@@ -52,6 +52,7 @@ class PoseModel {
   std::array<Eigen::Vector3d, kSensors> positions_P_m_;
   Eigen::Matrix<double, 3, 2> tangents_;
   int globals_;
+  bool common_field_;
 };
 
 }  // namespace mgtd::calib

@@ -35,5 +35,25 @@ BENCHMARK(joint)
     ->Unit(benchmark::kMillisecond)
     ->Complexity();
 
+/// One effect of the library in the model, 157 poses with temperatures.
+void joint_with(benchmark::State& state, const char* spec) {
+  PoseTable table = poses(157, false);
+  for (Pose& pose : table.poses) {
+    for (std::size_t i = 0; i < kSensors; ++i)
+      pose.T_degC[i] = 25 + 3 * std::sin(0.1 * pose.number + static_cast<double>(i));
+  }
+  JointOptions options;
+  options.effects = {*make_effect(spec)};
+  for (auto _ : state) {
+    const auto fit = fit_joint(table, options);
+    if (!fit) return state.SkipWithError(fit.error().text().c_str());
+  }
+}
+BENCHMARK_CAPTURE(joint_with, one_axis, "axis.offset.temperature@s3.z")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(joint_with, twelve_axes, "axis.offset.temperature")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(joint_with, twenty_four, "axis.transverse")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(joint_with, hysteresis, "axis.hysteresis,w=0.1")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(joint_with, flexure, "platform.flexure")->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace mgtd::calib

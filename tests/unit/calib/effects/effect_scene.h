@@ -28,6 +28,7 @@ struct Scene {
   double noise_nT = 0.3, table_sd_rad = to_rad(0.02), f_sd_nT = 0.05;
   double f_nT = 50'000;
   int standard = 36, random = 121;
+  bool with_f = true;  ///< a scalar reference
   Eigen::Vector3d direction{std::cos(to_rad(60)), 0, std::sin(to_rad(60))};
 };
 
@@ -72,9 +73,11 @@ inline PoseTable run_with(const Injection& in, const Scene& scene, std::uint64_t
     const double t_h = *pose.t_s / 3600;
     Eigen::Vector3d B0 = scene.f_nT * scene.direction;
     if (in.site) B0 += in.site(t_h, Eigen::Vector3d::Zero());
-    pose.f_nT = B0.norm() + scene.f_sd_nT * normal(rng);
-    if (in.reference) *pose.f_nT += in.reference(pose, R * B0.normalized());
-    pose.f_sd_nT = scene.f_sd_nT;
+    if (scene.with_f) {
+      pose.f_nT = B0.norm() + scene.f_sd_nT * normal(rng);
+      if (in.reference) *pose.f_nT += in.reference(pose, R * B0.normalized());
+      pose.f_sd_nT = scene.f_sd_nT;
+    }
     for (int i = 0; i < kSensors; ++i) {
       const auto s = static_cast<std::size_t>(i);
       Eigen::Vector3d B = scene.f_nT * scene.direction;

@@ -199,6 +199,16 @@ std::vector<Case> site_cases() {
                    return (t > 1.01 ? 0.4 : 0) * testing::gradient_50() * x;
                  }},
                  {12, -18, -8, 20, 4}});
+  // Without a scalar reference the drift along the field is seen too.
+  Scene alone;
+  alone.with_f = false;
+  out.push_back({"site.field-drift",
+                 {.site = [](double t, const Vector3d&) -> Vector3d {
+                   const double phase = 3.14159265358979 * t / (156.0 / 60);
+                   return std::cos(phase) * Vector3d(8, -30, 12) + std::cos(3 * phase) * Vector3d(0, 20, 5);
+                 }},
+                 {8, -30, 12, 0, 0, 0, 0, 20, 5},
+                 alone});
   out.push_back({"site.reference-error",
                  {.reference =
                       [](const Pose&, const Vector3d& u) {
@@ -208,8 +218,9 @@ std::vector<Case> site_cases() {
   return out;
 }
 
-JointOptions with(const std::string& spec) {
+JointOptions with(const std::string& spec, const Scene& scene) {
   JointOptions options;
+  if (!scene.with_f) options.field_nT = scene.f_nT;
   options.table_sd_rad = to_rad(0.02);
   if (!spec.empty()) options.effects = {*make_effect(spec)};
   return options;
@@ -224,8 +235,8 @@ TEST_P(Injected, IsFoundWithinItsUncertainty) {
   constexpr int kSeeds = 3;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const PoseTable table = testing::run_with(c.in, c.scene, seed);
-    const auto without = fit_joint(table, with(""));
-    const auto fit = fit_joint(table, with(c.spec));
+    const auto without = fit_joint(table, with("", c.scene));
+    const auto fit = fit_joint(table, with(c.spec, c.scene));
     ASSERT_TRUE(without && fit) << (fit ? "" : fit.error().text());
     // Three and a half standard deviations of a chi-square, twice the tail of three seeds of all cases.
     EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof)) << c.spec;

@@ -57,6 +57,18 @@ JointOptions options_with(const char* spec) {
   return options;
 }
 
+TEST(Hysteresis, IsLeftOutWhereTheReadingsBeforeAreUnknown) {
+  const PoseTable table = testing::run_with({}, {}, 4);
+  for (const char* spec : {"axis.hysteresis@s2,w=0.1", "axis.settling@s2,tau=9"}) {
+    EXPECT_EQ((*make_effect(spec))->missing(table.poses[5]), kNoMemory);
+    const EffectPtr bound = *make_effect(*EffectSpec::parse(spec), {.table = &table, .offset_nT = {}});
+    EXPECT_EQ(bound->missing(table.poses[5]), "");
+    Pose elsewhere = table.poses[5];
+    elsewhere.number = 1000;
+    EXPECT_EQ(bound->missing(elsewhere), kNoMemory);
+  }
+}
+
 TEST(Tune, FindsTheWidthOfAHysteresis) {
   const PoseTable table = testing::run_with(hysteresis_of(4, 0.3), {}, 6);
   const auto effects = tune(table, options_with("axis.hysteresis@s2.x"));
