@@ -3,8 +3,12 @@
 
 namespace mgtd::calib {
 
+namespace {
+constexpr double kPrior_deg = 0.1;
+}
+
 Flexure::Flexure(const Where& where)
-    : scale_({"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, "deg", 0.01, where) {}
+    : scale_({"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, "deg", 0.01, where, kPrior_deg) {}
 
 ThermalBending::ThermalBending(const Where& where) : scale_({"x", "y", "z"}, "arcsec/degC", 5, where) {}
 

@@ -6,13 +6,14 @@
 namespace mgtd::calib {
 
 PlatformScale::PlatformScale(const std::vector<std::string>& names, const char* unit, double typical,
-                             const Where& where)
+                             const Where& where, double prior_sd)
     : where_(where) {
   for (int sensor = 0; sensor < kSensors; ++sensor) {
     if (where.scale == Where::Scale::sensor && sensor != where.sensor) continue;
     for (const std::string& name : names) {
       at_[static_cast<std::size_t>(sensor)].push_back(static_cast<int>(coefficients_.size()));
-      coefficients_.push_back({.name = sensor_name(sensor) + "." + name, .unit = unit, .typical = typical});
+      coefficients_.push_back(
+          {.name = sensor_name(sensor) + "." + name, .unit = unit, .typical = typical, .prior_sd = prior_sd});
     }
   }
 }

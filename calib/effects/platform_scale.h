@@ -14,7 +14,8 @@ namespace mgtd::calib {
 
 class PlatformScale {
  public:
-  PlatformScale(const std::vector<std::string>& names, const char* unit, double typical, const Where& where);
+  PlatformScale(const std::vector<std::string>& names, const char* unit, double typical, const Where& where,
+                double prior_sd = 0);
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const { return coefficients_; }
   [[nodiscard]] std::span<const int> at(int sensor) const { return at_[static_cast<std::size_t>(sensor)]; }
   /// "NAME", or "NAME@s3"

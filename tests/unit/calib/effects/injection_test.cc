@@ -67,6 +67,19 @@ std::vector<Case> axis_cases() {
         return (T(p, 2) - kT0) * kArcsec * (3 * v[0] - 2 * v[1]);
       }),
       {3, -2});
+  out.push_back({"axis.offset.temperature",
+                 {.axis = [](const Pose& p, int sensor, int axis, const Vector3d&,
+                             const Vector3d*) { return 0.1 * (sensor - axis) * (T(p, sensor) - kT0); }},
+                 {0, -0.1, -0.2, 0.1, 0, -0.1, 0.2, 0.1, 0, 0.3, 0.2, 0.1}});
+  out.push_back(
+      {"axis.gain.temperature@each-sensor",
+       {.axis = [](const Pose& p, int sensor, int axis, const Vector3d& v,
+                   const Vector3d*) { return 5e-6 * (sensor + 1) * (T(p, sensor) - kT0) * v[axis]; }},
+       {5, 10, 15, 20}});
+  out.push_back({"axis.cubic@all",
+                 {.axis = [](const Pose&, int, int axis, const Vector3d& v,
+                             const Vector3d*) { return 5 * std::pow(v[axis] / kF0, 3); }},
+                 {5}});
   add("axis.quadratic@s3.z",
       on_s3z([](const Pose&, const Vector3d& v, const Vector3d*) { return 4 * std::pow(v[2] / kF0, 2); }),
       {4});
@@ -114,11 +127,29 @@ std::vector<Case> platform_cases() {
                    return sensor == 1 ? turned(kDeg * S * g, b) : b;
                  }},
                  {0.02, 0, 0, 0, -0.01, 0.005, 0, 0.01, 0}});
+  out.push_back({"platform.flexure",
+                 {.platform = [S](const Pose&, int sensor, const Vector3d& b, const Vector3d& g) -> Vector3d {
+                   return turned((sensor - 1.5) * kDeg * S * g, b);
+                 }},
+                 {}});
+  for (int sensor = 0; sensor < 4; ++sensor) {
+    for (int k = 0; k < 9; ++k) out.back().truth.push_back((sensor - 1.5) * S(k / 3, k % 3));
+  }
+  out.push_back({"platform.thermal-bending",
+                 {.platform = [](const Pose& p, int sensor, const Vector3d& b, const Vector3d&) -> Vector3d {
+                   return turned((sensor - 1.5) * kArcsec * (T(p, sensor) - kT0) * Vector3d(4, -3, 2), b);
+                 }},
+                 {-6, 4.5, -3, -2, 1.5, -1, 2, -1.5, 1, 6, -4.5, 3}});
   out.push_back({"platform.thermal-bending@s2",
                  {.platform = [](const Pose& p, int sensor, const Vector3d& b, const Vector3d&) -> Vector3d {
                    return sensor == 1 ? turned(kArcsec * (T(p, 1) - kT0) * Vector3d(4, -3, 2), b) : b;
                  }},
                  {4, -3, 2}});
+  out.push_back({"platform.current",
+                 {.platform = [](const Pose& p, int sensor, const Vector3d& b, const Vector3d&) -> Vector3d {
+                   return b + (sensor + 1) * p.covariates.at("motor_A") * Vector3d(3, -2, 1);
+                 }},
+                 {3, -2, 1, 6, -4, 2, 9, -6, 3, 12, -8, 4}});
   Case magnet{"platform.tabletop-magnet",
               {.platform = [](const Pose& p, int sensor, const Vector3d& b, const Vector3d&) -> Vector3d {
                 return b + (*p.mount - 1) * (sensor + 1) * Vector3d(2, -1, 3);

@@ -143,6 +143,10 @@ TEST(PoseModel, DerivativesHoldThroughEveryLevel) {
   EXPECT_LT(worst_derivative(make_case({probe<Level::table>()}, true)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({probe<Level::platform>()}, true)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({probe<Level::axis>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<Level::reference>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(
+                make_case({probe<Level::reference>(), probe<Level::table>(), probe<Level::site>()}, true)),
+            kTolerance);
   EXPECT_LT(worst_derivative(make_case(
                 {probe<Level::axis>(), probe<Level::table>(), probe<Level::site>(), probe<Level::platform>()},
                 true)),
