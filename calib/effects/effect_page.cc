@@ -40,9 +40,6 @@ std::string unit_of(const EffectFamily& family) {
 std::string example_of(const EffectFamily& family) {
   std::string out(family.name);
   if (family.scales.front() == Where::Scale::each_axis) out += "@s3.z";
-  if (family.name == "platform.current") return out + ",columns=motor_A";
-  if (family.scan && family.scan->range != Scan::Range::index && family.scan->range != Scan::Range::run)
-    out += fmt::format(",{}={:g}", family.scan->parameter, family.scan->from);
   return out;
 }
 
