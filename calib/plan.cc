@@ -11,6 +11,7 @@
 #include "calib/fit/fit_report_json.h"
 #include "calib/fit/joint_fit.h"
 #include "calib/fit/tensor_uncertainty.h"
+
 #include "calib/sensor_equations.h"
 #include "calib/tensor.h"
 
@@ -28,6 +29,21 @@ double mean_square(const Gradient& g) {
   return (g.xx * g.xx + g.yy * g.yy + g.zz * g.zz + g.xy * g.xy + g.xz * g.xz + g.yz * g.yz) / 6;
 }
 
+/// A room that warms up: fast at first, all of it by the end, so that temperature and time are not the same.
+void assume_warming(PoseTable& table, double warming_degC) {
+  const bool known = std::any_of(table.poses.begin(), table.poses.end(),
+                                 [](const Pose& pose) { return pose.T_degC[0].has_value(); });
+  const auto &begin = table.poses.front().t_s, &end = table.poses.back().t_s;
+  if (known || warming_degC == 0 || !begin || !end || !(*end > *begin)) return;
+  constexpr double kTimeConstants = 3;
+  for (Pose& pose : table.poses) {
+    if (!pose.t_s) continue;
+    const double elapsed = (*pose.t_s - *begin) / (*end - *begin);
+    const double rise = (1 - std::exp(-kTimeConstants * elapsed)) / (1 - std::exp(-kTimeConstants));
+    pose.T_degC.fill(kReferenceT_degC + warming_degC * rise);
+  }
+}
+
 PoseTable measured_in_thought(const PlanRequest& request) {
   const Eigen::Vector3d n = direction_of(request.inclination_rad, request.declination_rad);
   PoseTable table = request.poses;
@@ -40,17 +56,8 @@ PoseTable measured_in_thought(const PlanRequest& request) {
     pose.f_nT = request.scalar_sd_nT ? std::optional(request.f_nT) : std::nullopt;
     pose.f_sd_nT = request.scalar_sd_nT;
   }
+  if (!table.poses.empty()) assume_warming(table, request.warming_degC);
   return table;
-}
-
-JointOptions options_of(const PlanRequest& request) {
-  JointOptions options;
-  options.geometry = request.geometry;
-  options.effects = request.effects;
-  options.table_sd_rad = request.table_sd_rad;
-  if (request.field_known) options.field_nT = request.f_nT;
-  if (request.field_sd_nT > 0) options.field_sd_nT = request.field_sd_nT;
-  return options;
 }
 
 struct Named {
@@ -145,39 +152,42 @@ std::string assumed_text(const PlanRequest& r) {
       r.scalar_sd_nT  ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
       : r.field_known ? fmt::format("known to {} nT", std::max(r.field_sd_nT, kCommonFieldSpread_nT))
                       : std::string("not known");
-  return fmt::format("field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg",
-                     r.f_nT, field, to_deg(r.inclination_rad), r.pose_noise_nT, to_deg(r.table_sd_rad));
+  return fmt::format(
+      "field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg; heads that "
+      "warm "
+      "by {} degC where the poses tell no temperature",
+      r.f_nT, field, to_deg(r.inclination_rad), r.pose_noise_nT, to_deg(r.table_sd_rad), r.warming_degC);
 }
 
 }  // namespace
 
 Result<PlanReport> plan(const PlanRequest& request) {
   const PoseTable table = measured_in_thought(request);
-  const JointOptions options = options_of(request);
-  auto problem = joint_problem(table, options);
-  if (!problem) return tl::unexpected(problem.error());
-  const Gauge gauge = fix_gauge(*problem, options);
-  weight_by_pose(*problem, AxisNoise::Constant(request.pose_noise_nT));
-  const JointState state =
-      joint_state(*problem, request.sensors, direction_of(request.inclination_rad, request.declination_rad),
-                  request.f_nT);
-  const Eigen::MatrixXd S = reduce(*problem, state, 0).S;
+  const auto design = planned_design(request, table);
+  if (!design) return tl::unexpected(design.error());
+  const auto& [problem, state, gauge] = *design;
+  const Eigen::MatrixXd S = reduce(problem, state, 0).S;
 
   PlanReport report;
+  if (request.power) {
+    auto power = plan_power(request, table);
+    if (!power) return tl::unexpected(power.error());
+    report.power = std::move(*power);
+  }
   report.poses = static_cast<int>(table.poses.size());
   report.noise_sd_nT_per_m = noise_of_tensor(request);
   report.tensor_sd_nT_per_m = unknown();
   report.assumed = assumed_text(request);
   report.gauge = gauge_text(gauge);
-  report.known = identifiability(*problem, state, S, request.f_nT, request.candidates);
+  report.known = identifiability(problem, state, S, request.f_nT, request.candidates);
   const auto covariance = covariance_of(S);
   report.determined = covariance && report.known.worst_nT() < kUnusable * request.f_nT;
   if (!report.determined) return report;
-  report.parameters = standard_errors(*problem, *covariance);
-  report.separations = separations(*problem, S, *covariance);
+  report.parameters = standard_errors(problem, *covariance);
+  report.separations = separations(problem, S, *covariance);
   report.tensor_sd_nT_per_m =
       calibration_tensor_sd(request.sensors, request.geometry, *covariance, request.f_nT);
-  report.helpful = most_helpful(*problem, state, S, request.f_nT, request.candidates);
+  report.helpful = most_helpful(problem, state, S, request.f_nT, request.candidates);
   return report;
 }
 

@@ -9,12 +9,14 @@
 #include "calib/effects/library.h"
 #include "calib/fit/identifiability.h"
 #include "calib/geometry.h"
+#include "calib/plan_power.h"
 #include "calib/sensor_model.h"
 #include "proto/pose.h"
 #include "proto/tensor.h"
 #include "proto/units.h"
 
-/// Before anything is measured: what a list of poses would tell.
+/// Before anything is measured: what a list of poses would tell: how well the calibration would be known,
+/// and which missing effects would be seen and told apart (plan_power.h).
 ///
 /// The rig is measured in thought at the listed table angles, and the information of the joint fit is
 /// inverted there (Cramer-Rao bound). Readings play no part, so the answer holds for every rig near the given
@@ -32,6 +34,8 @@ struct PlanRequest {
   Geometry geometry;
   std::array<SensorModel, kSensors> sensors{};  ///< an earlier calibration, or nominal sensors
   std::vector<EffectPtr> effects;
+  double warming_degC{2};  ///< of the heads in the run, where the poses tell no temperature
+  bool power{true};        ///< also say which effects would be seen and told apart
   std::vector<TableAngles> candidates{candidate_attitudes()};  ///< attitudes that may be proposed
 };
 
@@ -66,6 +70,7 @@ struct PlanReport {
     double share{0};
   };
   std::vector<Helpful> helpful;
+  std::optional<PlanPower> power;
 };
 
 /// Refuses fewer poses than the fit would accept, and an effect that cannot act on them.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/fit/fit_report_json.h"
+#include "calib/plan_power_report.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -96,19 +97,21 @@ json to_json(const PlanReport& r) {
     helpful.push_back(angles_json(h.angles));
     helpful.back()["variance_share"] = h.share;
   }
-  return {{"schema", "mgt.plan/1"},
-          {"poses", r.poses},
-          {"determined", r.determined},
-          {"assumed", r.assumed},
-          {"gauge", r.gauge},
-          {"parameters", std::move(parameters)},
-          {"separations", std::move(separations)},
-          {"tensor_sd_nT_per_m", components(r.tensor_sd_nT_per_m)},
-          {"noise_sd_nT_per_m", components(r.noise_sd_nT_per_m)},
-          {"weak", std::move(weak)},
-          {"coverage", r.known.coverage},
-          {"add", std::move(add)},
-          {"helpful", std::move(helpful)}};
+  json out{{"schema", "mgt.plan/1"},
+           {"poses", r.poses},
+           {"determined", r.determined},
+           {"assumed", r.assumed},
+           {"gauge", r.gauge},
+           {"parameters", std::move(parameters)},
+           {"separations", std::move(separations)},
+           {"tensor_sd_nT_per_m", components(r.tensor_sd_nT_per_m)},
+           {"noise_sd_nT_per_m", components(r.noise_sd_nT_per_m)},
+           {"weak", std::move(weak)},
+           {"coverage", r.known.coverage},
+           {"add", std::move(add)},
+           {"helpful", std::move(helpful)}};
+  if (r.power) add_json(*r.power, out);
+  return out;
 }
 
 std::string to_text(const PlanReport& r) {
@@ -124,7 +127,8 @@ std::string to_text(const PlanReport& r) {
     out += "\n" + parameter_table(r);
   }
   const std::string weak = weak_list(r);
-  return out + (weak.empty() ? "" : "\n" + weak) + "\n" + help_list(r);
+  out += (weak.empty() ? "" : "\n" + weak) + "\n" + help_list(r);
+  return r.power ? out + "\n" + to_text(*r.power) : out;
 }
 
 }  // namespace mgtd::calib

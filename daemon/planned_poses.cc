@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "daemon/approach.h"
 #include "daemon/run_duration.h"
 #include "daemon/run_plan.h"
 
@@ -14,6 +15,21 @@ drivers::TableLimits limits_of(const Config& config) {
   const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
   if (table != nullptr) return table->limits();
   return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
+}
+
+/// Ends at `end_s`.
+Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pace) {
+  Pose pose;
+  pose.number = planned.number;
+  pose.set = planned.set;
+  pose.t_s = end_s - planned.dwell_s / 2;
+  pose.azimuth_rad = planned.target.azimuth_rad;
+  pose.pitch_rad = planned.target.pitch_rad;
+  pose.roll_rad = planned.target.roll_rad;
+  pose.dwell_s = planned.dwell_s;
+  pose.since_stop_s = pace.settle_s + planned.dwell_s / 2;
+  if (sense != 0) pose.sense = sense;
+  return pose;
 }
 
 }  // namespace
@@ -28,21 +44,22 @@ Result<PoseTable> planned_poses(const Config& config) {
                                .seed = d.seed},
                               limits_of(config));
   if (!plan) return tl::unexpected(plan.error());
+  const Pace pace;
+  const drivers::TableLimits limits = limits_of(config);
   PoseTable out;
   double t_s = 0;
+  TableAngles at;
+  int sense = 0;
   for (std::size_t k = 0; k < plan->poses.size(); ++k) {
     const PlannedPose& planned = plan->poses[k];
-    t_s += pose_s(Pace{}, *plan, k);
-    Pose pose;
-    pose.number = planned.number;
-    pose.set = planned.set;
-    pose.t_s = t_s - planned.dwell_s / 2;
-    pose.azimuth_rad = planned.target.azimuth_rad;
-    pose.pitch_rad = planned.target.pitch_rad;
-    pose.roll_rad = planned.target.roll_rad;
-    pose.dwell_s = planned.dwell_s;
-    if (planned.sense != 0) pose.sense = planned.sense;
-    out.poses.push_back(std::move(pose));
+    const double begun_s = t_s;
+    t_s += pose_s(pace, *plan, k);
+    const auto by_way_of = waypoint(at, sense, planned.target, planned.sense, kApproach_rad, limits);
+    if (by_way_of) out.path.push_back({begun_s + move_s(pace, at, *by_way_of), *by_way_of});
+    const int last = sense_of(by_way_of.value_or(at).azimuth_rad, planned.target.azimuth_rad);
+    if (last != 0) sense = last;
+    at = planned.target;
+    out.poses.push_back(pose_of(planned, t_s, sense, pace));
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/approach.h"
 #include "daemon/dwell.h"
 #include "daemon/preflight.h"
 #include "daemon/run_duration.h"
@@ -24,7 +25,7 @@ struct RunConfig {
   /// Measure no further pose once the tensor is known so well (nT/m, worst component); empty: the whole plan.
   std::optional<double> until_tensor_sd_nT_per_m;
   int retries{3};                  ///< of one pose, before the run pauses and asks
-  double approach_rad{to_rad(5)};  ///< overshoot that gives the azimuth its planned sense; 0: none
+  double approach_rad{kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
   double reach_rad{to_rad(1)};     ///< a table at rest further from its target has not reached it
 
   double home_max_s{180};

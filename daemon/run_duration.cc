@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/approach.h"
+
 namespace mgtd::daemon {
 
 double move_s(const Pace& pace, const TableAngles& from, const TableAngles& to) {
@@ -17,8 +19,25 @@ double move_s(const Pace& pace, const TableAngles& from, const TableAngles& to) 
 
 double pose_s(const Pace& pace, const RunPlan& plan, std::size_t index) {
   const TableAngles from = index == 0 ? TableAngles{} : plan.poses[index - 1].target;
-  return move_s(pace, from, plan.poses[index].target) + pace.settle_s + plan.poses[index].dwell_s;
+  const PlannedPose& pose = plan.poses[index];
+  const int natural = sense_of(from.azimuth_rad, pose.target.azimuth_rad);
+  double way_s = move_s(pace, from, pose.target);
+  if (pose.sense != 0 && pose.sense != natural) {
+    TableAngles before = pose.target;
+    before.azimuth_rad -= pose.sense * kApproach_rad;
+    way_s = move_s(pace, from, before) + move_s(pace, before, pose.target);
+  }
+  return way_s + pace.settle_s + pose.dwell_s;
 }
+
+namespace {
+
+RunPlan from_any_side(RunPlan plan) {
+  for (PlannedPose& pose : plan.poses) pose.sense = 0;
+  return plan;
+}
+
+}  // namespace
 
 double total_s(const Pace& pace, const RunPlan& plan) {
   double sum_s = pace.home_s + pace.solve_s;
@@ -34,10 +53,10 @@ std::string describe(const RunPlan& plan, const Pace& pace) {
   const double minutes = total_s(pace, plan) / 60;
   std::string text = fmt::format(
       "{} poses: {} standard in {} deg steps, {} random ({} of them revisits, seed {}); dwells of {} and {} "
-      "s; "
-      "about {:.0f} min\n",
+      "s; about {:.0f} min, {:.1f} of them so that the azimuth comes from both sides\n",
       plan.poses.size(), standard, plan.options.step_deg, random, revisits, plan.options.seed,
-      plan.options.dwell_short_s, plan.options.dwell_long_s, std::ceil(minutes));
+      plan.options.dwell_short_s, plan.options.dwell_long_s, std::ceil(minutes),
+      minutes - total_s(pace, from_any_side(plan)) / 60);
   for (const std::string& note : plan.notes) text += "note: " + note + "\n";
   return text;
 }

@@ -17,7 +17,7 @@ struct Pace {
 
 [[nodiscard]] double move_s(const Pace& pace, const TableAngles& from, const TableAngles& to);
 /// Move, settle and dwell of the pose at `index`, coming from the one before it (the first: from zero
-/// angles).
+/// angles), by way of an overshoot where the azimuth has to arrive in the other sense.
 [[nodiscard]] double pose_s(const Pace& pace, const RunPlan& plan, std::size_t index);
 /// From the reference move to the verdict.
 [[nodiscard]] double total_s(const Pace& pace, const RunPlan& plan);

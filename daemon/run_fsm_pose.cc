@@ -6,30 +6,15 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/approach.h"
 #include "daemon/run_fsm.h"
 
 namespace mgtd::daemon {
 namespace {
 
-constexpr double kSameAzimuth_rad = to_rad(0.2);  // less is no azimuth move
-constexpr double kLimitTolerance_rad = 1e-9;
-
-bool inside(const drivers::TableLimits::Range& range, double a_rad) {
-  return a_rad >= range.min_rad - kLimitTolerance_rad && a_rad <= range.max_rad + kLimitTolerance_rad;
-}
-bool inside(const drivers::TableLimits& limits, const TableAngles& a) {
-  return inside(limits.azimuth, a.azimuth_rad) && inside(limits.pitch, a.pitch_rad) &&
-         inside(limits.roll, a.roll_rad);
-}
-
 double furthest_rad(const TableAngles& a, const TableAngles& b) {
   return std::max({std::abs(a.azimuth_rad - b.azimuth_rad), std::abs(a.pitch_rad - b.pitch_rad),
                    std::abs(a.roll_rad - b.roll_rad)});
-}
-
-int sense_of(double from_rad, double to_rad) {
-  if (std::abs(to_rad - from_rad) < kSameAzimuth_rad) return 0;
-  return to_rad > from_rad ? +1 : -1;
 }
 
 std::string in_words(const TableAngles& a) {
@@ -93,13 +78,9 @@ void RunFsm::enter_pose(std::size_t index) {
 /// Where to go first so that the azimuth arrives in its planned sense; none when it does anyway, when it need
 /// not, or when the limits leave no room (the sense that is stored is always the real one).
 std::optional<TableAngles> RunFsm::waypoint(const PlannedPose& pose) const {
-  if (pose.sense == 0 || config_.approach_rad <= 0 || !table_) return std::nullopt;
-  const int natural = sense_of(table_->angles.azimuth_rad, pose.target.azimuth_rad);
-  if (natural == pose.sense || (natural == 0 && sense_ == pose.sense)) return std::nullopt;
-  TableAngles before = pose.target;
-  before.azimuth_rad -= pose.sense * config_.approach_rad;
-  if (!inside(config_.limits, before)) return std::nullopt;
-  return before;
+  if (!table_) return std::nullopt;
+  return daemon::waypoint(table_->angles, sense_.value_or(0), pose.target, pose.sense, config_.approach_rad,
+                          config_.limits);
 }
 
 void RunFsm::move_to_target() {

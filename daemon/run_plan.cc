@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "daemon/approach.h"
 #include "daemon/random_source.h"
 #include "proto/units.h"
 
@@ -119,6 +120,14 @@ std::vector<bool> revisit_places(RandomSource& random, int poses, int revisits) 
   return taken;
 }
 
+/// At an end of the travel there is room on one side only.
+int random_sense(RandomSource& random, const TableAngles& target, const TableLimits& limits) {
+  const int sense = random.below(2) == 0 ? +1 : -1;
+  TableAngles before = target;
+  before.azimuth_rad -= sense * kApproach_rad;
+  return inside(limits, before) ? sense : -sense;
+}
+
 void add_random(RunPlan& plan, const TableLimits& limits) {
   RandomSource random(plan.options.seed);
   std::vector<std::size_t> once;  // indices of attitudes visited once
@@ -139,6 +148,7 @@ void add_random(RunPlan& plan, const TableLimits& limits) {
       once.push_back(plan.poses.size());
     }
     pose.dwell_s = random.below(2) == 0 ? plan.options.dwell_short_s : plan.options.dwell_long_s;
+    pose.sense = random_sense(random, pose.target, limits);
     plan.poses.push_back(std::move(pose));
   }
 }

@@ -15,8 +15,9 @@
 /// the poses between on the way back, so that every other azimuth was approached in the other sense at
 /// another time. Random set: attitudes uniform over the rotations b_P = Rz(azimuth) Ry(pitch) Rx(roll) b_S
 /// that lie within the table's limits (Haar measure: azimuth and roll uniform, density |cos pitch| of the
-/// pitch), some of them revisits of an earlier attitude at a random later time, two dwell lengths mixed at
-/// random.
+/// pitch), some of them revisits of an earlier attitude at a random later time; dwell length and the sense in
+/// which the azimuth arrives are mixed at random, so that revisits come from the same side and from the
+/// other.
 ///
 /// The same options and seed give the same plan with every compiler and library. Angles are multiples of
 /// 0.01 degree (a limit that is not one is kept off by less than that).

@@ -14,7 +14,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kSeen = 8;           ///< d that is detected in 99.9 % and named right in nine cases of ten
 constexpr double kEnoughShare = 0.8;  ///< of the excess, where there is an excess to speak of
 constexpr double kOnePose = 0.5;      ///< of the evidence
 constexpr double kMaxNodes = 0.02;    ///< of the readings
@@ -72,27 +71,6 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
   }
 }
 
-/// The worst of the single axes, or of the single coefficients of what has no axes.
-Detectable detectable_of(const ScoredFamily& family) {
-  const Signature& s = family.signatures.front();
-  Detectable out{.effect = family.suspect->name};
-  for (const Hypothesis& h : family.suspect->hypotheses) {
-    if (family.suspect->level == Level::axis ? h.axes != 1 : &h != &family.suspect->hypotheses.front())
-      continue;
-    for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
-      const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
-      const double value = kSeen / std::sqrt(left);
-      if (!(value > out.value) || !std::isfinite(value)) continue;
-      Eigen::Index of = 0;
-      h.combine.col(j).maxCoeff(&of);
-      out.value = value;
-      out.where = h.names[static_cast<std::size_t>(j)];
-      out.unit = family.suspect->variants.front()->coefficients()[static_cast<std::size_t>(of)].unit;
-    }
-  }
-  return out;
-}
-
 double rms_nT(const JointFit& fit) { return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0)); }
 
 double share_of_nodes(const JointFit& fit) {
@@ -116,7 +94,7 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
     if (i == 0) weigh_poses(fit, c.by_pose_winner, candidate);
     candidate.rivals = i == 0 ? rivals_of(c.families, i) : std::vector<Rival>{};
     out.candidates.push_back(std::move(candidate));
-    out.detectable.push_back(detectable_of(c.families[i]));
+    out.detectable.push_back(detectable_of(*c.families[i].suspect, c.families[i].signatures.front()));
   }
 }
 

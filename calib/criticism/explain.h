@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/criticism/detectable.h"
 #include "calib/criticism/maps.h"
 #include "calib/criticism/noise.h"
 #include "calib/criticism/rivals.h"
@@ -46,12 +47,6 @@ struct Candidate {
   bool plausible{true};
   std::vector<int> poses{};  ///< numbers of those that carry half of the evidence
   double largest_pose{0};    ///< share of the one that carries most
-};
-
-struct Detectable {
-  std::string effect{}, where{};
-  double value{0};  ///< smallest coefficient that is seen in 99 of 100 runs like this (d = 8)
-  std::string unit{};
 };
 
 /// A further measurement that would settle the name: see next_measurement.h.

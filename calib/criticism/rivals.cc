@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace mgtd::calib {
 namespace {
 
 constexpr double kPossible = 2.6;   ///< one true name in 200 would be lost
 constexpr double kShown = 0.999;    ///< pairs that are told apart better than this are no rivals
-constexpr double kAlike = 0.98;     ///< share of one signature inside the other: see rivals.h
 constexpr double kNothing = 1e-3;   ///< of a chi-square
 constexpr double kHopeless = 0.25;  ///< of the winner's fall of chi-square: z is above kPossible then
-
-double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 /// The space of a hypothesis and its fit to the residual.
 struct Explained {
@@ -42,11 +38,13 @@ Rival compare(const Score& won, const Explained& a, const ScoredFamily& family, 
   out.z = (deficit + lambda_ba) / (2 * std::sqrt(std::max(lambda_ba, 1e-12)));
   out.alike = 1 - lambda_ba / std::max(b.v.squaredNorm(), kNothing);
   out.possible = out.z < kPossible || lambda_ba < kNothing || out.alike > kAlike;
-  out.p_right = normal_cdf(std::sqrt(lambda_ab) / 2);
+  out.p_right = told_right(lambda_ab);
   return out;
 }
 
 }  // namespace
+
+double told_right(double lambda) { return 0.5 * std::erfc(-std::sqrt(lambda / 8)); }
 
 std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a) {
   const Score& won = families[a].winner();

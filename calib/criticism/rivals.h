@@ -19,6 +19,12 @@
 /// axis' own square against the squares of the transverse axes, in one field strength, is such a pair.
 namespace mgtd::calib {
 
+/// Share of a signature, in squares, inside that of another effect from which the two count as one.
+inline constexpr double kAlike = 0.98;
+
+/// The right one of two effects wins with this probability.
+[[nodiscard]] double told_right(double lambda);
+
 struct Rival {
   std::string effect{}, where{};
   std::string spec{};  ///< as --with reads it

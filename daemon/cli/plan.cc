@@ -18,6 +18,9 @@ poses would help most. The poses are those of POSES.csv (columns pose, azimuth_d
 whatever an effect needs; readings are not looked at), or those of the run that a configuration describes, or
 of the default run. With an effect: how well its coefficients would be known, and told from the rest.
 
+Then, for every effect of the library that is not planned for: the smallest size that the run would show, and
+the pairs of effects that it could not tell apart, with the further measurement that would.
+
   mgt plan                                    the default run of 157 poses
   mgt plan --config rig.toml --noise 0.3      the run this rig would do, 0.3 nT a pose mean
   mgt plan poses.csv --with site.gradient     a list of your own
@@ -27,7 +30,7 @@ Exit code 0: every parameter would be determined. 1: not; the poses to add are p
 struct Arguments {
   std::string poses, config, calibration;
   std::vector<std::string> with;
-  double noise_nT{1}, scalar_sd_nT{kDefaultScalarSd_nT};
+  double noise_nT{1}, warming_degC{2}, scalar_sd_nT{kDefaultScalarSd_nT};
   bool no_scalar{false};
   std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
 };
@@ -75,6 +78,7 @@ Result<calib::PlanRequest> request_of(const Arguments& args) {
   calib::PlanRequest r;
   r.scalar_sd_nT = args.scalar_sd_nT;
   r.pose_noise_nT = args.noise_nT;
+  r.warming_degC = args.warming_degC;
   if (!args.calibration.empty()) {
     const auto calibration = read_calibration(args.calibration);
     if (!calibration) return tl::unexpected(calibration.error());
@@ -135,6 +139,10 @@ void add_plan(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--scalar-sd", args->scalar_sd_nT, "standard uncertainty of the scalar reference in nT")
       ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--warming", args->warming_degC,
+                   "warming of the heads during the run in degC, where the poses tell no temperature")
       ->capture_default_str();
   command->add_flag("--no-scalar", args->no_scalar, "there is no scalar reference");
   command->add_option("--field", args->field_nT,

@@ -86,6 +86,13 @@ TEST_F(Validity, APlanBeforeAnythingIsMeasured) {
   const json report = json::parse(plan.out);
   EXPECT_EQ(report.at("poses"), 157);
   EXPECT_EQ(report.at("parameters").size(), 53U);
+  EXPECT_GT(report.at("detectable_above").size(), 20U);
+  EXPECT_GT(report.at("detectable_above")[0].at("sd"), 0.0);
+  bool square = false;
+  for (const json& pair : report.at("inseparable"))
+    square = square || (pair.at("effect") == "axis.quadratic" && pair.at("rival") == "axis.transverse" &&
+                        pair.at("correlation") > 0.999 && pair.at("remedy").at("p_right") > 0.95);
+  EXPECT_TRUE(square);
   EXPECT_EQ(mgt({"plan", "--config", std::string(MGTD_SOURCE_DIR) + "/systemd/mgtd.toml"}).exit_code, 0);
   std::ofstream level(dir_ / "level.csv");
   level << "pose,azimuth_deg,pitch_deg,roll_deg\n";

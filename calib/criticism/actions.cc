@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/actions.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kPose_min = 0.5;  ///< where the table tells no times
+
+double share(std::size_t k) { return static_cast<double>(k) / (kActionPoses - 1); }
+
+void warm(Pose& pose, std::size_t k) {
+  for (auto& T : pose.T_degC)
+    if (T) *T += 5 * std::sin(std::numbers::pi * share(k));
+}
+
+void weaker_field(Pose& pose, std::size_t) {
+  constexpr double kShare = 0.8;
+  for (auto& y : pose.y_nT) y *= kShare;
+  if (pose.f_nT) *pose.f_nT *= kShare;
+}
+
+void dwell(Pose& pose, std::size_t k) {
+  static constexpr std::array kWaits_s{5.0, 20.0, 60.0};
+  if (pose.since_stop_s) pose.since_stop_s = kWaits_s[k % kWaits_s.size()];
+}
+
+void toggle(Pose& pose, std::size_t k) {
+  for (auto& [name, value] : pose.covariates)
+    if (name.ends_with("_A")) value += k % 2 == 0 ? 0.5 : -0.5;
+}
+
+void reverse(Pose& pose, std::size_t k) {
+  if (pose.sense) pose.sense = k % 2 == 0 ? 1 : -1;
+}
+
+constexpr std::array kActions{
+    Action{"24 more poses as before", 0, [](Pose&, std::size_t) {}},
+    Action{"a heat pulse: warm the heads by 5 degC and let them cool again during 24 poses", 10, &warm},
+    Action{"24 poses with the field a fifth weaker (coil)", 5, &weaker_field},
+    Action{"24 poses in mixed order with waits of 5, 20 and 60 s before the dwell", 8, &dwell},
+    Action{"24 poses with the current switched from pose to pose", 2, &toggle},
+    Action{"24 poses approached from alternating sides", 2, &reverse},
+};
+
+}  // namespace
+
+std::span<const Action> actions() { return kActions; }
+
+double minutes_per_pose(const PoseTable& table) {
+  const auto &first = table.poses.front().t_s, &last = table.poses.back().t_s;
+  if (!first || !last || !(*last > *first)) return kPose_min;
+  return (*last - *first) / 60 / static_cast<double>(table.poses.size() - 1);
+}
+
+/// The run with the poses of an action behind it; readings stand for the attitude only.
+PoseTable extended(const PoseTable& table, const Action& action) {
+  PoseTable out = table;
+  const Pose& last = table.poses.back();
+  const std::size_t n = table.poses.size();
+  for (std::size_t k = 0; k < kActionPoses; ++k) {
+    // Attitudes spread over the run, in an order that has none.
+    Pose pose = table.poses[(k * 37 + 11) % n];
+    pose.number = last.number + static_cast<int>(k) + 1;
+    if (pose.set == "check") pose.set = "random";
+    if (last.t_s) pose.t_s = *last.t_s + 60 * minutes_per_pose(table) * static_cast<double>(k + 1);
+    pose.t_utc.reset();
+    pose.T_degC = last.T_degC;  // the room goes on from where it was
+    action.change(pose, k);
+    out.poses.push_back(std::move(pose));
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

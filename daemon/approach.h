@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "drivers/device.h"
+#include "proto/reading.h"
+
+/// From which side the azimuth comes to a pose: backlash of the table and hysteresis of the cores show only
+/// where both sides occur.
+namespace mgtd::daemon {
+
+inline constexpr double kApproach_rad = 0.0872664625997165;  ///< 5 deg of overshoot
+
+[[nodiscard]] bool inside(const drivers::TableLimits& limits, const TableAngles& angles);
+
+/// +1 upwards, -1 downwards, 0: less than 0.2 deg, no move of the azimuth.
+[[nodiscard]] int sense_of(double from_rad, double to_rad);
+
+/// Where to go first so that the azimuth arrives at `target` in the sense wanted; none when it does anyway
+/// (a table that stands there has arrived in `last_sense`), when no sense is wanted (0), or when the limits
+/// leave no room.
+[[nodiscard]] std::optional<TableAngles> waypoint(const TableAngles& from, int last_sense,
+                                                  const TableAngles& target, int sense, double approach_rad,
+                                                  const drivers::TableLimits& limits);
+
+}  // namespace mgtd::daemon
