@@ -82,7 +82,7 @@ std::string to_text(const PlanPower& power) {
   std::string out = seen(power) + "\n" + alike(power);
   if (power.untestable.empty()) return out;
   out += "\nnot testable by this run\n";
-  for (const Untestable& u : power.untestable) out += fmt::format("  {:<30}{}\n", u.effect, u.why);
+  for (const Untestable& u : power.untestable) out += fmt::format("  {:<32}{}\n", u.effect, u.why);
   return out;
 }
 

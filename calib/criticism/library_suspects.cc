@@ -64,7 +64,12 @@ Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& 
       out.untestable.push_back({std::string(family.name), std::string(family.untestable)});
       continue;
     }
-    const auto effect = make(family, std::nullopt, variants(family, context).front(), context);
+    const auto values = variants(family, context);
+    if (values.empty()) {  // a time within the run, and the poses tell none
+      out.untestable.push_back({std::string(family.name), fmt::format("{} needs t_s", family.name)});
+      continue;
+    }
+    const auto effect = make(family, std::nullopt, values.front(), context);
     const auto ok = effect ? (*effect)->check(table) : tl::unexpected(effect.error());
     if (!ok) {
       out.untestable.push_back({std::string(family.name), ok.error().message});

@@ -101,6 +101,7 @@ TEST_F(Validity, APlanBeforeAnythingIsMeasured) {
   const Finished one_axis = mgt({"plan", dir_ / "level.csv"});
   EXPECT_EQ(one_axis.exit_code, 1);
   EXPECT_THAT(one_axis.out, HasSubstr("not at all"));
+  EXPECT_THAT(one_axis.out, HasSubstr("needs t_s"));
 }
 
 }  // namespace
