@@ -228,6 +228,12 @@ Result<Calibration> calibration_from_json(const json& object) {
                 fmt::format("the content was changed: it hashes to {}, the file says {}", found, c.id),
                 "a calibration is never edited; fit again instead");
   }
+  if (const json more = json::diff(to_json(c), object); !more.empty()) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("it holds what this version does not know: {}",
+                            more.front().at("path").get_ref<const std::string&>()),
+                "use the version of mgt that wrote it");
+  }
   return c;
 }
 

@@ -113,6 +113,14 @@ TEST(CalibrationJson, EffectsItCannotRemoveAreRefused) {
   EXPECT_THAT(calibration_from_json(object).error().message, HasSubstr("axis.of.evil"));
 }
 
+/// What it would drop when it is written again, under an id that no longer fits.
+TEST(CalibrationJson, WhatThisVersionDoesNotKnowIsRefusedByItsPath) {
+  nlohmann::json object = to_json(random_calibration(1));
+  object["sensors"][2]["cw"] = 1.0;
+  object["id"] = content_id(object);
+  EXPECT_THAT(calibration_from_json(object).error().message, HasSubstr("/sensors/2/cw"));
+}
+
 /// A file of the right shape whose values are of the wrong type is an error, never an exception.
 TEST(CalibrationJson, EveryKeyMayBeWrong) {
   const nlohmann::json whole = to_json(random_calibration(1));
