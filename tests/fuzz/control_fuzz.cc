@@ -2,18 +2,16 @@
 // Whatever a control client sends, and whatever answers a control client: a request that is accepted survives
 // its encoding, and a refusal can be sent back and read.
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "proto/control_codec.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
+using mgtd::testing::require;
 
 void as_request(std::string_view line) {
   const auto request = mgtd::parse_control(line);
