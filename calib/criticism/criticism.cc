@@ -12,17 +12,6 @@
 namespace mgtd::calib {
 namespace {
 
-std::vector<double> evidence_by_pose(const ScoredFamily& family, const Residual& residual) {
-  const Signature& s = family.signatures[family.winner().variant];
-  const OneStep step = one_step(s, family.where());
-  const Eigen::VectorXd fit = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
-  const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
-  std::vector<double> out;
-  for (Eigen::Index k = 0; k < residual.poses(); ++k)
-    out.push_back(product.segment<kChannels>(k * kChannels).sum());
-  return out;
-}
-
 /// A residual larger than its noise, where that is known.
 void judge_size(Criticism& out) {
   const NoiseReference& n = out.noise.reference;
@@ -47,12 +36,29 @@ void judge_quiet(const JointFit& fit, Criticism& out) {
   out.quiet_log10_p = std::min(0.0, std::log10(kChannels * std::max(1 - more, 1e-300)));
 }
 
+/// The model holds this law: nothing of it is left to test.
+bool in_model(const JointProblem& problem, const Suspect& suspect) {
+  return std::any_of(problem.effects.begin(), problem.effects.end(),
+                     [&](const EffectPtr& effect) { return effect->name() == suspect.name; });
+}
+
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
 
 }  // namespace
 
-bool Criticism::rejects_named() const {
-  return !families.empty() && below(best_of(families.front().calibrated, independent), kNamedAlarm);
+std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
+  const ScoredFamily& f = families[family];
+  const Signature& s = f.signatures[f.winner().variant];
+  const OneStep step = one_step(s, f.where());
+  const Eigen::VectorXd fit = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
+  const Eigen::VectorXd product = fit.cwiseProduct(residual);
+  std::vector<double> out;
+  for (Eigen::Index k = 0; k < poses; ++k) out.push_back(product.segment<kChannels>(k * kChannels).sum());
+  return out;
+}
+
+bool Criticism::rejects_named(std::size_t family) const {
+  return family < families.size() && below(best_of(families[family].calibrated, independent), kNamedAlarm);
 }
 bool Criticism::rejects_map() const {
   return !maps.empty() && below(best_of(maps.front().log10_p, static_cast<double>(maps.size())), kMapAlarm);
@@ -67,7 +73,7 @@ Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t
     ScoredFamily scored = score_family(fit.problem, fit.state, residual, out.noise.reference, suspect);
     if (scored.testable()) {
       out.families.push_back(std::move(scored));
-    } else {
+    } else if (!in_model(fit.problem, suspect)) {
       out.untestable.push_back(
           {suspect.name, "calibration, attitude and field of these poses absorb it whole"});
     }
@@ -78,7 +84,7 @@ Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t
   out.maps = score_maps(residual_maps(fit.problem, fit.state), residual, out.noise.reference);
   judge_size(out);
   judge_quiet(fit, out);
-  if (!out.families.empty()) out.by_pose_winner = evidence_by_pose(out.families.front(), residual);
+  out.residual = residual.value(), out.poses = residual.poses();
   return out;
 }
 

@@ -24,9 +24,12 @@ struct Criticism {
   /// The channel that scatters least for its noise, "s3.z", and the probability of so little, all counted.
   std::string quiet{};
   double quiet_log10_p{0}, quiet_ratio{1};
-  std::vector<double> by_pose_winner{};  ///< evidence of the best family, pose by pose
+  Eigen::VectorXd residual{};  ///< whitened, rows as Residual::value()
+  Eigen::Index poses{0};
 
-  [[nodiscard]] bool rejects_named() const;
+  /// Evidence for one of the families, pose by pose.
+  [[nodiscard]] std::vector<double> evidence_by_pose(std::size_t family) const;
+  [[nodiscard]] bool rejects_named(std::size_t family = 0) const;
   [[nodiscard]] bool rejects_map() const;
   [[nodiscard]] bool rejects_omnibus() const;
   [[nodiscard]] bool rejects() const { return rejects_named() || rejects_map() || rejects_omnibus(); }

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "calib/criticism/criticism.h"
+#include "calib/criticism/growth.h"
 #include "calib/criticism/next_measurement.h"
 #include "calib/fit/joint_report.h"
 
@@ -15,8 +18,11 @@ namespace mgtd::calib {
 namespace {
 
 constexpr double kEnoughShare = 0.8;  ///< of the excess, where there is an excess to speak of
+constexpr double kHalf = 0.5;         ///< of the winner's d: a sketch of a memory fits so well at least
 constexpr double kOnePose = 0.5;      ///< of the evidence
 constexpr double kMaxNodes = 0.02;    ///< of the readings
+const double kTable_rad = to_rad(2);  ///< of error of the table a pose
+constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
 constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
 constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
 
@@ -36,7 +42,7 @@ std::vector<EffectCoefficient> coefficients_of(const ScoredFamily& family) {
   return out;
 }
 
-Candidate candidate_of(const ScoredFamily& family, const Criticism& c) {
+Candidate candidate_of(const ScoredFamily& family, const Criticism& c, double worse) {
   const Score& score = family.winner();
   Candidate out{.effect = family.suspect->name,
                 .where = family.where().where,
@@ -44,7 +50,7 @@ Candidate candidate_of(const ScoredFamily& family, const Criticism& c) {
                 .k = score.k,
                 .log10_p = family.calibrated,
                 .d = score.d(),
-                .fall = score.S * c.noise.reference.scale2,
+                .fall = score.S * c.noise.reference.scale2 * worse * worse,
                 .coefficients = coefficients_of(family)};
   const double excess = c.noise.reference.chi2 - c.dof;
   out.share = excess > 0 ? std::clamp((score.S - score.k) / excess, 0.0, 1.0) : 0;
@@ -73,6 +79,9 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
 
 double rms_nT(const JointFit& fit) { return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0)); }
 
+/// In units of the noise that the table tells.
+double chi2_of(const JointFit& fit, const Criticism& c) { return c.chi2 * fit.worse * fit.worse; }
+
 double share_of_nodes(const JointFit& fit) {
   return static_cast<double>(fit.outliers.size()) /
          static_cast<double>(fit.problem.poses.size() * static_cast<std::size_t>(kChannels));
@@ -82,16 +91,17 @@ double share_of_nodes(const JointFit& fit) {
 void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   out.noise = c.noise;
   out.noise_nT = fit.noise_nT();
+  out.noise_told = fit.sample_noise_nT.has_value();
   out.residual_nT = rms_nT(fit);
-  out.chi2 = c.chi2, out.dof = c.dof;
+  out.chi2 = chi2_of(fit, c), out.dof = c.dof;
   out.omnibus_log10_p = c.omnibus_log10_p;
   out.families = c.independent;
   out.maps = c.maps;
   out.outliers = fit.outliers;
   out.untestable.insert(out.untestable.end(), c.untestable.begin(), c.untestable.end());
   for (std::size_t i = 0; i < c.families.size(); ++i) {
-    Candidate candidate = candidate_of(c.families[i], c);
-    if (i == 0) weigh_poses(fit, c.by_pose_winner, candidate);
+    Candidate candidate = candidate_of(c.families[i], c, fit.worse);
+    if (i == 0) weigh_poses(fit, c.evidence_by_pose(0), candidate);
     candidate.rivals = i == 0 ? rivals_of(c.families, i) : std::vector<Rival>{};
     out.candidates.push_back(std::move(candidate));
     out.detectable.push_back(detectable_of(*c.families[i].suspect, c.families[i].signatures.front()));
@@ -118,7 +128,8 @@ Finding conclude(const ExplainReport& report, const Criticism& first, const Crit
   if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
   const Round& round = report.rounds.front();
   if (last.rejects()) return Finding::partial;
-  if (report.rounds.size() > 1) return Finding::partial;
+  const auto same = [&](const Round& r) { return r.added.effect == round.added.effect; };
+  if (!std::all_of(report.rounds.begin(), report.rounds.end(), same)) return Finding::partial;
   if (!round.possible.empty()) return Finding::ambiguous;
   std::string why = doubt(round, first);
   if (why.empty()) return Finding::explained;
@@ -126,14 +137,34 @@ Finding conclude(const ExplainReport& report, const Criticism& first, const Crit
   return Finding::partial;
 }
 
+/// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
+std::string wrong_wiring(const JointFit& fit) {
+  for (std::size_t i = 0; i < fit.state.sensors.size(); ++i) {
+    if (fit.state.sensors[i].mounting.determinant() > 0) continue;
+    return fmt::format(
+        "sensor {} is mirrored: its axes form a left-handed triad, two leads are swapped or one is inverted",
+        i + 1);
+  }
+  if (fit.table_sd_rad > kTable_rad)
+    return fmt::format(
+        "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
+        "or order of the angles, or a mounting written down wrongly",
+        to_deg(fit.table_sd_rad), to_deg(kTable_rad));
+  return {};
+}
+
 bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>& notes) {
+  if (std::string why = wrong_wiring(fit); !why.empty()) {
+    notes.push_back(std::move(why));
+    return true;
+  }
   const double nodes = share_of_nodes(fit);
   if (nodes > kMaxNodes) {
     notes.push_back(fmt::format("{:.1f} % of the readings contradict the rest; the limit is {:.0f} %",
                                 100 * nodes, 100 * kMaxNodes));
     return true;
   }
-  if (c.quiet_log10_p < std::log10(kTooSmall)) {
+  if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {
     notes.push_back(
         fmt::format("{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
                     "wrong, or poses are copies",
@@ -148,43 +179,68 @@ struct Search {
   JointOptions joint;
   Suspects suspects;
   std::uint64_t seed;
+  std::set<std::string> failed{};  ///< effects that no fit settled with
 };
 
-void forget(Suspects& suspects, const std::string& name) {
-  std::erase_if(suspects.testable, [&](const Suspect& s) { return s.name == name; });
+/// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
+/// stands out by itself stays possible.
+void keep_memory_possible(const Search& search, const Criticism& c, Round& round) {
+  constexpr std::string_view kMemory = "axis.hysteresis";
+  if (!search.table.path.empty() || round.added.effect == kMemory) return;
+  for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
+    if (c.families[f].suspect->name != kMemory || c.families[f].winner().d() < kHalf * round.added.d)
+      continue;
+    if (std::find(round.possible.begin(), round.possible.end(), kMemory) == round.possible.end())
+      round.possible.emplace_back(kMemory);
+  }
 }
 
-/// Adds the winner and fits again. False when the fit with it fails.
-bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
-  const ScoredFamily& best = criticism.families.front();
-  Round round{.added = candidate_of(best, criticism)};
-  weigh_poses(fit, criticism.by_pose_winner, round.added);
-  round.added.rivals = rivals_of(criticism.families, 0);
+/// Adds family `f` and fits again. False when the fit with it fails.
+bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, ExplainReport& report) {
+  const ScoredFamily& best = criticism.families[f];
+  Round round{.added = candidate_of(best, criticism, fit.worse)};
+  weigh_poses(fit, criticism.evidence_by_pose(f), round.added);
+  round.added.rivals = rivals_of(criticism.families, f);
   for (const Rival& rival : round.added.rivals)
     if (rival.possible) round.possible.push_back(rival.effect);
-  auto effect = best.suspect->make(best.where(), best.winner().variant);
-  if (!effect) return false;
+  keep_memory_possible(search, criticism, round);
+  auto model = grown(search.joint.effects, best);
+  if (!model) return false;
   JointOptions wider = search.joint;
-  wider.effects.push_back(*effect);
-  auto refit = fit_joint(search.table, wider, fit.state);
+  wider.effects = *std::move(model);
+  wider.worse = fit.worse;
+  auto refit = fit_joint_at_size(search.table, wider, &fit.state);
   if (!refit) {
     report.notes.push_back(
         fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
+    search.failed.insert(round.added.effect);
     return false;
   }
   if (report.rounds.empty()) report.next = next_measurements(search.table, fit, search.joint, round.added);
-  round.chi2_before = criticism.chi2, round.rms_before_nT = rms_nT(fit);
-  forget(search.suspects, best.suspect->name);
+  round.chi2_before = chi2_of(fit, criticism), round.rms_before_nT = rms_nT(fit);
   search.joint = std::move(wider);
+  round.model = search.joint.effects;
   fit = std::move(*refit);
   criticism = criticise(fit, search.suspects, search.seed);
-  round.chi2_after = criticism.chi2, round.rms_after_nT = rms_nT(fit);
+  round.chi2_after = chi2_of(fit, criticism), round.rms_after_nT = rms_nT(fit);
   report.rounds.push_back(std::move(round));
   return true;
 }
 
+/// Adds the best family that can be fitted; those that cannot are noted.
+bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
+  for (std::size_t f = 0; f < criticism.families.size() && criticism.rejects_named(f); ++f) {
+    if (search.failed.contains(criticism.families[f].suspect->name)) continue;
+    if (add(search, f, fit, criticism, report)) return true;
+  }
+  return false;
+}
+
 void name(ExplainReport& report) {
-  for (const Round& round : report.rounds) report.named.push_back(round.added.effect);
+  for (const Round& round : report.rounds) {
+    if (std::find(report.named.begin(), report.named.end(), round.added.effect) == report.named.end())
+      report.named.push_back(round.added.effect);
+  }
   if (report.finding == Finding::ambiguous) {
     const auto& possible = report.rounds.front().possible;
     report.named.insert(report.named.end(), possible.begin(), possible.end());
@@ -214,9 +270,8 @@ std::string_view to_string(Finding finding) {
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
   Search search{
       .table = table, .joint = joint_options(options.fit), .suspects = {}, .seed = options.fit.seed};
-  search.suspects =
-      options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table, options.fit.effects);
-  auto fit = fit_joint(table, search.joint);
+  search.suspects = options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table);
+  auto fit = fit_joint_at_size(table, search.joint);
   if (!fit) return tl::unexpected(fit.error());
   ExplainReport out;
   out.untestable = search.suspects.untestable;
@@ -229,7 +284,7 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   const Criticism first = criticism;
   for (int round = 0; round < options.rounds && criticism.rejects_named(); ++round) {
     Candidate weighed;
-    weigh_poses(*fit, criticism.by_pose_winner, weighed);
+    weigh_poses(*fit, criticism.evidence_by_pose(0), weighed);
     if (weighed.largest_pose > kOnePose) {
       out.notes.push_back(fmt::format("one pose ({}) carries the evidence for {}: measure it again",
                                       weighed.poses.front(), criticism.families.front().suspect->name));
@@ -241,6 +296,14 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
     }
     if (!add_winner(search, *fit, criticism, out)) break;
   }
+  const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
+  const bool remembers = std::any_of(out.rounds.begin(), out.rounds.end(), [&](const Round& r) {
+    return memory(r.added.effect) || std::any_of(r.possible.begin(), r.possible.end(), memory);
+  });
+  if (remembers && table.path.empty())
+    out.notes.emplace_back(
+        "the way of the table between its poses is not in these data: a memory of the cores is followed from "
+        "dwell to dwell only, its size and its width are rough; a run file has the way");
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;
   out.left = !criticism.rejects()        ? Finding::pass

@@ -62,6 +62,7 @@ struct Round {
   std::vector<std::string> possible{};  ///< other effects that could stand in its place
   double chi2_before{0}, chi2_after{0};
   double rms_before_nT{0}, rms_after_nT{0};
+  std::vector<EffectPtr> model{};  ///< after it
 };
 
 struct ExplainReport {
@@ -74,6 +75,7 @@ struct ExplainReport {
   std::vector<MapScore> maps_left{};  ///< after the last round
   NoiseModel noise;
   double noise_nT{0}, residual_nT{0};
+  bool noise_told{true};  ///< by the spreads within the dwells
   double chi2{0}, dof{0};
   double omnibus_log10_p{0};
   double families{1};  ///< independent ones, by draws

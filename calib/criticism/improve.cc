@@ -11,7 +11,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kRounds = 8;
+constexpr int kRounds = 24;
 /// Rise of the error on poses left out that is not chance any more.
 constexpr double kVeto = 1.01;
 
@@ -21,7 +21,7 @@ struct Stage {
 };
 
 Result<Stage> stage_of(const PoseTable& table, const JointOptions& options) {
-  auto fit = fit_joint(table, options);
+  auto fit = fit_joint_at_size(table, options);
   if (!fit) return tl::unexpected(fit.error());
   Stage out{.fit = std::move(*fit), .held_out_nT = {}};
   if (const auto errors = held_out_errors(out.fit)) out.held_out_nT = errors->residual_rms_nT;
@@ -64,7 +64,7 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
   FitOptions best = options;
   for (std::size_t i = 0; i < explained->rounds.size(); ++i) {
     const Round& round = explained->rounds[i];
-    joint.effects.push_back(explained->model[options.effects.size() + i]);
+    joint.effects = round.model;
     auto after = stage_of(table, joint);
     if (!after) return tl::unexpected(after.error());
     if (before->held_out_nT && after->held_out_nT && *after->held_out_nT > kVeto * *before->held_out_nT) {

@@ -53,13 +53,13 @@ Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
 
 }  // namespace
 
-Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& in_model) {
+Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& left_out) {
   Suspects out;
   const EffectContext context{.table = &table, .offset_nT = {}};
   for (const EffectFamily& family : effect_families()) {
-    const bool known = std::any_of(in_model.begin(), in_model.end(),
-                                   [&](const EffectPtr& e) { return e->name() == family.name; });
-    if (known) continue;
+    if (std::any_of(left_out.begin(), left_out.end(),
+                    [&](const EffectPtr& e) { return e->name() == family.name; }))
+      continue;
     if (!family.untestable.empty()) {
       out.untestable.push_back({std::string(family.name), std::string(family.untestable)});
       continue;

@@ -181,9 +181,11 @@ NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
                  .revisits = pure_error(fit, residual.chi2(), residual.dof()),
                  .reference = {.dof = residual.dof()}};
   NoiseReference& n = out.reference;
-  // What lasts from one pose to the next is not seen within a dwell: its size is that of the residual.
-  const bool lasting = out.rho > kCorrelated;
+  // What lasts from one pose to the next is not seen within a dwell, and what a model far off leaves is no
+  // noise: its size is that of the residual.
+  const bool lasting = out.rho > kCorrelated || fit.worse > 1;
   n.known = fit.sample_noise_nT.has_value() && !lasting;
+  n.by_channel = !fit.sample_noise_nT.has_value();
   if (lasting) n.scale2 = residual.chi2() / residual.dof();
   if (n.known && out.revisits) {
     const PureError& p = *out.revisits;

@@ -12,7 +12,7 @@ namespace mgtd::calib {
 double NoiseReference::log10_p(double S, int k, int axes) const {
   if (known) return f_log10_p(S / k, k, nu);
   // The noise of the channels concerned is what they have left once the effect is taken out.
-  const double own = dof * axes / kChannels;
+  const double own = by_channel ? dof * axes / kChannels : dof;
   const double left = own * chi2 / dof - S;
   if (!(left > 0)) return f_log10_p(1e12, k, own - k);
   return f_log10_p(S / k / (left / (own - k)), k, own - k);

@@ -21,8 +21,9 @@ inline constexpr double kAbsorbed = 1e-6;
 
 /// How S becomes a probability.
 struct NoiseReference {
-  bool known{true};  ///< the noise is known from the dwells; else it is that of the residual itself
-  double scale2{1};  ///< variance of the noise over that of the weights, where the dwells say too little
+  bool known{true};       ///< the noise is known from the dwells; else it is that of the residual itself, ...
+  bool by_channel{true};  ///< ... channel by channel
+  double scale2{1};       ///< variance of the noise over that of the weights, where the dwells say too little
   double nu{std::numeric_limits<double>::infinity()};  ///< degrees of freedom behind scale2
   double chi2{0}, dof{0};                              ///< of the residual in units of this noise
   /// log10 of the probability that an absent effect on `axes` channels gives a fall of S or more.

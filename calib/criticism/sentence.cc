@@ -20,7 +20,7 @@ std::string place(const Candidate& c) {
 std::string noise_text(const ExplainReport& r) {
   std::string out = fmt::format("The residual is {:.3g} nT where the noise of a pose mean is {:.3g} nT",
                                 r.residual_nT, r.noise_nT);
-  if (!r.noise.reference.known) {
+  if (!r.noise_told) {
     out =
         fmt::format("The residual is {:.3g} nT; the table tells no noise to hold it against", r.residual_nT);
   }

@@ -49,8 +49,8 @@ struct Suspects {
 /// Hypotheses of an effect at its finest scale. Effects of the axes have coefficients "s3.z" or "s3.z.name".
 [[nodiscard]] std::vector<Hypothesis> hypotheses_of(const Effect& finest);
 
-/// Every effect of the library on this run, less those that the model holds.
-[[nodiscard]] Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& in_model);
+/// Every effect of the library on this run, less those called like one of `left_out`.
+[[nodiscard]] Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& left_out = {});
 
 /// The effect of a hypothesis, as `--with` reads it: "axis.offset.temperature@s3.z".
 [[nodiscard]] std::string spec_of(const Suspect& suspect, const Hypothesis& hypothesis, std::size_t variant);

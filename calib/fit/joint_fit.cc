@@ -12,6 +12,10 @@ namespace {
 constexpr int kMaxRounds = 30;
 constexpr double kSettled = 0.01;  ///< relative change of a noise estimate that no longer matters
 constexpr double kNoiseFloor_nT = 1e-4;
+/// Residual over noise from which the readings are taken as worse, below which they are not any more, and
+/// where to begin when nothing is known.
+constexpr double kFarOff = 10, kNearAgain = 3, kVeryFarOff = 100;
+constexpr double kSizeSettled = 0.1;
 constexpr double kWeightsUnknown =
     10;  ///< of chi-square: less is not worth a step before the weights are known
 const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
@@ -20,11 +24,12 @@ struct Noise {
   AxisNoise pose_nT{AxisNoise::Constant(kStartNoise_nT)};
   std::optional<AxisNoise> sample_nT;
   double table_sd_rad{0};
+  double worse{1};
 };
 
 void apply(const Noise& noise, JointProblem& problem) {
   if (noise.sample_nT) {
-    weight_by_samples(problem, *noise.sample_nT);
+    weight_by_samples(problem, *noise.sample_nT * noise.worse);
   } else {
     weight_by_pose(problem, noise.pose_nT);
   }
@@ -70,7 +75,7 @@ Result<void> plausible(const JointState& state) {
 
 void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, JointFit& fit) {
   const JointProblem& problem = fit.problem;
-  fit.chi2 = reduced.cost.readings + reduced.cost.scalar;
+  fit.chi2 = (reduced.cost.readings + reduced.cost.scalar) * fit.worse * fit.worse;
   fit.chi2_table = reduced.cost.attitude;
   fit.dof_table = residuals.attitude_freedom;
   double unknowns =
@@ -93,8 +98,8 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
 Eigen::MatrixXd widened_information(const JointFit& fit) {
   JointProblem wide = fit.problem;
   for (JointPose& pose : wide.poses) {
-    pose.weight /= fit.spread;
-    pose.f_weight /= fit.spread;
+    pose.weight *= fit.worse / fit.spread;
+    pose.f_weight *= fit.worse / fit.spread;
   }
   return reduce(wide, fit.state, 0).S;
 }
@@ -152,7 +157,9 @@ AxisNoise assumed_noise(const JointProblem& problem) {
   return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(kSensors, 3);
 }
 
-Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near) {
+/// `unsettled` tells that no more than that went wrong.
+Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near,
+                     bool& unsettled) {
   auto problem = joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
   JointFit fit;
@@ -169,6 +176,8 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   Noise noise;
   noise.sample_nT = sample_noise(table);
   noise.table_sd_rad = options.table_sd_rad;
+  fit.worse = noise.worse = noise.sample_nT ? options.worse : 1;
+  for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.worse;
   Outliers outliers;
   Result<JointSolution> solution = JointSolution{};
   PoseResiduals residuals;
@@ -177,6 +186,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   for (int round = 1;; ++round) {
     apply(noise, fit.problem);
     solution = solve(fit.problem, std::move(*state), enough);
+    unsettled = !solution;
     if (!solution) return tl::unexpected(solution.error());
     if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
     fit.iterations += solution->iterations;
@@ -196,7 +206,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   }
   fit.state = std::move(solution->state);
   fit.outliers = outliers.nodes(fit.problem, fit.state);
-  fit.pose_noise_nT = assumed_noise(fit.problem);
+  fit.pose_noise_nT = assumed_noise(fit.problem) / fit.worse;
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
   fill_statistics(residuals, solution->reduced, fit);
@@ -207,16 +217,50 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   return fit;
 }
 
+/// Again until the readings are as much worse as the residual says; as the table says where that is little.
+Result<JointFit> sized(const PoseTable& table, JointOptions options, const JointState* near, JointFit fit) {
+  constexpr int kMost = 3;
+  for (int i = 0; i < kMost; ++i) {
+    const double wanted = std::sqrt(fit.chi2 / std::max(fit.dof, 1.0));
+    options.worse = wanted > (fit.worse > 1 ? kNearAgain : kFarOff) ? wanted : 1;
+    if (std::abs(options.worse / fit.worse - 1) < kSizeSettled) break;
+    bool unsettled = false;
+    auto next = run(table, options, near, unsettled);
+    if (!next) return next;
+    fit = *std::move(next);
+  }
+  return fit;
+}
+
+Result<JointFit> settled_run(const PoseTable& table, JointOptions options, const JointState* near) {
+  bool unsettled = false;
+  auto fit = run(table, options, near, unsettled);
+  if (fit || !unsettled || options.worse > 1 || !sample_noise(table)) return fit;
+  options.worse = kVeryFarOff;
+  auto far = run(table, options, near, unsettled);
+  if (far) far = sized(table, options, near, *std::move(far));
+  if (!far) return fit;
+  options.worse = 1;
+  auto again = run(table, options, &far->state, unsettled);
+  return again ? std::move(again) : std::move(far);
+}
+
 }  // namespace
 
 double JointFit::noise_nT() const { return std::sqrt(pose_noise_nT.array().square().mean()); }
 
 Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options) {
-  return run(table, options, nullptr);
+  return settled_run(table, options, nullptr);
 }
 
 Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options, const JointState& near) {
-  return run(table, options, &near);
+  return settled_run(table, options, &near);
+}
+
+Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& options,
+                                   const JointState* near) {
+  auto fit = settled_run(table, options, near);
+  return fit ? sized(table, options, near, *std::move(fit)) : std::move(fit);
 }
 
 Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {

@@ -28,6 +28,7 @@ struct JointFit {
       covariance;  ///< of the fixed block, gauge constraints included; readings taken as worse by `spread`
   AxisNoise pose_noise_nT{AxisNoise::Zero()};
   std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
+  double worse{1};                           ///< JointOptions::worse: in the weights, not in what follows
   double table_sd_rad{0};                    ///< estimated; 0 without angles
   double chi2{0}, dof{0};                    ///< readings and scalar reference
   double chi2_table{0}, dof_table{0};
@@ -45,6 +46,11 @@ struct JointFit {
 /// refitted.
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options,
                                          const JointState& near);
+
+/// With JointOptions::worse as large as the residual asks for; 1 where the model is not far off. `near` may
+/// be null.
+[[nodiscard]] Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& options,
+                                                 const JointState* near = nullptr);
 
 /// (S)^-1 of the information of the fixed block; refuses when it is not positive definite.
 [[nodiscard]] Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S);

@@ -4,6 +4,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "calib/fit/orientation.h"
+#include "calib/sensor_equations.h"
+
 namespace mgtd::calib {
 
 int JointProblem::coefficients() const {
@@ -23,11 +26,26 @@ Eigen::VectorXd JointState::fixed() const {
   return x;
 }
 
+namespace {
+
+/// The sensor's angles after a step, to first order the sum. The step is taken on the rotation group, so that
+/// a turn common to all sensors stays one however long it is: poses whose attitude is weakly known follow it
+/// at no cost.
+void turn(const SensorModel& from, const Eigen::Vector3d& step, SensorModel& to) {
+  const Eigen::Matrix3d z = rotation_z(from.gamma_rad), zy = z * rotation_y(from.beta_rad);
+  const Vector3<double> w = step[2] * Eigen::Vector3d::UnitZ() + step[1] * z.col(1) + step[0] * zy.col(0);
+  const Eigen::Vector3d angles = angles_of(turn_by<double>(w) * zy * rotation_x(from.alpha_rad));
+  to.alpha_rad = angles[0], to.beta_rad = angles[1], to.gamma_rad = angles[2];
+}
+
+}  // namespace
+
 JointState JointState::moved(const Eigen::VectorXd& step) const {
   JointState next = *this;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const auto part = step.segment<kSensorParameters>(static_cast<int>(i) * kSensorParameters);
     next.sensors[i] = SensorModel::from_parameters(sensors[i].parameters() + part, sensors[i].mounting);
+    turn(sensors[i], part.tail<3>(), next.sensors[i]);
   }
   next.direction = (direction + tangents(direction) * step.segment<2>(kSiteSlot)).normalized();
   next.f_nT += step[kFieldSlot];

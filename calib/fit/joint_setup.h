@@ -22,6 +22,9 @@ struct JointOptions {
       field_sd_nT;  ///< of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT
   std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
   double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
+  /// Readings and scalar reference are taken as so much worse than the table says: for a model that is known
+  /// to be far off, whose misfit would else be pressed into what is weakly known.
+  double worse{1};
 };
 
 /// Spread of the true field from pose to pose that is allowed for when no scalar reference follows it.

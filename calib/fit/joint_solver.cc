@@ -12,6 +12,9 @@ constexpr int kMaxIterations = 60;
 /// A predicted fall of the chi-square below this share of it is rounding, not progress.
 constexpr double kRelativeDecrease = 1e-11;
 constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
+/// A chi-square that fell by less than this over the last iterations only creeps along what is weakly known.
+constexpr double kCreep = 1e-2, kRelativeCreep = 1e-6;
+constexpr int kCreeping = 12;
 
 /// S^-1 g with the diagonal scaled to one, which takes out the units.
 std::optional<Eigen::VectorXd> scaled_solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g) {
@@ -48,7 +51,9 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
   JointSolution best{.state = std::move(start), .reduced = {}, .iterations = 0};
   double damping = 0;
   best.reduced = reduce(problem, best.state, damping);
+  double before = best.reduced.cost.total();
   for (; best.iterations < kMaxIterations; ++best.iterations) {
+    if (best.iterations == kMaxIterations - kCreeping) before = best.reduced.cost.total();
     const auto step = scaled_solve(best.reduced.S, best.reduced.g);
     if (step) {
       const double decrease = best.reduced.predicted_decrease + step->dot(best.reduced.g);
@@ -60,9 +65,16 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
       }
       JointState next = best.state.moved(*step);
       move_nuisances(problem, best.state, *step, damping, next);
-      Reduced reduced = reduce(problem, next, damping < kFirstDamping ? 0 : damping / 10);
-      if (reduced.cost.total() <= best.reduced.cost.total() * (1 + kRelativeDecrease)) {
-        damping = damping < kFirstDamping ? 0 : damping / 10;
+      const double softer = damping < kFirstDamping ? 0 : damping / 10;
+      const double limit = best.reduced.cost.total() * (1 + kRelativeDecrease);
+      Reduced reduced = reduce(problem, next, softer);
+      if (reduced.cost.total() > limit) {
+        // A long step along what is weakly known: the poses' own unknowns follow it on a curve.
+        refit_nuisances(problem, next);
+        reduced = reduce(problem, next, softer);
+      }
+      if (reduced.cost.total() <= limit) {
+        damping = softer;
         best.state = std::move(next);
         best.reduced = std::move(reduced);
         continue;
@@ -71,6 +83,11 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
     damping = std::max(kFirstDamping, 10 * damping);
     if (damping > kMaxDamping) break;
     best.reduced = reduce(problem, best.state, damping);
+  }
+  const double now = best.reduced.cost.total();
+  if (best.iterations == kMaxIterations && before - now < kCreep + kRelativeCreep * now) {
+    best.reduced = reduce(problem, best.state, 0);
+    return best;
   }
   return fail(
       ErrorCode::refused,

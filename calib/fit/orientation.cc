@@ -2,19 +2,16 @@
 #include "calib/fit/orientation.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace mgtd::calib {
-namespace {
 
-/// alpha, beta, gamma of A_gamma A_beta A_alpha (eqs. 13-14); beta within 90 degrees.
 Eigen::Vector3d angles_of(const Eigen::Matrix3d& A) {
   return {std::atan2(-A(2, 1), A(2, 2)), std::asin(std::clamp(A(2, 0), -1.0, 1.0)),
           std::atan2(-A(1, 0), A(0, 0))};
 }
-
-}  // namespace
 
 Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R) {
   constexpr std::array<std::array<int, 3>, 6> kRows{

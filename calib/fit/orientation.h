@@ -7,6 +7,9 @@
 /// From matrices to the parameters of a sensor.
 namespace mgtd::calib {
 
+/// alpha, beta, gamma of A_gamma A_beta A_alpha (eqs. 13-14); beta within 90 degrees.
+[[nodiscard]] Eigen::Vector3d angles_of(const Eigen::Matrix3d& A);
+
 /// The nearest of the 48 signed permutations to an orthogonal matrix.
 [[nodiscard]] Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R);
 

@@ -2,9 +2,12 @@
 #include "tests/blind/blind.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
+#include "calib/criticism/improve.h"
 #include "calib/criticism/residual.h"
 
 namespace mgtd::calib::testing {
@@ -21,22 +24,51 @@ void count(const ExplainReport& r, const std::string& truth, Answers& out) {
   for (const Round& round : r.rounds) set.insert(set.end(), round.possible.begin(), round.possible.end());
   std::sort(set.begin(), set.end());
   set.erase(std::unique(set.begin(), set.end()), set.end());
-  out.set_size += static_cast<int>(set.size());
+  out.set_sizes.push_back(static_cast<int>(set.size()));
   if (r.named.front() == truth) ++out.named_first;
   if (std::find(set.begin(), set.end(), truth) != set.end()) ++out.in_set;
   if (r.finding == Finding::explained && r.named.front() != truth) ++out.wrong_single;
 }
 
-void ask(const PoseTable& table, const std::string& truth, Answers& out) {
-  const auto report = explain(table, {});
+bool changes_the_field(const ExplainReport& r) {
+  return !r.next.empty() && r.next.front().action.find("field") != std::string::npos;
+}
+
+/// Every effect of the library but one.
+std::vector<Suspect> library_without(const PoseTable& table, std::string_view name) {
+  std::vector<Suspect> out = library_suspects(table).testable;
+  std::erase_if(out, [&](const Suspect& s) { return s.name == name; });
+  return out;
+}
+
+void ask(const PoseTable& table, const std::string& truth, Answers& out, bool taken_out = false) {
+  ExplainOptions options;
+  if (taken_out) options.suspects = library_without(table, truth);
+  const auto report = explain(table, options);
   if (!report) {
     ++out.runs, ++out.refused;
     return;
   }
   count(*report, truth, out);
+  if (changes_the_field(*report)) ++out.advised;
 }
 
 }  // namespace
+
+int Answers::of(Finding finding) const {
+  const auto found = findings.find(finding);
+  return found == findings.end() ? 0 : found->second;
+}
+
+Answers& Answers::operator+=(const Answers& other) {
+  runs += other.runs, refused += other.refused, detected += other.detected;
+  named_first += other.named_first, in_set += other.in_set, wrong_single += other.wrong_single;
+  advised += other.advised;
+  set_sizes.insert(set_sizes.end(), other.set_sizes.begin(), other.set_sizes.end());
+  for (const auto& [finding, count] : other.findings) findings[finding] += count;
+  for (const auto& [name, count] : other.first) first[name] += count;
+  return *this;
+}
 
 Answers clean(const HiddenRun& run, int runs, std::uint64_t seed) {
   Answers out;
@@ -60,13 +92,75 @@ double crb_of(const HiddenLaw& law, int sensor, int axis, std::uint64_t seed) {
   return 1 / residual.project(rows).projected.norm();
 }
 
-Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed) {
+Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed, bool taken_out) {
   Answers out;
   for (int i = 0; i < runs; ++i) {
     const std::uint64_t s = seed + static_cast<std::uint64_t>(i);
     const int c = i % kChannels;
     const double size = (i % 2 == 0 ? d : -d) * crb_of(law, c / 3, c % 3, s);
-    ask(hidden_run({.hidden = hide(law, c / 3, c % 3, size)}, s), std::string(law.name), out);
+    ask(hidden_run({.hidden = hide(law, c / 3, c % 3, size)}, s), std::string(law.name), out, taken_out);
+  }
+  return out;
+}
+
+namespace {
+
+struct Pick {
+  const HiddenLaw* law;
+  int sensor, axis;
+};
+
+Hidden both(const Hidden& a, const Hidden& b) {
+  return [a, b](const Pose& p, int s, int axis, const Eigen::Vector3d& v) {
+    return a(p, s, axis, v) + b(p, s, axis, v);
+  };
+}
+
+void count(const ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers& out) {
+  const auto is_true = [&](const std::string& name) {
+    return name == truth[0].law->name || name == truth[1].law->name;
+  };
+  int added = 0, found = 0;
+  for (const Pick& pick : truth) {
+    const std::string name(pick.law->name);
+    const auto has = [&](const ImproveRound& round) { return round.added.effect == name; };
+    const auto may = [&](const ImproveRound& round) {
+      return has(round) ||
+             std::find(round.possible.begin(), round.possible.end(), name) != round.possible.end();
+    };
+    const bool was_found = std::any_of(r.rounds.begin(), r.rounds.end(), may);
+    added += std::any_of(r.rounds.begin(), r.rounds.end(), has) ? 1 : 0;
+    found += was_found ? 1 : 0;
+    if (!was_found) ++out.missed[name];
+  }
+  const bool wrong = std::any_of(r.rounds.begin(), r.rounds.end(), [&](const ImproveRound& round) {
+    return !is_true(round.added.effect) &&
+           std::none_of(round.possible.begin(), round.possible.end(), is_true);
+  });
+  out.both_added += added == 2 ? 1 : 0;
+  out.both_found += found == 2 ? 1 : 0;
+  out.wrong_added += wrong ? 1 : 0;
+}
+
+}  // namespace
+
+TwoAnswers two_hidden(double d, int runs, std::uint64_t seed) {
+  TwoAnswers out;
+  const auto laws = hidden_laws();
+  for (int i = 0; i < runs; ++i) {
+    const std::uint64_t s = seed + static_cast<std::uint64_t>(i);
+    std::mt19937_64 random(s);
+    const std::size_t a = random() % laws.size(), b = (a + 1 + random() % (laws.size() - 1)) % laws.size();
+    const int c = static_cast<int>(random() % 12), e = (c + 1 + static_cast<int>(random() % 11)) % 12;
+    const std::array<Pick, 2> truth{{{&laws[a], c / 3, c % 3}, {&laws[b], e / 3, e % 3}}};
+    std::array<Hidden, 2> parts;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Pick& p = truth.at(k);
+      parts.at(k) = hide(*p.law, p.sensor, p.axis, d * crb_of(*p.law, p.sensor, p.axis, s));
+    }
+    const auto report = improve(hidden_run({.hidden = both(parts[0], parts[1])}, s), {});
+    ++out.runs;
+    if (report) count(*report, truth, out);
   }
   return out;
 }

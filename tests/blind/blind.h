@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <vector>
 
 #include "calib/criticism/explain.h"
 #include "tests/blind/hidden_law.h"
@@ -17,18 +18,33 @@ struct Answers {
   int named_first{0};   ///< the first name is the right one, of those detected
   int in_set{0};        ///< the right name is among those that are named or possible
   int wrong_single{0};  ///< EXPLAINED by something else
-  int set_size{0};      ///< summed over detections
   std::map<std::string, int> first;
-  double predicted_over_realised{0};
+  std::vector<int> set_sizes;  ///< of each detection
+  int advised{0};              ///< the advice is a change of the field
+
+  [[nodiscard]] int of(Finding finding) const;
+  Answers& operator+=(const Answers& other);
 };
 
 [[nodiscard]] Answers clean(const HiddenRun& run, int runs, std::uint64_t seed);
 /// A law hidden on axes in turn, as large as `d` of its own uncertainties in this design.
-[[nodiscard]] Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed);
+/// `taken_out`: the library does not hold it.
+[[nodiscard]] Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed,
+                             bool taken_out = false);
 
 /// Standard deviation of the coefficient of a law on one axis with everything else free (Cramer-Rao); of the
 /// law's own signature, so that it also holds for what is in no library.
 [[nodiscard]] double crb_of(const HiddenLaw& law, int sensor, int axis, std::uint64_t seed);
+
+/// Two laws of different names on different axes, each of size `d`; improve adds what it finds.
+struct TwoAnswers {
+  int runs{0};
+  int both_added{0};   ///< both names were added
+  int both_found{0};   ///< added or declared possible in the place of what was added
+  int wrong_added{0};  ///< a name that is neither hidden nor ambiguous with what is
+  std::map<std::string, int> missed;
+};
+[[nodiscard]] TwoAnswers two_hidden(double d, int runs, std::uint64_t seed);
 
 /// 95 % interval of a proportion (Wilson), percent.
 struct Proportion {

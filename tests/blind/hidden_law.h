@@ -10,12 +10,18 @@
 namespace mgtd::calib::testing {
 
 struct HiddenLaw {
-  std::string_view name;  ///< of the library's effect, or "none: ..."
+  std::string_view name;        ///< of the library's effect, or "none: ..."
+  std::string_view parameters;  ///< its fixed number, as a spec has it
   double (*law)(const Pose& pose, int sensor, int axis, const Eigen::Vector3d& v);
 };
 
 [[nodiscard]] std::span<const HiddenLaw> hidden_laws();
 [[nodiscard]] std::span<const HiddenLaw> unlisted_laws();
+/// The own square, and the squares of the two transverse axes: F^2 less the own square.
+[[nodiscard]] std::span<const HiddenLaw> one_field_laws();
+
+/// The library's own effect on that axis, for an oracle.
+[[nodiscard]] std::string spec_of(const HiddenLaw& law, int sensor, int axis);
 
 /// The law on one axis, `size` times.
 [[nodiscard]] Hidden hide(const HiddenLaw& law, int sensor, int axis, double size);

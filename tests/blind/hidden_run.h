@@ -23,6 +23,7 @@ struct HiddenRun {
   Tail tail{Tail::gaussian};
   Hidden hidden{};
   Eigen::Matrix3d G_nT_per_m{Eigen::Matrix3d::Zero()};
+  int unseen{0};  ///< further random poses among the others, of the set "check"
 };
 
 /// One number with unit variance; Student's t with three degrees of freedom has three without the factor.
@@ -36,7 +37,9 @@ inline double heavy(std::mt19937_64& rng, Tail tail) {
 inline PoseTable hidden_run(const HiddenRun& run, std::uint64_t seed) {
   Simulation sim{.noise_nT = 0, .table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05, .f_drift_nT = 20};
   sim.G_nT_per_m = run.G_nT_per_m;
-  PoseTable table = simulate(sim, 36, 121, seed);
+  PoseTable table = simulate(sim, 36, 121 + run.unseen, seed);
+  for (int k = 0; k < run.unseen; ++k)
+    table.poses[static_cast<std::size_t>(36 + k * (121 + run.unseen) / run.unseen)].set = "check";
   std::mt19937_64 rng(seed ^ 0x9e3779b97f4a7c15U);
   std::normal_distribution<double> normal;
   Eigen::Matrix<double, 12, 1> n = Eigen::Matrix<double, 12, 1>::NullaryExpr([&] { return normal(rng); });

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/blind/unseen.h"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "calib/criticism/improve.h"
+#include "calib/fit/joint_errors.h"
+#include "calib/fit/joint_fit.h"
+#include "calib/fit/tune.h"
+#include "tests/blind/blind.h"
+#include "tests/rig/simulated_table.h"
+
+namespace mgtd::calib::testing {
+namespace {
+
+template <class T>
+T must(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().text());
+  return *std::move(result);
+}
+
+JointOptions with(const std::vector<std::string>& effects) {
+  JointOptions out;
+  for (const std::string& spec : effects) out.effects.push_back(must(make_effect(spec)));
+  return out;
+}
+
+/// Of the poses of set "check", the fit frozen.
+double unseen_rms_nT(const PoseTable& table, const JointOptions& options, const JointFit& fit) {
+  JointProblem problem = must(joint_problem(table, options, PoseUse::check));
+  for (JointPose& pose : problem.poses) {
+    pose.weight = fit.pose_noise_nT.reshaped<Eigen::RowMajor>().cwiseInverse();
+    if (pose.has_angles) pose.attitude_weight = 1 / fit.table_sd_rad;
+  }
+  JointState state = joint_state(problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  state.coefficients = fit.state.coefficients;
+  refit_nuisances(problem, state);
+  return joint_errors(problem, state).residual_rms_nT;
+}
+
+double frozen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {
+  JointOptions options = with(effects);
+  options.effects = must(tune(table, options));
+  return unseen_rms_nT(table, options, must(fit_joint(table, options)));
+}
+
+}  // namespace
+
+Unseen unseen(const PoseTable& table, const std::vector<std::string>& true_effects) {
+  const ImproveReport report = must(improve(table, {}));
+  Unseen out{.nothing_nT = frozen_rms_nT(table, {}),
+             .oracle_nT = frozen_rms_nT(table, true_effects),
+             .chi2 = report.fit.chi2,
+             .dof = report.fit.dof,
+             .rounds = static_cast<int>(report.rounds.size()),
+             .added = {}};
+  for (const CalibratedEffect& effect : report.fit.calibration.effects) out.added.push_back(effect.effect);
+  out.improved_nT = frozen_rms_nT(table, out.added);
+  return out;
+}
+
+Unseen unseen_of_law(const HiddenLaw& law, double d, int channel, std::uint64_t seed) {
+  constexpr int kUnseen = 100;
+  const int s = channel / 3, a = channel % 3;
+  const double size = d * crb_of(law, s, a, seed);
+  return unseen(hidden_run({.hidden = hide(law, s, a, size), .unseen = kUnseen}, seed), {spec_of(law, s, a)});
+}
+
+PoseTable rig_run(const rig::Scenario& scenario, std::size_t unseen, std::uint64_t seed) {
+  rig::DesignOptions options{.tilt_limit_deg = scenario.tilt_limit_deg};
+  options.random += unseen;
+  rig::Design design = rig::run_of_157(options, seed);
+  const std::size_t first = design.poses.size() - options.random;
+  for (std::size_t k = 0; k < unseen; ++k) design.poses[first + k * options.random / unseen].set = "check";
+  return rig::simulated_table(scenario, design, seed);
+}
+
+rig::Scenario paper_experiment() {
+  const std::string path = MGTD_SOURCE_DIR "/tests/scenarios/paper_experiment.toml";
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  auto scenario = rig::parse_scenario(text.str(), path);
+  if (!scenario) throw std::runtime_error(scenario.error().front());
+  return *std::move(scenario);
+}
+
+std::vector<std::string> paper_effects() {
+  return {"site.gradient",
+          "axis.offset.temperature",
+          "axis.offset.temperature2",
+          "axis.gain.temperature",
+          "axis.gain.temperature2",
+          "axis.orthogonality.temperature",
+          "axis.hysteresis@s2.y,w=0.1",
+          "axis.hysteresis@s4.x,w=0.2",
+          "axis.cubic@s1.z",
+          "axis.cubic@s3.x"};
+}
+
+}  // namespace mgtd::calib::testing
