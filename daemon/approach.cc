@@ -27,6 +27,12 @@ int sense_of(double from_rad, double to_rad) {
   return to_rad > from_rad ? +1 : -1;
 }
 
+int possible_sense(int wished, const TableAngles& target, const drivers::TableLimits& limits) {
+  TableAngles before = target;
+  before.azimuth_rad -= wished * kApproach_rad;
+  return inside(limits, before) ? wished : -wished;
+}
+
 std::optional<TableAngles> waypoint(const TableAngles& from, int last_sense, const TableAngles& target,
                                     int sense, double approach_rad, const drivers::TableLimits& limits) {
   if (sense == 0 || approach_rad <= 0) return std::nullopt;

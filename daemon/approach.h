@@ -16,6 +16,9 @@ inline constexpr double kApproach_rad = 0.0872664625997165;  ///< 5 deg of overs
 /// +1 upwards, -1 downwards, 0: less than 0.2 deg, no move of the azimuth.
 [[nodiscard]] int sense_of(double from_rad, double to_rad);
 
+/// `wished` or, at an end of the travel where there is room on one side only, the other one.
+[[nodiscard]] int possible_sense(int wished, const TableAngles& target, const drivers::TableLimits& limits);
+
 /// Where to go first so that the azimuth arrives at `target` in the sense wanted; none when it does anyway
 /// (a table that stands there has arrived in `last_sense`), when no sense is wanted (0), or when the limits
 /// leave no room.

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "daemon/mount_plan.h"
 #include "daemon/toml_settings.h"
 #include "drivers/registry.h"
 
@@ -34,6 +35,8 @@ class Reader {
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
   DeviceConfig read_device(Settings settings, std::string name, Role role, int slot);
+  void read_port(Settings& s, DeviceConfig& device);
+  void read_mounts(Settings& s);
   void refuse_unknown_sections(const toml::table& root);
   void complain(int line, std::string message) { errors_.push_back({line, std::move(message)}); }
 
@@ -116,6 +119,8 @@ void Reader::read_run(const toml::table& root) {
   require(s, "preflight_s", r.preflight_s >= 1, "1 s or more");
   r.retries = static_cast<int>(s.integer("retries", r.retries));
   require(s, "retries", r.retries >= 0, "0 or more");
+  r.answer_max_s = s.number("answer_max_s", r.answer_max_s);
+  require(s, "answer_max_s", r.answer_max_s >= 10, "10 s or more");
   r.seed = static_cast<std::uint64_t>(s.integer("seed", static_cast<std::int64_t>(r.seed)));
   close(s);
 }
@@ -155,16 +160,32 @@ std::string driver_names(Role role) {
   return names;
 }
 
+void Reader::read_port(Settings& s, DeviceConfig& device) {
+  device.port = s.required_text("port");
+  if (device.port.empty()) return;
+  const auto [where, fresh] = port_lines_.emplace(device.port, s.line_of("port"));
+  if (!fresh) s.object("port", fmt::format("'{}' is already used in line {}", device.port, where->second));
+}
+
+void Reader::read_mounts(Settings& s) {
+  const bool by_hand = s.boolean("mount_by_hand", false);
+  const std::vector<std::string> ways = s.texts("mounts");
+  for (const std::string& way : ways) {
+    const auto mounting = parse_mounting(way);
+    if (mounting)
+      config_.mounts.push_back(*mounting);
+    else
+      s.object("mounts", mounting.error().text());
+  }
+  if (by_hand && ways.empty()) config_.mounts = usual_mounts();
+  if (!by_hand) config_.mounts.clear();
+}
+
 DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int slot) {
   DeviceConfig device;
   device.name = std::move(name);
   device.driver = s.required_text("driver");
-  device.port = s.required_text("port");
   device.latency_s = s.number("latency_s", 0.0);
-  if (!device.port.empty()) {
-    const auto [where, fresh] = port_lines_.emplace(device.port, s.line_of("port"));
-    if (!fresh) s.object("port", fmt::format("'{}' is already used in line {}", device.port, where->second));
-  }
   const drivers::DriverEntry* const entry = drivers::find_driver(device.driver);
   if (entry == nullptr || entry->role != role) {
     if (s.has("driver")) {
@@ -174,6 +195,8 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
     errors_.insert(errors_.end(), s.errors().begin(), s.errors().end());
     return device;
   }
+  if (entry->has_port) read_port(s, device);
+  if (role == Role::table) read_mounts(s);
   device.device = entry->make(slot, s);
   device.baud = static_cast<int>(s.integer("baud", 0));
   close(s);

@@ -37,6 +37,7 @@ struct RunDefaults {
   double settle_max_s{30};
   double preflight_s{5};
   int retries{3};
+  double answer_max_s{900};
   std::uint64_t seed{1};
 };
 
@@ -49,6 +50,10 @@ struct Config {
   std::array<DeviceConfig, kSensors> sensors;
   DeviceConfig table;
   std::optional<DeviceConfig> scalar;
+  std::vector<TableAngles> mounts;  ///< ways in which the array is mounted on the table by hand; may be empty
+
+  /// The table is turned by hand.
+  [[nodiscard]] bool by_hand() const { return table.driver == "hand"; }
 
   std::optional<double> field_nT;  ///< when no scalar reference is there
   double field_sd_nT{0};

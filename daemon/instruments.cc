@@ -5,12 +5,13 @@ namespace mgtd::daemon {
 namespace {
 
 constexpr std::size_t kTable = kSensors;
+constexpr Duration kTick = std::chrono::milliseconds(20);
 
 }  // namespace
 
 Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
                          Callbacks callbacks)
-    : callbacks_(std::move(callbacks)) {
+    : callbacks_(std::move(callbacks)), clock_(clock), timer_(io) {
   for (const DeviceConfig& sensor : config.sensors) add(io, clock, sensor);
   add(io, clock, config.table);
   if (config.scalar) add(io, clock, *config.scalar);
@@ -19,6 +20,10 @@ Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& cloc
 void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device) {
   const auto number = static_cast<std::uint8_t>(instruments_.size());
   const std::string name = device.name;
+  if (device.port.empty()) {
+    instruments_.push_back({name, device.driver, {}, device.device, nullptr});
+    return;
+  }
   drivers::PortCallbacks port;
   port.on_events = [this, name](std::vector<DeviceEvent> events) {
     for (const DeviceEvent& event : events) callbacks_.on_event(name, event);
@@ -32,35 +37,67 @@ void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, 
          .bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
   };
   instruments_.push_back(
-      {name, device.driver, device.port,
+      {name, device.driver, device.port, device.device,
        std::make_unique<drivers::PortLink>(io, clock, drivers::PortSettings{device.port, device.baud},
                                            device.device, std::move(port))});
 }
 
 void Instruments::start() {
-  for (Instrument& instrument : instruments_) instrument.link->start();
+  bool without_port = false;
+  for (Instrument& instrument : instruments_) {
+    if (instrument.link != nullptr) {
+      instrument.link->start();
+      continue;
+    }
+    without_port = true;
+    instrument.device->on_open(clock_.now());
+    callbacks_.on_link(instrument.name, instrument.device->health());
+  }
+  if (without_port) listen();
+}
+
+void Instruments::listen() {
+  for (const Instrument& instrument : instruments_) {
+    if (instrument.link != nullptr) continue;
+    instrument.device->on_tick(clock_.now());
+    deliver(instrument);
+  }
+  timer_.wait(kTick, [this] { listen(); });
+}
+
+void Instruments::deliver(const Instrument& instrument) {
+  for (const DeviceEvent& event : instrument.device->take_events())
+    callbacks_.on_event(instrument.name, event);
 }
 
 void Instruments::shutdown() {
-  instruments_[kTable].link->shutdown();
-  for (Instrument& instrument : instruments_) instrument.link->shutdown();
+  timer_.cancel();
+  if (instruments_[kTable].link != nullptr) instruments_[kTable].link->shutdown();
+  for (Instrument& instrument : instruments_)
+    if (instrument.link != nullptr) instrument.link->shutdown();
 }
 
 drivers::Turntable& Instruments::table() {
-  return static_cast<drivers::Turntable&>(instruments_[kTable].link->device());
+  return static_cast<drivers::Turntable&>(*instruments_[kTable].device);
 }
 
-void Instruments::flush_table() { instruments_[kTable].link->flush(); }
+void Instruments::flush_table() {
+  if (instruments_[kTable].link != nullptr) instruments_[kTable].link->flush();
+}
+
+LinkHealth Instruments::health(const Instrument& instrument) {
+  return instrument.link != nullptr ? instrument.link->health() : instrument.device->health();
+}
 
 std::vector<DeviceStatus> Instruments::status() const {
   std::vector<DeviceStatus> out;
-  for (const Instrument& i : instruments_) out.push_back({i.name, i.driver, i.port, i.link->health()});
+  for (const Instrument& i : instruments_) out.push_back({i.name, i.driver, i.port, health(i)});
   return out;
 }
 
 std::vector<std::pair<std::string, LinkHealth>> Instruments::links() const {
   std::vector<std::pair<std::string, LinkHealth>> out;
-  for (const Instrument& i : instruments_) out.emplace_back(i.name, i.link->health());
+  for (const Instrument& i : instruments_) out.emplace_back(i.name, health(i));
   return out;
 }
 

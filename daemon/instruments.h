@@ -7,6 +7,7 @@
 
 #include "daemon/config.h"
 #include "drivers/clock.h"
+#include "drivers/patient_timer.h"
 #include "drivers/port_link.h"
 #include "proto/raw_log.h"
 #include "proto/status_report.h"
@@ -42,11 +43,18 @@ class Instruments {
  private:
   struct Instrument {
     std::string name, driver, port;
-    std::unique_ptr<drivers::PortLink> link;
+    std::shared_ptr<drivers::Device> device;
+    std::unique_ptr<drivers::PortLink> link;  ///< null: the device has no port
   };
   void add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device);
+  [[nodiscard]] static LinkHealth health(const Instrument& instrument);
+  /// What a device without a port has to say.
+  void listen();
+  void deliver(const Instrument& instrument);
 
   Callbacks callbacks_;
+  const drivers::Clock& clock_;
+  drivers::PatientTimer timer_;
   std::vector<Instrument> instruments_;  ///< s1 .. s4, table, scalar
 };
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "daemon/approach.h"
+#include "daemon/mounting.h"
 #include "daemon/run_duration.h"
 #include "daemon/run_plan.h"
 
@@ -23,9 +24,11 @@ Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pa
   pose.number = planned.number;
   pose.set = planned.set;
   pose.t_s = end_s - planned.dwell_s / 2;
-  pose.azimuth_rad = planned.target.azimuth_rad;
-  pose.pitch_rad = planned.target.pitch_rad;
-  pose.roll_rad = planned.target.roll_rad;
+  const TableAngles a = planned.mount ? platform_angles(planned.mounting, planned.target) : planned.target;
+  pose.azimuth_rad = a.azimuth_rad;
+  pose.pitch_rad = a.pitch_rad;
+  pose.roll_rad = a.roll_rad;
+  pose.mount = planned.mount;
   pose.dwell_s = planned.dwell_s;
   pose.since_stop_s = pace.settle_s + planned.dwell_s / 2;
   if (sense != 0) pose.sense = sense;
@@ -41,7 +44,9 @@ Result<PoseTable> planned_poses(const Config& config) {
                                .revisits = d.revisits,
                                .dwell_short_s = d.dwell_short_s,
                                .dwell_long_s = d.dwell_long_s,
-                               .seed = d.seed},
+                               .seed = d.seed,
+                               .mounts = config.mounts,
+                               .by_hand = config.by_hand()},
                               limits_of(config));
   if (!plan) return tl::unexpected(plan.error());
   const Pace pace;
@@ -55,7 +60,7 @@ Result<PoseTable> planned_poses(const Config& config) {
     const double begun_s = t_s;
     t_s += pose_s(pace, *plan, k);
     const auto by_way_of = waypoint(at, sense, planned.target, planned.sense, kApproach_rad, limits);
-    if (by_way_of) out.path.push_back({begun_s + move_s(pace, at, *by_way_of), *by_way_of});
+    if (by_way_of && !planned.mount) out.path.push_back({begun_s + move_s(pace, at, *by_way_of), *by_way_of});
     const int last = sense_of(by_way_of.value_or(at).azimuth_rad, planned.target.azimuth_rad);
     if (last != 0) sense = last;
     at = planned.target;

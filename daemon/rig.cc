@@ -137,17 +137,19 @@ void Rig::on_link(const std::string& device, const LinkHealth& health) {
   const Stamp now = clock_.now();
   LinkState& before = link_states_[device];
   if (before == health.state) return;
-  const bool was_live = before == LinkState::live;
+  const bool answered = answers(before);
   before = health.state;
   const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(health.state));
-  if (health.state == LinkState::live) {
+  if (answers(health.state) && !answered) {
     spdlog::info("{}: live, {}", device, health.identity);
     if (device.starts_with('s') && device.size() == 2) sampler_.reopened(device[1] - '1');
     run_.feed(DeviceBack{device}, now);
-  } else {
-    quiet_.warn(device, fmt::format("{}: {}", state, health.detail), now.mono);
-    if (was_live) run_.feed(DeviceLost{device, health.detail}, now);
+  } else if (health.state == LinkState::live) {
+    spdlog::info("{}: live again", device);
   }
+  if (health.state == LinkState::live) return;
+  quiet_.warn(device, fmt::format("{}: {}", state, health.detail), now.mono);
+  if (answered && !answers(health.state)) run_.feed(DeviceLost{device, health.detail}, now);
 }
 
 void Rig::on_reading(const FieldReading& reading) {

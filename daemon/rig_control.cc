@@ -29,6 +29,8 @@ Reply Rig::answer(const ControlRequest& request) {
     case ControlCommand::run_finish:
     case ControlCommand::run_abort:
     case ControlCommand::run_status:
+    case ControlCommand::run_enter:
+    case ControlCommand::run_redo:
       return answer_run(request);
     case ControlCommand::calibrations_list:
     case ControlCommand::calibrations_show:
@@ -53,6 +55,12 @@ Reply Rig::answer_run(const ControlRequest& request) {
     done = run_.request(Request::resume, now);
   } else if (request.command == ControlCommand::run_finish) {
     done = run_.request(Request::finish, now);
+  } else if (request.command == ControlCommand::run_redo) {
+    done = run_.request(Request::redo, now);
+  } else if (request.command == ControlCommand::run_enter) {
+    const auto scales = parse_scale_entry(request.args);
+    if (!scales) return tl::unexpected(scales.error());
+    done = run_.enter(*scales, now);
   } else if (request.command == ControlCommand::run_abort) {
     done = run_.request(Request::abort, now);
   }

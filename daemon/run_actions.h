@@ -15,11 +15,19 @@ struct HomeTable {};
 struct MoveTable {
   TableAngles target;
 };
+/// A table that is turned by hand stands here now: its scales say so.
+struct SetTable {
+  TableAngles angles;
+};
 struct StopTable {};  ///< also of a table at rest; never refused
 
 /// Answered by PoseStored once it is on disk. The table does not move before.
 struct StorePose {
   Pose pose;
+};
+/// Poses that rest on an entry that was wrong: they are measured again.
+struct DropPoses {
+  std::vector<int> numbers;
 };
 /// What the table did since the last one. Not answered: a run does not depend on it.
 struct StorePath {
@@ -52,7 +60,8 @@ struct Finish {
   std::string message;
 };
 
-using Action = std::variant<HomeTable, MoveTable, StopTable, StorePose, StorePath, StoreChecks, StartSolve,
-                            CancelSolve, ProposeCalibration, PublishStatus, Record, Finish>;
+using Action =
+    std::variant<HomeTable, MoveTable, SetTable, StopTable, StorePose, DropPoses, StorePath, StoreChecks,
+                 StartSolve, CancelSolve, ProposeCalibration, PublishStatus, Record, Finish>;
 
 }  // namespace mgtd::daemon

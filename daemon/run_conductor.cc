@@ -9,6 +9,7 @@
 
 #include "daemon/run_plan_json.h"
 #include "daemon/solver.h"
+#include "drivers/hand_table.h"
 
 namespace mgtd::daemon {
 namespace {
@@ -22,14 +23,17 @@ std::string run_id_at(WallTime t) {
   return id + "Z";
 }
 
-PlanOptions plan_options(const RunDefaults& d, const RunRequest& r) {
+PlanOptions plan_options(const Config& config, const RunRequest& r) {
+  const RunDefaults& d = config.run;
   return {.step_deg = r.step_deg.value_or(d.step_deg),
           .random = r.random.value_or(d.random),
           .revisits = r.revisits.value_or(r.random ? std::min(d.revisits, std::max(0, (*r.random - 2) / 2))
                                                    : d.revisits),
           .dwell_short_s = r.dwell_short_s.value_or(d.dwell_short_s),
           .dwell_long_s = r.dwell_long_s.value_or(std::max(d.dwell_long_s, r.dwell_short_s.value_or(0))),
-          .seed = r.seed.value_or(d.seed)};
+          .seed = r.seed.value_or(d.seed),
+          .mounts = config.mounts,
+          .by_hand = config.by_hand()};
 }
 
 RunOptions run_options(const Config& c, const RunRequest& r) {
@@ -81,7 +85,7 @@ void RunConductor::find_interrupted() {
 }
 
 Result<RunPlan> RunConductor::plan(const RunRequest& request) const {
-  return make_plan(plan_options(config_.run, request), hooks_.table().limits());
+  return make_plan(plan_options(config_, request), hooks_.table().limits());
 }
 
 Pace RunConductor::pace() const { return {}; }
@@ -106,6 +110,8 @@ RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& 
   }
   out.retries = request.retries.value_or(config_.run.retries);
   out.pace = pace();
+  out.by_hand = config_.by_hand();
+  out.answer_max_s = config_.run.answer_max_s * config_.speed_up;  // hands and eyes keep their own time
   return out;
 }
 
@@ -163,6 +169,7 @@ Result<void> RunConductor::resume_interrupted(Stamp now) {
   earlier.started_utc = file->header().started_utc;
   for (const Pose& pose : poses->poses) {
     earlier.stored.insert(pose.number);
+    earlier.poses.push_back(pose);
     earlier.last_t_s = std::max(earlier.last_t_s, pose.t_s.value_or(0));
   }
   RunConfig config = run_config(file->header().run_id, {});
@@ -189,6 +196,14 @@ Result<void> RunConductor::request(Request request, Stamp now) {
   return {};
 }
 
+Result<void> RunConductor::enter(const TableAngles& scales, Stamp now) {
+  if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
+  const ScaleEntered entered{scales};
+  if (auto possible = fsm_->possible(entered); !possible) return possible;
+  feed(entered, now);
+  return {};
+}
+
 void RunConductor::feed(const Event& event, Stamp now) {
   if (!active()) return;
   carry_out(fsm_->step(event, now), now);
@@ -210,6 +225,22 @@ void RunConductor::act(const HomeTable&, Stamp) {
 void RunConductor::act(const MoveTable& action, Stamp) {
   hooks_.table().move_to(action.target);
   hooks_.flush_table();
+}
+
+void RunConductor::act(const SetTable& action, Stamp) {
+  if (auto* const table = dynamic_cast<drivers::HandTable*>(&hooks_.table())) table->set(action.angles);
+}
+
+void RunConductor::act(const DropPoses& action, Stamp) {
+  if (auto dropped = file_->remove_poses(action.numbers); !dropped) {
+    spdlog::error("poses to be measured again could not be taken out: {}", dropped.error().text());
+    return;
+  }
+  auto left = std::make_shared<PoseTable>(*poses_);
+  std::erase_if(left->poses, [&](const Pose& pose) {
+    return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
+  });
+  poses_ = std::move(left);
 }
 
 void RunConductor::act(const StopTable&, Stamp) {

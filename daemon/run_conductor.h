@@ -42,6 +42,9 @@ class RunConductor {
   /// Pause, resume, abort, retry. Resume and abort also settle an interrupted run.
   [[nodiscard]] Result<void> request(Request request, Stamp now);
 
+  /// What the scales say that the run asks for. Refused when it asks for nothing.
+  [[nodiscard]] Result<void> enter(const TableAngles& scales, Stamp now);
+
   void feed(const Event& event, Stamp now);
   [[nodiscard]] RunStatus status(Instant now) const;
   [[nodiscard]] bool active() const { return fsm_ != nullptr && !fsm_->ended(); }
@@ -64,6 +67,8 @@ class RunConductor {
   void learn_accuracy();
   void act(const HomeTable&, Stamp);
   void act(const MoveTable& action, Stamp);
+  void act(const SetTable& action, Stamp);
+  void act(const DropPoses& action, Stamp);
   void act(const StopTable&, Stamp);
   void act(const StorePose& action, Stamp now);
   void act(const StorePath& action, Stamp);

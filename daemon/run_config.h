@@ -24,9 +24,12 @@ struct RunConfig {
 
   /// Measure no further pose once the tensor is known so well (nT/m, worst component); empty: the whole plan.
   std::optional<double> until_tensor_sd_nT_per_m;
-  int retries{3};                  ///< of one pose, before the run pauses and asks
+  int retries{3};                      ///< of one pose, before the run pauses and asks
   double approach_rad{kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
-  double reach_rad{to_rad(1)};     ///< a table at rest further from its target has not reached it
+  double reach_rad{to_rad(1)};         ///< a table at rest further from its target has not reached it
+
+  bool by_hand{false};       ///< the table is turned by hand: its scales are asked for
+  double answer_max_s{900};  ///< wait for the operator's entry, then the run pauses
 
   double home_max_s{180};
   double lost_max_s{120};  ///< wait for a device to come back

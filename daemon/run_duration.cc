@@ -18,8 +18,12 @@ double move_s(const Pace& pace, const TableAngles& from, const TableAngles& to) 
 }
 
 double pose_s(const Pace& pace, const RunPlan& plan, std::size_t index) {
-  const TableAngles from = index == 0 ? TableAngles{} : plan.poses[index - 1].target;
   const PlannedPose& pose = plan.poses[index];
+  const int mounted = index == 0 ? 0 : plan.poses[index - 1].mount.value_or(0);
+  const double hands_s =
+      (plan.options.by_hand ? pace.by_hand_s : 0) + (pose.mount.value_or(0) != mounted ? pace.mount_s : 0);
+  if (plan.options.by_hand) return hands_s + pace.settle_s + pose.dwell_s;
+  const TableAngles from = index == 0 ? TableAngles{} : plan.poses[index - 1].target;
   const int natural = sense_of(from.azimuth_rad, pose.target.azimuth_rad);
   double way_s = move_s(pace, from, pose.target);
   if (pose.sense != 0 && pose.sense != natural) {
@@ -27,7 +31,7 @@ double pose_s(const Pace& pace, const RunPlan& plan, std::size_t index) {
     before.azimuth_rad -= pose.sense * kApproach_rad;
     way_s = move_s(pace, from, before) + move_s(pace, before, pose.target);
   }
-  return way_s + pace.settle_s + pose.dwell_s;
+  return hands_s + way_s + pace.settle_s + pose.dwell_s;
 }
 
 namespace {

@@ -13,6 +13,8 @@ struct Pace {
   double settle_s{2.0};
   double home_s{20.0};
   double solve_s{1.0};
+  double by_hand_s{40};  ///< to set three scales and read them
+  double mount_s{180};   ///< to mount the array in another way
 };
 
 [[nodiscard]] double move_s(const Pace& pace, const TableAngles& from, const TableAngles& to);

@@ -14,11 +14,16 @@
 /// All that can happen to a run. Devices are named as in the configuration: "s1" .. "s4", "table", "scalar".
 namespace mgtd::daemon {
 
-enum class Request { pause, resume, abort, retry, finish };  ///< of the operator
+enum class Request { pause, resume, abort, retry, finish, redo };  ///< of the operator
 [[nodiscard]] constexpr std::string_view name(Request request) {
-  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "retry", "finish"};
+  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "retry", "finish", "redo"};
   return kNames[static_cast<std::size_t>(request)];
 }
+
+/// What the operator read off the scales that the run asked for.
+struct ScaleEntered {
+  TableAngles angles;
+};
 
 struct Tick {};  ///< time passes; every 20-50 ms
 
@@ -68,7 +73,7 @@ struct CalibrationProposed {
 };
 
 using Event =
-    std::variant<Tick, Request, Epoch, Gap, ScalarReading, TableReading, LinkSeen, DeviceLost, DeviceBack,
-                 DeviceFaulted, PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
+    std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, TableReading, LinkSeen, DeviceLost,
+                 DeviceBack, DeviceFaulted, PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
 
 }  // namespace mgtd::daemon

@@ -120,6 +120,22 @@ Result<void> RunFile::append_poses(std::span<const Pose> poses) {
   });
 }
 
+Result<void> RunFile::remove_poses(std::span<const int> numbers) {
+  return db_->atomically([&]() -> Result<void> {
+    for (const int number : numbers) {
+      for (const char* const sql :
+           {"DELETE FROM covariate WHERE pose IN (SELECT ord FROM pose WHERE number=?)",
+            "DELETE FROM pose WHERE number=?"}) {
+        auto row = db_->prepare(sql);
+        if (!row) return tl::unexpected(row.error());
+        row->bind(1, std::int64_t{number});
+        if (auto ok = row->run(); !ok) return ok;
+      }
+    }
+    return {};
+  });
+}
+
 Result<void> RunFile::append_path(std::span<const TableReading> path) {
   if (path.empty()) return {};
   return db_->atomically([&]() -> Result<void> {

@@ -57,6 +57,8 @@ class RunFile {
   [[nodiscard]] Result<void> append_pose(const Pose& pose);
   /// All or none, one transaction.
   [[nodiscard]] Result<void> append_poses(std::span<const Pose> poses);
+  /// To be measured again.
+  [[nodiscard]] Result<void> remove_poses(std::span<const int> numbers);
   [[nodiscard]] Result<void> append_path(std::span<const TableReading> path);
   [[nodiscard]] Result<void> append_event(const RunEvent& event);
   /// The state a terminal run ends in also folds the WAL back into the one file.

@@ -21,6 +21,10 @@ bool same_state(const TableReading& a, const TableReading& b) {
          std::abs(a.angles.roll_rad - b.angles.roll_rad) < kSamePlace_rad;
 }
 
+bool plans_mounts(const RunPlan& plan) {
+  return std::any_of(plan.poses.begin(), plan.poses.end(), [](const auto& p) { return p.mount.has_value(); });
+}
+
 /// t_s of a resumed run counts from its first beginning, down time included.
 Stamp origin(Stamp now, const std::optional<EarlierLife>& earlier) {
   if (!earlier) return now;
@@ -42,6 +46,8 @@ RunFsm::RunFsm(RunConfig config, RunPlan plan, Stamp now, const std::optional<Ea
   for (std::size_t i = 0; earlier && i < plan_.poses.size(); ++i) {
     if (earlier->stored.contains(plan_.poses[i].number)) progress_.set_done(i);
   }
+  if (!earlier || !by_hand()) return;
+  for (const Pose& pose : earlier->poses) field_turn_.add(pose);
 }
 
 std::vector<Action> RunFsm::step(const Event& event, Stamp now) {
@@ -66,7 +72,12 @@ void RunFsm::on(const ScalarReading& reading) {
 }
 
 void RunFsm::on(const TableReading& reading) {
-  if (!table_ || !same_state(*table_, reading)) path_.push_back(reading);
+  // The way of a hand is not known, nor is the attitude while the array is being mounted.
+  const bool known = !config_.by_hand && (!plans_mounts(plan_) || mounted_);
+  if (known && (!table_ || !same_state(*table_, reading))) {
+    path_.push_back(reading);
+    path_.back().angles = recorded(reading.angles);
+  }
   if (path_.size() >= kPathBuffer) flush_path();
   table_ = reading;
   if (!reading.referenced && homed_) homed_ = false;
@@ -94,8 +105,12 @@ void RunFsm::on(const PoseStored& stored) {
   changed_ = true;
   if (stored.result) {
     for (std::size_t i = 0; i < plan_.poses.size(); ++i) {
-      if (plan_.poses[i].number == stored.number) progress_.finish(i, now_.mono);
+      if (plan_.poses[i].number != stored.number) continue;
+      progress_.finish(i, now_.mono);
+      last_stored_ = i;
     }
+    if (stored_ && by_hand() && !doubtful_) field_turn_.add(*stored_);
+    stored_.reset();
     attempt_ = 0;
     if (phase_ == Phase::storing) go_on();
   } else if (measuring()) {
@@ -149,6 +164,7 @@ bool RunFsm::measuring() const {
   switch (phase_) {
     case Phase::preflight:
     case Phase::homing:
+    case Phase::asking:
     case Phase::approaching:
     case Phase::moving:
     case Phase::dwelling:
@@ -201,6 +217,10 @@ RunStatus RunFsm::status(Instant now) const {
       break;
     case Phase::homing:
       s.state = RunState::homing;
+      break;
+    case Phase::asking:
+      s.state = RunState::asking;
+      s.prompt = prompt_;
       break;
     case Phase::approaching:
       s.state = RunState::moving;

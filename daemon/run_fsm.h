@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/dwell.h"
+#include "daemon/field_turn.h"
 #include "daemon/preflight.h"
 #include "daemon/run_actions.h"
 #include "daemon/run_config.h"
@@ -17,8 +18,13 @@
 /// A calibration run as a state machine: events and the time in, actions out. It reads no clock and touches
 /// nothing; the caller carries out the actions in their order and brings the answers back as events.
 ///
-///     preflight -> homing -> [ moving -> settling -> dwelling -> stored ]* -> solving -> done | rejected
+///     preflight -> homing -> [ asking? -> moving -> settling -> dwelling -> stored ]* -> solving -> done |
+///                                                                                          rejected
 ///
+/// - What is set by hand (the mounting of the array, the scales of a table without motors) is asked for, and
+///   the entry is what is stored. An entry that disagrees with the turn of the field is asked for again; the
+///   same entry once more stands. No answer within answer_max_s pauses the run; nothing is assumed. Redo asks
+///   for the last entry again and measures again what rests on it.
 /// - A pose that cannot be used (not settled, disturbed, gaps, saturated, frozen) is measured again, up to
 ///   `retries` times; then the run pauses with what was measured, the limit and what to do.
 /// - The table does not move between StorePose and its PoseStored.
@@ -36,8 +42,9 @@ namespace mgtd::daemon {
 /// A run that was interrupted: when it began (origin of t_s) and what it has.
 struct EarlierLife {
   WallTime started_utc;
-  std::set<int> stored;  ///< pose numbers
-  double last_t_s{0};    ///< of them; time goes on after it even where the wall clock was set back
+  std::set<int> stored;       ///< pose numbers
+  double last_t_s{0};         ///< of them; time goes on after it even where the wall clock was set back
+  std::vector<Pose> poses{};  ///< the same, where entries are held against the turn of the field
 };
 
 class RunFsm {
@@ -49,6 +56,7 @@ class RunFsm {
 
   /// Why a request has no effect now (ErrorCode::state), or nothing. step() ignores such a request.
   [[nodiscard]] Result<void> possible(Request request) const;
+  [[nodiscard]] Result<void> possible(const ScaleEntered& entered) const;
   [[nodiscard]] RunStatus status(Instant now) const;
   [[nodiscard]] bool ended() const { return phase_ == Phase::ended; }
   [[nodiscard]] const RunPlan& plan() const { return plan_; }
@@ -57,6 +65,7 @@ class RunFsm {
   enum class Phase {
     preflight,
     homing,
+    asking,       ///< the operator, for what is set by hand
     approaching,  ///< to a point before the target, so that the azimuth arrives in its planned sense
     moving,       ///< and settling
     dwelling,
@@ -73,6 +82,7 @@ class RunFsm {
   void on(const Request& request);
   void on(const Epoch& epoch) { on_sample(EpochOrGap{epoch}); }
   void on(const Gap& gap) { on_sample(EpochOrGap{gap}); }
+  void on(const ScaleEntered& entered);
   void on(const ScalarReading& reading);
   void on(const TableReading& reading);
   void on(const LinkSeen& link);
@@ -90,6 +100,15 @@ class RunFsm {
   void abort();
   void retry();
   void finish_early();
+  void redo();
+
+  // What is set by hand.
+  [[nodiscard]] bool ask_hands();  ///< for the pose under way; false: nothing is to be asked
+  void ask(OperatorPrompt::What what, std::string again);
+  void drop(const std::vector<std::size_t>& poses);
+  [[nodiscard]] bool believed(const Pose& pose);  ///< false: asked again
+  [[nodiscard]] bool by_hand() const;             ///< anything in this run
+  [[nodiscard]] TableAngles recorded(const TableAngles& table) const;
 
   /// Decisions that time or new data make possible.
   void advance();
@@ -107,6 +126,7 @@ class RunFsm {
   void enter_homing();
   void enter_pose(std::size_t index);
   void move_to_target();
+  void settle_at_scales();
   void enter_dwell();
   void store(Pose pose);
   void lost_reference();
@@ -158,6 +178,18 @@ class RunFsm {
   std::optional<Dwell> dwell_;
   std::vector<TableAngles> at_rest_;  ///< reported during the dwell
   std::optional<int> unanswered_;     ///< number of the pose whose PoseStored is awaited
+
+  std::optional<OperatorPrompt> prompt_;
+  std::optional<int> mounted_;          ///< mounting of the array, by number ...
+  TableAngles mounting_;                ///< ... and as it was entered
+  std::optional<int> scales_of_;        ///< pose whose scales were entered ...
+  TableAngles scales_;                  ///< ... and what they say
+  bool unproved_{false};                ///< the last entry was not yet held against the field
+  bool doubtful_{false};                ///< the operator stands by it: others are not held against its poses
+  std::optional<TableAngles> doubted_;  ///< the entry that disagreed with it
+  std::optional<Pose> stored_;          ///< whose PoseStored is awaited, for field_turn_
+  std::optional<std::size_t> last_stored_;
+  FieldTurn field_turn_;
 
   std::optional<double> tensor_sd_nT_per_m_;
   bool enough_{false};  ///< no further pose

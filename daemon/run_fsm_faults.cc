@@ -32,6 +32,11 @@ Result<void> RunFsm::possible(Request request) const {
       if (phase_ == Phase::paused) return possible(Request::resume);
       if (phase_ == Phase::approaching || phase_ == Phase::moving || phase_ == Phase::dwelling) return {};
       return refuse("no pose is under way that could be measured again", "");
+    case Request::redo:
+      if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
+      if (unanswered_) return refuse("a pose is being stored", "ask again in a moment");
+      if (mounted_ || scales_of_ || (config_.by_hand && last_stored_)) return {};
+      return refuse("nothing was entered by hand yet that could be entered again", "");
     case Request::finish:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
       if (progress_.done() == 0) return refuse("no pose is measured yet", "mgt run abort ends the run");
@@ -55,6 +60,8 @@ void RunFsm::on(const Request& request) {
       return retry();
     case Request::finish:
       return finish_early();
+    case Request::redo:
+      return redo();
   }
 }
 
@@ -84,6 +91,7 @@ void RunFsm::finish_early() {
 void RunFsm::hold(const std::string& message) {
   act(StopTable{});
   flush_path();
+  scales_of_.reset();  // a hand may be at the table meanwhile
   enter(Phase::paused, message);
   act(Record{"paused: " + message});
 }

@@ -63,6 +63,8 @@ void RunFsm::enter_pose(std::size_t index) {
   }
   progress_.begin(index, now_.mono);
   dwell_.reset();
+  if (ask_hands()) return;
+  if (config_.by_hand) return settle_at_scales();
   const auto by_way_of = waypoint(planned());
   if (!by_way_of) {
     move_to_target();
@@ -93,6 +95,15 @@ void RunFsm::move_to_target() {
   act(MoveTable{goal_});
 }
 
+void RunFsm::settle_at_scales() {
+  goal_ = scales_;
+  sense_.reset();
+  settle_.emplace(config_.settle, now_.mono);
+  enter(Phase::moving,
+        fmt::format("pose {} of {}: settling at {}", planned().number, plan_.poses.size(), in_words(goal_)));
+  act(SetTable{goal_});
+}
+
 /// A table that rests elsewhere may still answer for its last target.
 TableReading RunFsm::judged(TableReading reading) const {
   reading.on_target = reading.on_target && furthest_rad(reading.angles, goal_) <= config_.reach_rad;
@@ -105,6 +116,11 @@ void RunFsm::advance() {
       return advance_preflight();
     case Phase::homing:
       return advance_homing();
+    case Phase::asking:
+      if (timed_out(config_.answer_max_s))
+        hold(fmt::format("nothing was entered within {:.0f} min ({}); mgt run resume asks again",
+                         config_.answer_max_s / 60, prompt_->text));
+      return;
     case Phase::approaching:
       return advance_approach();
     case Phase::moving:
@@ -230,13 +246,15 @@ void RunFsm::advance_dwell() {
   DwellPlace place;
   place.number = planned().number;
   place.set = planned().set;
-  place.angles = angles_at_rest();
+  place.angles = recorded(angles_at_rest());
+  place.mount = planned().mount;
   place.run_start = run_start_;
   place.stopped = settle_->stopped();
   place.sense = sense_;
   auto pose = dwell_->pose(place);
   if (!pose) return bad_pose(pose.error());
   if (auto ok = undisturbed(*pose); !ok) return bad_pose(ok.error());
+  if (!believed(*pose)) return;
   store(std::move(*pose));
 }
 
@@ -277,6 +295,7 @@ Result<void> RunFsm::undisturbed(const Pose& pose) const {
 void RunFsm::store(Pose pose) {
   flush_path();
   unanswered_ = pose.number;
+  stored_ = pose;
   enter(Phase::storing, fmt::format("storing pose {}", pose.number));
   act(StorePose{std::move(pose)});
 }

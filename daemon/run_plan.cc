@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "daemon/approach.h"
+#include "daemon/mount_plan.h"
 #include "daemon/random_source.h"
 #include "proto/units.h"
 
@@ -120,14 +121,6 @@ std::vector<bool> revisit_places(RandomSource& random, int poses, int revisits) 
   return taken;
 }
 
-/// At an end of the travel there is room on one side only.
-int random_sense(RandomSource& random, const TableAngles& target, const TableLimits& limits) {
-  const int sense = random.below(2) == 0 ? +1 : -1;
-  TableAngles before = target;
-  before.azimuth_rad -= sense * kApproach_rad;
-  return inside(limits, before) ? sense : -sense;
-}
-
 void add_random(RunPlan& plan, const TableLimits& limits) {
   RandomSource random(plan.options.seed);
   std::vector<std::size_t> once;  // indices of attitudes visited once
@@ -148,7 +141,7 @@ void add_random(RunPlan& plan, const TableLimits& limits) {
       once.push_back(plan.poses.size());
     }
     pose.dwell_s = random.below(2) == 0 ? plan.options.dwell_short_s : plan.options.dwell_long_s;
-    pose.sense = random_sense(random, pose.target, limits);
+    pose.sense = possible_sense(random.below(2) == 0 ? +1 : -1, pose.target, limits);
     plan.poses.push_back(std::move(pose));
   }
 }
@@ -190,12 +183,14 @@ void note_sets(RunPlan& plan) {
 
 void note_axes(RunPlan& plan, const TableLimits& limits) {
   const bool pitch = exists(limits.pitch), roll = exists(limits.roll);
-  if (!pitch && !roll) {
+  if (!plan.options.mounts.empty()) {
+    note_mounts(plan);
+  } else if (!pitch && !roll) {
     plan.notes.emplace_back(
         "the table turns about one axis only: a calibration needs attitudes about at least two, and one "
         "fitted "
-        "to this run will be refused; mount the array on its side for a second run, or add a pitch or roll "
-        "axis");
+        "to this run will be refused; let it be mounted by hand in other ways (mounts in [table]), or add a "
+        "pitch or roll axis");
   } else if (!pitch || !roll) {
     plan.notes.push_back(fmt::format("the table has no {} axis: attitudes are uniform over the two it has",
                                      pitch ? "roll" : "pitch"));
@@ -209,6 +204,25 @@ void note_axes(RunPlan& plan, const TableLimits& limits) {
   narrow("roll", limits.roll, 2 * std::numbers::pi);
 }
 
+/// A scale that is set by hand: whole steps, and no matter from which side.
+void make_readable(RunPlan& plan, const TableLimits& limits) {
+  constexpr double kStep_deg = 5;
+  const auto readable = [&](double a_rad, const TableLimits::Range& range) {
+    const double a_deg = std::round(to_deg(a_rad) / kStep_deg) * kStep_deg;
+    const Travel travel(range);
+    return to_rad(a_deg > travel.max_deg   ? a_deg - kStep_deg
+                  : a_deg < travel.min_deg ? a_deg + kStep_deg
+                                           : a_deg);
+  };
+  for (PlannedPose& pose : plan.poses) {
+    pose.sense = 0;
+    if (pose.set == "standard") continue;
+    pose.target = {readable(pose.target.azimuth_rad, limits.azimuth),
+                   readable(pose.target.pitch_rad, limits.pitch),
+                   readable(pose.target.roll_rad, limits.roll)};
+  }
+}
+
 }  // namespace
 
 Result<RunPlan> make_plan(const PlanOptions& options, const TableLimits& limits) {
@@ -218,7 +232,9 @@ Result<RunPlan> make_plan(const PlanOptions& options, const TableLimits& limits)
   RunPlan plan;
   plan.options = options;
   if (options.step_deg > 0) add_standard(plan, limits);
-  if (options.random > 0) add_random(plan, limits);
+  if (options.random > 0 && options.mounts.empty()) add_random(plan, limits);
+  if (!options.mounts.empty()) add_mounts(plan, limits);
+  if (options.by_hand) make_readable(plan, limits);
   note_sets(plan);
   note_axes(plan, limits);
   return plan;

@@ -30,6 +30,9 @@ struct PlanOptions {
   double dwell_short_s{4};  ///< also that of the standard set
   double dwell_long_s{8};
   std::uint64_t seed{1};
+  /// Ways to mount the array on the table by hand (mounting.h), for a table of one axis; see mount_plan.h.
+  std::vector<TableAngles> mounts{};
+  bool by_hand{false};  ///< the table itself is turned by hand
   bool operator==(const PlanOptions&) const = default;
 };
 
@@ -38,8 +41,10 @@ struct PlannedPose {
   std::string set;  ///< "standard" or "random"
   TableAngles target;
   double dwell_s{0};
-  int sense{0};                   ///< of the azimuth's approach: +1 or -1; 0 either
-  std::optional<int> revisit_of;  ///< number of the earlier pose
+  int sense{0};                     ///< of the azimuth's approach: +1 or -1; 0 either
+  std::optional<int> mount{};       ///< counts the mountings of the array from 1
+  TableAngles mounting{};           ///< of it on the table, where `mount` is set
+  std::optional<int> revisit_of{};  ///< number of the earlier pose
   bool operator==(const PlannedPose&) const = default;
 };
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "proto/operator_prompt.h"
 #include "proto/units.h"
 
 namespace mgtd::daemon {
@@ -26,17 +27,27 @@ json to_json(const PlannedPose& p) {
           {"roll_deg", rounded_deg(p.target.roll_rad)},
           {"dwell_s", p.dwell_s},
           {"sense", p.sense},
+          {"mount", p.mount ? json(*p.mount) : json(nullptr)},
+          {"mounting", p.mount ? scale_entry_json(p.mounting) : json(nullptr)},
           {"revisit_of", p.revisit_of ? json(*p.revisit_of) : json(nullptr)}};
+}
+
+TableAngles angles_from(const json& j) {
+  return {to_rad(j.at("azimuth_deg").get<double>()), to_rad(j.at("pitch_deg").get<double>()),
+          to_rad(j.at("roll_deg").get<double>())};
 }
 
 PlannedPose pose_from(const json& j) {
   PlannedPose p;
   p.number = j.at("number").get<int>();
   p.set = j.at("set").get<std::string>();
-  p.target = {to_rad(j.at("azimuth_deg").get<double>()), to_rad(j.at("pitch_deg").get<double>()),
-              to_rad(j.at("roll_deg").get<double>())};
+  p.target = angles_from(j);
   p.dwell_s = j.at("dwell_s").get<double>();
   p.sense = j.at("sense").get<int>();
+  if (j.contains("mount") && !j["mount"].is_null()) {
+    p.mount = j["mount"].get<int>();
+    p.mounting = angles_from(j.at("mounting"));
+  }
   if (!j.at("revisit_of").is_null()) p.revisit_of = j.at("revisit_of").get<int>();
   return p;
 }
@@ -49,6 +60,8 @@ PlanOptions options_from(const json& j) {
   o.dwell_short_s = j.at("dwell_short_s").get<double>();
   o.dwell_long_s = j.at("dwell_long_s").get<double>();
   o.seed = j.at("seed").get<std::uint64_t>();
+  o.by_hand = j.value("by_hand", false);
+  for (const json& mount : j.value("mounts", json::array())) o.mounts.push_back(angles_from(mount));
   return o;
 }
 
@@ -65,7 +78,8 @@ RunPlan plan_from(const json& j) {
 
 json to_json(const RunPlan& plan) {
   const PlanOptions& o = plan.options;
-  json poses = json::array();
+  json poses = json::array(), mounts = json::array();
+  for (const TableAngles& mount : o.mounts) mounts.push_back(scale_entry_json(mount));
   for (const PlannedPose& pose : plan.poses) poses.push_back(to_json(pose));
   return {{"schema", kSchema},
           {"options",
@@ -74,7 +88,9 @@ json to_json(const RunPlan& plan) {
             {"revisits", o.revisits},
             {"dwell_short_s", o.dwell_short_s},
             {"dwell_long_s", o.dwell_long_s},
-            {"seed", o.seed}}},
+            {"seed", o.seed},
+            {"by_hand", o.by_hand},
+            {"mounts", std::move(mounts)}}},
           {"notes", plan.notes},
           {"poses", std::move(poses)}};
 }

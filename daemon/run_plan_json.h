@@ -9,8 +9,8 @@
 /// The plan as text: kept in the run file, shown by a dry run.
 ///
 ///   { "schema":"mgtd.plan/1", "options":{...}, "notes":[...], "poses":[ { "number":1, "set":"standard",
-///     "azimuth_deg":..., "pitch_deg":..., "roll_deg":..., "dwell_s":..., "sense":1, "revisit_of":null }, ...
-///     ] }
+///     "azimuth_deg":..., "pitch_deg":..., "roll_deg":..., "dwell_s":..., "sense":1, "mount":null,
+///     "mounting":null, "revisit_of":null }, ... ] }
 namespace mgtd::daemon {
 
 [[nodiscard]] nlohmann::json to_json(const RunPlan& plan);

@@ -17,6 +17,8 @@ class RunProgress {
   RunProgress(const RunPlan& plan, Pace pace);
 
   void set_done(std::size_t index) { done_.at(index) = true; }  ///< in an earlier life of the run
+  void undo(std::size_t index) { done_.at(index) = false; }     ///< to be measured again
+  [[nodiscard]] bool is_done(std::size_t index) const { return done_.at(index); }
   void begin(std::size_t index, Instant now);  ///< again after a pause: the pause does not count
   void finish(std::size_t index, Instant now);
 

@@ -17,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "drivers/link_life.h"
 #include "drivers/patient_timer.h"
 #include "drivers/serial_port.h"
 
@@ -29,8 +30,6 @@ using std::chrono::milliseconds;
 
 constexpr Duration kTick = milliseconds(20);
 constexpr Duration kShortestTick = milliseconds(4);  ///< of host time, when the clock runs fast
-constexpr Duration kFirstBackoff = milliseconds(250);
-constexpr Duration kLongestBackoff = milliseconds(2000);
 constexpr int kLastWords_ms = 200;
 
 }  // namespace
@@ -82,8 +81,7 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
   asio::posix::stream_descriptor stream_;
   PatientTimer tick_timer_;
   asio::steady_timer open_timer_;
-  Duration backoff_{kFirstBackoff};
-  std::string closed_because_{"not opened yet"};
+  LinkLife life_;
   std::array<std::byte, 4096> in_{};
   std::string out_, in_flight_;
   std::uint64_t generation_{0};  ///< of the open port: completions of an earlier one are stale
@@ -93,14 +91,7 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
   std::string told_detail_;
 };
 
-LinkHealth PortLink::Impl::health() const {
-  LinkHealth health = device_->health();
-  if (!port_) {
-    health.state = LinkState::absent;
-    health.detail = closed_because_;
-  }
-  return health;
-}
+LinkHealth PortLink::Impl::health() const { return life_.shown(device_->health()); }
 
 void PortLink::Impl::report_state() {
   const LinkHealth now = health();
@@ -114,13 +105,14 @@ void PortLink::Impl::try_open() {
   if (ended_) return;
   auto port = SerialPort::open(settings_.path, settings_.baud);
   if (!port) {
-    closed_because_ = port.error().text();
+    life_.refused(port.error());
     report_state();
     open_later();
     return;
   }
   port_.emplace(std::move(*port));
   ++generation_;
+  life_.opened();
   stream_.assign(port_->fd());
   device_->on_open(clock_.now());
   read();
@@ -128,8 +120,7 @@ void PortLink::Impl::try_open() {
 }
 
 void PortLink::Impl::open_later() {
-  open_timer_.expires_after(backoff_);
-  backoff_ = std::min(backoff_ * 2, kLongestBackoff);
+  open_timer_.expires_after(life_.next_wait());
   open_timer_.async_wait([self = shared_from_this()](error_code ec) {
     if (!ec) self->try_open();
   });
@@ -143,7 +134,7 @@ void PortLink::Impl::close_port() {
 }
 
 void PortLink::Impl::lost(const std::string& why) {
-  closed_because_ = why;
+  life_.lost(why);
   close_port();
   device_->on_close(clock_.now());
   static_cast<void>(device_->take_output());
@@ -159,7 +150,7 @@ void PortLink::Impl::tick() {
     if (self->port_) {
       self->device_->on_tick(self->clock_.now());
       self->deliver();
-      if (self->device_->health().state == LinkState::live) self->backoff_ = kFirstBackoff;
+      if (self->device_->health().state == LinkState::live) self->life_.live();
       if (self->port_ && self->device_->wants_reopen())
         self->lost(
             fmt::format("{}: the device does not answer; opening the port again", self->settings_.path));
@@ -219,6 +210,7 @@ void PortLink::Impl::deliver() {
     const bool sent = send_output();
     std::vector<DeviceEvent> events = device_->take_events();
     more = sent || !events.empty();
+    for (const DeviceEvent& event : events) life_.heard(event);
     if (!events.empty() && callbacks_.on_events) callbacks_.on_events(std::move(events));
   }
   delivering_ = false;
@@ -257,7 +249,7 @@ void PortLink::Impl::shutdown() {
   open_timer_.cancel();
   if (!port_) return;
   send_last_words();
-  closed_because_ = "closed";
+  life_.ended();
   port_.reset();
   device_->on_close(clock_.now());
 }

@@ -18,7 +18,7 @@ class io_context;
 
 /// Carries the bytes of one Device over one serial port: the only part of a driver that touches Asio.
 ///
-/// Opens the port (0.25 s, doubling to 2 s, between attempts), stamps what comes in at the return of the
+/// Opens the port (link_life.h: how often, and what is shown), stamps what comes in at the return of the
 /// read, sends what the device leaves, ticks it, and tells the owner what happened. End of file, EIO, ENXIO
 /// and ENODEV all mean the same: the port is gone; it is opened again when it is back, and the device starts
 /// over. Times given to the device are those of the Clock, waiting is done in host time.

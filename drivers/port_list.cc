@@ -9,6 +9,7 @@
 #include <climits>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <system_error>
 
@@ -16,6 +17,16 @@ namespace mgtd::drivers {
 namespace {
 
 std::string text(const char* text_or_null) { return text_or_null == nullptr ? std::string() : text_or_null; }
+
+/// Of a USB port, as sysfs has it: "00"; empty where there is none.
+std::string interface_of(const std::string& path) {
+  const std::string device = "/sys/class/tty/" + path.substr(path.find_last_of('/') + 1) + "/device";
+  for (const char* const up : {"/../bInterfaceNumber", "/bInterfaceNumber"}) {
+    std::ifstream in(device + up);
+    if (std::string number; in >> number) return number;
+  }
+  return {};
+}
 
 /// Path to udev's link.
 std::map<std::string, std::string> sockets() {
@@ -41,6 +52,7 @@ std::vector<PortInfo> list_ports() {
     info.path = text(sp_get_port_name(*port));
     info.description = text(sp_get_port_description(*port));
     info.usb_serial = text(sp_get_port_usb_serial(*port));
+    info.usb_interface = interface_of(info.path);
     if (const auto link = links.find(info.path); link != links.end()) info.by_path = link->second;
     int vendor = 0, product = 0;
     if (sp_get_port_usb_vid_pid(*port, &vendor, &product) == SP_OK)
@@ -55,6 +67,24 @@ std::string lasting_name(const PortInfo& port, std::span<const PortInfo> all) {
   const auto shares = [&](const PortInfo& other) { return other.usb_serial == port.usb_serial; };
   if (!port.usb_serial.empty() && std::count_if(all.begin(), all.end(), shares) == 1) return port.name();
   return port.by_path.empty() ? port.path : port.by_path;
+}
+
+std::string udev_rule(const PortInfo& port, std::span<const PortInfo> all, std::string_view name) {
+  const std::string gives = fmt::format("SYMLINK+=\"mgt/{}\", ENV{{MGTD_PORT}}=\"1\"", name);
+  if (lasting_name(port, all).starts_with("usb:"))
+    return fmt::format("ENV{{ID_SERIAL_SHORT}}==\"{}\", {}", port.usb_serial, gives);
+  // The ports of one converter differ by interface; converters without a number by the socket they are in.
+  const auto twin = [&](const PortInfo& other) {
+    return &other != &port && other.usb_serial == port.usb_serial &&
+           other.usb_interface == port.usb_interface;
+  };
+  if (!port.usb_serial.empty() && !port.usb_interface.empty() && std::none_of(all.begin(), all.end(), twin))
+    return fmt::format("ENV{{ID_SERIAL_SHORT}}==\"{}\", ENV{{ID_USB_INTERFACE_NUM}}==\"{}\", {}",
+                       port.usb_serial, port.usb_interface, gives);
+  if (port.by_path.empty()) return {};
+  std::string socket = port.by_path.substr(port.by_path.find_last_of('/') + 1);
+  if (const auto port_part = socket.rfind("-port"); port_part != std::string::npos) socket.resize(port_part);
+  return fmt::format("ENV{{ID_PATH}}==\"{}\", {}", socket, gives);
 }
 
 std::optional<std::string> port_path(const std::string& name) {

@@ -11,11 +11,12 @@
 namespace mgtd::drivers {
 
 struct PortInfo {
-  std::string path;         ///< /dev/ttyUSB0
-  std::string description;  ///< as the converter calls itself
-  std::string usb_serial;   ///< empty for ports that are not on USB
-  std::string usb_id;       ///< "0403:6001"
-  std::string by_path;      ///< udev's name for the socket it is in (/dev/serial/by-path/...); may be empty
+  std::string path;             ///< /dev/ttyUSB0
+  std::string description;      ///< as the converter calls itself
+  std::string usb_serial;       ///< empty for ports that are not on USB
+  std::string usb_id;           ///< "0403:6001"
+  std::string usb_interface{};  ///< of a converter with several ports: "00"; else empty
+  std::string by_path;  ///< udev's name for the socket it is in (/dev/serial/by-path/...); may be empty
   [[nodiscard]] std::string name() const { return usb_serial.empty() ? path : "usb:" + usb_serial; }
 };
 
@@ -24,6 +25,11 @@ struct PortInfo {
 /// What to write into the configuration: the serial number where it is there and no other port has it (the
 /// ports of a four-port converter share one), else the socket, else the path.
 [[nodiscard]] std::string lasting_name(const PortInfo& port, std::span<const PortInfo> all);
+
+/// The rule of udev that gives a port the name /dev/mgt/NAME, wherever it is numbered (70-mgtd.rules). Empty
+/// for a port that nothing but its number tells from others.
+[[nodiscard]] std::string udev_rule(const PortInfo& port, std::span<const PortInfo> all,
+                                    std::string_view name);
 
 /// The path behind a name: "usb:SERIAL" is looked up, links are followed. Empty when no such converter is
 /// plugged in.

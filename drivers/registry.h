@@ -20,6 +20,7 @@ struct DriverEntry {
   /// Reads its settings; objections are left in `settings`. `slot` is the sensor's number (0 based), else
   /// ignored.
   std::unique_ptr<Device> (*make)(int slot, Settings& settings);
+  bool has_port{true};  ///< false: nothing is plugged in
 };
 
 [[nodiscard]] std::span<const DriverEntry> drivers();

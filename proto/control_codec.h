@@ -21,13 +21,15 @@
 ///   run.start            args: run_request.h            -> RUN
 ///   run.dry-run          args: run_request.h            -> {"poses","minutes","list":[...]}
 ///   run.pause, run.resume, run.finish, run.abort, run.status       -> RUN
+///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
+///   run.redo             the pose before the one that is asked for, again                    -> RUN
 ///   calibrations.list                                  -> {"calibrations":[{"id","state","since","origin"}]}
 ///   calibrations.show, calibrations.accept  args: {"id":".."}
 ///   calibrations.rollback
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 0;
+inline constexpr int kControlProtocolMinor = 1;
 inline constexpr std::size_t kControlLineLimit = 65'536;
 
 enum class ControlCommand : std::uint8_t {
@@ -40,12 +42,14 @@ enum class ControlCommand : std::uint8_t {
   run_finish,
   run_abort,
   run_status,
+  run_enter,
+  run_redo,
   calibrations_list,
   calibrations_show,
   calibrations_accept,
   calibrations_rollback,
 };
-inline constexpr std::array<std::string_view, 13> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 15> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -54,6 +58,8 @@ inline constexpr std::array<std::string_view, 13> kControlCommandNames{"version"
                                                                        "run.finish",
                                                                        "run.abort",
                                                                        "run.status",
+                                                                       "run.enter",
+                                                                       "run.redo",
                                                                        "calibrations.list",
                                                                        "calibrations.show",
                                                                        "calibrations.accept",

@@ -19,9 +19,23 @@ inline constexpr std::array<std::string_view, kRejects> kRejectNames{"length", "
                                                                      "number", "range",   "sequence"};
 
 /// Life of a link, as shown to the operator.
-enum class LinkState : std::uint8_t { absent, opening, probing, live, silent, failed };
-inline constexpr std::array<std::string_view, 6> kLinkStateNames{"absent", "opening", "probing",
-                                                                 "live",   "silent",  "failed"};
+enum class LinkState : std::uint8_t {
+  absent,   ///< there is no such port
+  opening,  ///< there is one, and it cannot be opened
+  probing,  ///< the device is asked who it is
+  live,
+  silent,
+  failed,
+  frozen,     ///< it repeats one reading
+  saturated,  ///< it is at the end of its range
+  gone,       ///< the port was there and went away
+};
+inline constexpr std::array<std::string_view, 9> kLinkStateNames{
+    "absent", "opening", "probing", "live", "silent", "failed", "frozen", "saturated", "gone"};
+/// The device speaks and is heard, whatever its readings are worth.
+[[nodiscard]] constexpr bool answers(LinkState state) {
+  return state == LinkState::live || state == LinkState::frozen || state == LinkState::saturated;
+}
 
 struct LinkHealth {
   LinkState state{LinkState::absent};

@@ -6,8 +6,8 @@
 namespace mgtd {
 
 std::string_view name(RunState state) {
-  static constexpr std::array<std::string_view, 14> kNames{
-      "idle",    "preflight", "homing", "moving",   "settling", "dwelling", "paused",
+  static constexpr std::array<std::string_view, 15> kNames{
+      "idle",    "preflight", "homing", "asking", "moving",   "settling", "dwelling", "paused",
       "solving", "aborting",  "done",   "rejected", "aborted",  "failed",   "interrupted"};
   return kNames.at(static_cast<std::size_t>(state));
 }
@@ -16,6 +16,7 @@ bool is_active(RunState state) {
   switch (state) {
     case RunState::preflight:
     case RunState::homing:
+    case RunState::asking:
     case RunState::moving:
     case RunState::settling:
     case RunState::dwelling:

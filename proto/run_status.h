@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/operator_prompt.h"
+
 /// One object that answers "is a run going on, how far, how did it end": never three calls that race.
 namespace mgtd {
 
@@ -13,6 +15,7 @@ enum class RunState : std::uint8_t {
   idle,       ///< no run, or the last one was acknowledged
   preflight,  ///< checking rates, noise, saturation, field
   homing,
+  asking,  ///< waits for what the operator enters: `prompt`
   moving,
   settling,
   dwelling,
@@ -52,6 +55,7 @@ struct RunStatus {
   std::vector<Check> checks;  ///< of preflight and verdict
   /// Of the tensor by the calibration, from the poses so far, worst component; empty until they tell.
   std::optional<double> tensor_sd_nT_per_m;
+  std::optional<OperatorPrompt> prompt;      ///< while asking
   std::optional<double> wanted_tensor_sd_nT_per_m;  ///< at which the run ends early
 };
 

@@ -114,6 +114,7 @@ Json to_json(const RunStatus& run) {
           {"elapsed_s", number(run.elapsed_s)},
           {"remaining_s", number(run.remaining_s)},
           {"message", run.message},
+          {"prompt", run.prompt ? to_json(*run.prompt) : Json(nullptr)},
           {"tensor_sd_nT_per_m", optional(run.tensor_sd_nT_per_m)},
           {"wanted_tensor_sd_nT_per_m", optional(run.wanted_tensor_sd_nT_per_m)},
           {"proposed", run.proposed.empty() ? Json(nullptr) : Json(run.proposed)},
@@ -166,6 +167,11 @@ Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
   reader.read("wanted_tensor_sd_nT_per_m", run.wanted_tensor_sd_nT_per_m);
   reader.read("message", run.message);
   if (object.contains("proposed") && !object["proposed"].is_null()) reader.read("proposed", run.proposed);
+  if (object.contains("prompt") && !object["prompt"].is_null()) {
+    auto prompt = prompt_from_json(object["prompt"]);
+    if (!prompt) return tl::unexpected(prompt.error());
+    run.prompt = *std::move(prompt);
+  }
   if (!reader.objection().empty()) return not_a_status(reader.objection());
   const auto parsed = state_from_name(state);
   if (!parsed) return tl::unexpected(parsed.error());

@@ -7,6 +7,10 @@
 namespace mgtd::cli {
 namespace {
 
+std::string config_line(const drivers::PortInfo& port, std::span<const drivers::PortInfo> all) {
+  return fmt::format("port = \"{}\"", drivers::lasting_name(port, all));
+}
+
 int run_ports(const Session& session) {
   const auto ports = drivers::list_ports();
   if (session.json) {
@@ -16,7 +20,9 @@ int run_ports(const Session& session) {
                       {"path", port.path},
                       {"description", port.description},
                       {"usb_serial", port.usb_serial},
-                      {"usb_id", port.usb_id}});
+                      {"usb_id", port.usb_id},
+                      {"config", config_line(port, ports)},
+                      {"udev", drivers::udev_rule(port, ports, "NAME")}});
     }
     print_json({{"schema", "mgt.ports/1"}, {"ports", list}});
     return 0;
@@ -25,6 +31,17 @@ int run_ports(const Session& session) {
   for (const auto& port : ports) {
     fmt::print("{:<36} {:<14} {:<10} {}\n", drivers::lasting_name(port, ports), port.path, port.usb_id,
                port.description);
+  }
+  if (ports.empty()) return 0;
+  fmt::print("\n# for mgtd.toml, one of them in each section:\n");
+  for (const auto& port : ports) fmt::print("{}\n", config_line(port, ports));
+  fmt::print(
+      "\n# or fixed names /dev/mgt/NAME, in /etc/udev/rules.d/70-mgtd.rules (s1 .. s4, table, scalar):\n");
+  for (const auto& port : ports) {
+    const std::string rule = drivers::udev_rule(port, ports, "NAME");
+    fmt::print("{}\n", rule.empty()
+                           ? fmt::format("# {}: nothing but its number tells it from others", port.path)
+                           : rule);
   }
   return 0;
 }

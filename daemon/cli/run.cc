@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <iostream>
 #include <memory>
 #include <thread>
 
 #include "daemon/cli/ask.h"
 #include "daemon/cli/progress.h"
+#include "daemon/cli/prompt.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
 
@@ -20,6 +22,7 @@ volatile std::sig_atomic_t interrupted = 0;
 struct Arguments {
   RunRequest request;
   bool detach{false};
+  std::vector<double> scales_deg;
 };
 
 int terminal_width() {
@@ -39,6 +42,24 @@ int print_end(const Session& session, const RunStatus& run) {
   if (!session.json)
     fmt::print("proposed: {}\naccept it with: mgt calibrations accept {}\n", run.proposed, run.proposed);
   return 0;
+}
+
+/// Asks until something was entered that the daemon takes. False: there is nobody to answer.
+bool answer(const Session& session, daemon::ControlClient& client, const OperatorPrompt& prompt) {
+  while (interrupted == 0) {
+    fmt::print(stderr, "{}", question(prompt));
+    std::string line;
+    if (session.json || !std::getline(std::cin, line)) {
+      fmt::print(stderr, "\nnobody is there to answer; from anywhere: mgt run enter AZIMUTH PITCH ROLL\n");
+      return false;
+    }
+    const auto said = parse_answer(line);
+    const auto done = said ? client.request(said->command, said->args)
+                           : Result<nlohmann::json>(tl::unexpected(said.error()));
+    if (done) return true;
+    fmt::print(stderr, "{}\n", done.error().text());
+  }
+  return true;
 }
 
 /// Shows the run until it ends or waits for the operator. Ctrl-C leaves it running.
@@ -61,6 +82,11 @@ int follow(const Session& session) {
     } else if (tenth != last_tenth) {
       fmt::print(stderr, "{}\n", line);
       last_tenth = tenth;
+    }
+    if (run->prompt) {
+      if (terminal) fmt::print(stderr, "\n");
+      if (!answer(session, *client, *run->prompt)) return print_end(session, *run);
+      continue;
     }
     if (!is_active(run->state) || run->state == RunState::paused) {
       if (terminal) fmt::print(stderr, "\n");
@@ -106,6 +132,19 @@ int simple(const Session& session, ControlCommand command, bool then_follow) {
   return 0;
 }
 
+int enter(const Session& session, const Arguments& args) {
+  const auto reply = ask(session, ControlCommand::run_enter,
+                         {{"azimuth_deg", args.scales_deg[0]},
+                          {"pitch_deg", args.scales_deg[1]},
+                          {"roll_deg", args.scales_deg[2]}});
+  if (!reply) return report(session, reply.error());
+  if (session.json)
+    print_json(*reply);
+  else
+    fmt::print("{}\n", reply->value("message", ""));
+  return 0;
+}
+
 void add_plan_options(CLI::App* command, RunRequest& r) {
   command->add_option("--step", r.step_deg, "degrees between standard poses: 10 or 20");
   command->add_option("--random", r.random, "random poses");
@@ -119,8 +158,8 @@ void add_plan_options(CLI::App* command, RunRequest& r) {
 }  // namespace
 
 void add_run(CLI::App& app, Session& session) {
-  CLI::App* const group =
-      app.add_subcommand("run", "a calibration run: start, dry-run, follow, pause, resume, finish, abort");
+  CLI::App* const group = app.add_subcommand(
+      "run", "a calibration run: start, dry-run, follow, enter, redo, pause, resume, finish, abort");
   group->require_subcommand(1);
   auto args = std::make_shared<Arguments>();
   CLI::App* const begin = add_command(
@@ -142,6 +181,13 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return simple(session, ControlCommand::run_pause, false); });
   add_command(*group, session, "resume", "go on after a pause, or with a run that a dead daemon left",
               [&session] { return simple(session, ControlCommand::run_resume, true); });
+  CLI::App* const entered = add_command(*group, session, "enter", "what the scales say that the run asks for",
+                                        [args, &session] { return enter(session, *args); });
+  entered->add_option("ANGLES", args->scales_deg, "azimuth, pitch and roll in degrees")
+      ->required()
+      ->expected(3);
+  add_command(*group, session, "redo", "ask for the last entry again, and measure again what rests on it",
+              [&session] { return simple(session, ControlCommand::run_redo, false); });
   add_command(*group, session, "finish", "measure no more, fit the poses so far",
               [&session] { return simple(session, ControlCommand::run_finish, true); });
   add_command(*group, session, "abort", "end the run; the active calibration stays",

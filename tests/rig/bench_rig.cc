@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/bench_rig.h"
 
+#include <sstream>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +10,7 @@
 #include "tests/rig/gcs2_instrument.h"
 #include "tests/rig/gsm_instrument.h"
 #include "tests/rig/obsdaq_instrument.h"
+#include "tests/rig/rotations.h"
 
 namespace mgtd::rig {
 namespace {
@@ -109,6 +112,15 @@ void BenchRig::run_script(double now_s) {
     set(ending.port, ending.kind, false);
     return true;
   });
+}
+
+bool BenchRig::mount(std::string_view line, double now_s) {
+  std::istringstream in{std::string(line)};
+  std::string word;
+  double azimuth_deg = 0, pitch_deg = 0, roll_deg = 0;
+  if (!(in >> word >> azimuth_deg >> pitch_deg >> roll_deg) || word != "mount") return false;
+  world_.remount(about_z(azimuth_deg) * about_y(pitch_deg) * about_x(roll_deg), now_s);
+  return true;
 }
 
 }  // namespace mgtd::rig

@@ -33,6 +33,9 @@ class BenchRig {
   /// Ends faults whose time is over and starts those of the scenario; call before read().
   void run_script(double now_s);
 
+  /// The array on the table, by hand: "mount AZIMUTH PITCH ROLL", deg. False: that is something else.
+  bool mount(std::string_view line, double now_s);
+
   [[nodiscard]] World& world() { return world_; }
   [[nodiscard]] const World& world() const { return world_; }
 

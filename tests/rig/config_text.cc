@@ -26,6 +26,16 @@ std::string sensor(const Scenario& s, const std::string& port) {
       port, s.palmacq, s.rate_hz, s.range_V, sensor_scale(s.uT_full_scale));
 }
 
+std::string table(const Scenario& s, const std::string& dir) {
+  if (s.hands == "table") return "\n[table]\ndriver = \"hand\"\n";
+  const char* const axes =
+      s.hands == "mount" ? "mount_by_hand = true\n" : "axes.pitch = \"2\"\naxes.roll = \"3\"\n";
+  return fmt::format(
+      "\n[table]\ndriver = \"gcs2\"\nport = \"{}/table\"\nbaud = 115200\nvelocity_deg_per_s = {}\n"
+      "axes.azimuth = \"1\"\n{}",
+      dir, s.table_velocity_deg_per_s, axes);
+}
+
 }  // namespace
 
 std::string config_text(const Scenario& s, const std::string& dir, const std::string& state_dir,
@@ -34,10 +44,7 @@ std::string config_text(const Scenario& s, const std::string& dir, const std::st
       fmt::format("# For the simulated rig '{}'.\n[rig]\nname = \"{}\"\nbaseline_m = {}\nrate_hz = {}\n",
                   s.name, s.name, s.baseline_m, s.rate_hz);
   for (int i = 1; i <= 4; ++i) out += sensor(s, fmt::format("{}/fluxgate{}", dir, i));
-  out += fmt::format(
-      "\n[table]\ndriver = \"gcs2\"\nport = \"{}/table\"\nbaud = 115200\nvelocity_deg_per_s = {}\n"
-      "axes.azimuth = \"1\"\naxes.pitch = \"2\"\naxes.roll = \"3\"\n",
-      dir, s.table_velocity_deg_per_s);
+  out += table(s, dir);
   if (s.scalar) {
     out += fmt::format("\n[scalar]\ndriver = \"gsm\"\nport = \"{}/scalar\"\nbaud = 115200\n", dir);
   } else {

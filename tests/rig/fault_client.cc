@@ -19,13 +19,17 @@ constexpr std::size_t kLongestPath = 107;
 std::string fault_socket(const std::string& dir) { return dir + "/fault.sock"; }
 
 std::optional<std::string> ask_rig(const std::string& dir, const std::string& line) {
+  return ask_socket(fault_socket(dir), line);
+}
+
+std::optional<std::string> ask_socket(const std::string& path, const std::string& line) {
   namespace asio = boost::asio;
   using local = asio::local::stream_protocol;
-  if (fault_socket(dir).size() > kLongestPath) return std::nullopt;
+  if (path.size() > kLongestPath) return std::nullopt;
   asio::io_context io(1);
   local::socket socket(io);
   boost::system::error_code ec;
-  socket.connect(local::endpoint(fault_socket(dir)), ec);
+  socket.connect(local::endpoint(path), ec);
   if (!ec) asio::write(socket, asio::buffer(line + "\n"), ec);
   if (ec) return std::nullopt;
   asio::streambuf buffer;

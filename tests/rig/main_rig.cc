@@ -10,6 +10,7 @@
 #include "tests/rig/effect_list.h"
 #include "tests/rig/fault.h"
 #include "tests/rig/fault_client.h"
+#include "tests/rig/operator.h"
 #include "tests/rig/pose_writer.h"
 #include "tests/rig/rig_server.h"
 #include "tests/rig/seal.h"
@@ -45,7 +46,8 @@ constexpr const char* kScenarioHelp =
                  uT_full_scale, palmacq, common_trigger, autostart, oscillator_ppm
   [visit]        noise, noise_nT, student_dof, rho, outlier_share, outlier_nT: what coming back to a pose does
                  not reproduce
-  [table]        accuracy_deg, velocity_deg_per_s, acceleration_deg_per_s2, tilt_limit_deg
+  [table]        accuracy_deg, velocity_deg_per_s, acceleration_deg_per_s2, tilt_limit_deg,
+                 hands = "mount" (one axis, the array is mounted by hand) or "table" (no motors)
   [scalar]       present, noise_nT, period_s, bad_every
   [[fault]]      at_s, do = "unplug fluxgate2 for 3"
   [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern
@@ -69,6 +71,8 @@ struct Arguments {
   double speed_up{1};
   bool print_config{false};
   std::vector<std::string> words;
+  std::vector<double> angles_deg;
+  OperatorOptions hands;
   double for_s{0};
   int code{0};
 
@@ -206,6 +210,25 @@ void add_game(CLI::App* command, Arguments& args) {
   command->add_option("--hide", args.hide, "add so many effects at random")->check(CLI::Range(0, 5));
 }
 
+/// What is done to a rig by hand.
+void add_hands(CLI::App& app, Arguments& args) {
+  CLI::App* const mount =
+      add(app, "mount", "put the array on the table in another way", args,
+          [](const Arguments& a) { return ask(a, fmt::format("mount {}", fmt::join(a.angles_deg, " "))); });
+  mount->add_option("DIR", args.dir, "directory of the rig")->required();
+  mount->add_option("ANGLES", args.angles_deg, "azimuth, pitch and roll on the table in degrees")
+      ->required()
+      ->expected(3);
+  CLI::App* const operate_command =
+      add(app, "operate", "do what a daemon asks its operator to do, until the run ends", args,
+          [](const Arguments& a) { return operate(a.hands); });
+  operate_command->add_option("DIR", args.hands.dir, "directory of the rig")->required();
+  operate_command->add_option("--control", args.hands.control, "control socket of the daemon")->required();
+  operate_command->add_option("--error", args.hands.error_deg, "degrees to which things are set")
+      ->capture_default_str();
+  operate_command->add_option("--blunder", args.hands.blunder, "misread the scale at this prompt, once");
+}
+
 void add_commands(CLI::App& app, Arguments& args) {
   CLI::App* const run = add_scenario(app, "run", "put the rig on serial ports until Ctrl-C", args,
                                      [](const Arguments& a, const Scenario& s) {
@@ -243,6 +266,7 @@ void add_commands(CLI::App& app, Arguments& args) {
   fault->add_option("DIR", args.dir, "directory of the rig")->required();
   fault->add_option("WORDS", args.words, kFaultUsage)->required();
   fault->add_option("--for", args.for_s, "simulated seconds, like the words 'for SECONDS'");
+  add_hands(app, args);
   add(app, "status", "what a running rig is doing, as JSON", args,
       [](const Arguments& a) { return ask(a, "status"); })
       ->add_option("DIR", args.dir, "directory of the rig")

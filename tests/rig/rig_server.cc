@@ -169,6 +169,7 @@ void Server::answer(const std::shared_ptr<local::socket>& socket) {
 
 std::string Server::reply_to(const std::string& line) {
   if (line == "status") return status();
+  if (rig_.mount(line, now_s())) return "ok";
   const auto fault = parse_fault(line);
   if (!fault) return fault.error();
   const auto applied = rig_.apply(*fault, now_s());

@@ -212,6 +212,9 @@ void Reader::read_table(Scenario& s) {
   table.read("velocity_deg_per_s", s.table_velocity_deg_per_s, {0.01, 720});
   table.read("acceleration_deg_per_s2", s.table_acceleration_deg_per_s2, {0.01, 10'000});
   table.read("tilt_limit_deg", s.tilt_limit_deg, {0, 360});
+  table.read("hands", s.hands);
+  if (s.hands != "none" && s.hands != "mount" && s.hands != "table")
+    table.complain("hands", fmt::format("'{}' is not none, mount or table", s.hands));
   table.refuse_rest();
 }
 

@@ -230,6 +230,8 @@ class VirtualDaemon {
 
   void carry_out(const HomeTable&) { table().home(); }
   void carry_out(const MoveTable& move) { table().move_to(move.target); }
+  void carry_out(const SetTable&) {}  // its table has motors
+  void carry_out(const DropPoses&) {}
   void carry_out(const StopTable&) { table().stop(); }
   void carry_out(const StorePose& store) {
     poses.poses.push_back(store.pose);

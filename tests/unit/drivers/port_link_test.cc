@@ -138,11 +138,11 @@ TEST_F(PortLinkTest, UnplugAndReplugStartOver) {
   master->write("half a li");
   ASSERT_TRUE(until([&] { return port->health().bytes_in == 9; }));
   master.reset();
-  ASSERT_TRUE(until([&] { return port->health().state == LinkState::absent; }));
+  ASSERT_TRUE(until([&] { return port->health().state == LinkState::gone; }));
   EXPECT_TRUE(port->health().balanced());
   EXPECT_EQ(port->health().closes, 1U);
   EXPECT_EQ(lines_, std::vector<std::string>{"alas"});
-  EXPECT_EQ(told_, LinkState::absent) << "the loss is told first";
+  EXPECT_EQ(told_, LinkState::gone) << "the loss is told first";
   master.emplace(path_);
   ASSERT_TRUE(until([&] { return master->received() == "hello\n"; }));
   EXPECT_EQ(port->health().opens, 2U);

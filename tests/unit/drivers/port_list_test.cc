@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/child_process.h"
 #include "tests/support/pty.h"
 
@@ -36,6 +38,28 @@ TEST(PortList, WithoutSerialNumberTheSocketElseThePath) {
                                   usb("/dev/ttyS0", "", "")};
   EXPECT_EQ(lasting_name(all[0], all), "/dev/serial/by-path/x");
   EXPECT_EQ(lasting_name(all[1], all), "/dev/ttyS0");
+}
+
+TEST(PortList, UdevRulesTellIdenticalConvertersApart) {
+  std::vector<PortInfo> all{usb("/dev/ttyUSB0", "A1", "/dev/serial/by-path/pci-0-usb-0:1:1.0-port0"),
+                            usb("/dev/ttyUSB1", "", "/dev/serial/by-path/pci-0-usb-0:2:1.0-port0"),
+                            usb("/dev/ttyUSB2", "", "/dev/serial/by-path/pci-0-usb-0:3:1.0-port0"),
+                            usb("/dev/ttyUSB3", "Q4", "/dev/serial/by-path/pci-0-usb-0:4:1.0-port0"),
+                            usb("/dev/ttyUSB4", "Q4", "/dev/serial/by-path/pci-0-usb-0:4:1.1-port0"),
+                            usb("/dev/ttyS0", "", "")};
+  all[3].usb_interface = "00";
+  all[4].usb_interface = "01";
+  EXPECT_EQ(udev_rule(all[0], all, "s1"),
+            R"(ENV{ID_SERIAL_SHORT}=="A1", SYMLINK+="mgt/s1", ENV{MGTD_PORT}="1")");
+  EXPECT_EQ(udev_rule(all[1], all, "s2"),
+            R"(ENV{ID_PATH}=="pci-0-usb-0:2:1.0", SYMLINK+="mgt/s2", ENV{MGTD_PORT}="1")");
+  EXPECT_EQ(
+      udev_rule(all[4], all, "s4"),
+      R"(ENV{ID_SERIAL_SHORT}=="Q4", ENV{ID_USB_INTERFACE_NUM}=="01", SYMLINK+="mgt/s4", ENV{MGTD_PORT}="1")");
+  EXPECT_EQ(udev_rule(all[5], all, "table"), "") << "only its number";
+  std::set<std::string> rules;
+  for (const PortInfo& port : all) rules.insert(udev_rule(port, all, "x"));
+  EXPECT_EQ(rules.size(), all.size());
 }
 
 TEST(PortList, LinksAreFollowedAndUnknownPathsKept) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proto/control_codec.h"
+#include "proto/operator_prompt.h"
+
+/// The dialogue with the operator of a run that is set by hand, as text in and requests out.
+namespace mgtd::cli {
+
+/// What to do on a line that was typed at a prompt.
+struct PromptAnswer {
+  ControlCommand command{ControlCommand::run_enter};
+  nlohmann::json args = nlohmann::json::object();
+};
+
+/// "pose 3 of 36: turn the table to ... [azimuth pitch roll, redo, pause, abort] ".
+[[nodiscard]] std::string question(const OperatorPrompt& prompt);
+
+/// Three numbers in degrees: azimuth, pitch, roll, with or without commas; or redo, pause, abort. An empty
+/// line is no answer: the target is never taken for a reading.
+[[nodiscard]] Result<PromptAnswer> parse_answer(std::string_view line);
+
+}  // namespace mgtd::cli

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is set by hand: asked for, entered, held against the turn of the field, entered again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "daemon/approach.h"
+#include "daemon/mount_plan.h"
+#include "daemon/mounting.h"
+#include "daemon/run_fsm.h"
+
+namespace mgtd::daemon {
+namespace {
+
+using What = OperatorPrompt::What;
+constexpr double kSameEntry_rad = to_rad(0.3);
+
+bool same(const TableAngles& a, const TableAngles& b) {
+  return std::abs(a.azimuth_rad - b.azimuth_rad) < kSameEntry_rad &&
+         std::abs(a.pitch_rad - b.pitch_rad) < kSameEntry_rad &&
+         std::abs(a.roll_rad - b.roll_rad) < kSameEntry_rad;
+}
+
+std::string on_scales(const TableAngles& a) {
+  return fmt::format("azimuth {:.6g}, pitch {:.6g}, roll {:.6g} deg", to_deg(a.azimuth_rad),
+                     to_deg(a.pitch_rad), to_deg(a.roll_rad));
+}
+
+std::string request_text(What what, const PlannedPose& pose, std::size_t poses) {
+  if (what == What::mount)
+    return fmt::format(
+        "mounting {}: put the array on the table {} and enter its azimuth, pitch and roll on the "
+        "table",
+        pose.mount.value_or(0), mounting_in_words(pose.mounting));
+  return fmt::format("pose {} of {}: turn the table to {} and enter what its scales say", pose.number, poses,
+                     on_scales(pose.target));
+}
+
+}  // namespace
+
+bool RunFsm::by_hand() const {
+  return config_.by_hand || (!plan_.poses.empty() && plan_.poses.front().mount.has_value());
+}
+
+TableAngles RunFsm::recorded(const TableAngles& table) const {
+  return mounted_ ? platform_angles(mounting_, table) : table;
+}
+
+bool RunFsm::ask_hands() {
+  if (planned().mount && mounted_ != planned().mount) {
+    ask(What::mount, {});
+    return true;
+  }
+  if (config_.by_hand && scales_of_ != planned().number) {
+    ask(What::table, {});
+    return true;
+  }
+  return false;
+}
+
+void RunFsm::ask(What what, std::string again) {
+  act(StopTable{});
+  prompt_ = OperatorPrompt{.what = what,
+                           .pose = planned().number,
+                           .mount = planned().mount,
+                           .target = what == What::mount ? planned().mounting : planned().target,
+                           .text = request_text(what, planned(), plan_.poses.size()),
+                           .again = std::move(again)};
+  enter(Phase::asking, prompt_->again.empty() ? prompt_->text : prompt_->again + "; " + prompt_->text);
+  act(Record{message_});
+}
+
+Result<void> RunFsm::possible(const ScaleEntered& entered) const {
+  if (phase_ != Phase::asking)
+    return fail(ErrorCode::state, "nothing is asked for now",
+                "mgt run status shows what is; mgt run redo asks for the last entry again");
+  if (prompt_->what == What::table && !inside(config_.limits, entered.angles))
+    return fail(ErrorCode::usage, fmt::format("{} is outside the table's limits", on_scales(entered.angles)),
+                "read the scales again; the limits are those of the configuration");
+  return {};
+}
+
+void RunFsm::on(const ScaleEntered& entered) {
+  if (!possible(entered)) return;
+  act(Record{
+      fmt::format("pose {}: entered {}: {}", prompt_->pose,
+                  prompt_->what == What::mount ? "the mounting of the array" : "the scales of the table",
+                  on_scales(entered.angles))});
+  if (prompt_->what == What::mount) {
+    mounted_ = planned().mount;
+    mounting_ = entered.angles;
+  } else {
+    scales_of_ = planned().number;
+    scales_ = entered.angles;
+  }
+  unproved_ = true;
+  doubtful_ = false;
+  prompt_.reset();
+  go_on();
+}
+
+/// Judged at the first pose that was measured with an entry. The same entry twice is the operator's word.
+bool RunFsm::believed(const Pose& pose) {
+  if (!unproved_) return true;
+  const What what = config_.by_hand ? What::table : What::mount;
+  const TableAngles& entry = what == What::mount ? mounting_ : scales_;
+  const FieldTurnVerdict verdict = field_turn_.judge(pose);
+  const std::string found =
+      fmt::format("since pose {} the field turned by {:.1f} deg, what was entered means {:.1f} deg",
+                  verdict.against, to_deg(verdict.measured_rad), to_deg(verdict.entered_rad));
+  const bool confirmed = doubted_ && same(*doubted_, entry);
+  if (verdict.agrees || confirmed) {
+    doubtful_ = !verdict.agrees;
+    if (doubtful_) act(Record{"the operator stands by the entry: " + found});
+    unproved_ = false;
+    doubted_.reset();
+    return true;
+  }
+  doubted_ = entry;
+  if (what == What::mount) mounted_.reset();
+  scales_of_.reset();
+  ask(what, found + ": look at the scales again");
+  return false;
+}
+
+void RunFsm::drop(const std::vector<std::size_t>& poses) {
+  std::vector<int> numbers;
+  for (const std::size_t i : poses) {
+    numbers.push_back(plan_.poses[i].number);
+    progress_.undo(i);
+    field_turn_.remove(plan_.poses[i].number);
+  }
+  if (!numbers.empty()) act(DropPoses{std::move(numbers)});
+}
+
+void RunFsm::redo() {
+  act(StopTable{});
+  std::vector<std::size_t> again;
+  if (mounted_) {
+    for (std::size_t i = 0; i < plan_.poses.size(); ++i)
+      if (plan_.poses[i].mount == mounted_ && progress_.is_done(i)) again.push_back(i);
+    mounted_.reset();
+  } else if (scales_of_ != planned().number && last_stored_) {
+    again.push_back(*last_stored_);
+  }
+  last_stored_.reset();
+  scales_of_.reset();
+  doubted_.reset();
+  attempt_ = 0;
+  drop(again);
+  go_on();
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/link_life.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace mgtd::drivers {
+
+void LinkLife::refused(const Error& why) {
+  open_ = false;
+  why_ = why.text();
+  const bool missing = why.code == ErrorCode::unreachable;
+  closed_state_ = !missing ? LinkState::opening : was_open_ ? LinkState::gone : LinkState::absent;
+}
+
+void LinkLife::opened() {
+  open_ = was_open_ = true;
+  last_.reset();
+  same_ = 0;
+  ranged_ = frozen_ = saturated_ = false;
+}
+
+void LinkLife::lost(std::string why) {
+  open_ = false;
+  closed_state_ = LinkState::gone;
+  why_ = std::move(why);
+}
+
+void LinkLife::ended() {
+  open_ = was_open_ = false;
+  closed_state_ = LinkState::absent;
+  why_ = "closed";
+}
+
+void LinkLife::heard(const DeviceEvent& event) {
+  if (const auto* const reading = std::get_if<FieldReading>(&event)) judge(*reading);
+}
+
+void LinkLife::judge(const FieldReading& reading) {
+  const Instant now = reading.arrival.mono;
+  if (!last_ || last_->y_nT != reading.y_nT) {
+    same_since_ = now;
+    same_ = 0;
+  }
+  ++same_;
+  if (!ranged_) ranged_since_ = now;
+  ranged_ = reading.flags.has(Flag::saturated);
+  // At the end of the range all readings are alike: that is no frozen device.
+  saturated_ = ranged_ && now - ranged_since_ >= from_seconds(kSaturated_s);
+  frozen_ = !ranged_ && same_ > kFrozenReadings && now - same_since_ >= from_seconds(kFrozen_s);
+  last_ = reading;
+}
+
+Duration LinkLife::next_wait() {
+  return from_seconds(std::exchange(wait_s_, std::min(2 * wait_s_, kLongestWait_s)));
+}
+
+LinkHealth LinkLife::shown(LinkHealth device) const {
+  if (!open_) {
+    device.state = closed_state_;
+    device.detail = why_;
+  } else if (device.state == LinkState::live && frozen_) {
+    device.state = LinkState::frozen;
+    device.detail = fmt::format(
+        "{} readings in a row are the same to the last digit; switch the instrument off and on, and look at "
+        "the "
+        "cable to the sensor",
+        same_);
+  } else if (device.state == LinkState::live && saturated_) {
+    device.state = LinkState::saturated;
+    device.detail =
+        "every reading is at the end of the range; take iron and magnets away, look at the range that is "
+        "configured, and whether the sensor is powered";
+  }
+  return device;
+}
+
+}  // namespace mgtd::drivers

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/operator_prompt.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "proto/units.h"
+
+namespace mgtd {
+namespace {
+
+constexpr double kMost_deg = 720;
+using Axis = std::pair<const char*, double TableAngles::*>;
+constexpr std::array kAxes{Axis{"azimuth_deg", &TableAngles::azimuth_rad},
+                           Axis{"pitch_deg", &TableAngles::pitch_rad},
+                           Axis{"roll_deg", &TableAngles::roll_rad}};
+
+double rounded_deg(double rad) { return std::round(to_deg(rad) * 1e6) / 1e6; }
+
+}  // namespace
+
+nlohmann::json scale_entry_json(const TableAngles& angles) {
+  nlohmann::json out = nlohmann::json::object();
+  for (const auto& [key, axis] : kAxes) out[key] = rounded_deg(angles.*axis);
+  return out;
+}
+
+Result<TableAngles> parse_scale_entry(const nlohmann::json& args) {
+  const auto refuse = [](std::string what) {
+    return fail(ErrorCode::usage, std::move(what),
+                "enter what the scales say, in degrees: azimuth_deg, pitch_deg and roll_deg");
+  };
+  TableAngles out;
+  for (const auto& [key, axis] : kAxes) {
+    if (!args.contains(key) || !args[key].is_number())
+      return refuse(fmt::format("'{}' is not a number", key));
+    const double value_deg = args[key].get<double>();
+    if (!(std::abs(value_deg) <= kMost_deg))
+      return refuse(fmt::format("'{}' is {} deg, outside {:.0f} deg", key, value_deg, kMost_deg));
+    out.*axis = to_rad(value_deg);
+  }
+  if (args.size() != kAxes.size()) return refuse("there are other keys beside the three angles");
+  return out;
+}
+
+nlohmann::ordered_json to_json(const OperatorPrompt& p) {
+  using Json = nlohmann::ordered_json;
+  return {{"what", p.what == OperatorPrompt::What::mount ? "mount" : "table"},
+          {"pose", p.pose},
+          {"mount", p.mount ? Json(*p.mount) : Json(nullptr)},
+          {"target", scale_entry_json(p.target)},
+          {"text", p.text},
+          {"again", p.again.empty() ? Json(nullptr) : Json(p.again)}};
+}
+
+Result<OperatorPrompt> prompt_from_json(const nlohmann::json& j) {
+  const auto refuse = [] {
+    return fail(ErrorCode::protocol, "the answer holds no prompt that can be read",
+                "use mgt and mgtd of the same version");
+  };
+  if (!j.is_object() || !j.contains("target") || !j["target"].is_object()) return refuse();
+  auto target = parse_scale_entry(j["target"]);
+  if (!target) return refuse();
+  const auto text = [&](const char* key) {
+    return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
+  };
+  OperatorPrompt out{
+      .what = text("what") == "mount" ? OperatorPrompt::What::mount : OperatorPrompt::What::table,
+      .target = *target,
+      .text = text("text"),
+      .again = text("again")};
+  if (j.contains("pose") && j["pose"].is_number_integer()) out.pose = j["pose"].get<int>();
+  if (j.contains("mount") && j["mount"].is_number_integer()) out.mount = j["mount"].get<int>();
+  return out;
+}
+
+}  // namespace mgtd

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "proto/error.h"
+#include "proto/reading.h"
+
+/// What a run asks its operator to do by hand, and what the scale then says. The target is a wish; what is
+/// entered is what is stored.
+///
+///   "prompt": {"what":"mount","pose":37,"mount":2,"target":{"azimuth_deg":0,"pitch_deg":0,"roll_deg":90},
+///              "text":"..","again":".."}
+///
+/// `what`: "mount", the array on the table; "table", the scales of a table that is turned by hand. `again`
+/// says why an entry is asked for once more; null the first time.
+namespace mgtd {
+
+struct OperatorPrompt {
+  enum class What { mount, table } what{What::table};
+  int pose{0};
+  std::optional<int> mount{};
+  TableAngles target{};
+  std::string text{}, again{};
+};
+
+[[nodiscard]] nlohmann::ordered_json to_json(const OperatorPrompt& prompt);
+[[nodiscard]] Result<OperatorPrompt> prompt_from_json(const nlohmann::json& object);
+
+/// Arguments of run.enter: {"azimuth_deg":..,"pitch_deg":..,"roll_deg":..}, all three, each within 720 deg.
+[[nodiscard]] Result<TableAngles> parse_scale_entry(const nlohmann::json& args);
+[[nodiscard]] nlohmann::json scale_entry_json(const TableAngles& angles);
+
+}  // namespace mgtd

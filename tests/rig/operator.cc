@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/rig/operator.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include "tests/rig/fault_client.h"
+
+namespace mgtd::rig {
+namespace {
+
+using nlohmann::json;
+constexpr std::array kAxes{"azimuth_deg", "pitch_deg", "roll_deg"};
+
+class Operator {
+ public:
+  explicit Operator(const OperatorOptions& options) : options_(options), random_(options.seed) {}
+
+  int work();
+
+ private:
+  [[nodiscard]] std::optional<json> say(const std::string& command, const json& args) const {
+    const auto line = ask_socket(options_.control, json{{"cmd", command}, {"args", args}}.dump());
+    if (!line) return std::nullopt;
+    return json::parse(*line, nullptr, false);
+  }
+  void serve(const json& prompt);
+
+  OperatorOptions options_;
+  std::mt19937_64 random_;
+  int prompts_{0};
+};
+
+void Operator::serve(const json& prompt) {
+  std::array<double, 3> there{};
+  json entry;
+  for (std::size_t a = 0; a < kAxes.size(); ++a) {
+    const double sloppy = static_cast<double>(random_() >> 11U) * 0x1p-52 - 1;
+    const double wanted = prompt.at("target").at(kAxes[a]);
+    // What is read to a tenth is where it stands to half of that.
+    entry[kAxes[a]] = std::round(10 * (wanted + options_.error_deg * sloppy)) / 10;
+    there[a] = entry[kAxes[a]];
+  }
+  const bool again = prompt.at("again").is_string();
+  if (!again) ++prompts_;
+  static_cast<void>(ask_rig(options_.dir, fmt::format("mount {} {} {}", there[0], there[1], there[2])));
+  if (prompts_ == options_.blunder && !again) entry["roll_deg"] = entry["roll_deg"].get<double>() + 30;
+  fmt::print("{}\n{}{}\n", prompt.at("text").get<std::string>(),
+             again ? "  " + prompt.at("again").get<std::string>() + "\n" : "", entry.dump());
+  std::fflush(stdout);
+  static_cast<void>(say("run.enter", entry));
+}
+
+int Operator::work() {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+    const auto reply = say("run.status", json::object());
+    if (!reply || !reply->value("ok", false)) return 3;
+    const json& run = reply->at("result");
+    const std::string state = run.at("state");
+    if (run.at("prompt").is_object()) {
+      serve(run.at("prompt"));
+    } else if (state == "done") {
+      return 0;
+    } else if (state == "rejected" || state == "aborted" || state == "failed" || state == "paused") {
+      fmt::print(stderr, "{}: {}\n", state, run.at("message").get<std::string>());
+      return 1;
+    }
+  }
+}
+
+}  // namespace
+
+int operate(const OperatorOptions& options) { return Operator(options).work(); }
+
+}  // namespace mgtd::rig

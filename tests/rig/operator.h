@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+/// The hands of a simulated rig: waits for what a daemon asks its operator to do, does it on the rig, and
+/// enters what the scales then say.
+namespace mgtd::rig {
+
+struct OperatorOptions {
+  std::string dir;      ///< of the rig
+  std::string control;  ///< the daemon's control socket
+  double error_deg{1};  ///< things are set to this; the scales are read to a tenth of a degree
+  int blunder{0};       ///< at this prompt the roll is misread by 30 degrees, once
+  std::uint64_t seed{1};
+};
+
+/// Until the run ends. Exit code: 0 the run is done, 1 it ended otherwise or paused, 3 nobody is there.
+[[nodiscard]] int operate(const OperatorOptions& options);
+
+}  // namespace mgtd::rig
