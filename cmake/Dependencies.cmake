@@ -11,6 +11,7 @@ find_package(SQLite3 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 pkg_check_modules(serialport REQUIRED IMPORTED_TARGET libserialport)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
 pkg_check_modules(systemd REQUIRED IMPORTED_TARGET libsystemd)
 
 add_library(mgtd_asio INTERFACE)

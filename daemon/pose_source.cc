@@ -28,13 +28,25 @@ Result<PoseSource> read_run(const std::filesystem::path& path) {
     if (!file) return tl::unexpected(file.error());
     auto table = file->poses();
     if (!table) return tl::unexpected(table.error());
-    return PoseSource{std::move(*table), file->header()};
+    const auto steps = file->model_steps();
+    if (!steps) return tl::unexpected(steps.error());
+    PoseSource out{std::move(*table), file->header(), kept_model(*steps), {}};
+    const auto formulas = file->document(kFormulasDocument);
+    if (!formulas) return tl::unexpected(formulas.error());
+    if (!*formulas) return out;
+    auto definitions = definitions_from_text(**formulas);
+    if (!definitions) {
+      definitions.error().message = path.string() + ": " + definitions.error().message;
+      return tl::unexpected(definitions.error());
+    }
+    out.definitions = std::move(*definitions);
+    return out;
   }
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   auto table = calib::parse_pose_table(*text, path.string());
   if (!table) return tl::unexpected(table.error());
-  return PoseSource{std::move(*table), std::nullopt};
+  return PoseSource{std::move(*table), std::nullopt, {}, {}};
 }
 
 Result<PoseTable> read_poses(const std::filesystem::path& path) {

@@ -2,7 +2,10 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "daemon/definitions.h"
 #include "daemon/run_header.h"
 #include "proto/error.h"
 #include "proto/pose.h"
@@ -12,7 +15,9 @@ namespace mgtd::daemon {
 
 struct PoseSource {
   PoseTable table;
-  std::optional<RunHeader> header;  ///< of a run file
+  std::optional<RunHeader> header;        ///< of a run file
+  std::vector<std::string> model{};       ///< kept in a run file: specs of effects
+  std::vector<Definition> definitions{};  ///< formulas kept in a run file
 };
 
 [[nodiscard]] Result<PoseSource> read_run(const std::filesystem::path& path);

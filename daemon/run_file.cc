@@ -198,6 +198,22 @@ Result<void> RunFile::set_document(std::string_view name, std::string_view text)
   return row->bind(1, name).bind(2, text).run();
 }
 
+Result<void> RunFile::append_model_step(const ModelStep& step) {
+  return db_->atomically([&]() -> Result<void> {
+    // Files of earlier versions have no such table.
+    if (auto ok =
+            db_->execute("CREATE TABLE IF NOT EXISTS model_step(id INTEGER PRIMARY KEY, wall_ns INTEGER "
+                         "NOT NULL, who TEXT NOT NULL, action TEXT NOT NULL, spec TEXT NOT NULL, "
+                         "result TEXT NOT NULL)");
+        !ok)
+      return ok;
+    auto row = db_->prepare("INSERT INTO model_step VALUES(NULL, ?, ?, ?, ?, ?)");
+    if (!row) return tl::unexpected(row.error());
+    row->bind(1, step.at.ns).bind(2, std::string_view(step.who)).bind(3, std::string_view(step.action));
+    return row->bind(4, std::string_view(step.spec)).bind(5, std::string_view(step.result)).run();
+  });
+}
+
 Result<void> import_poses(const PoseTable& table, const std::filesystem::path& path, RunHeader header) {
   if (std::filesystem::exists(path)) return tl::unexpected(already_there(path));
   if (header.source.empty()) header.source = table.source;

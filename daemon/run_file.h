@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/kept_model.h"
 #include "daemon/run_header.h"
 #include "proto/error.h"
 #include "proto/pose.h"
@@ -65,8 +66,10 @@ class RunFile {
   [[nodiscard]] Result<void> set_state(RunState state, std::string_view message);
   /// Replaces the checks of a stage: "preflight", "verdict".
   [[nodiscard]] Result<void> set_checks(std::string_view stage, std::span<const Check> checks);
-  /// A named text kept with the run, replaced whole: "preflight" (JSON), "proposed" (CAL.json), "model", ...
+  /// A named text kept with the run, replaced whole: "preflight" (JSON), "proposed" (CAL.json), ...
   [[nodiscard]] Result<void> set_document(std::string_view name, std::string_view text);
+  /// On disk when it returns; steps are never changed.
+  [[nodiscard]] Result<void> append_model_step(const ModelStep& step);
 
   /// In the order they were measured.
   [[nodiscard]] Result<PoseTable> poses() const;
@@ -78,6 +81,8 @@ class RunFile {
   [[nodiscard]] Result<std::vector<Check>> checks(std::string_view stage) const;
   /// Empty when there is none of that name.
   [[nodiscard]] Result<std::optional<std::string>> document(std::string_view name) const;
+  /// In the order they were taken; none in a file on which nobody built a model.
+  [[nodiscard]] Result<std::vector<ModelStep>> model_steps() const;
 
  private:
   RunFile(std::filesystem::path path, std::unique_ptr<Database> db, RunHeader header);

@@ -141,4 +141,15 @@ Result<std::optional<std::string>> RunFile::document(std::string_view name) cons
   return *there ? std::optional(row->text(0)) : std::nullopt;
 }
 
+Result<std::vector<ModelStep>> RunFile::model_steps() const {
+  const auto known = db_->integer("SELECT count(*) FROM sqlite_master WHERE name='model_step'");
+  if (!known) return tl::unexpected(known.error());
+  if (*known == 0) return std::vector<ModelStep>{};
+  return rows<ModelStep>(
+      *db_, "SELECT wall_ns, who, action, spec, result FROM model_step ORDER BY id",
+      [](const Statement& row) {
+        return ModelStep{WallTime{row.integer(0)}, row.text(1), row.text(2), row.text(3), row.text(4)};
+      });
+}
+
 }  // namespace mgtd::daemon

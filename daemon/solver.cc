@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/solver.h"
 
-#include "daemon/pose_source.h"
-
 namespace mgtd::daemon {
 
 calib::FitOptions fit_options(const RunOptions& options) {
@@ -16,11 +14,22 @@ calib::FitOptions fit_options(const RunOptions& options) {
   return out;
 }
 
+Result<calib::FitOptions> fit_options(const PoseSource& source) {
+  calib::FitOptions out = source.header ? fit_options(source.header->options) : calib::FitOptions{};
+  for (const std::string& spec : source.model) {
+    auto effect = calib::make_effect(spec);
+    if (!effect) return tl::unexpected(effect.error());
+    out.effects.push_back(std::move(*effect));
+  }
+  return out;
+}
+
 Result<calib::FitReport> solve_run(const std::filesystem::path& run_file) {
   const auto source = read_run(run_file);
   if (!source) return tl::unexpected(source.error());
-  return calib::fit(source->table,
-                    source->header ? fit_options(source->header->options) : calib::FitOptions{});
+  const auto options = fit_options(*source);
+  if (!options) return tl::unexpected(options.error());
+  return calib::fit(source->table, *options);
 }
 
 }  // namespace mgtd::daemon

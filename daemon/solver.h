@@ -4,6 +4,7 @@
 #include <string>
 
 #include "calib/fit/fit.h"
+#include "daemon/pose_source.h"
 #include "daemon/run_header.h"
 
 /// How the daemon and the offline tool call the fit: the same options from the same run file give the same
@@ -12,6 +13,9 @@ namespace mgtd::daemon {
 
 /// The options a run file states; the rest as the fit's defaults.
 [[nodiscard]] calib::FitOptions fit_options(const RunOptions& options);
+
+/// The same with the model that is kept in the file. Refuses an effect that this version does not know.
+[[nodiscard]] Result<calib::FitOptions> fit_options(const PoseSource& source);
 
 /// Reads the poses of a run file and fits them. Takes what it needs from the file alone, so it may run on any
 /// thread.

@@ -271,6 +271,7 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   Search search{
       .table = table, .joint = joint_options(options.fit), .suspects = {}, .seed = options.fit.seed};
   search.suspects = options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table);
+  search.suspects.testable.insert(search.suspects.testable.end(), options.also.begin(), options.also.end());
   auto fit = fit_joint_at_size(table, search.joint);
   if (!fit) return tl::unexpected(fit.error());
   ExplainReport out;

@@ -92,6 +92,8 @@ struct ExplainOptions {
   int rounds{4};
   /// What is suspected instead of the library.
   std::optional<std::vector<Suspect>> suspects{};
+  /// What is suspected beside it: formulas of the user.
+  std::vector<Suspect> also{};
 };
 
 [[nodiscard]] Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options);

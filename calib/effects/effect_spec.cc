@@ -23,7 +23,8 @@ Result<EffectSpec> EffectSpec::parse(std::string_view text) {
   }
   while (!tail.empty()) {
     tail.remove_prefix(1);
-    const std::string_view part = tail.substr(0, tail.find(','));
+    // An expression has commas of its own: it takes the rest.
+    const std::string_view part = tail.substr(0, tail.starts_with("expr=") ? tail.size() : tail.find(','));
     tail.remove_prefix(part.size());
     const auto equals = part.find('=');
     if (equals == 0 || equals == std::string_view::npos || equals + 1 == part.size()) {
@@ -38,7 +39,10 @@ Result<EffectSpec> EffectSpec::parse(std::string_view text) {
 std::string EffectSpec::text() const {
   std::string out = name;
   if (where && where->scale != Where::Scale::own) out += "@" + where->text();
-  for (const auto& [key, value] : parameters) out += "," + key + "=" + value;
+  const std::string* const expression = find("expr");
+  for (const auto& [key, value] : parameters)
+    if (&value != expression) out += "," + key + "=" + value;
+  if (expression != nullptr) out += ",expr=" + *expression;
   return out;
 }
 

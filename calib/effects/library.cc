@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "calib/effects/effect_family.h"
+#include "calib/effects/formula.h"
 
 namespace mgtd::calib {
 
@@ -15,6 +16,7 @@ std::vector<std::string_view> effect_names() {
 }
 
 Result<EffectPtr> make_effect(const EffectSpec& spec) {
+  if (is_formula(spec)) return make_formula(spec);
   if (const EffectFamily* family = find_family(spec.name)) return family->from_spec(spec);
   return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", spec.name),
               fmt::format("known effects: {}", fmt::join(effect_names(), ", ")));

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 
 #include "calib/effects/effect_family.h"
+#include "calib/effects/formula.h"
 #include "calib/fit/joint_fit.h"
 
 namespace mgtd::calib {
@@ -15,13 +18,22 @@ namespace {
 /// Of the chi-square: what a solution may miss while values are compared.
 constexpr double kEnough = 1e-3;
 
-/// A family whose number this effect's spec leaves open; null otherwise.
-const EffectFamily* open_scan(const Effect& effect) {
-  const EffectFamily* family = find_family(effect.name());
-  if (family == nullptr || !family->scan || family->scan->optional) return nullptr;
+/// A number that an effect's spec leaves open, and what is tried for it.
+struct OpenNumber {
+  std::string parameter;
+  Scan::Range range{Scan::Range::linear};
+  std::vector<double> values;
+};
+
+std::optional<OpenNumber> open_number(const Effect& effect, const EffectContext& context) {
   const auto spec = EffectSpec::parse(effect.spec());
-  if (!spec || !spec->parameters.empty()) return nullptr;
-  return family;
+  if (!spec) return std::nullopt;
+  if (const auto scan = open_scan(*spec))
+    return OpenNumber{scan->parameter, Scan::Range::linear, scan_values(*scan)};
+  const EffectFamily* family = find_family(effect.name());
+  if (family == nullptr || !family->scan || family->scan->optional || !spec->parameters.empty())
+    return std::nullopt;
+  return OpenNumber{std::string(family->scan->parameter), family->scan->range, scan_values(*family, context)};
 }
 
 /// A problem with its weights, and a state near its solution.
@@ -66,25 +78,25 @@ Result<Fitted> fit_around(const PoseTable& table, const JointOptions& options, s
 /// One searched effect of a fitted problem.
 class Search {
  public:
-  Search(Fitted fitted, const EffectContext& context, std::size_t slot, const EffectFamily& family)
+  Search(Fitted fitted, const EffectContext& context, std::size_t slot, OpenNumber number)
       : problem_(std::move(fitted.problem)),
         state_(std::move(fitted.state)),
         context_(context),
         slot_(slot),
-        family_(family),
+        number_(std::move(number)),
         spec_(*EffectSpec::parse(problem_.effects[slot]->spec())) {}
 
   /// The effect with the value that leaves the least; null when none could be fitted.
   EffectPtr best() {
-    std::vector<double> grid = scan_values(family_, context_);
-    if (family_.scan->range == Scan::Range::index) grid = promising(std::move(grid));
+    std::vector<double> grid = number_.values;
+    if (number_.range == Scan::Range::index) grid = promising(std::move(grid));
     std::size_t at = 0;
     for (std::size_t i = 0; i < grid.size(); ++i) {
       if (const double cost = cost_of(grid[i]); cost < best_cost_) best_cost_ = cost, at = i;
     }
     if (!std::isfinite(best_cost_)) return nullptr;
     double value = grid[at];
-    const Scan::Range range = family_.scan->range;
+    const Scan::Range range = number_.range;
     if (range == Scan::Range::linear || range == Scan::Range::logarithmic)
       value = refine(grid[at > 0 ? at - 1 : 0], grid[std::min(at + 1, grid.size() - 1)], value);
     if (range == Scan::Range::run) {
@@ -99,7 +111,7 @@ class Search {
  private:
   [[nodiscard]] EffectPtr effect_at(double value) const {
     EffectSpec spec = spec_;
-    spec.set(family_.scan->parameter, value);
+    spec.set(number_.parameter, value);
     auto effect = make_effect(spec, context_);
     return effect ? *effect : nullptr;
   }
@@ -157,7 +169,7 @@ class Search {
   JointState state_;
   const EffectContext& context_;
   std::size_t slot_;
-  const EffectFamily& family_;
+  OpenNumber number_;
   EffectSpec spec_;
   double best_cost_{std::numeric_limits<double>::infinity()};
 };
@@ -167,19 +179,19 @@ class Search {
 Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& options) {
   const EffectContext context{.table = &table, .offset_nT = {}};
   JointOptions tuned = options;
-  std::vector<std::pair<std::size_t, const EffectFamily*>> open;
+  std::vector<std::pair<std::size_t, OpenNumber>> open;
   for (std::size_t i = 0; i < options.effects.size(); ++i) {
-    if (const EffectFamily* family = open_scan(*options.effects[i])) open.emplace_back(i, family);
+    if (auto number = open_number(*options.effects[i], context)) open.emplace_back(i, std::move(*number));
   }
   const int rounds = open.empty() ? 0 : open.size() == 1 ? 1 : 2;
   for (int round = 0; round < rounds; ++round) {
-    for (const auto& [slot, family] : open) {
+    for (const auto& [slot, number] : open) {
       JointOptions others = tuned;
       others.effects[slot] = options.effects[slot];
-      auto fitted = family->scan->range == Scan::Range::index ? fit_around(table, others, slot)
-                                                              : fit_with(table, others);
+      auto fitted =
+          number.range == Scan::Range::index ? fit_around(table, others, slot) : fit_with(table, others);
       if (!fitted) return tl::unexpected(fitted.error());
-      if (EffectPtr best = Search(std::move(*fitted), context, slot, *family).best())
+      if (EffectPtr best = Search(std::move(*fitted), context, slot, number).best())
         tuned.effects[slot] = std::move(best);
     }
   }

@@ -19,7 +19,7 @@ struct Arguments {
 };
 
 int run_apply(const Session& session, const Arguments& args) {
-  const auto calibration = read_calibration(args.calibration);
+  const auto calibration = calibration_of(args.calibration, {});
   if (!calibration) return report(session, calibration.error());
   const auto table = daemon::read_poses(args.run);
   if (!table) return report(session, table.error());
@@ -52,7 +52,10 @@ void add_apply(CLI::App& app, Session& session) {
   CLI::App* const command =
       add_command(app, session, "apply", "calibrated field of every sensor and the tensor, row by row (CSV)",
                   [args, &session] { return run_apply(session, *args); });
-  command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
+  command
+      ->add_option("CAL", args->calibration,
+                   "CAL.json of mgt fit -o, or a run to fit first, with the model it keeps")
+      ->required();
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "file; standard output when absent");
   command->add_flag("--remove-site", args->options.remove_site,

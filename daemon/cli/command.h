@@ -33,22 +33,29 @@ void print_json(const nlohmann::json& object);
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,
                       std::function<int()> body);
 
+void add_add(CLI::App& app, Session& session);
 void add_apply(CLI::App& app, Session& session);
 void add_calibrations(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_check_config(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_define(CLI::App& app, Session& session);
 void add_diff(CLI::App& app, Session& session);
+void add_drop(CLI::App& app, Session& session);
 void add_effects(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_improve(CLI::App& app, Session& session);
+void add_model(CLI::App& app, Session& session);
+void add_next(CLI::App& app, Session& session);
 void add_plan(CLI::App& app, Session& session);
 void add_ports(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
 void add_run(CLI::App& app, Session& session);
 void add_status(CLI::App& app, Session& session);
+void add_undo(CLI::App& app, Session& session);
 void add_watch(CLI::App& app, Session& session);
 
 }  // namespace mgtd::cli

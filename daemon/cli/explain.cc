@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "calib/criticism/explain_json.h"
 #include "calib/criticism/explain_text.h"
+#include "calib/criticism/resemblance.h"
+#include "calib/pose_table.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 
@@ -24,12 +28,30 @@ struct Arguments {
   std::shared_ptr<FitFlags> flags;
 };
 
+/// Formulas of the run file that its poses can feed and that are not in the model.
+std::vector<calib::Suspect> formulas_of(const daemon::PoseSource& source, const calib::FitOptions& options) {
+  std::vector<calib::Suspect> out;
+  for (const daemon::Definition& d : source.definitions) {
+    const bool known = std::any_of(options.effects.begin(), options.effects.end(),
+                                   [&](const calib::EffectPtr& e) { return e->name() == d.name; });
+    const auto spec = calib::EffectSpec::parse(d.spec);
+    if (known || !spec) continue;
+    auto suspect = calib::formula_suspect(*spec);
+    if (!suspect || !suspect->variants.front()->check(source.table)) continue;
+    if (d.exploratory() && d.found_on == calib::data_hash(source.table))
+      fmt::print(stderr, "{} was thought of on this run: what is said of it here is exploratory\n", d.name);
+    out.push_back(std::move(*suspect));
+  }
+  return out;
+}
+
 int run_explain(const Session& session, const Arguments& args) {
   const auto source = daemon::read_run(args.run);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto explained = calib::explain(source->table, {.fit = *options});
+  const auto explained =
+      calib::explain(source->table, {.fit = *options, .also = formulas_of(*source, *options)});
   if (!explained) return report(session, explained.error());
   if (session.json) {
     print_json(calib::to_json(*explained));

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/cli/fit_flags.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "daemon/solver.h"
 
 namespace mgtd::cli {
@@ -12,9 +17,15 @@ void add_field_flags(CLI::App* command, FitFlags& flags) {
 
 namespace {
 
-void add_shared_flags(CLI::App* command, FitFlags& f) {
-  command->add_option("--with", f.with, "effect to put in the model, by name; may be given again (joint)")
+void add_with(CLI::App* command, FitFlags& f) {
+  command
+      ->add_option("--with", f.with,
+                   "effect to put in the model, by name; may be given again (joint). none leaves the model "
+                   "that the run file keeps")
       ->allow_extra_args(false);
+}
+
+void add_site_flags(CLI::App* command, FitFlags& f) {
   add_field_flags(command, f);
   command->add_option("--baseline", f.baseline_m, "distance of opposite sensors in m (0.4)");
   command->add_option("--inclination", f.inclination_deg,
@@ -31,26 +42,52 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
   command->add_option("--method", f->method, "simplified, two-step or joint")
       ->check(CLI::IsMember({"simplified", "two-step", "joint"}))
       ->capture_default_str();
-  add_shared_flags(command, *f);
+  add_with(command, *f);
+  add_site_flags(command, *f);
   return f;
 }
 
 std::shared_ptr<FitFlags> add_model_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
-  add_shared_flags(command, *f);
+  add_with(command, *f);
+  add_site_flags(command, *f);
   return f;
 }
 
+std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
+  auto f = std::make_shared<FitFlags>();
+  add_site_flags(command, *f);
+  return f;
+}
+
+namespace {
+
+/// One effect into a list, in the place of the one of its name.
+void put(std::vector<calib::EffectPtr>& effects, calib::EffectPtr effect) {
+  std::erase_if(effects, [&](const calib::EffectPtr& e) { return e->name() == effect->name(); });
+  effects.push_back(std::move(effect));
+}
+
+}  // namespace
+
 Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source) {
-  calib::FitOptions out = source.header ? daemon::fit_options(source.header->options) : calib::FitOptions{};
+  auto kept = daemon::fit_options(source);
+  if (!kept) return tl::unexpected(kept.error());
+  calib::FitOptions out = std::move(*kept);
   const auto method = calib::method_from(flags.method);
   if (!method)
     return fail(ErrorCode::usage, "no method '" + flags.method + "'", "simplified, two-step or joint");
   out.method = *method;
+  const bool leave = std::find(flags.with.begin(), flags.with.end(), "none") != flags.with.end();
+  if (leave || out.method != calib::Method::joint) out.effects.clear();
+  if (!out.effects.empty())
+    fmt::print(stderr, "with the model kept in the run: {} (--with none leaves it)\n",
+               fmt::join(source.model, ", "));
   for (const std::string& name : flags.with) {
-    auto effect = calib::make_effect(name);
+    if (name == "none") continue;
+    auto effect = calib::make_effect(daemon::whole_spec(name, source.definitions));
     if (!effect) return tl::unexpected(effect.error());
-    out.effects.push_back(*effect);
+    put(out.effects, *effect);
   }
   if (!out.effects.empty() && out.method != calib::Method::joint) {
     return fail(ErrorCode::usage, "--with needs the joint method", "leave --method out");

@@ -15,7 +15,7 @@ namespace mgtd::cli {
 
 struct FitFlags {
   std::string method{"joint"};
-  std::vector<std::string> with;  ///< effects by name
+  std::vector<std::string> with;  ///< effects by name; "none" leaves the model that the run file keeps
   std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;
 };
@@ -23,10 +23,13 @@ struct FitFlags {
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);
 /// The same for commands that only know the joint fit.
 std::shared_ptr<FitFlags> add_model_flags(CLI::App* command);
+/// The same for commands about the model that a run file keeps, and no other.
+std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command);
 /// Those about the field alone.
 void add_field_flags(CLI::App* command, FitFlags& flags);
 
-/// What the command line says goes before what the run file says, and that before the defaults.
+/// What the command line says goes before what the run file says, and that before the defaults. Effects come
+/// beside those of the model that the run file keeps; one of the same name stands in its place.
 [[nodiscard]] Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source);
 
 }  // namespace mgtd::cli

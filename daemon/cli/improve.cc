@@ -3,6 +3,7 @@
 
 #include "calib/criticism/improve.h"
 #include "calib/criticism/improve_report.h"
+#include "calib/criticism/waterfall.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 
@@ -21,6 +22,20 @@ struct Arguments {
   std::shared_ptr<FitFlags> flags;
 };
 
+/// What each effect of the model it ended with takes out.
+std::optional<calib::Waterfall> waterfall_of(const PoseTable& table, calib::FitOptions options,
+                                             const calib::Calibration& calibration) {
+  options.effects.clear();
+  for (const calib::CalibratedEffect& e : calibration.effects) {
+    auto effect = calib::make_effect(e.effect);
+    if (!effect) return std::nullopt;
+    options.effects.push_back(std::move(*effect));
+  }
+  if (options.effects.empty()) return std::nullopt;
+  auto steps = calib::waterfall(table, options);
+  return steps ? std::optional(std::move(*steps)) : std::nullopt;
+}
+
 int run_improve(const Session& session, const Arguments& args) {
   const auto source = daemon::read_run(args.run);
   if (!source) return report(session, source.error());
@@ -34,10 +49,14 @@ int run_improve(const Session& session, const Arguments& args) {
       return report(session, written.error());
     fmt::print(stderr, "calibration {} written to {}\n", calibration.id, args.output);
   }
+  const auto steps = waterfall_of(source->table, *options, improved->fit.calibration);
   if (session.json) {
-    print_json(calib::to_json(*improved));
+    nlohmann::json out = calib::to_json(*improved);
+    out["waterfall"] = steps ? calib::to_json(*steps) : nlohmann::json();
+    print_json(out);
   } else {
     fmt::print("{}", calib::to_text(*improved));
+    if (steps) fmt::print("\n{}", calib::to_text(*steps));
   }
   return improved->finding == calib::Finding::pass ? 0 : 1;
 }

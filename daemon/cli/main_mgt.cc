@@ -6,7 +6,8 @@ namespace {
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations\n"
-    "Offline (files):          plan, fit, apply, check, compare, diff, explain, improve, import, export, check-config, ports\n\n"
+    "Offline (files):          plan, fit, apply, check, diff, import, export, check-config, ports\n"
+    "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, report\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
     "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
@@ -37,6 +38,13 @@ int main(int argc, char** argv) {
   add_explain(app, session);
   add_effects(app, session);
   add_improve(app, session);
+  add_add(app, session);
+  add_drop(app, session);
+  add_undo(app, session);
+  add_model(app, session);
+  add_define(app, session);
+  add_next(app, session);
+  add_report(app, session);
   add_import(app, session);
   add_export(app, session);
   add_check_config(app, session);

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/bar.h"
+#include "calib/criticism/model_change.h"
+#include "calib/criticism/sentence.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json maybe(const std::optional<double>& x) { return x ? json(*x) : json(); }
+
+std::string line(const char* what, double before, double after, const char* unit) {
+  const double top = std::max(before, after);
+  return fmt::format("{:<22} before {:>9.3f} {:<5} {}\n{:<22} after  {:>9.3f} {:<5} {}\n", what, before, unit,
+                     bar(before, top), "", after, unit, bar(after, top));
+}
+
+}  // namespace
+
+json to_json(const ModelChange& c) {
+  json coefficients = json::array();
+  for (const EffectCoefficient& x : c.coefficients)
+    coefficients.push_back({{"name", x.name}, {"value", x.value}, {"sd", x.sd}, {"unit", x.unit}});
+  return {{"schema", "mgt.model-change/1"},
+          {"action", c.adding ? "add" : "drop"},
+          {"effect", c.effect},
+          {"spec", c.spec},
+          {"model", c.model},
+          {"coefficients", std::move(coefficients)},
+          {"k", c.k},
+          {c.adding ? "predicted_fall" : "predicted_rise", c.predicted},
+          {c.adding ? "realised_fall" : "realised_rise", c.realised},
+          {"log10_p", c.log10_p},
+          {"chi2_before", c.chi2_before},
+          {"chi2_after", c.chi2_after},
+          {"dof_before", c.dof_before},
+          {"dof_after", c.dof_after},
+          {"rms_before_nT", c.rms_before_nT},
+          {"rms_after_nT", c.rms_after_nT},
+          {"tensor_before_nT_per_m", c.tensor_before_nT_per_m},
+          {"tensor_after_nT_per_m", c.tensor_after_nT_per_m},
+          {"noise_nT", c.noise_nT},
+          {"held_out_before_nT", maybe(c.held_out_before_nT)},
+          {"held_out_after_nT", maybe(c.held_out_after_nT)},
+          {"variance_price", {{"growth_of_sd", c.price.growth}, {"parameter", c.price.parameter}}},
+          {"vetoed", c.vetoed()}};
+}
+
+std::string to_text(const ModelChange& c) {
+  std::string out = fmt::format("{} {}\n", c.adding ? "with" : "without", c.spec);
+  const auto to = std::back_inserter(out);
+  out += line("residual, rms", c.rms_before_nT, c.rms_after_nT, "nT");
+  if (c.held_out_before_nT && c.held_out_after_nT)
+    out += line("on poses left out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
+  out += line("tensor, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
+  fmt::format_to(to, "{:<29} {:>9.3f} nT\n", "noise of a pose mean", c.noise_nT);
+  fmt::format_to(to, "chi-square {} by {:.1f} where {:.1f} was predicted; by chance p {}\n",
+                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_text(c.log10_p));
+  if (c.price.parameter.empty()) {
+    out += "price: no standard deviation of the calibration is larger for it\n";
+  } else {
+    fmt::format_to(to, "price: the standard deviation of {} is {:.2f} times what it is without\n",
+                   c.price.parameter, c.price.growth);
+  }
+  for (const EffectCoefficient& x : c.coefficients)
+    fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", x.name, x.value, x.sd, x.unit);
+  if (c.adding && c.log10_p > -2)
+    out += "chance alone brings such a fall in more than one run of a hundred: it is not shown to be there\n";
+  return out;
+}
+
+}  // namespace mgtd::calib

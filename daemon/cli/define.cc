@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/resemblance.h"
+#include "calib/effects/effect_family.h"
+#include "calib/effects/formula.h"
+#include "calib/pose_table.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/kept_run.h"
+#include "daemon/definitions.h"
+
+namespace mgtd::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kHelp =
+    R"(An effect by your own formula: the term of one axis, as an expression of what was measured.
+
+  mgt define run.mgtrun lamp 'lamp_A' --level platform --scale each-sensor --unit nT/A
+  mgt define run.mgtrun creep 'k*u*exp(-since_stop_s/tau)' --level axis --scan tau=2:120
+  mgt add lamp run.mgtrun ; mgt explain run.mgtrun --with creep
+
+k, k1, k2, k3 are coefficients, which must come in linearly; without one the whole is multiplied by one. Other
+names: every column of the run; t_h (hours); T_degC (the sensor's own); at level axis u, ux, uy, uz (field term
+of the axis and its sensor, nT); platform b, bx, by, bz (nT), gx, gy, gz (unit gravity); site px, py, pz (m).
+Operators + - * / ^ ?: and comparisons; sin cos tan exp ln sqrt abs sign min max tanh ...
+
+Says how much of it the calibration absorbs already and which effect of the library it resembles. On the run it
+was thought of it stays exploratory; on a second run, --from FIRST.mgtrun confirms it or not.
+
+Exit code 0: kept. 1: not kept (absorbed whole), or not confirmed.)";
+
+struct Arguments {
+  std::string run, name, expression, level{"axis"}, scale, unit{"nT"}, scan, from;
+  std::optional<double> prior;
+  std::shared_ptr<FitFlags> flags;
+};
+
+bool is_name(const std::string& name) {
+  return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) != 0 &&
+         std::all_of(name.begin(), name.end(), [](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+         });
+}
+
+Result<void> usable_name(const std::string& name) {
+  if (is_name(name) && name != "none" && calib::find_family(name) == nullptr) return {};
+  return fail(ErrorCode::usage,
+              calib::find_family(name) != nullptr ? name + " is an effect of the library"
+                                                  : "'" + name + "' is no name for an effect",
+              "letters, digits, '_', '-' and '.', a letter first; and one that mgt effects does not list");
+}
+
+/// "tau=2:120" as a parameter of a spec.
+Result<std::pair<std::string, std::string>> scan_of(const std::string& text) {
+  const auto equals = text.find('='), colon = text.find(':');
+  if (equals == std::string::npos || colon == std::string::npos || equals == 0 || colon < equals)
+    return fail(ErrorCode::usage, "--scan '" + text + "' is not NAME=FROM:TO",
+                "for instance --scan tau=2:120");
+  return std::pair{text.substr(0, equals),
+                   text.substr(equals + 1, colon - equals - 1) + ".." + text.substr(colon + 1)};
+}
+
+Result<calib::EffectSpec> spec_of(const Arguments& args) {
+  if (const auto ok = usable_name(args.name); !ok) return tl::unexpected(ok.error());
+  calib::EffectSpec spec{.name = args.name, .where = {}, .parameters = {}};
+  if (!args.scale.empty() && args.level != "site") {
+    const auto where = calib::Where::parse(args.scale);
+    if (!where) return tl::unexpected(where.error());
+    spec.where = *where;
+  }
+  spec.set("level", args.level);
+  if (args.unit.find(',') != std::string::npos)
+    return fail(ErrorCode::usage, "a unit has no comma", "for instance --unit nT/A");
+  spec.set("unit", args.unit);
+  if (args.prior) spec.set("prior", *args.prior);
+  if (!args.scan.empty()) {
+    auto scan = scan_of(args.scan);
+    if (!scan) return tl::unexpected(scan.error());
+    spec.set(scan->first, std::move(scan->second));
+  }
+  spec.set("expr", args.expression);
+  return spec;
+}
+
+/// As it was defined on another run.
+Result<daemon::Definition> definition_from(const std::string& path, const std::string& name) {
+  const auto source = daemon::read_run(path);
+  if (!source) return tl::unexpected(source.error());
+  for (const daemon::Definition& d : source->definitions)
+    if (d.name == name) return d;
+  return fail(ErrorCode::bad_input, path + " keeps no formula called " + name,
+              "mgt model " + path + " lists them");
+}
+
+/// Largest difference of the coefficients from those found before, in standard deviations of both.
+double disagreement(const daemon::Definition& before, const calib::FormulaExamination& now) {
+  double out = 0;
+  for (const auto& a : before.found) {
+    for (const auto& b : now.coefficients)
+      if (a.name == b.name) out = std::max(out, std::abs(a.value - b.value) / std::hypot(a.sd, b.sd));
+  }
+  return out;
+}
+
+Result<void> keep(KeptRun& run, const daemon::Definition& definition) {
+  std::vector<daemon::Definition> all = run.source.definitions;
+  std::erase_if(all, [&](const daemon::Definition& d) { return d.name == definition.name; });
+  all.push_back(definition);
+  return run.file.set_document(daemon::kFormulasDocument, daemon::to_text(all));
+}
+
+/// What this run says of a formula from another one.
+struct Confirmation {
+  bool asked{false}, given{false};
+  double sigmas{0};
+};
+
+constexpr double kConfirmed_log10_p = -2;
+constexpr double kAgree_sigmas = 4;
+
+void print(const Session& session, const Arguments& args, const calib::FormulaExamination& x,
+           const daemon::Definition& definition, const Confirmation& c) {
+  if (session.json) {
+    json out = to_json(x);
+    out["schema"] = "mgt.define/1";
+    out["spec"] = definition.spec;
+    out["exploratory"] = definition.exploratory();
+    out["confirmed"] = c.asked ? json(c.given) : json();
+    out["kept"] = !x.wholly_absorbed();
+    print_json(out);
+    return;
+  }
+  fmt::print("{}", to_text(x));
+  if (x.wholly_absorbed()) return;
+  if (!c.asked) {
+    fmt::print(
+        "exploratory: it was thought of on these poses, so their p-value proves nothing; a second run does\n"
+        "(mgt define SECOND.mgtrun {} --from {})\n",
+        args.name, args.run);
+  } else if (c.given) {
+    fmt::print("confirmed on a second run; the coefficients differ by {:.1f} standard deviations at most\n",
+               c.sigmas);
+  } else {
+    fmt::print(
+        "not confirmed: on this run p {:.2g}, and the coefficients differ by {:.1f} standard deviations\n",
+        std::pow(10, x.log10_p), c.sigmas);
+  }
+  fmt::print("kept in {}; mgt add {} {} puts it into the model\n", args.run, args.name, args.run);
+}
+
+int run_define(const Session& session, const Arguments& args) {
+  auto run = open_kept_run(args.run, *args.flags);
+  if (!run) return report(session, run.error());
+  if (args.from.empty() == args.expression.empty()) {
+    return report(session, {ErrorCode::usage, "a formula is given, or taken from another run with --from",
+                            "mgt define RUN NAME 'EXPR', or mgt define RUN NAME --from OTHER.mgtrun"});
+  }
+  daemon::Definition definition;
+  const std::string here = calib::data_hash(run->source.table);
+  if (args.from.empty()) {
+    const auto spec = spec_of(args);
+    if (!spec) return report(session, spec.error());
+    definition = {args.name, spec->text(), here, {}, {}};
+  } else {
+    auto other = definition_from(args.from, args.name);
+    if (!other) return report(session, other.error());
+    definition = std::move(*other);
+    definition.confirmed_log10_p.reset();
+  }
+  const auto spec = calib::EffectSpec::parse(definition.spec);
+  if (!spec) return report(session, spec.error());
+  if (const auto ok = calib::check_columns(*spec, run->source.table); !ok) return report(session, ok.error());
+  calib::FitOptions options = run->options;
+  std::erase_if(options.effects, [&](const calib::EffectPtr& e) { return e->name() == args.name; });
+  const auto x = calib::examine_formula(run->source.table, options, *spec);
+  if (!x) return report(session, x.error());
+  Confirmation confirmation{.asked = definition.found_on != here};
+  if (confirmation.asked) {
+    confirmation.sigmas = disagreement(definition, *x);
+    confirmation.given = x->log10_p < kConfirmed_log10_p && confirmation.sigmas < kAgree_sigmas;
+    if (confirmation.given) definition.confirmed_log10_p = x->log10_p;
+  } else {
+    definition.found = x->coefficients;
+  }
+  if (!x->wholly_absorbed()) {
+    if (auto ok = keep(*run, definition); !ok) return report(session, ok.error());
+  }
+  print(session, args, *x, definition, confirmation);
+  return x->wholly_absorbed() || (confirmation.asked && !confirmation.given) ? 1 : 0;
+}
+
+}  // namespace
+
+void add_define(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "define", "an effect by your own formula",
+                                        [args, &session] { return run_define(session, *args); });
+  command->footer(kHelp);
+  command->add_option("RUN", args->run, "*.mgtrun")->required();
+  command->add_option("NAME", args->name, "what to call it")->required();
+  command->add_option("EXPR", args->expression, "the formula");
+  command->add_option("--level", args->level, "axis, platform or site")
+      ->check(CLI::IsMember({"axis", "platform", "site"}))
+      ->capture_default_str();
+  command->add_option("--scale", args->scale, "all, each-sensor, each-axis (default), s3, s3.z");
+  command->add_option("--unit", args->unit, "of its coefficients")->capture_default_str();
+  command->add_option("--prior", args->prior, "standard deviation of the coefficients about zero");
+  command->add_option("--scan", args->scan, "NAME=FROM:TO: a number in it that is looked for");
+  command->add_option("--from", args->from, "run file that keeps the formula: does this run confirm it?");
+  args->flags = add_kept_model_flags(command);
+}
+
+}  // namespace mgtd::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/kept_run.h"
+
+#include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <chrono>
+
+#include "proto/run_status.h"
+
+namespace mgtd::cli {
+namespace {
+
+std::string who() {
+  const passwd* const user = getpwuid(getuid());
+  return fmt::format("{}, mgt {}", user != nullptr ? user->pw_name : std::to_string(getuid()), MGTD_VERSION);
+}
+
+WallTime now() {
+  return {std::chrono::duration_cast<std::chrono::nanoseconds>(
+              std::chrono::system_clock::now().time_since_epoch())
+              .count()};
+}
+
+}  // namespace
+
+Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
+  auto source = daemon::read_run(path);
+  if (!source) return tl::unexpected(source.error());
+  if (!source->header) {
+    return fail(
+        ErrorCode::usage, path + " is a pose table, which keeps no model",
+        fmt::format("make a run file of it (mgt import {} -o RUN.mgtrun), or use --with in each command",
+                    path));
+  }
+  auto file = daemon::RunFile::open(path, daemon::Access::resume);
+  if (!file) return tl::unexpected(file.error());
+  const auto state = file->state();
+  if (!state) return tl::unexpected(state.error());
+  if (is_active(state->state)) {
+    return fail(ErrorCode::state, fmt::format("{} is still being measured ({})", path, name(state->state)),
+                "wait for its end, or end it: mgt run finish");
+  }
+  auto options = fit_options(flags, *source);
+  if (!options) return tl::unexpected(options.error());
+  return KeptRun{std::move(*file), std::move(*source), std::move(*options)};
+}
+
+Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
+                       const nlohmann::json& result) {
+  return run.file.append_model_step({now(), who(), action, spec, result.dump()});
+}
+
+}  // namespace mgtd::cli

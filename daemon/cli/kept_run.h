@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "daemon/cli/fit_flags.h"
+#include "daemon/run_file.h"
+
+/// A run file whose model an operator works on: what was measured, the model as it is kept, and the way to
+/// write the next step. Refuses a pose table, which keeps nothing, and a run that is still being measured.
+namespace mgtd::cli {
+
+struct KeptRun {
+  daemon::RunFile file;
+  daemon::PoseSource source;
+  calib::FitOptions options;  ///< with the kept model
+};
+
+[[nodiscard]] Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags);
+
+/// The next step, by this user with this version, now.
+[[nodiscard]] Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
+                                     const nlohmann::json& result);
+
+}  // namespace mgtd::cli

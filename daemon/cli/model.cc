@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// The model kept in a run file: add, drop, undo, and how it came to be.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/model_change.h"
+#include "calib/criticism/waterfall.h"
+#include "daemon/cli/command.h"
+#include "daemon/cli/kept_run.h"
+
+namespace mgtd::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kAddHelp =
+    "Fits everything again with the effect, says what it bought and what it costs, and keeps it in the run\n"
+    "file: fit, compare, explain, improve and apply of that file use the kept model from then on\n"
+    "(--with none leaves it). An effect that makes poses left out worse is not kept, unless --force.\n\n"
+    "  mgt explain run.mgtrun\n"
+    "  mgt add axis.offset.temperature@s3.z run.mgtrun\n"
+    "  mgt undo run.mgtrun\n\n"
+    "Exit code 0: kept. 1: not kept.";
+
+struct Arguments {
+  std::string effect, run;
+  bool force{false};
+  std::shared_ptr<FitFlags> flags;
+};
+
+/// What the effects of the model take out; none, when there is none left or a fit fails.
+std::optional<calib::Waterfall> waterfall_of(const KeptRun& run, const calib::FitOptions& options) {
+  if (options.effects.empty()) return std::nullopt;
+  auto steps = calib::waterfall(run.source.table, options);
+  return steps ? std::optional(std::move(*steps)) : std::nullopt;
+}
+
+std::string model_text(const std::vector<std::string>& specs) {
+  return specs.empty() ? "no effects" : fmt::format("{}", fmt::join(specs, ", "));
+}
+
+/// Keeps the change or says why not, and prints it.
+int conclude(const Session& session, const Arguments& args, KeptRun& run, const calib::ModelChange& change,
+             const std::string& spec, const calib::FitOptions& options) {
+  const bool keep = args.force || !change.vetoed();
+  if (keep) {
+    if (auto ok = keep_step(run, change.adding ? "add" : "drop", spec, to_json(change)); !ok)
+      return report(session, ok.error());
+  }
+  const auto steps = waterfall_of(run, options);
+  if (session.json) {
+    json out = to_json(change);
+    out["kept"] = keep;
+    out["waterfall"] = steps ? to_json(*steps) : json();
+    print_json(out);
+  } else {
+    fmt::print("{}", to_text(change));
+    if (steps) fmt::print("\n{}", to_text(*steps));
+    if (keep) fmt::print("\nkept in {}; mgt undo takes it back\n", args.run);
+  }
+  if (!keep) {
+    fmt::print(stderr,
+               "mgt: not kept: on poses left out the error rises from {:.4g} to {:.4g} nT\n"
+               "     this change is not what these poses ask for; --force keeps it all the same\n",
+               change.held_out_before_nT.value_or(0), change.held_out_after_nT.value_or(0));
+  }
+  return keep ? 0 : 1;
+}
+
+int run_add(const Session& session, const Arguments& args) {
+  auto run = open_kept_run(args.run, *args.flags);
+  if (!run) return report(session, run.error());
+  const auto effect = calib::make_effect(daemon::whole_spec(args.effect, run->source.definitions));
+  if (!effect) return report(session, effect.error());
+  const auto change = calib::add_effect(run->source.table, run->options, *effect);
+  if (!change) return report(session, change.error());
+  calib::FitOptions options = run->options;
+  options.effects.push_back(*effect);
+  return conclude(session, args, *run, *change, (*effect)->spec(), options);
+}
+
+/// The place of an effect in the kept model, by its name or by its whole spec.
+Result<std::size_t> place_of(const KeptRun& run, const std::string& effect) {
+  for (std::size_t i = 0; i < run.options.effects.size(); ++i) {
+    const calib::Effect& e = *run.options.effects[i];
+    if (effect == e.name() || effect == e.spec()) return i;
+  }
+  return fail(ErrorCode::refused, fmt::format("the model kept in the run holds no {}", effect),
+              fmt::format("it holds {}", model_text(run.source.model)));
+}
+
+int run_drop(const Session& session, const Arguments& args) {
+  auto run = open_kept_run(args.run, *args.flags);
+  if (!run) return report(session, run.error());
+  const auto place = place_of(*run, args.effect);
+  if (!place) return report(session, place.error());
+  const auto change = calib::drop_effect(run->source.table, run->options, *place);
+  if (!change) return report(session, change.error());
+  calib::FitOptions options = run->options;
+  options.effects.erase(options.effects.begin() + static_cast<std::ptrdiff_t>(*place));
+  return conclude(session, args, *run, *change, run->source.model[*place], options);
+}
+
+int run_undo(const Session& session, const Arguments& args) {
+  auto run = open_kept_run(args.run, *args.flags);
+  if (!run) return report(session, run.error());
+  const auto steps = run->file.model_steps();
+  if (!steps) return report(session, steps.error());
+  const auto last = daemon::undoable(*steps);
+  if (!last) {
+    return report(session,
+                  {ErrorCode::refused, "there is nothing to undo: the run keeps the model it began with",
+                   "mgt add puts an effect in"});
+  }
+  if (auto ok = keep_step(*run, "undo", last->spec, json::object()); !ok) return report(session, ok.error());
+  std::vector<daemon::ModelStep> all = *steps;
+  all.push_back({.at = {}, .who = {}, .action = "undo", .spec = last->spec, .result = {}});
+  const auto model = daemon::kept_model(all);
+  if (session.json) {
+    print_json({{"schema", "mgt.undo/1"},
+                {"undone", {{"action", last->action}, {"spec", last->spec}}},
+                {"model", model}});
+  } else {
+    fmt::print("taken back: {} {}\nthe model now: {}\n", last->action, last->spec, model_text(model));
+  }
+  return 0;
+}
+
+json step_json(const daemon::ModelStep& s) {
+  return {{"t", format_utc(s.at)},
+          {"who", s.who},
+          {"action", s.action},
+          {"spec", s.spec},
+          {"result", json::parse(s.result, nullptr, false)}};
+}
+
+int run_model(const Session& session, const Arguments& args) {
+  const auto file = daemon::RunFile::open(args.run, daemon::Access::read_only);
+  if (!file) return report(session, file.error());
+  const auto steps = file->model_steps();
+  if (!steps) return report(session, steps.error());
+  const auto model = daemon::kept_model(*steps);
+  if (session.json) {
+    json history = json::array();
+    for (const daemon::ModelStep& s : *steps) history.push_back(step_json(s));
+    print_json({{"schema", "mgt.model/1"}, {"model", model}, {"history", std::move(history)}});
+    return 0;
+  }
+  for (const daemon::ModelStep& s : *steps) {
+    const json result = json::parse(s.result, nullptr, false);
+    std::string rms;
+    if (result.is_object() && result.contains("rms_before_nT")) {
+      rms = fmt::format("{:.3f} -> {:.3f} nT", result["rms_before_nT"].get<double>(),
+                        result["rms_after_nT"].get<double>());
+    }
+    fmt::print("{:.19}Z  {:<5} {:<36} {:<22} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
+  }
+  fmt::print("the model: {}\n", model_text(model));
+  return 0;
+}
+
+CLI::App* add_run_argument(CLI::App* command, Arguments& args) {
+  command->add_option("RUN", args.run, "*.mgtrun")->required();
+  return command;
+}
+
+}  // namespace
+
+void add_add(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "add", "put an effect into the model a run file keeps",
+                                        [args, &session] { return run_add(session, *args); });
+  command->footer(kAddHelp);
+  command->add_option("EFFECT", args->effect, "NAME[@WHERE][,PARAM=VALUE]: see mgt effects")->required();
+  add_run_argument(command, *args);
+  command->add_flag("--force", args->force, "keep it though poses left out get worse");
+  args->flags = add_kept_model_flags(command);
+}
+
+void add_drop(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "drop", "take an effect out of that model",
+                                        [args, &session] { return run_drop(session, *args); });
+  command->add_option("EFFECT", args->effect, "its name, or its whole spec")->required();
+  add_run_argument(command, *args);
+  command->add_flag("--force", args->force, "take it out though poses left out get worse");
+  args->flags = add_kept_model_flags(command);
+}
+
+void add_undo(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command =
+      add_command(app, session, "undo", "take the last add or drop back; again for the one before",
+                  [args, &session] { return run_undo(session, *args); });
+  add_run_argument(command, *args);
+  args->flags = std::make_shared<FitFlags>();
+}
+
+void add_model(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "model", "the model a run file keeps, and its history",
+                                        [args, &session] { return run_model(session, *args); });
+  add_run_argument(command, *args);
+}
+
+}  // namespace mgtd::cli

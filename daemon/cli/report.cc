@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/command.h"
+#include "daemon/cli/fit_flags.h"
+#include "daemon/cli/report_page.h"
+#include "daemon/run_file.h"
+
+namespace mgtd::cli {
+namespace {
+
+constexpr const char* kHelp =
+    "One page in HTML that needs nothing else: what was measured, the verdict and the checks, errors before "
+    "and\n"
+    "after, what the model leaves against time, angles, temperature and every extra column, what each effect "
+    "takes\n"
+    "out, what could be missing, and what this run cannot tell. Every section says what good looks like.\n\n"
+    "  mgt report run.mgtrun -o report.html";
+
+struct Arguments {
+  std::string run, output;
+  std::shared_ptr<FitFlags> flags;
+};
+
+Result<std::vector<daemon::ModelStep>> history_of(const std::string& path, const daemon::PoseSource& source) {
+  if (!source.header) return std::vector<daemon::ModelStep>{};
+  const auto file = daemon::RunFile::open(path, daemon::Access::read_only);
+  if (!file) return tl::unexpected(file.error());
+  return file->model_steps();
+}
+
+Result<ReportContent> content_of(const Arguments& args) {
+  auto source = daemon::read_run(args.run);
+  if (!source) return tl::unexpected(source.error());
+  auto options = fit_options(*args.flags, *source);
+  if (!options) return tl::unexpected(options.error());
+  auto fitted = calib::fit(source->table, *options);
+  if (!fitted) return tl::unexpected(fitted.error());
+  auto comparison = calib::compare(source->table, *options);
+  if (!comparison) return tl::unexpected(comparison.error());
+  auto explained = calib::explain(source->table, {.fit = *options});
+  if (!explained) return tl::unexpected(explained.error());
+  auto history = history_of(args.run, *source);
+  if (!history) return tl::unexpected(history.error());
+  const std::string name = std::filesystem::path(args.run).filename().string();
+  ReportContent out{.run = name,
+                    .source = std::move(*source),
+                    .fit = std::move(*fitted),
+                    .comparison = std::move(*comparison),
+                    .explained = std::move(*explained),
+                    .waterfall = {},
+                    .history = std::move(*history),
+                    .command = fmt::format("mgt report {} -o {}", name, args.output)};
+  // The model that explain ended with: what the verdict names shows what adding it would take out.
+  if (!out.explained.model.empty()) {
+    calib::FitOptions whole = *options;
+    whole.effects = out.explained.model;
+    if (auto steps = calib::waterfall(out.source.table, whole)) out.waterfall = std::move(*steps);
+  }
+  return out;
+}
+
+int run_report(const Session& session, const Arguments& args) {
+  const auto content = content_of(args);
+  if (!content) return report(session, content.error());
+  const std::string page = report_page(*content);
+  if (auto written = write_file(args.output, page); !written) return report(session, written.error());
+  if (session.json) {
+    print_json({{"schema", "mgt.report/1"},
+                {"output", args.output},
+                {"bytes", page.size()},
+                {"verdict", to_string(content->explained.finding)}});
+  } else {
+    fmt::print("report written to {}\n", args.output);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Session& session) {
+  auto args = std::make_shared<Arguments>();
+  CLI::App* const command = add_command(app, session, "report", "everything about a run on one HTML page",
+                                        [args, &session] { return run_report(session, *args); });
+  command->footer(kHelp);
+  command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  command->add_option("-o,--output", args->output, "report.html")->required();
+  args->flags = add_model_flags(command);
+}
+
+}  // namespace mgtd::cli

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/comparison.h"
+#include "calib/criticism/explain.h"
+#include "calib/criticism/waterfall.h"
+#include "calib/fit/fit.h"
+#include "daemon/kept_model.h"
+#include "daemon/pose_source.h"
+
+/// The report of a run as one page that needs nothing else: no script, no font, no network.
+namespace mgtd::cli {
+
+struct ReportContent {
+  std::string run;  ///< file name
+  daemon::PoseSource source;
+  calib::FitReport fit;
+  calib::Comparison comparison;
+  calib::ExplainReport explained;
+  std::optional<calib::Waterfall> waterfall;  ///< of a model with effects
+  std::vector<daemon::ModelStep> history;
+  std::string command;  ///< that makes this report again
+};
+
+[[nodiscard]] std::string report_page(const ReportContent& content);
+
+/// Parts of it, in order.
+[[nodiscard]] std::string measured_section(const ReportContent& content);
+[[nodiscard]] std::string verdict_section(const ReportContent& content);
+[[nodiscard]] std::string errors_section(const ReportContent& content);
+[[nodiscard]] std::string residual_section(const ReportContent& content);
+[[nodiscard]] std::string waterfall_section(const ReportContent& content);
+[[nodiscard]] std::string candidates_section(const ReportContent& content);
+[[nodiscard]] std::string limits_section(const ReportContent& content);
+[[nodiscard]] std::string parameters_section(const ReportContent& content);
+[[nodiscard]] std::string history_section(const ReportContent& content);
+
+}  // namespace mgtd::cli
