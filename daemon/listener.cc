@@ -9,6 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 
+#include "daemon/inherited_sockets.h"
 #include "daemon/tcp_address.h"
 #include "daemon/unix_socket.h"
 
@@ -117,6 +118,11 @@ tl::unexpected<Error> cannot_listen(const std::string& address, const tcp::endpo
 Result<Listener> Listener::tcp(asio::io_context& io, const std::string& address) {
   const auto endpoint = parse_tcp_address(address);
   if (!endpoint) return tl::unexpected(endpoint.error());
+  if (const int fd = take_inherited_tcp(*endpoint); fd >= 0) {
+    return Listener(
+        std::make_shared<State>(State::Acceptor(io, asio::generic::stream_protocol(endpoint->protocol()), fd),
+                                endpoint->port(), UnixSocket()));
+  }
   tcp::acceptor acceptor(io);
   error_code ec;
   acceptor.open(endpoint->protocol(), ec);
@@ -131,9 +137,12 @@ Result<Listener> Listener::tcp(asio::io_context& io, const std::string& address)
 }
 
 Result<Listener> Listener::unix_socket(asio::io_context& io, const std::string& path, int mode) {
-  auto file = UnixSocket::listen(path, mode);
+  // The file of an inherited socket, and its permissions, are the service manager's.
+  const int inherited = take_inherited_unix(path);
+  Result<UnixSocket> file = inherited >= 0 ? UnixSocket() : UnixSocket::listen(path, mode);
   if (!file) return tl::unexpected(file.error());
-  State::Acceptor acceptor(io, asio::generic::stream_protocol(AF_UNIX, 0), file->release());
+  State::Acceptor acceptor(io, asio::generic::stream_protocol(AF_UNIX, 0),
+                           inherited >= 0 ? inherited : file->release());
   return Listener(std::make_shared<State>(std::move(acceptor), std::uint16_t{0}, std::move(*file)));
 }
 

@@ -20,6 +20,8 @@ class Listener {
   using Socket = boost::asio::generic::stream_protocol::socket;
   using OnClient = std::function<void(Socket)>;
 
+  /// A socket that the service manager holds open at the same place is taken over (inherited_sockets.h).
+  ///
   /// `address` is "127.0.0.1:7450", "[::1]:7450" or "localhost:7450"; port 0 takes any free one. Refused: an
   /// address that cannot be read, a port that is occupied (with what to do).
   [[nodiscard]] static Result<Listener> tcp(boost::asio::io_context& io, const std::string& address);
