@@ -6,10 +6,12 @@
 
 #include "calib/array_model.h"
 #include "calib/calibration.h"
+#include "calib/effects/live_memory.h"
 #include "calib/run_time.h"
 
 /// Readings to fields by a calibration that carries effects, with what the calibration leaves uncertain.
-/// Costs some ten microseconds a sample; without effects TensorPipeline has a cheaper way.
+/// Costs some ten microseconds a pose; without effects TensorPipeline has a cheaper way, and LiveTensor has
+/// one for a stream.
 namespace mgtd::calib {
 
 struct Corrected {
@@ -26,6 +28,12 @@ class EffectCorrection {
   /// that are to be corrected, for effects with a memory; without it they know the pose before only.
   explicit EffectCorrection(const Calibration& calibration, const PoseTable* run = nullptr);
 
+  /// For a stream: effects with a memory read one of those in memories(), which the caller moves on.
+  [[nodiscard]] static EffectCorrection live(const Calibration& calibration);
+  [[nodiscard]] const std::vector<std::shared_ptr<LiveMemory>>& memories() const { return memories_; }
+  /// Whether the time since the run of the calibration can be told.
+  [[nodiscard]] bool knows_start() const { return time_.start.has_value(); }
+
   [[nodiscard]] bool has_site_effects() const { return array_.has_site_effects(); }
   [[nodiscard]] bool has_instrument_effects() const { return array_.has_instrument_effects(); }
 
@@ -35,14 +43,23 @@ class EffectCorrection {
   };
   /// Effects that should be removed at this pose and cannot be.
   [[nodiscard]] std::vector<LeftOut> left_out(const Pose& pose, bool remove_site) const;
+  /// The corrected fields alone.
+  [[nodiscard]] FieldVector fields(const Pose& pose, const FieldVector& y_nT) const;
+  /// What Corrected::covariance holds, at corrected fields, site effects left in.
+  [[nodiscard]] ChannelCovariance covariance(const Pose& pose, const FieldVector& b_P_nT) const;
   /// `remove_site` needs the pose's table angles. `previous`: the pose before, for effects with a memory.
   [[nodiscard]] Corrected correct(const Pose& pose, const FieldVector& y_nT, bool remove_site,
                                   const Pose* previous = nullptr) const;
 
  private:
+  EffectCorrection(const Calibration& calibration, std::vector<EffectPtr> effects);
   [[nodiscard]] bool acts(const Effect& effect, bool remove_site) const;
 
+  [[nodiscard]] ChannelCovariance covariance(const Conditions& at, const FieldVector& b_P_nT,
+                                             const std::optional<Eigen::Matrix3d>& R, bool remove_site) const;
+
   std::vector<EffectPtr> effects_;
+  std::vector<std::shared_ptr<LiveMemory>> memories_;
   std::vector<FieldVector> size2_nT2_;  ///< of each effect
   ArrayModel array_;
   Eigen::MatrixXd covariance_;  ///< of parameters and coefficients

@@ -150,7 +150,7 @@ FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>&
   return stacked(b);
 }
 
-TensorSample TensorPipeline::sample_of(const FieldVector& b_P_nT) const {
+TensorSample TensorPipeline::sample(const FieldVector& b_P_nT) const {
   const FieldAndGradient computed = field_and_gradient(b_P_nT, geometry_);
   TensorSample out;
   out.calibration_id = id_;
@@ -196,7 +196,7 @@ TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove
     corrected.b_P_nT = correct(pose.y_nT);
   }
   if (fields_P_nT != nullptr) *fields_P_nT = corrected.b_P_nT;
-  TensorSample out = sample_of(corrected.b_P_nT);
+  TensorSample out = sample(corrected.b_P_nT);
   if (with_effects && !effects_->left_out(pose, remove_site).empty()) out.flags |= Flag::incomplete;
   if (calibration_ == nullptr || !noise_known_) return out;
   if (with_effects) {
@@ -212,7 +212,7 @@ TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
   if (effects_ && effects_->has_instrument_effects()) {
     out = apply(pose_of(epoch), samples);
   } else {
-    out = sample_of(correct(epoch.y_nT));
+    out = sample(correct(epoch.y_nT));
     if (calibration_ != nullptr && noise_known_) add_uncertainty(samples, out);
   }
   out.seq = epoch.seq;

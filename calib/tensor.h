@@ -50,7 +50,8 @@ class TensorPipeline {
   explicit TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run = nullptr);
 
   /// Effects of the instrument are removed with the temperatures and the time of the epoch; one whose inputs
-  /// are not measured live is left out, widens g_sd by its size, and flags the sample `incomplete`.
+  /// are not in it is left out, widens g_sd by its size, and flags the sample `incomplete` (LiveTensor knows
+  /// more of a stream, and its memory).
   /// g_sd holds sample noise and calibration covariance together, the latter at the field of this very
   /// sample. `samples` is the number of samples averaged into the readings.
   [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1) const;
@@ -60,6 +61,11 @@ class TensorPipeline {
                                    const Pose* previous = nullptr, FieldVector* fields_P_nT = nullptr) const;
   /// The corrected field at each sensor, platform frame, by the 48 parameters alone.
   [[nodiscard]] FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
+  /// Field, gradient and closure of corrected fields, without their uncertainty.
+  [[nodiscard]] TensorSample sample(const FieldVector& b_P_nT) const;
+  /// Of one sample, in the corrected components; zero where noise_known() is false.
+  [[nodiscard]] const ChannelCovariance& sample_noise() const { return noise_; }
+  [[nodiscard]] bool noise_known() const { return noise_known_; }
   /// Null without a calibration or without effects in it.
   [[nodiscard]] const EffectCorrection* effects() const { return effects_.get(); }
   [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const { return calibration_; }
@@ -75,7 +81,6 @@ class TensorPipeline {
   };
 
   void prepare_uncertainty();
-  [[nodiscard]] TensorSample sample_of(const FieldVector& b_P_nT) const;
   void add_uncertainty(double samples, TensorSample& out) const;
   void add_uncertainty(const ChannelCovariance& covariance, TensorSample& out) const;
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "calib/calibration_validity.h"
 #include "daemon/durable_file.h"
 
 namespace mgtd::daemon {
@@ -20,6 +21,16 @@ constexpr const char* kLog = "calibrations.log";
 Error unknown(std::string_view id) {
   return {ErrorCode::refused, fmt::format("there is no calibration {}", id),
           "list them: mgt calibrations list"};
+}
+
+Error failed_checks(const calib::Calibration& calibration) {
+  std::string failed;
+  for (const Check& c : calibration.verdict) {
+    if (!c.passed)
+      failed += fmt::format("{}{} {} (limit {})", failed.empty() ? "" : ", ", c.name, c.measured, c.limit);
+  }
+  return {ErrorCode::refused, fmt::format("calibration {} failed its checks: {}", calibration.id, failed),
+          "measure again; --force uses it all the same, and every sample says so"};
 }
 
 }  // namespace
@@ -71,19 +82,20 @@ Result<void> CalibrationStore::read_log() {
                   fmt::format("{}:{}: not a line of the calibration log", path.string(), number),
                   "restore the file from a backup, or move it away: the calibrations beside it stay");
     }
-    apply({*t, word("event"), word("id"), word("origin")});
+    apply({*t, word("event"), word("id"), word("origin"), line.value("forced", json()) == true});
   }
   return {};
 }
 
 void CalibrationStore::apply(const Event& event) {
   if (event.what == "proposed") {
-    entries_.push_back({event.id, CalibrationState::proposed, event.at, event.origin});
+    entries_.push_back({event.id, CalibrationState::proposed, event.at, event.origin, false});
     return;
   }
   if (const auto before = active_id()) {
     CalibrationEntry* entry = find(*before);
-    if (entry != nullptr) *entry = {entry->id, CalibrationState::accepted, event.at, entry->origin};
+    if (entry != nullptr)
+      *entry = {entry->id, CalibrationState::accepted, event.at, entry->origin, entry->forced};
   }
   if (event.what == "rolled-back") {
     if (!activations_.empty()) activations_.pop_back();
@@ -93,12 +105,13 @@ void CalibrationStore::apply(const Event& event) {
   if (CalibrationEntry* entry = find(event.id)) {
     entry->state = CalibrationState::active;
     entry->since = event.at;
+    entry->forced = entry->forced || event.forced;
   }
 }
 
 Result<void> CalibrationStore::record(const Event& event) {
-  const json line{
-      {"t", format_utc(event.at)}, {"event", event.what}, {"id", event.id}, {"origin", event.origin}};
+  json line{{"t", format_utc(event.at)}, {"event", event.what}, {"id", event.id}, {"origin", event.origin}};
+  if (event.forced) line["forced"] = true;
   const auto path = directory_ / kLog;
   std::error_code ignored;
   const auto size = std::filesystem::exists(path, ignored) ? std::filesystem::file_size(path, ignored) : 0;
@@ -131,34 +144,20 @@ Result<void> CalibrationStore::propose(const calib::Calibration& calibration, st
   return record({now, "proposed", calibration.id, std::string(origin)});
 }
 
-Result<std::string> CalibrationStore::import(const std::filesystem::path& file, WallTime now) {
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto calibration = calib::calibration_from_json_text(*text);
-  if (!calibration) {
-    Error error = calibration.error();
-    error.message = file.string() + ": " + error.message;
-    return tl::unexpected(error);
-  }
-  if (auto ok = propose(*calibration, file.filename().string(), now); !ok) return tl::unexpected(ok.error());
-  return calibration->id;
+Result<void> CalibrationStore::import(const calib::Calibration& calibration, std::string_view origin,
+                                      bool force, WallTime now) {
+  if (auto usable = calib::validate(calibration); !usable) return usable;
+  if (!calibration.accepted_by_checks && !force) return tl::unexpected(failed_checks(calibration));
+  return propose(calibration, origin, now);
 }
 
-Result<void> CalibrationStore::accept(std::string_view id, WallTime now) {
+Result<void> CalibrationStore::accept(std::string_view id, WallTime now, bool force) {
   if (find(id) == nullptr) return tl::unexpected(unknown(id));
   if (active_id() == id) return {};
   const auto calibration = show(id);
   if (!calibration) return tl::unexpected(calibration.error());
-  if (!calibration->accepted_by_checks) {
-    std::string failed;
-    for (const Check& c : calibration->verdict) {
-      if (!c.passed)
-        failed += fmt::format("{}{} {} (limit {})", failed.empty() ? "" : ", ", c.name, c.measured, c.limit);
-    }
-    return fail(ErrorCode::refused, fmt::format("calibration {} failed its checks: {}", id, failed),
-                "look at it with mgt calibrations show, and measure again");
-  }
-  return record({now, "accepted", std::string(id), ""});
+  if (!calibration->accepted_by_checks && !force) return tl::unexpected(failed_checks(*calibration));
+  return record({now, "accepted", std::string(id), "", !calibration->accepted_by_checks});
 }
 
 Result<std::string> CalibrationStore::rollback(WallTime now) {

@@ -23,6 +23,7 @@ struct CalibrationEntry {
   CalibrationState state{CalibrationState::proposed};
   WallTime since;      ///< when it entered that state
   std::string origin;  ///< run id, or file it was imported from
+  bool forced{false};  ///< it failed its checks and was made active all the same
 };
 
 class CalibrationStore {
@@ -34,11 +35,14 @@ class CalibrationStore {
   /// Proposing what is already known changes nothing. Refuses an unsealed calibration.
   [[nodiscard]] Result<void> propose(const calib::Calibration& calibration, std::string_view origin,
                                      WallTime now);
-  /// Checks a CAL.json and proposes it. Gives its id.
-  [[nodiscard]] Result<std::string> import(const std::filesystem::path& file, WallTime now);
-  /// Makes a proposed (or formerly active) calibration active. Refuses an unknown id and one whose checks
-  /// failed.
-  [[nodiscard]] Result<void> accept(std::string_view id, WallTime now);
+  /// Proposes a calibration that was made elsewhere. Refuses one that cannot be used (calibration_validity.h)
+  /// and, without `force`, one that failed its checks. Does not know the rig: whether it is of this array is
+  /// the caller's question.
+  [[nodiscard]] Result<void> import(const calib::Calibration& calibration, std::string_view origin,
+                                    bool force, WallTime now);
+  /// Makes a proposed (or formerly active) calibration active. Refuses an unknown id and, without `force`,
+  /// one that failed its checks.
+  [[nodiscard]] Result<void> accept(std::string_view id, WallTime now, bool force = false);
   /// Back to the calibration that was active before this one. Gives its id.
   [[nodiscard]] Result<std::string> rollback(WallTime now);
 
@@ -52,6 +56,7 @@ class CalibrationStore {
   struct Event {
     WallTime at;
     std::string what, id, origin;
+    bool forced{false};
   };
   explicit CalibrationStore(std::filesystem::path directory) : directory_(std::move(directory)) {}
   [[nodiscard]] Result<void> read_log();

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "calib/effects/library.h"
 #include "daemon/mount_plan.h"
 #include "daemon/toml_settings.h"
 #include "drivers/registry.h"
@@ -31,6 +32,7 @@ class Reader {
   void close(Settings& settings);
   void read_rig(const toml::table& root);
   void read_site(const toml::table& root);
+  void read_calibration(const toml::table& root);
   void read_run(const toml::table& root);
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
@@ -45,8 +47,8 @@ class Reader {
   std::map<std::string, int> port_lines_;
 };
 
-constexpr std::array<std::string_view, 10> kSections{"rig", "sensor", "table",  "scalar",  "site",
-                                                     "run", "store",  "stream", "control", "daemon"};
+constexpr std::array<std::string_view, 11> kSections{
+    "rig", "sensor", "table", "scalar", "site", "calibration", "run", "store", "stream", "control", "daemon"};
 
 Settings Reader::section(const toml::table& root, std::string_view name) {
   const toml::node* const node = root.get(name);
@@ -94,6 +96,15 @@ void Reader::read_site(const toml::table& root) {
   config_.table_sd_deg = s.number("table_sd_deg", config_.table_sd_deg);
   require(s, "table_sd_deg", config_.table_sd_deg > 0 && config_.table_sd_deg < 10,
           "above 0 and below 10 deg");
+  close(s);
+}
+
+void Reader::read_calibration(const toml::table& root) {
+  Settings s = section(root, "calibration");
+  config_.effects = s.texts("effects");
+  for (const std::string& effect : config_.effects) {
+    if (const auto known = calib::make_effect(effect); !known) s.object("effects", known.error().message);
+  }
   close(s);
 }
 
@@ -245,6 +256,7 @@ void Reader::read(const toml::table& root) {
     config_.scalar = read_device(to_settings(*scalar->as_table(), "[scalar]"), "scalar", Role::scalar, 0);
   }
   read_site(root);
+  read_calibration(root);
   read_run(root);
   read_service(root);
 }

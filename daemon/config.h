@@ -60,6 +60,9 @@ struct Config {
   double table_sd_deg{0.1};
   std::optional<double> inclination_deg, declination_deg;
 
+  /// Effects that the model of every run begins with, by their names in the library.
+  std::vector<std::string> effects;
+
   RunDefaults run;
   std::string store_dir{"/var/lib/mgtd"};
   bool journal{true};

@@ -12,6 +12,7 @@ namespace mgtd::daemon {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(20);
+constexpr auto kFreshAngles = std::chrono::seconds(10);
 
 SamplerConfig sampler_config(const Config& config) {
   SamplerConfig out;
@@ -50,7 +51,7 @@ Rig::Rig(boost::asio::io_context& io, Config config, CalibrationStore store)
                           if (journal_) journal_->append(record);
                         }}),
       sampler_(sampler_config(config_)),
-      pipeline_(calib::Geometry{config_.baseline_m}),
+      live_(calib::Geometry{config_.baseline_m}),
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
@@ -108,15 +109,47 @@ void Rig::use_active_calibration() {
   auto active = store_.active();
   if (!active) {
     spdlog::error("the active calibration cannot be read, streaming raw: {}", active.error().text());
-    pipeline_ = calib::TensorPipeline(calib::Geometry{config_.baseline_m});
+    live_ = calib::LiveTensor(calib::Geometry{config_.baseline_m});
+    criticism_ = {};
     return;
   }
   if (*active) {
     spdlog::info("calibration {} is active", (*active)->id);
-    pipeline_ = calib::TensorPipeline(std::make_shared<const calib::Calibration>(**std::move(active)));
+    criticism_ = calib::LiveCriticism(**active);
+    live_ = calib::LiveTensor(std::make_shared<const calib::Calibration>(**std::move(active)));
   } else {
     spdlog::info("no calibration is active: the stream is raw and says so");
-    pipeline_ = calib::TensorPipeline(calib::Geometry{config_.baseline_m});
+    criticism_ = {};
+    live_ = calib::LiveTensor(calib::Geometry{config_.baseline_m});
+  }
+}
+
+/// Where the array stands is known while a referenced table stands still and says so.
+calib::LiveConditions Rig::conditions(Instant at) const {
+  calib::LiveConditions out;
+  if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
+    out.angles = table_->angles;
+  return out;
+}
+
+void Rig::tell_left_out() {
+  if (live_.left_out() == told_left_out_) return;
+  for (const auto& [effect, lacks] : live_.left_out())
+    spdlog::warn("{} is not corrected: {} is not measured; the samples say incomplete", effect, lacks);
+  if (live_.left_out().empty()) spdlog::info("every effect of the calibration is corrected");
+  told_left_out_ = live_.left_out();
+}
+
+/// On a change of state only.
+void Rig::tell_criticism() {
+  const calib::LiveVerdict& verdict = criticism_.verdict();
+  if (verdict.state == calib::LiveState::suspect) {
+    spdlog::warn("the calibration is suspect: {}; limit {}; {}", verdict.measured, verdict.limit,
+                 verdict.remedy);
+  } else if (verdict.state == calib::LiveState::near_source) {
+    spdlog::warn("something magnetic is near: {}; {}", verdict.measured, verdict.remedy);
+  } else {
+    spdlog::info("the stream's closure: {}", calib::to_string(verdict.state));
   }
 }
 
@@ -125,7 +158,10 @@ void Rig::on_event(const std::string& device, const DeviceEvent& event) {
   if (const auto* reading = std::get_if<FieldReading>(&event)) return on_reading(*reading);
   if (const auto* temperature = std::get_if<TemperatureReading>(&event)) return sampler_.push(*temperature);
   if (const auto* scalar = std::get_if<ScalarReading>(&event)) return run_.feed(*scalar, now);
-  if (const auto* table = std::get_if<TableReading>(&event)) return run_.feed(*table, now);
+  if (const auto* table = std::get_if<TableReading>(&event)) {
+    table_ = *table;
+    return run_.feed(*table, now);
+  }
   if (const auto* note = std::get_if<DeviceNote>(&event)) return spdlog::info("{}: {}", device, note->what);
   if (const auto* fault = std::get_if<DeviceFault>(&event)) {
     quiet_.warn(device, fault->remedy.empty() ? fault->what : fault->what + "; " + fault->remedy, now.mono);
@@ -171,8 +207,12 @@ void Rig::deliver() {
 }
 
 void Rig::publish(const Epoch& epoch) {
-  TensorSample sample = pipeline_.apply(epoch);
+  TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
   if (run_.active()) sample.flags |= Flag::calibrating;
+  if (const auto& used = live_.calibration(); used && !used->accepted_by_checks) sample.flags |= Flag::forced;
+  if (criticism_.add(sample, epoch.T_degC)) tell_criticism();
+  if (criticism_.verdict().state == calib::LiveState::suspect) sample.flags |= Flag::suspect;
+  if (criticism_.verdict().state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
   stream_.publish(sample);
   last_skew_s_ = epoch.skew_bound_s;
   run_.feed(epoch, clock_.now());
@@ -212,6 +252,7 @@ void Rig::every_second(Stamp now) {
         static_cast<double>(epochs - epochs_at_second_) / to_seconds(host - *last_second_) / config_.speed_up;
   epochs_at_second_ = epochs;
   watch_links(now);
+  tell_left_out();
   stream_.publish(report());
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),
                             name(run_.status(now.mono).state)));
@@ -223,29 +264,6 @@ void Rig::every_second(Stamp now) {
     last_watchdog_ = host;
     published_at_watchdog_ = published_;
   }
-}
-
-StatusReport Rig::report() const {
-  const Stamp now = clock_.now();
-  StatusReport out;
-  out.at = now;
-  out.uptime_s = to_seconds(now.mono - started_.mono) / config_.speed_up;
-  out.software = "mgtd " MGTD_VERSION;
-  out.rig = config_.rig_name;
-  out.speed_up = config_.speed_up;
-  out.calibration = store_.active_id();
-  out.devices = instruments_.status();
-  const SamplerHealth sampler = sampler_.health();
-  out.sampler = {
-      .epochs = sampler.epochs, .gaps = sampler.gaps, .rate_hz = rate_hz_, .skew_bound_s = last_skew_s_};
-  out.stream = stream_.stats();
-  out.journal.state = journal_ ? (journal_->recording() ? "writing" : "stopped: the disk refused") : "off";
-  out.journal.bytes = journal_ ? journal_->bytes_written() : 0;
-  std::error_code ec;
-  if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
-    out.disk_free_bytes = space.available;
-  out.run = run_.status(now.mono);
-  return out;
 }
 
 }  // namespace mgtd::daemon

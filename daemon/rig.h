@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "calib/tensor.h"
+#include "calib/criticism/live_criticism.h"
+#include "calib/live_tensor.h"
 #include "daemon/calibration_store.h"
 #include "daemon/config.h"
 #include "daemon/control_server.h"
@@ -46,11 +47,15 @@ class Rig {
   void tick();
   void every_second(Stamp now);
   void use_active_calibration();
+  void tell_left_out();
+  void tell_criticism();
+  [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
   void watch_links(Stamp now);
 
   [[nodiscard]] Result<nlohmann::ordered_json> answer(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_run(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_calibrations(const ControlRequest& request);
+  [[nodiscard]] Result<nlohmann::ordered_json> import_calibration(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> dry_run(const RunRequest& request) const;
   [[nodiscard]] StatusReport report() const;
 
@@ -61,7 +66,8 @@ class Rig {
   Worker worker_;
   Instruments instruments_;
   Sampler sampler_;
-  calib::TensorPipeline pipeline_;
+  calib::LiveTensor live_;
+  calib::LiveCriticism criticism_;
   StreamServer stream_;
   ControlServer control_;
   RunConductor run_;
@@ -69,6 +75,8 @@ class Rig {
   drivers::PatientTimer timer_;
   QuietLog quiet_;
 
+  std::optional<TableReading> table_;  ///< the last
+  std::vector<calib::LeftOutEffect> told_left_out_;
   Stamp started_;
   std::vector<EpochOrGap> pending_;  ///< reused, so that a sample allocates nothing
   std::optional<double> last_skew_s_;

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the rig answers on its control socket.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
 
 #include "calib/calibration_json.h"
 #include "daemon/rig.h"
 #include "daemon/run_plan_json.h"
+#include "proto/calibration_request.h"
 #include "proto/status_codec.h"
 
 namespace mgtd::daemon {
 
 using Reply = Result<nlohmann::ordered_json>;
+
+constexpr double kSameBaseline_m = 1e-6;
 
 Reply Rig::answer(const ControlRequest& request) {
   switch (request.command) {
@@ -35,6 +41,7 @@ Reply Rig::answer(const ControlRequest& request) {
     case ControlCommand::calibrations_list:
     case ControlCommand::calibrations_show:
     case ControlCommand::calibrations_accept:
+    case ControlCommand::calibrations_import:
     case ControlCommand::calibrations_rollback:
       return answer_calibrations(request);
   }
@@ -83,8 +90,11 @@ Reply Rig::answer_calibrations(const ControlRequest& request) {
   if (request.command == ControlCommand::calibrations_list) {
     auto list = nlohmann::ordered_json::array();
     for (const CalibrationEntry& e : store_.list()) {
-      list.push_back(
-          {{"id", e.id}, {"state", name(e.state)}, {"since", format_utc(e.since)}, {"origin", e.origin}});
+      list.push_back({{"id", e.id},
+                      {"state", name(e.state)},
+                      {"since", format_utc(e.since)},
+                      {"origin", e.origin},
+                      {"forced", e.forced}});
     }
     return nlohmann::ordered_json{{"calibrations", std::move(list)}};
   }
@@ -94,16 +104,46 @@ Reply Rig::answer_calibrations(const ControlRequest& request) {
     use_active_calibration();
     return nlohmann::ordered_json{{"active", *back}};
   }
-  const auto id = parse_calibration_id(request.args);
-  if (!id) return tl::unexpected(id.error());
+  if (request.command == ControlCommand::calibrations_import) return import_calibration(request);
   if (request.command == ControlCommand::calibrations_show) {
+    const auto id = parse_calibration_id(request.args);
+    if (!id) return tl::unexpected(id.error());
     const auto calibration = store_.show(*id);
     if (!calibration) return tl::unexpected(calibration.error());
     return nlohmann::ordered_json(calib::to_json(*calibration));
   }
-  if (auto accepted = store_.accept(*id, now); !accepted) return tl::unexpected(accepted.error());
+  const auto wanted = parse_accept_request(request.args);
+  if (!wanted) return tl::unexpected(wanted.error());
+  if (auto accepted = store_.accept(wanted->id, now, wanted->force); !accepted)
+    return tl::unexpected(accepted.error());
   use_active_calibration();
-  return nlohmann::ordered_json{{"active", *id}};
+  return nlohmann::ordered_json{{"active", wanted->id}};
+}
+
+Reply Rig::import_calibration(const ControlRequest& request) {
+  const WallTime now = clock_.now().wall;
+  const auto wanted = parse_import_request(request.args);
+  if (!wanted) return tl::unexpected(wanted.error());
+  const auto calibration = calib::calibration_from_json(wanted->calibration);
+  if (!calibration) return tl::unexpected(calibration.error());
+  if (const double baseline_m = calibration->geometry.baseline_m;
+      std::abs(baseline_m - config_.baseline_m) > kSameBaseline_m) {
+    return fail(ErrorCode::refused,
+                fmt::format("calibration {} is of an array with a baseline of {:g} m, this rig has {:g} m",
+                            calibration->id, baseline_m, config_.baseline_m),
+                "fit again with --baseline, or correct [rig] baseline_m");
+  }
+  if (auto done = store_.import(*calibration, wanted->origin, wanted->force, now); !done)
+    return tl::unexpected(done.error());
+  spdlog::info("calibration {} imported from {}", calibration->id, wanted->origin);
+  nlohmann::ordered_json reply{{"id", calibration->id}, {"forced", !calibration->accepted_by_checks}};
+  if (wanted->accept) {
+    if (auto done = store_.accept(calibration->id, now, wanted->force); !done)
+      return tl::unexpected(done.error());
+    use_active_calibration();
+    reply["active"] = calibration->id;
+  }
+  return reply;
 }
 
 }  // namespace mgtd::daemon

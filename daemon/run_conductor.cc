@@ -58,6 +58,15 @@ RunConductor::RunConductor(const Config& config, std::filesystem::path directory
       worker_(worker),
       hooks_(std::move(hooks)) {}
 
+/// Nothing for a file whose plan cannot be read.
+std::optional<RunConductor::Interrupted> RunConductor::resumable(const std::filesystem::path& path,
+                                                                 const RunFile& file) const {
+  const auto plan = plan_from_json(file.header().plan);
+  if (!plan) return std::nullopt;
+  return Interrupted{path, file.header().run_id, static_cast<int>(file.pose_count().value_or(0)),
+                     static_cast<int>(plan->poses.size())};
+}
+
 void RunConductor::find_interrupted() {
   std::error_code ignored;
   std::vector<std::filesystem::path> files;
@@ -72,10 +81,12 @@ void RunConductor::find_interrupted() {
       continue;
     }
     const auto state = file->state();
-    const auto plan = plan_from_json(file->header().plan);
-    if (!state || !plan || !is_active(state->state)) continue;
-    interrupted_ = Interrupted{path, file->header().run_id, static_cast<int>(file->pose_count().value_or(0)),
-                               static_cast<int>(plan->poses.size())};
+    if (!state) continue;
+    if (state->state == RunState::failed && path == files.front()) failed_ = resumable(path, *file);
+    if (!is_active(state->state)) continue;
+    interrupted_ = resumable(path, *file);
+    if (!interrupted_) continue;
+    failed_.reset();
     spdlog::warn(
         "run {} was interrupted with {} of {} poses on disk: mgt run resume goes on with it, mgt run abort "
         "gives it up",
@@ -127,6 +138,7 @@ Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
   }
   auto planned = plan(request);
   if (!planned) return tl::unexpected(planned.error());
+  failed_.reset();
   const std::string id = run_id_at(now.wall);
   auto file = RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
                                                             .rig = config_.rig_name,
@@ -138,6 +150,10 @@ Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
                                                             .source = "measured",
                                                             .options = run_options(config_, request)});
   if (!file) return tl::unexpected(file.error());
+  for (const std::string& effect : config_.effects) {
+    if (auto put = file->append_model_step({now.wall, "mgtd configuration", "add", effect, "{}"}); !put)
+      return put;
+  }
   begin(*std::move(file), run_config(id, request), *std::move(planned), now, std::nullopt);
   return {};
 }
@@ -188,6 +204,7 @@ Result<void> RunConductor::drop_interrupted() {
 }
 
 Result<void> RunConductor::request(Request request, Stamp now) {
+  if (!active() && failed_ && request == Request::resume) interrupted_ = std::exchange(failed_, std::nullopt);
   if (interrupted_ && request == Request::resume) return resume_interrupted(now);
   if (interrupted_ && request == Request::abort) return drop_interrupted();
   if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
@@ -333,11 +350,20 @@ void RunConductor::act(const Finish& action, Stamp) {
   spdlog::info("run ended, {}: {}", name(action.state), action.message);
   if (auto set = file_->set_state(action.state, action.message); !set)
     spdlog::error("run state: {}", set.error().text());
+  failed_.reset();
+  if (action.state == RunState::failed) failed_ = resumable(file_->path(), *file_);
 }
 
 RunStatus RunConductor::status(Instant now) const {
   if (fsm_ != nullptr) return fsm_->status(now);
   RunStatus out;
+  if (failed_) {
+    out.run_id = failed_->run_id;
+    out.state = RunState::failed;
+    out.pose = failed_->stored;
+    out.poses = failed_->planned;
+    out.message = "the last run failed: mgt run resume goes on with it, mgt run start begins another";
+  }
   if (interrupted_) {
     out.run_id = interrupted_->run_id;
     out.state = RunState::interrupted;

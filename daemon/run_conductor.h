@@ -39,7 +39,8 @@ class RunConductor {
   [[nodiscard]] Pace pace() const;
   /// Refused while a run is active, or one is waiting to be resumed or aborted.
   [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
-  /// Pause, resume, abort, retry. Resume and abort also settle an interrupted run.
+  /// Pause, resume, abort, retry. Resume and abort also settle an interrupted run; resume takes up the last
+  /// run when it failed. A new run leaves a failed one where it is.
   [[nodiscard]] Result<void> request(Request request, Stamp now);
 
   /// What the scales say that the run asks for. Refused when it asks for nothing.
@@ -59,6 +60,8 @@ class RunConductor {
   };
 
   [[nodiscard]] RunConfig run_config(const std::string& run_id, const RunRequest& request) const;
+  [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
+                                                     const RunFile& file) const;
   [[nodiscard]] Result<void> resume_interrupted(Stamp now);
   [[nodiscard]] Result<void> drop_interrupted();
   void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
@@ -92,6 +95,8 @@ class RunConductor {
   bool learning_{false};                           ///< the worker is at such a fit
   std::optional<calib::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
+  std::optional<Interrupted>
+      failed_;                  ///< the last run, when it failed with poses on disk: resume takes it up
   std::vector<Event> answers_;  ///< of actions carried out at once, fed after them
   std::uint64_t generation_{0};
 };

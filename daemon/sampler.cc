@@ -77,7 +77,9 @@ void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
   const std::int64_t k = *numbered;
   s.clock.add(k, sample_s);
   if (reading.y_nT.allFinite()) {
-    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, reading.flags};
+    Flags flags = reading.flags;
+    if (s.repeats.stands_still(reading.y_nT)) flags |= Flag::frozen;
+    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, flags};
   }
   s.last_k = k;
   ++s.health.samples;
@@ -87,7 +89,17 @@ void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
 
 void Sampler::push(const TemperatureReading& reading) {
   const auto slot = static_cast<std::size_t>(reading.slot);
-  if (slot < streams_.size() && reading.sensor_degC) T_degC_[slot] = *reading.sensor_degC;
+  if (slot >= streams_.size() || !reading.sensor_degC) return;
+  T_degC_[slot] = *reading.sensor_degC;
+  T_at_[slot] = reading.arrival.mono;
+}
+
+std::array<double, kSensors> Sampler::temperatures(Instant at) const {
+  std::array<double, kSensors> out = T_degC_;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (to_seconds(at - T_at_[i]) > config_.temperature_s) out[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return out;
 }
 
 void Sampler::reopened(int slot) {

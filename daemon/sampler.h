@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/clock_model.h"
+#include "daemon/repeat_watch.h"
 #include "proto/epoch.h"
 #include "proto/reading.h"
 #include "proto/time.h"
@@ -34,6 +35,7 @@ struct SamplerConfig {
   double clock_window_s{600};
   double max_drift{2e-3};  ///< of a device's rate against rate_hz, relative
   std::uint64_t settle_samples{100};
+  double temperature_s{300};      ///< a temperature is attached to epochs for so long
   double negligible_shift{2e-3};  ///< of a period: no interpolation below it (nor below the clock bound)
 };
 
@@ -59,7 +61,7 @@ class Sampler {
 
   /// Appends to `out` whatever became complete. Readings of one sensor come in order of arrival.
   void push(const FieldReading& reading, std::vector<EpochOrGap>& out);
-  /// Remembered and attached to later epochs.
+  /// Remembered and attached to later epochs, as long as it is not too old.
   void push(const TemperatureReading& reading);
   /// The device was opened again: its counter and clock start over, its epochs continue in time.
   void reopened(int slot);
@@ -86,6 +88,7 @@ class Sampler {
     Stream(ClockModel model, std::size_t capacity) : clock(std::move(model)), ring(capacity) {}
 
     ClockModel clock;
+    RepeatWatch repeats;
     std::vector<Sample> ring;  ///< by k modulo its size, a power of two
     std::int64_t first_k{0};   ///< of this opening
     std::int64_t last_k{-1};
@@ -131,12 +134,14 @@ class Sampler {
   void emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, std::vector<EpochOrGap>& out);
   void emit_gap(std::int64_t count, int slot, Why why, std::vector<EpochOrGap>& out);
   void flush_gap(std::vector<EpochOrGap>& out);
+  [[nodiscard]] std::array<double, kSensors> temperatures(Instant at) const;
   [[nodiscard]] Stamp stamp(double t_s) const;
 
   SamplerConfig config_;
   double period_s_;
   std::vector<Stream> streams_;
   std::array<double, kSensors> T_degC_;
+  std::array<Instant, kSensors> T_at_{};
   bool begun_{false};
   Instant origin_{};
   std::int64_t origin_wall_ns_{0};  ///< wall clock at origin_, by the newest stamp

@@ -107,7 +107,7 @@ void Sampler::emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, st
   Epoch& epoch = *std::get_if<Epoch>(&out.back());
   epoch.seq = next_seq_++;
   epoch.t = stamp(t_s);
-  epoch.T_degC = T_degC_;
+  epoch.T_degC = temperatures(epoch.t.mono);
   double first = 0, second = 0, earliest = 0, latest = 0;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const Stream& s = streams_[i];

@@ -9,7 +9,8 @@
 #include <memory>
 #include <stop_token>
 
-/// The one thread beside the live one. It gets values, gives a value back on the live thread, and owns nothing live.
+/// The one thread beside the live one. It gets values, gives a value back on the live thread, and owns
+/// nothing live.
 namespace mgtd::daemon {
 
 class Worker {
@@ -22,16 +23,18 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// `job(stop_token)` runs on the worker; `done(its result)` on the live thread, unless the worker is gone by then.
+  /// `job(stop_token)` runs on the worker; `done(its result)` on the live thread, unless the worker is gone
+  /// by then.
   template <class Job, class Done>
   void run(Job job, Done done) {
-    boost::asio::post(pool_, [this, job = std::move(job), done = std::move(done), alive = std::weak_ptr(alive_),
-                              keep = boost::asio::make_work_guard(home_)]() mutable {
-      auto result = std::make_shared<decltype(job(stop_.get_token()))>(job(stop_.get_token()));
-      boost::asio::post(home_, [alive = std::move(alive), done = std::move(done), result]() mutable {
-        if (!alive.expired()) done(std::move(*result));
-      });
-    });
+    boost::asio::post(
+        pool_, [this, job = std::move(job), done = std::move(done), alive = std::weak_ptr(alive_),
+                keep = boost::asio::make_work_guard(home_)]() mutable {
+          auto result = std::make_shared<decltype(job(stop_.get_token()))>(job(stop_.get_token()));
+          boost::asio::post(home_, [alive = std::move(alive), done = std::move(done), result]() mutable {
+            if (!alive.expired()) done(std::move(*result));
+          });
+        });
   }
 
  private:

@@ -24,13 +24,16 @@
 ///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
 ///   run.redo             the pose before the one that is asked for, again                    -> RUN
 ///   calibrations.list                                  -> {"calibrations":[{"id","state","since","origin"}]}
-///   calibrations.show, calibrations.accept  args: {"id":".."}
+///   calibrations.show    args: {"id":".."}            -> CAL.json
+///   calibrations.accept  args: calibration_request.h  -> {"active"}
+///   calibrations.import  args: calibration_request.h  -> {"id","state","forced"}
 ///   calibrations.rollback
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
 inline constexpr int kControlProtocolMinor = 1;
-inline constexpr std::size_t kControlLineLimit = 65'536;
+inline constexpr std::size_t kControlLineLimit =
+    1 << 20;  ///< a calibration with a hundred coefficients: 0.4 MB
 
 enum class ControlCommand : std::uint8_t {
   version,
@@ -47,9 +50,10 @@ enum class ControlCommand : std::uint8_t {
   calibrations_list,
   calibrations_show,
   calibrations_accept,
+  calibrations_import,
   calibrations_rollback,
 };
-inline constexpr std::array<std::string_view, 15> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 16> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -63,6 +67,7 @@ inline constexpr std::array<std::string_view, 15> kControlCommandNames{"version"
                                                                        "calibrations.list",
                                                                        "calibrations.show",
                                                                        "calibrations.accept",
+                                                                       "calibrations.import",
                                                                        "calibrations.rollback"};
 [[nodiscard]] std::string_view name(ControlCommand command);
 

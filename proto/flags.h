@@ -14,9 +14,12 @@ enum class Flag : std::uint16_t {
   interpolated = 1U << 1U,     ///< a sensor was interpolated to the epoch between two real samples
   calibrating = 1U << 2U,      ///< a calibration run has the table
   uncalibrated = 1U << 3U,     ///< no active calibration: the numbers are raw readings
-  suspect = 1U << 4U,          ///< the closure test fails
+  suspect = 1U << 4U,          ///< the closure follows temperature, time or attitude: check the calibration
   clock_unsettled = 1U << 5U,  ///< the clock model of a device is still being learnt
+  frozen = 1U << 9U,           ///< a sensor repeats its last reading to the bit
   incomplete = 1U << 6U,       ///< an effect of the calibration is not removed: its inputs are not measured
+  forced = 1U << 7U,           ///< the active calibration failed its checks and was forced
+  near_source = 1U << 8U,      ///< the closure is large and follows nothing of the instrument's
 };
 
 class Flags {
@@ -37,7 +40,7 @@ class Flags {
   std::uint16_t bits_{0};
 };
 
-inline constexpr std::array<std::pair<Flag, std::string_view>, 7> kFlagNames{{
+inline constexpr std::array<std::pair<Flag, std::string_view>, 10> kFlagNames{{
     {Flag::saturated, "saturated"},
     {Flag::interpolated, "interpolated"},
     {Flag::calibrating, "calibrating"},
@@ -45,6 +48,9 @@ inline constexpr std::array<std::pair<Flag, std::string_view>, 7> kFlagNames{{
     {Flag::suspect, "suspect"},
     {Flag::clock_unsettled, "clock_unsettled"},
     {Flag::incomplete, "incomplete"},
+    {Flag::forced, "forced"},
+    {Flag::near_source, "near_source"},
+    {Flag::frozen, "frozen"},
 }};
 
 /// Calls use(std::string_view) with the name of every flag that is set, in the order of their bits.

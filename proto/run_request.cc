@@ -109,12 +109,4 @@ Json to_json(const RunRequest& request) {
   return args;
 }
 
-Result<std::string> parse_calibration_id(const Json& args) {
-  const auto id = args.find("id");
-  if (id == args.end() || !id->is_string() || id->get_ref<const std::string&>().empty()) {
-    return fail(ErrorCode::usage, "no calibration is named", "mgt calibrations list shows their ids");
-  }
-  return id->get<std::string>();
-}
-
 }  // namespace mgtd

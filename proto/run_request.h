@@ -7,10 +7,10 @@
 
 #include "proto/error.h"
 
-/// Arguments of the control commands that take any.
+/// Arguments of run.start and run.dry-run.
 namespace mgtd {
 
-/// What the operator wants otherwise than the configuration says, for run.start and run.dry-run.
+/// What the operator wants otherwise than the configuration says.
 struct RunRequest {
   std::optional<double> step_deg;
   std::optional<int> random, revisits, retries;
@@ -23,8 +23,5 @@ struct RunRequest {
 /// Refuses an unknown key, a wrong type and a value outside its limits, by name.
 [[nodiscard]] Result<RunRequest> parse_run_request(const nlohmann::json& args);
 [[nodiscard]] nlohmann::json to_json(const RunRequest& request);
-
-/// The "id" of calibrations.show and calibrations.accept.
-[[nodiscard]] Result<std::string> parse_calibration_id(const nlohmann::json& args);
 
 }  // namespace mgtd

@@ -122,6 +122,9 @@ Json to_json(const RunStatus& run) {
 }
 
 Json to_json(const StatusReport& report) {
+  Json left_out = Json::array();
+  for (const auto& [effect, lacks] : report.calibration_use.left_out)
+    left_out.push_back({{"effect", effect}, {"lacks", lacks}});
   Json devices = Json::array();
   for (const DeviceStatus& device : report.devices) devices.push_back(to_json(device, report.at.mono));
   return {{"t", format_utc(report.at.wall)},
@@ -131,6 +134,12 @@ Json to_json(const StatusReport& report) {
           {"rig", report.rig},
           {"speed_up", report.speed_up},
           {"cal", optional(report.calibration)},
+          {"calibration", {{"forced", report.calibration_use.forced}, {"left_out", std::move(left_out)}}},
+          {"criticism",
+           {{"state", report.criticism.state},
+            {"measured", report.criticism.measured},
+            {"limit", report.criticism.limit},
+            {"remedy", report.criticism.remedy}}},
           {"devices", std::move(devices)},
           {"sampler",
            {{"epochs", report.sampler.epochs},

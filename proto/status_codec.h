@@ -11,6 +11,8 @@
 /// RUN:    {"run_id","state","set","pose","poses","retries","elapsed_s","remaining_s","message",
 ///          "proposed": id or null, "checks":[{"name","passed","measured","limit","remedy"}]}
 /// STATUS: {"t","t_ns","uptime_s","software","rig","speed_up","cal": id or null,
+///          "calibration":{"forced","left_out":[{"effect","lacks"}]},
+///          "criticism":{"state","measured","limit","remedy"},
 ///          "devices":[{"name","driver","port","state","detail","identity","bytes_in","bytes_in_frames",
 ///                      "bytes_rejected","bytes_resync","bytes_pending","bytes_out","frames",
 ///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s": s or

@@ -39,6 +39,23 @@ struct JournalStatus {
   std::uint64_t bytes{0};
 };
 
+/// An effect of the calibration that is not removed now, and what it lacks ("s3_T_degC").
+struct LeftOut {
+  std::string effect, lacks;
+};
+
+/// How the active calibration is used.
+struct CalibrationUse {
+  bool forced{false};  ///< it failed its checks
+  std::vector<LeftOut> left_out;
+};
+
+/// What the stream itself says of the calibration.
+struct CriticismStatus {
+  std::string state{"none"};  ///< "none" (nothing to judge with), "learning", "ok", "suspect", "near source"
+  std::string measured, limit, remedy;
+};
+
 struct StatusReport {
   Stamp at;
   double uptime_s{0};
@@ -46,6 +63,8 @@ struct StatusReport {
   std::string rig;
   double speed_up{1};
   std::optional<std::string> calibration;  ///< id of the active one
+  CalibrationUse calibration_use;
+  CriticismStatus criticism;
   std::vector<DeviceStatus> devices;
   SamplerStatus sampler;
   StreamStatus stream;

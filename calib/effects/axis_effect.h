@@ -17,7 +17,8 @@
 ///     void parameters(EffectSpec&) const;            fixed numbers of the law, for its text
 ///     template <class S> S shape(const Conditions&, int sensor, int axis, std::span<const S> v, int j)
 ///     const;
-/// and, where it needs the run, Result<Law> on_run(const EffectContext&) const.
+/// and, where it needs the run, Result<Law> on_run(const EffectContext&) const; where it has a memory,
+/// std::pair<Law, std::shared_ptr<LiveMemory>> live() const.
 namespace mgtd::calib {
 
 template <class Law>
@@ -54,6 +55,15 @@ class AxisEffect final : public EffectOf<AxisEffect<Law>> {
       return std::make_shared<const AxisEffect>(std::move(*law), where_);
     } else {
       return std::shared_ptr<const Effect>();
+    }
+  }
+
+  [[nodiscard]] LiveEffect live() const override {
+    if constexpr (requires { law_.live(); }) {
+      auto [law, memory] = law_.live();
+      return {std::make_shared<const AxisEffect>(std::move(law), where_), std::move(memory)};
+    } else {
+      return {};
     }
   }
 

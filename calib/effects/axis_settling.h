@@ -6,14 +6,36 @@
 #include <unordered_map>
 
 #include "calib/effects/axis_nonlinearity.h"
+#include "calib/effects/live_memory.h"
 #include "calib/effects/run_memory.h"
 
 /// `axis.settling`: a reading creeps to its value after the table has stopped.
 ///
 ///     y += eta (x_prev - x) exp(-s/tau)       x = v/F0, eta in nT, s = seconds from the stop to mid-dwell
 ///
-/// Needs since_stop_s. The first pose of a run has no pose before it and no term.
+/// Needs since_stop_s. The first pose of a run has no pose before it and no term. On a stream x_prev
+/// exp(-s/tau) becomes what it stands for, a reading that follows x with the time constant tau: z <- x + (z -
+/// x) exp(-dt/tau), y += eta (z - x), known five time constants after the first sample.
 namespace mgtd::calib {
+
+/// The slow part z of the readings on a stream.
+class LiveSettling final : public LiveMemory {
+ public:
+  explicit LiveSettling(double tau_s) : tau_s_(tau_s) {}
+  [[nodiscard]] bool known() const { return begun() && last_s() - since_s_ >= kKnown * tau_s_; }
+  [[nodiscard]] double slow_nT(int sensor, int axis) const {
+    return z_nT_[static_cast<std::size_t>(sensor)][axis];
+  }
+
+ protected:
+  void begin(double t_s, const SensorReadings& v_nT) override;
+  void step(double dt_s, const SensorReadings& v_nT) override;
+
+ private:
+  static constexpr double kKnown = 5;  ///< time constants: 0.7 % of what it began with is left
+  double tau_s_, since_s_{0};
+  SensorReadings z_nT_;
+};
 
 struct Settling {
   static constexpr std::string_view kName = "axis.settling";
@@ -22,9 +44,11 @@ struct Settling {
   std::optional<double> tau_s;
   /// v of the pose before; empty for the first of the run.
   std::shared_ptr<const std::unordered_map<int, std::optional<SensorReadings>>> before{};
+  std::shared_ptr<const LiveSettling> now{};  ///< on a stream
 
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
   [[nodiscard]] std::string_view missing(const Pose& pose, int) const {
+    if (now) return now->known() ? "" : kNoMemory;
     if (!pose.since_stop_s) return "since_stop_s";
     return before && before->contains(pose.number) ? "" : kNoMemory;
   }
@@ -32,9 +56,11 @@ struct Settling {
     if (tau_s) spec.set("tau", *tau_s);
   }
   [[nodiscard]] Result<Settling> on_run(const EffectContext& context) const;
+  [[nodiscard]] std::pair<Settling, std::shared_ptr<LiveMemory>> live() const;
 
   template <class S>
   S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
+    if (now) return S(now->slow_nT(sensor, axis) / kReferenceField_nT) - in_F0(v, axis);
     const auto& v_prev = before->at(at.pose.number);
     if (!v_prev) return S(0.0);
     const double x_prev = (*v_prev)[static_cast<std::size_t>(sensor)][axis] / kReferenceField_nT;

@@ -64,6 +64,15 @@ using Jet = Dual<kJetSlots>;
 /// The first table angle that a pose lacks, as a column name; empty when it has all three.
 [[nodiscard]] std::string_view missing_angle(const Pose& pose);
 
+class Effect;
+class LiveMemory;
+
+/// An effect that reads the memory beside it, which the samples of a stream move on (live_memory.h).
+struct LiveEffect {
+  std::shared_ptr<const Effect> effect;
+  std::shared_ptr<LiveMemory> memory;
+};
+
 class Effect {
  public:
   virtual ~Effect() = default;
@@ -76,6 +85,8 @@ class Effect {
   [[nodiscard]] virtual Result<std::shared_ptr<const Effect>> bound(const EffectContext&) const {
     return std::shared_ptr<const Effect>();
   }
+  /// This effect as it is on a stream, where it has a memory; null where it has none.
+  [[nodiscard]] virtual LiveEffect live() const { return {}; }
   [[nodiscard]] virtual Level level() const = 0;
   [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
   /// Indices of the coefficients that act at sensor `sensor`, in the order `c` has in term().

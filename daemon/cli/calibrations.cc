@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
+#include "calib/calibration_json.h"
 #include "daemon/cli/ask.h"
+#include "daemon/cli/calibration_file.h"
 
 namespace mgtd::cli {
 namespace {
@@ -17,9 +20,9 @@ int print_list(const Session& session) {
   }
   if (reply->at("calibrations").empty()) fmt::print("no calibrations yet: mgt run start proposes one\n");
   for (const auto& c : reply->at("calibrations")) {
-    fmt::print("{:<14} {:<9} since {}  from {}\n", c.at("id").get<std::string>(),
+    fmt::print("{:<14} {:<9} since {}  from {}{}\n", c.at("id").get<std::string>(),
                c.at("state").get<std::string>(), c.at("since").get<std::string>().substr(0, 19),
-               c.at("origin").get<std::string>());
+               c.at("origin").get<std::string>(), c.at("forced") == true ? "  (failed its checks)" : "");
   }
   return 0;
 }
@@ -52,30 +55,61 @@ int print_reply(const Session& session, const Result<nlohmann::json>& reply, std
   return 0;
 }
 
-int with_id(const Session& session, const std::string& wanted, ControlCommand command,
-            std::string_view done) {
-  const auto id = resolve(session, wanted);
+struct Arguments {
+  std::string id, file;
+  bool force{false}, accept{false};
+};
+
+int show(const Session& session, const Arguments& args) {
+  const auto id = resolve(session, args.id);
   if (!id) return report(session, id.error());
-  return print_reply(session, ask(session, command, {{"id", *id}}), done);
+  return print_reply(session, ask(session, ControlCommand::calibrations_show, {{"id", *id}}), "");
+}
+
+int accept(const Session& session, const Arguments& args) {
+  const auto id = resolve(session, args.id);
+  if (!id) return report(session, id.error());
+  const nlohmann::json wanted{{"id", *id}, {"force", args.force}};
+  return print_reply(session, ask(session, ControlCommand::calibrations_accept, wanted), "active");
+}
+
+int import_file(const Session& session, const Arguments& args) {
+  const auto calibration = read_calibration(args.file);
+  if (!calibration) return report(session, calibration.error());
+  const auto reply = ask(session, ControlCommand::calibrations_import,
+                         {{"calibration", calib::to_json(*calibration)},
+                          {"origin", std::filesystem::path(args.file).filename().string()},
+                          {"accept", args.accept},
+                          {"force", args.force}});
+  if (session.json || !reply || reply->contains("active")) return print_reply(session, reply, "active");
+  const std::string id = reply->at("id");
+  fmt::print("calibration {0} is proposed: mgt calibrations accept {0}\n", id);
+  return 0;
 }
 
 }  // namespace
 
 void add_calibrations(CLI::App& app, Session& session) {
   CLI::App* const group =
-      app.add_subcommand("calibrations", "calibrations of the daemon: list, show, accept, rollback");
+      app.add_subcommand("calibrations", "calibrations of the daemon: list, show, import, accept, rollback");
   group->require_subcommand(1);
   add_command(*group, session, "list", "every calibration and its state",
               [&session] { return print_list(session); });
-  auto id = std::make_shared<std::string>();
-  CLI::App* const show = add_command(*group, session, "show", "one calibration, whole", [id, &session] {
-    return with_id(session, *id, ControlCommand::calibrations_show, "");
-  });
-  show->add_option("ID", *id, "or 'latest': the newest proposal")->required();
-  CLI::App* const accept = add_command(
-      *group, session, "accept", "make a proposed calibration the active one",
-      [id, &session] { return with_id(session, *id, ControlCommand::calibrations_accept, "active"); });
-  accept->add_option("ID", *id, "or 'latest': the newest proposal")->required();
+  const auto args = std::make_shared<Arguments>();
+  CLI::App* const shown = add_command(*group, session, "show", "one calibration, whole",
+                                      [args, &session] { return show(session, *args); });
+  shown->add_option("ID", args->id, "or 'latest': the newest proposal")->required();
+  CLI::App* const imported =
+      add_command(*group, session, "import", "propose a calibration that was made elsewhere",
+                  [args, &session] { return import_file(session, *args); });
+  imported->add_option("CAL.json", args->file, "written by mgt fit -o or mgt improve -o")->required();
+  imported->add_flag("--accept", args->accept, "and make it the active one");
+  imported->add_flag("--force", args->force, "also one that failed its checks: every sample says so");
+  CLI::App* const accepted =
+      add_command(*group, session, "accept", "make a proposed calibration the active one",
+                  [args, &session] { return accept(session, *args); });
+  accepted->add_option("ID", args->id, "or 'latest': the newest proposal")->required();
+  accepted->add_flag("--force", args->force, "also one that failed its checks: every sample says so");
   add_command(*group, session, "rollback", "back to the calibration that was active before", [&session] {
     return print_reply(session, ask(session, ControlCommand::calibrations_rollback), "active again");
   });

@@ -179,7 +179,8 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return simple(session, ControlCommand::run_status, false); });
   add_command(*group, session, "pause", "stop the table; the present pose will be measured again",
               [&session] { return simple(session, ControlCommand::run_pause, false); });
-  add_command(*group, session, "resume", "go on after a pause, or with a run that a dead daemon left",
+  add_command(*group, session, "resume",
+              "go on after a pause, or with a run that failed or that a dead daemon left",
               [&session] { return simple(session, ControlCommand::run_resume, true); });
   CLI::App* const entered = add_command(*group, session, "enter", "what the scales say that the run asks for",
                                         [args, &session] { return enter(session, *args); });

@@ -63,6 +63,22 @@ Result<nlohmann::json> status_after(const Session& session, double patience_s) {
   }
 }
 
+/// What stands beside the calibration's name.
+void print_calibration(const nlohmann::json& s) {
+  const auto& use = s.at("calibration");
+  if (use.at("forced") == true) fmt::print("          it failed its checks and was forced\n");
+  for (const auto& e : use.at("left_out"))
+    fmt::print("          not corrected: {}, {} is not measured\n", e.at("effect").get<std::string>(),
+               e.at("lacks").get<std::string>());
+  const auto& criticism = s.at("criticism");
+  const std::string state = criticism.at("state");
+  if (state == "none") return;
+  fmt::print("judged    {}\n", state);
+  if (state != "suspect" && state != "near source") return;
+  fmt::print("          {}\n          limit: {}\n          {}\n", criticism.at("measured").get<std::string>(),
+             criticism.at("limit").get<std::string>(), criticism.at("remedy").get<std::string>());
+}
+
 int run_status(const Session& session, double patience_s) {
   const auto status = status_after(session, patience_s);
   if (!status) return report(session, status.error());
@@ -81,6 +97,7 @@ int run_status(const Session& session, double patience_s) {
   if (!sampler.at("skew_bound_s").is_null())
     fmt::print(", skew below {:.3f} ms", 1e3 * sampler.at("skew_bound_s").get<double>());
   fmt::print("\ncalibr.   {}\n", text_or(s, "cal", "none: the stream is raw and says so"));
+  print_calibration(s);
   fmt::print("journal   {}\n", s.at("journal").at("state").get<std::string>());
   print_devices(s.at("devices"));
   print_run(s.at("run"));

@@ -36,6 +36,18 @@ void print_sample(const nlohmann::json& s) {
   std::fflush(stdout);
 }
 
+/// A change of what the stream says of its calibration; told once.
+void print_criticism(const nlohmann::json& status, std::string& told) {
+  const auto& criticism = status.at("criticism");
+  const std::string state = criticism.at("state");
+  if (state == told) return;
+  told = state;
+  if (state != "suspect" && state != "near source") return;
+  fmt::print("              {}: {}\n              limit: {}; {}\n", state,
+             criticism.at("measured").get<std::string>(), criticism.at("limit").get<std::string>(),
+             criticism.at("remedy").get<std::string>());
+}
+
 /// Where the stream is, as the daemon itself says.
 Result<std::string> stream_of(const Session& session, const Arguments& args) {
   if (!args.stream.empty()) return args.stream;
@@ -51,10 +63,12 @@ int run_watch(const Session& session, const Arguments& args) {
   WatchRequest request;
   request.classes = {};
   request.classes.add(StreamClass::tensor);
+  request.classes.add(StreamClass::status);
   if (session.json || args.raw) request.classes = StreamClasses::all();
   request.rate_hz = args.rate_hz;
   auto reader = daemon::StreamReader::open(*where, request);
   if (!reader) return report(session, reader.error());
+  std::string told;
   for (std::uint64_t seen = 0; args.count == 0 || seen < args.count;) {
     const auto object = reader->next(std::chrono::seconds(30));
     if (!object) return report(session, object.error());
@@ -67,6 +81,8 @@ int run_watch(const Session& session, const Arguments& args) {
       std::fflush(stdout);
     } else if (kind == "TENSOR") {
       print_sample(**object);
+    } else if (kind == "STATUS") {
+      print_criticism(**object, told);
     } else if (kind == "GAP") {
       fmt::print("              gap: samples {} to {} were not measured: {}\n",
                  (*object)->at("from_seq").get<std::uint64_t>(), (*object)->at("to_seq").get<std::uint64_t>(),

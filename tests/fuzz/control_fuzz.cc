@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "proto/calibration_request.h"
 #include "proto/control_codec.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
@@ -26,7 +27,8 @@ void as_request(std::string_view line) {
     const auto back = mgtd::parse_run_request(mgtd::to_json(*run));
     require(back && *back == *run);
   }
-  static_cast<void>(mgtd::parse_calibration_id(request->args));
+  static_cast<void>(mgtd::parse_accept_request(request->args));
+  static_cast<void>(mgtd::parse_import_request(request->args));
 }
 
 void as_reply(std::string_view line) {

@@ -3,68 +3,16 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
+#include <filesystem>
 #include <fstream>
-#include <memory>
-#include <nlohmann/json.hpp>
 
-#include "tests/support/child_process.h"
+#include "tests/integration/bench.h"
 
 namespace mgtd::testing {
 namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-std::string program(const std::string& name) { return std::string(MGTD_BIN_DIR) + "/" + name; }
-
-/// A simulated rig and a daemon on it, in a directory of their own.
-class Bench {
- public:
-  explicit Bench(const std::string& speed_up = "30", const std::string& scenario = "") : speed_up_(speed_up) {
-    std::vector<std::string> which{"--rig", "table6"};
-    if (!scenario.empty()) {
-      std::ofstream(dir_ / "scenario.toml") << scenario;
-      which = {"--scenario", dir_ / "scenario.toml"};
-    }
-    std::vector<std::string> run{program("mgt-rig"), "run", "--dir", dir_ / "ports", "--speed-up", speed_up_};
-    run.insert(run.end(), which.begin(), which.end());
-    rig_ = std::make_unique<ChildProcess>(run, dir_.path(), "rig");
-    const bool ready = eventually([&] { return !slurp(dir_ / "ports/ready").empty(); });
-    std::vector<std::string> print{program("mgt-rig"), "config",  "--dir",     dir_ / "ports", "--speed-up",
-                                   speed_up_,          "--state", dir_.path(), "--tcp",        "127.0.0.1:0"};
-    print.insert(print.end(), which.begin(), which.end());
-    const Finished config = run_program(print, dir_.path());
-    std::ofstream(config_path()) << config.out;
-    EXPECT_TRUE(ready && config.exit_code == 0) << rig_->err();
-  }
-
-  void start_daemon() {
-    daemon_.reset();
-    daemon_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{program("mgtd"), "--config", config_path()}, dir_.path(), "mgtd");
-    const bool live = eventually([&] { return mgt({"status", "--wait", "10"}).exit_code == 0; });
-    EXPECT_TRUE(live) << daemon_->err();
-  }
-  Finished mgt(std::vector<std::string> words) {
-    words.insert(words.begin(), {program("mgt"), "--socket", dir_ / "control.sock"});
-    return run_program(std::move(words), dir_.path(), std::chrono::seconds(400));
-  }
-  json ask(std::vector<std::string> words) {
-    words.emplace_back("--json");
-    return json::parse(mgt(std::move(words)).out, nullptr, false);
-  }
-  [[nodiscard]] std::string config_path() const { return dir_ / "mgtd.toml"; }
-  [[nodiscard]] ChildProcess& daemon() { return *daemon_; }
-  [[nodiscard]] const TemporaryDirectory& dir() const { return dir_; }
-
- private:
-  TemporaryDirectory dir_;
-  std::string speed_up_;
-  std::unique_ptr<ChildProcess> rig_, daemon_;
-};
-
-const std::vector<std::string> kShortRun{"run",        "start", "--step",        "20", "--random",     "16",
-                                         "--revisits", "4",     "--dwell-short", "1",  "--dwell-long", "2"};
 
 TEST(Programs, ARunFromPortsToACalibratedStream) {
   Bench bench;
@@ -122,6 +70,50 @@ TEST(Programs, AKilledDaemonOffersTheRunAndGoesOnAtTheNextPose) {
   EXPECT_EQ(offered.at("state"), "interrupted");
   EXPECT_GE(offered.at("pose").get<int>(), stored);
   EXPECT_EQ(bench.mgt(kShortRun).exit_code, 1) << "a new run must not bury the old one";
+  const Finished resumed = bench.mgt({"run", "resume"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err << bench.daemon().err();
+}
+
+/// The sockets are the service manager's: opened before the daemon, there after it.
+TEST(Programs, SocketsThatTheServiceManagerHoldsAreTakenOver) {
+  constexpr const char* kActivator = "/usr/bin/systemd-socket-activate";
+  if (!std::filesystem::exists(kActivator)) GTEST_SKIP() << kActivator << " is not on this machine";
+  Bench bench;
+  const std::string control = bench.dir() / "control.sock";
+  ChildProcess manager({kActivator, "--listen=" + control, "--listen=" + (bench.dir() / "stream.sock"),
+                        program("mgtd"), "--config", bench.config_path()},
+                       bench.dir().path(), "manager");
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(control); })) << manager.err();
+  EXPECT_EQ(bench.mgt({"status", "--wait", "30"}).exit_code, 0) << manager.err();
+  manager.signal(SIGTERM);
+  ASSERT_TRUE(manager.wait());
+  EXPECT_TRUE(std::filesystem::exists(control)) << "a socket of the service manager was removed";
+}
+
+/// Two minutes without a sensor end the run; what it then says to do works, and again after a restart.
+TEST(Programs, ARunThatFailedIsTakenUpWhereItStopped) {
+  Bench bench("60");
+  bench.start_daemon();
+  std::vector<std::string> detached = kShortRun;
+  detached.emplace_back("--detach");
+  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  const auto fails = [&](int poses) {
+    ASSERT_TRUE(eventually([&] { return bench.ask({"run", "status"}).value("pose", 0) >= poses; }));
+    ASSERT_EQ(bench.rig({"fault", bench.ports(), "unplug", "fluxgate2"}).exit_code, 0);
+    ASSERT_TRUE(eventually([&] { return bench.ask({"run", "status"}).value("state", "") == "failed"; }));
+    EXPECT_THAT(bench.ask({"run", "status"}).at("message").get<std::string>(), HasSubstr("resume the run"));
+    ASSERT_EQ(bench.rig({"fault", bench.ports(), "restore", "fluxgate2"}).exit_code, 0);
+    ASSERT_TRUE(eventually([&] { return bench.mgt({"status", "--wait", "5"}).exit_code == 0; }));
+  };
+  fails(3);
+  if (HasFatalFailure()) return;
+  const ChildProcess taken_up({program("mgt"), "--socket", bench.dir() / "control.sock", "run", "resume"},
+                              bench.dir().path(), "resume");
+  fails(6);
+  if (HasFatalFailure()) return;
+  bench.daemon().signal(SIGTERM);
+  ASSERT_TRUE(bench.daemon().wait());
+  bench.start_daemon();
   const Finished resumed = bench.mgt({"run", "resume"});
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err << bench.daemon().err();
 }

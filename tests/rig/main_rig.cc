@@ -266,6 +266,10 @@ void add_commands(CLI::App& app, Arguments& args) {
   fault->add_option("DIR", args.dir, "directory of the rig")->required();
   fault->add_option("WORDS", args.words, kFaultUsage)->required();
   fault->add_option("--for", args.for_s, "simulated seconds, like the words 'for SECONDS'");
+  add(app, "field", "the true gradient at a running rig's array, platform frame, as JSON", args,
+      [](const Arguments& a) { return ask(a, "field"); })
+      ->add_option("DIR", args.dir, "directory of the rig")
+      ->required();
   add_hands(app, args);
   add(app, "status", "what a running rig is doing, as JSON", args,
       [](const Arguments& a) { return ask(a, "status"); })

@@ -62,6 +62,7 @@ class Server {
   void answer(const std::shared_ptr<local::socket>& socket);
   [[nodiscard]] std::string reply_to(const std::string& line);
   [[nodiscard]] std::string status() const;
+  [[nodiscard]] std::string field() const;
 
   asio::io_context& io_;
   ServerOptions options_;
@@ -169,11 +170,22 @@ void Server::answer(const std::shared_ptr<local::socket>& socket) {
 
 std::string Server::reply_to(const std::string& line) {
   if (line == "status") return status();
+  if (line == "field") return field();
   if (rig_.mount(line, now_s())) return "ok";
   const auto fault = parse_fault(line);
   if (!fault) return fault.error();
   const auto applied = rig_.apply(*fault, now_s());
   return applied ? "ok" : applied.error();
+}
+
+/// The answer that a daemon on this rig should stream.
+std::string Server::field() const {
+  const double now = now_s();
+  static constexpr std::array<const char*, 6> kNames{"xx", "yy", "zz", "xy", "xz", "yz"};
+  const auto values = rig_.world().true_gradient_nT_per_m(now);
+  nlohmann::ordered_json g;
+  for (std::size_t i = 0; i < values.size(); ++i) g[kNames[i]] = values[i];
+  return nlohmann::ordered_json{{"schema", "mgt-rig.field/1"}, {"t_s", now}, {"g_nT_per_m", g}}.dump();
 }
 
 std::string Server::status() const {

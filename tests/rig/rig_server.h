@@ -8,7 +8,7 @@
 ///
 /// `dir` gets the links fluxgate1 .. fluxgate4, table, scalar, the socket fault.sock and, when all is there,
 /// the file `ready` with the process number. A client of the socket sends one line, a fault (fault.h) or
-/// "status", and gets one line back: "ok", what is wrong with it, or the status as JSON.
+/// "status" or "field", and gets one line back: "ok", what is wrong with it, or the answer as JSON.
 namespace mgtd::rig {
 
 struct ServerOptions {

@@ -110,6 +110,14 @@ const World::Moment& World::moment(double t_s) const {
   return moment_;
 }
 
+std::array<double, 6> World::true_gradient_nT_per_m(double t_s) const {
+  const auto& b_nT = moment(t_s).b_nT;
+  const Eigen::Vector3d along_x = (b_nT[0] - b_nT[2]) / (position_m_[0] - position_m_[2]).norm();
+  const Eigen::Vector3d along_y = (b_nT[1] - b_nT[3]) / (position_m_[1] - position_m_[3]).norm();
+  return {along_x[0], along_y[1], -along_x[0] - along_y[1], (along_x[1] + along_y[0]) / 2,
+          along_x[2], along_y[2]};
+}
+
 Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const {
   const double hours = t_s / 3600;
   const double day = std::sin(2 * std::numbers::pi * hours / scenario_.diurnal_period_h);

@@ -50,6 +50,8 @@ class World {
   [[nodiscard]] double read_scalar(double t_s);
   [[nodiscard]] double quiet_scalar(double t_s) const;
   [[nodiscard]] double scalar_noise() { return normal_(scalar_random_); }
+  /// What a perfect cross would say of the field right now, platform frame: xx, yy, zz, xy, xz, yz.
+  [[nodiscard]] std::array<double, 6> true_gradient_nT_per_m(double t_s) const;
   /// Site frame to platform frame, by the true angles.
   [[nodiscard]] Eigen::Matrix3d attitude(double t_s) const { return moment(t_s).R; }
 

@@ -51,6 +51,8 @@ class VirtualDaemon {
   std::function<Result<Solution>(const PoseTable&)> solver = [](const PoseTable&) {
     return Solution{true, "cal", {}, {}};
   };
+  std::function<void(const EpochOrGap&)> on_item = [](const EpochOrGap&) {};  ///< of the stream
+  std::function<void()> on_step = [] {};
   std::uint64_t epochs{0}, gaps{0};
   double t_s{0};
 
@@ -111,6 +113,7 @@ class VirtualDaemon {
 
   void step() {
     t_s += kStep_s;
+    on_step();
     rig.run_script(t_s);
     for (std::size_t i = 0; i < ports_.size(); ++i) exchange(i);
     for (const Event& answer : std::exchange(answers_, {})) tell(answer);
@@ -198,6 +201,7 @@ class VirtualDaemon {
   void on(const Port&, const DeviceNote&) {}
   void deliver() {
     for (const EpochOrGap& item : std::exchange(pending_, {})) {
+      on_item(item);
       if (const auto* gap = std::get_if<Gap>(&item)) {
         gaps += gap->to_seq - gap->from_seq + 1;
         tell(*gap);

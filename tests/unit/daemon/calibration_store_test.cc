@@ -81,20 +81,55 @@ TEST(CalibrationStore, RefusesWhatIsNotProposedOrFailed) {
   EXPECT_FALSE(store.active_id());
 }
 
-TEST(CalibrationStore, ImportChecksTheFile) {
+TEST(CalibrationStore, ImportRefusesWhatCannotBeUsed) {
   TempDir dir;
   auto store = CalibrationStore::open(dir / "cal").value();
-  const auto a = calibration(1);
-  std::string text = calib::to_json_text(a);
-  std::ofstream(dir / "good.json") << text;
-  EXPECT_EQ(store.import(dir / "good.json", t(1)).value(), a.id);
-  text.replace(text.find("157"), 3, "158");
-  std::ofstream(dir / "edited.json") << text;
-  const auto refused = store.import(dir / "edited.json", t(2));
+  const auto refused = [&](auto&& spoil, const std::string& why) {
+    calib::Calibration c = calibration(1);
+    spoil(c);
+    c.seal();
+    const auto done = store.import(c, "cal.json", true, t(1));
+    ASSERT_FALSE(done) << why;
+    EXPECT_NE(done.error().message.find(why), std::string::npos) << done.error().text();
+  };
+  refused([](auto& c) { c.method = "guess"; }, "no method 'guess'");
+  refused([](auto& c) { c.sensors[2].scale.y() = 0; }, "s3 has a scale of 0");
+  refused([](auto& c) { c.sensors[0].phi_rad = 1.5; }, "s1 has a non-orthogonality");
+  refused([](auto& c) { c.sensors[3].mounting(0, 1) = 1; }, "mounting of s4");
+  refused([](auto& c) { c.geometry.baseline_m = 0; }, "baseline of 0 m");
+  refused([](auto& c) { c.sample_noise_nT(0, 0) = -1; }, "noise is below zero");
+  refused([](auto& c) { c.covariance(3, 4) = c.covariance(4, 3) = 1e-3; }, "covariance is none");
+  refused([](auto& c) { c.effects = {{"axis.offset.temperature@s3.z", {}, {}}}; }, "has 0 coefficients");
+  refused(
+      [](auto& c) {
+        c.effects = {{"axis.offset.temperature@s3.z", {{"s3.z", 1, 1, "nT/degC"}}, {}}};
+      },
+      "1 coefficients of effects, and a covariance of 0");
+  refused([](auto& c) { c.reference.t_utc = "yesterday"; }, "is no time");
+  EXPECT_TRUE(store.list().empty());
+  const auto good = calibration(1);
+  ASSERT_TRUE(store.import(good, "cal.json", false, t(2)));
+  EXPECT_EQ(store.list().at(0).origin, "cal.json");
+  EXPECT_FALSE(store.active_id());
+}
+
+TEST(CalibrationStore, WhatFailedItsChecksIsForcedAndStaysMarked) {
+  TempDir dir;
+  auto store = CalibrationStore::open(dir / "cal").value();
+  const auto good = calibration(1), bad = calibration(2, false);
+  const auto refused = store.import(bad, "cal.json", false, t(1));
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("edited.json"), std::string::npos);
-  EXPECT_FALSE(store.import(dir / "absent.json", t(2)));
-  EXPECT_EQ(store.list().size(), 1U);
+  EXPECT_NE(refused.error().message.find("total field 1.2 nT (limit 1.0 nT)"), std::string::npos);
+  EXPECT_TRUE(store.list().empty());
+  ASSERT_TRUE(store.import(bad, "cal.json", true, t(1)));
+  EXPECT_FALSE(store.accept(bad.id, t(2)));
+  ASSERT_TRUE(store.accept(bad.id, t(3), true));
+  EXPECT_TRUE(store.list().at(0).forced);
+  ASSERT_TRUE(store.import(good, "good.json", true, t(4)) && store.accept(good.id, t(5), true));
+  EXPECT_EQ(store.rollback(t(6)).value(), bad.id);
+  const auto list = CalibrationStore::open(dir / "cal").value().list();
+  EXPECT_TRUE(list.at(0).forced);
+  EXPECT_FALSE(list.at(1).forced);
 }
 
 TEST(CalibrationStore, DamageIsNamedNotUsed) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control_server.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -92,7 +93,7 @@ TEST_F(ControlServerTest, ARequestWithoutEndIsCutOff) {
     return peer.closed;
   }));
   ASSERT_EQ(peer.lines.size(), 1U);
-  EXPECT_THAT(peer.lines[0], HasSubstr("longer than 65536 bytes"));
+  EXPECT_THAT(peer.lines[0], HasSubstr(fmt::format("longer than {} bytes", kControlLineLimit)));
 }
 
 TEST_F(ControlServerTest, WhoAsksAndNeverReadsIsClosed) {

@@ -24,8 +24,9 @@ TEST(Registry, ADeviceIsMadeEvenFromWrongSettings) {
     settings.set("baud", std::string("fast"), 2);
     const auto device = entry.make(0, settings);
     ASSERT_NE(device, nullptr);
-    EXPECT_GT(device->baud(), 0);
-    EXPECT_FALSE(settings.errors().empty());
+    const bool wired = entry.name != "hand";  // a table without a port has no line speed to be wrong
+    EXPECT_EQ(device->baud() > 0, wired) << entry.name;
+    EXPECT_EQ(!settings.errors().empty(), wired) << entry.name;
     EXPECT_EQ(dynamic_cast<Turntable*>(device.get()) != nullptr, entry.role == Role::table);
   }
 }

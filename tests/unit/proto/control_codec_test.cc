@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "proto/calibration_request.h"
 #include "proto/run_request.h"
 
 namespace mgtd {
@@ -116,6 +117,25 @@ TEST(CalibrationId, MustBeNamed) {
   EXPECT_FALSE(parse_calibration_id(Json::object()));
   EXPECT_FALSE(parse_calibration_id({{"id", ""}}));
   EXPECT_FALSE(parse_calibration_id({{"id", 7}}));
+}
+
+TEST(CalibrationRequest, ForceAndContentAreRead) {
+  const auto plain = parse_accept_request({{"id", "c1"}});
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE(plain->force);
+  EXPECT_TRUE(parse_accept_request({{"id", "c1"}, {"force", true}})->force);
+  EXPECT_FALSE(parse_accept_request({{"id", "c1"}, {"force", "yes"}}));
+  EXPECT_FALSE(parse_accept_request({{"force", true}}));
+  const auto import =
+      parse_import_request({{"calibration", {{"id", "c1"}}}, {"origin", "cal.json"}, {"accept", true}});
+  ASSERT_TRUE(import);
+  EXPECT_EQ(import->calibration.at("id"), "c1");
+  EXPECT_EQ(import->origin, "cal.json");
+  EXPECT_TRUE(import->accept);
+  EXPECT_FALSE(import->force);
+  EXPECT_FALSE(parse_import_request({{"calibration", "cal.json"}}));
+  EXPECT_FALSE(parse_import_request({{"origin", "cal.json"}}));
+  EXPECT_FALSE(parse_import_request({{"calibration", nlohmann::json::object()}, {"accept", 1}}));
 }
 
 }  // namespace

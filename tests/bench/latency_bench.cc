@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the last byte of a sample in a serial port to its TENSOR line in a client: four digitisers at 50 Hz on
+// pseudo terminals, the real drivers, sampler, tensor arithmetic and stream server on one thread, as in the
+// daemon. The median must stay below 1 ms. Time is told by counters, in microseconds.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "calib/tensor.h"
+#include "daemon/sampler.h"
+#include "daemon/stream_reader.h"
+#include "daemon/stream_server.h"
+#include "drivers/port_link.h"
+#include "drivers/registry.h"
+#include "tests/support/event_loop.h"
+#include "tests/support/pty.h"
+
+namespace mgtd::daemon {
+namespace {
+
+using HostClock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kPeriod{20};
+constexpr std::size_t kWanted = 250;
+
+/// A digitiser that agrees to everything and then streams one constant field.
+class Digitiser {
+ public:
+  explicit Digitiser(const std::string& path) : pty_(path) {}
+
+  void answer() {
+    const std::string& received = pty_.received();
+    for (std::size_t end = received.find('\r', read_); end != std::string::npos;
+         end = received.find('\r', read_)) {
+      reply(received.substr(read_, end - read_));
+      read_ = end + 1;
+    }
+  }
+  void send_sample() { pty_.write("*100000000000180000A\r"); }
+  [[nodiscard]] bool streaming() const { return streaming_; }
+
+ private:
+  void reply(std::string command) {
+    command.erase(0, command.find_first_not_of('|'));
+    if (command == "$01M") pty_.write("!01<obsDAQ V5.5.7>\r");
+    if (command.starts_with("#01PP")) pty_.write("!01" + command.substr(5) + "\r");
+    if (command.size() == 14 && command.substr(4, 2) == "WS") pty_.write("!01" + command.substr(6) + "\r");
+    if (command == "#01CS") {
+      pty_.write("!01\r");
+      streaming_ = true;
+    }
+  }
+
+  mgtd::testing::PtyMaster pty_;
+  std::size_t read_{0};
+  bool streaming_{false};
+};
+
+/// Four digitisers on a thread of their own, `stagger` apart; remembers when each write of a sample began.
+class Instruments {
+ public:
+  Instruments(const mgtd::testing::ScratchDirectory& scratch, std::chrono::milliseconds stagger)
+      : stagger_(stagger) {
+    for (int i = 0; i < kSensors; ++i) {
+      digitisers_.push_back(std::make_unique<Digitiser>(scratch / fmt::format("s{}", i + 1)));
+    }
+    written_.reserve(100'000);
+    thread_ = std::thread([this] { run(); });
+  }
+  /// When the writes began, in order.
+  const std::vector<HostClock::time_point>& stop() {
+    stopping_ = true;
+    thread_.join();
+    return written_;
+  }
+
+ private:
+  void run() {
+    for (auto due = HostClock::now(); !stopping_; due += kPeriod) {
+      for (const auto& digitiser : digitisers_) {
+        if (digitiser->streaming()) {
+          // Before the write: the line may be with the client before the write returns.
+          written_.push_back(HostClock::now());
+          digitiser->send_sample();
+        } else {
+          digitiser->answer();
+        }
+        if (stagger_.count() > 0) std::this_thread::sleep_for(stagger_);
+      }
+      std::this_thread::sleep_until(due + kPeriod);
+    }
+  }
+
+  std::vector<std::unique_ptr<Digitiser>> digitisers_;
+  std::chrono::milliseconds stagger_;
+  std::vector<HostClock::time_point> written_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+/// The live path of the daemon and nothing else.
+class Acquisition {
+ public:
+  Acquisition(boost::asio::io_context& io, const mgtd::testing::ScratchDirectory& scratch,
+              StreamServer& server)
+      : server_(server) {
+    for (int slot = 0; slot < kSensors; ++slot) {
+      drivers::Settings settings(fmt::format("sensor s{}", slot + 1), 1);
+      settings.set("profile", std::string("mag-13-100"), 1);
+      const drivers::DriverEntry* const driver = drivers::find_driver("obsdaq");
+      links_.push_back(std::make_unique<drivers::PortLink>(
+          io, clock_, drivers::PortSettings{scratch / fmt::format("s{}", slot + 1), 19200},
+          std::shared_ptr<drivers::Device>(driver->make(slot, settings)),
+          drivers::PortCallbacks{[this](const std::vector<DeviceEvent>& events) { take(events); }, {}, {}}));
+      links_.back()->start();
+    }
+  }
+
+ private:
+  void take(const std::vector<DeviceEvent>& events) {
+    complete_.clear();
+    for (const DeviceEvent& event : events) {
+      if (const auto* reading = std::get_if<FieldReading>(&event)) sampler_.push(*reading, complete_);
+    }
+    for (const EpochOrGap& entry : complete_) {
+      if (const auto* epoch = std::get_if<Epoch>(&entry)) {
+        server_.publish(pipeline_.apply(*epoch));
+      } else {
+        server_.publish(std::get<Gap>(entry));
+      }
+    }
+  }
+
+  StreamServer& server_;
+  drivers::Clock clock_;
+  Sampler sampler_{SamplerConfig{}};
+  calib::TensorPipeline pipeline_{calib::Geometry{}};
+  std::vector<EpochOrGap> complete_;
+  std::vector<std::unique_ptr<drivers::PortLink>> links_;
+};
+
+/// When each TENSOR line had been received.
+std::vector<HostClock::time_point> receive(const std::string& where) {
+  std::vector<HostClock::time_point> out;
+  WatchRequest request{StreamClasses{}, std::nullopt, std::nullopt};
+  request.classes.add(StreamClass::tensor);
+  auto reader = StreamReader::open(where, request);
+  while (reader && out.size() < kWanted) {
+    const auto line = reader->next_line(std::chrono::seconds(30));
+    const auto now = HostClock::now();
+    if (!line || !*line) break;
+    if ((*line)->find("\"TENSOR\"") != std::string::npos) out.push_back(now);
+  }
+  return out;
+}
+
+/// From the last write before each reception.
+std::vector<double> latencies_us(const std::vector<HostClock::time_point>& written,
+                                 const std::vector<HostClock::time_point>& received) {
+  std::vector<double> out;
+  for (const auto at : received) {
+    const auto after = std::upper_bound(written.begin(), written.end(), at);
+    if (after != written.begin())
+      out.push_back(std::chrono::duration<double, std::micro>(at - *(after - 1)).count());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void bytes_to_client(benchmark::State& state) {
+  for (auto _ : state) {
+    const mgtd::testing::ScratchDirectory scratch;
+    Instruments instruments(scratch, std::chrono::milliseconds(state.range(0)));
+    boost::asio::io_context io;
+    StreamConfig config;
+    config.tcp.clear();
+    config.unix_path = scratch / "stream.sock";
+    StreamServer server(io, config, {});
+    if (!server.start()) return state.SkipWithError("cannot listen");
+    std::vector<double> us;
+    {
+      const Acquisition acquisition(io, scratch, server);
+      std::vector<HostClock::time_point> received;
+      std::thread client([&] {
+        received = receive(config.unix_path);
+        io.stop();
+      });
+      io.run();
+      client.join();
+      us = latencies_us(instruments.stop(), received);
+    }
+    if (us.size() < kWanted) return state.SkipWithError("too few samples came");
+    state.counters["median_us"] = us[us.size() / 2];
+    state.counters["p95_us"] = us[us.size() * 95 / 100];
+    state.counters["max_us"] = us.back();
+  }
+}
+BENCHMARK(bytes_to_client)->ArgName("stagger_ms")->Arg(0)->Arg(4)->Iterations(1)->Unit(benchmark::kSecond);
+
+}  // namespace
+}  // namespace mgtd::daemon

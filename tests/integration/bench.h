@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+
+namespace mgtd::testing {
+
+inline std::string program(const std::string& name) { return std::string(MGTD_BIN_DIR) + "/" + name; }
+
+/// A simulated rig and a daemon on it, in a directory of their own.
+class Bench {
+ public:
+  /// `scenario`: the text of a scenario file; a clean rig of the published parameters when empty.
+  explicit Bench(std::string speed_up = "30", const std::string& scenario = "")
+      : speed_up_(std::move(speed_up)) {
+    std::vector<std::string> rig{"--rig", "table6"};
+    if (!scenario.empty()) {
+      std::ofstream(dir_ / "scenario.toml") << scenario;
+      rig = {"--scenario", dir_ / "scenario.toml"};
+    }
+    rig_ = std::make_unique<ChildProcess>(
+        with({program("mgt-rig"), "run", "--dir", ports(), "--speed-up", speed_up_}, rig), dir_.path(),
+        "rig");
+    const bool ready = eventually([&] { return !slurp(dir_ / "ports/ready").empty(); });
+    const Finished config = run_program(with({program("mgt-rig"), "config", "--dir", ports(), "--speed-up",
+                                              speed_up_, "--state", dir_.path(), "--tcp", "127.0.0.1:0"},
+                                             rig),
+                                        dir_.path());
+    std::ofstream(config_path()) << config.out;
+    EXPECT_TRUE(ready && config.exit_code == 0) << rig_->err();
+  }
+
+  void start_daemon() {
+    daemon_.reset();
+    daemon_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{program("mgtd"), "--config", config_path()}, dir_.path(), "mgtd");
+    const bool live = eventually([&] { return mgt({"status", "--wait", "10"}).exit_code == 0; });
+    EXPECT_TRUE(live) << daemon_->err();
+  }
+  Finished mgt(std::vector<std::string> words) {
+    words.insert(words.begin(), {program("mgt"), "--socket", dir_ / "control.sock"});
+    return run_program(std::move(words), dir_.path(), std::chrono::seconds(400));
+  }
+  nlohmann::json ask(std::vector<std::string> words) {
+    words.emplace_back("--json");
+    return nlohmann::json::parse(mgt(std::move(words)).out, nullptr, false);
+  }
+  /// The rig's own programs on this rig.
+  Finished rig(std::vector<std::string> words) {
+    words.insert(words.begin(), program("mgt-rig"));
+    return run_program(std::move(words), dir_.path());
+  }
+  [[nodiscard]] std::string ports() const { return dir_ / "ports"; }
+  [[nodiscard]] std::string config_path() const { return dir_ / "mgtd.toml"; }
+  [[nodiscard]] ChildProcess& daemon() { return *daemon_; }
+  [[nodiscard]] const TemporaryDirectory& dir() const { return dir_; }
+
+ private:
+  static std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  TemporaryDirectory dir_;
+  std::string speed_up_;
+  std::unique_ptr<ChildProcess> rig_, daemon_;
+};
+
+inline const std::vector<std::string> kShortRun{"run",           "start", "--step",       "20",
+                                                "--random",      "16",    "--revisits",   "4",
+                                                "--dwell-short", "1",     "--dwell-long", "2"};
+
+}  // namespace mgtd::testing
