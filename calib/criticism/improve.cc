@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "calib/criticism/polish.h"
 #include "calib/fit/joint_errors.h"
 #include "calib/fit/joint_report.h"
 
@@ -26,6 +27,20 @@ Result<Stage> stage_of(const PoseTable& table, const JointOptions& options) {
   Stage out{.fit = std::move(*fit), .held_out_nT = {}};
   if (const auto errors = held_out_errors(out.fit)) out.held_out_nT = errors->residual_rms_nT;
   return out;
+}
+
+/// The model tidied up, where the error on poses left out does not rise.
+void polish(const PoseTable& table, const FitOptions& options, const JointOptions& joint, const Stage& before,
+            FitOptions& best) {
+  JointOptions tidy = joint;
+  tidy.effects = best.effects;
+  auto effects = polished(table, tidy, options.effects.size());
+  if (!effects) return;
+  tidy.effects = *std::move(effects);
+  const auto after = stage_of(table, tidy);
+  if (!after) return;
+  if (before.held_out_nT && after->held_out_nT && *after->held_out_nT > kVeto * *before.held_out_nT) return;
+  best.effects = std::move(tidy.effects);
 }
 
 /// Largest ratio of the variances of the sensors' parameters, the scatter taken out.
@@ -86,6 +101,7 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
     best.effects = joint.effects;
     before = std::move(after);
   }
+  if (!out.rounds.empty()) polish(table, options, joint, *before, best);
   auto fitted = fit(table, best);
   if (!fitted) return tl::unexpected(fitted.error());
   out.fit = std::move(*fitted);

@@ -14,6 +14,9 @@ namespace {
 
 using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
 constexpr double kMaxRho = 0.95, kCorrelated = 0.2;
+/// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
+/// too large costs a little power. The median is so much worse than the mean.
+constexpr double kCautious = 1.5, kMedianOfMean = 1.25;
 /// Angles that are the same pose again.
 constexpr double kSameAngle_rad = 1e-6;
 /// The dwells are believed unless the revisits contradict them this clearly.
@@ -133,7 +136,9 @@ std::vector<LagOne> lag_one(const JointProblem& problem, const JointState& state
 
 }  // namespace
 
-double pose_correlation(const JointProblem& problem, const JointState& state) {
+namespace {
+
+double median_correlation(const JointProblem& problem, const JointState& state) {
   const std::vector<LagOne> channels = lag_one(problem, state);
   std::vector<double> seen;
   for (const LagOne& c : channels) seen.push_back(c.squares > 0 ? c.products / c.squares : 0);
@@ -152,6 +157,15 @@ double pose_correlation(const JointProblem& problem, const JointState& state) {
     rho = trial, last = shown;
   }
   return kMaxRho;
+}
+
+}  // namespace
+
+double pose_correlation(const JointProblem& problem, const JointState& state) {
+  const double rho = median_correlation(problem, state);
+  if (rho <= kCorrelated) return rho;
+  const double values = kChannels * static_cast<double>(problem.poses.size());
+  return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
 }
 
 std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {

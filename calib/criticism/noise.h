@@ -31,6 +31,7 @@ struct NoiseModel {
   NoiseReference reference;
 };
 
+/// With a margin for its own uncertainty where it counts.
 [[nodiscard]] double pose_correlation(const JointProblem& problem, const JointState& state);
 /// Empty without revisits.
 [[nodiscard]] std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof);

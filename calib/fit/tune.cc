@@ -44,7 +44,7 @@ struct Fitted {
 
 /// Fit with all effects of `options`.
 Result<Fitted> fit_with(const PoseTable& table, const JointOptions& options) {
-  auto fit = fit_joint(table, options);
+  auto fit = fit_joint_at_size(table, options);
   if (!fit) return tl::unexpected(fit.error());
   return Fitted{std::move(fit->problem), std::move(fit->state)};
 }
@@ -54,7 +54,7 @@ Result<Fitted> fit_with(const PoseTable& table, const JointOptions& options) {
 Result<Fitted> fit_around(const PoseTable& table, const JointOptions& options, std::size_t slot) {
   JointOptions without = options;
   without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(slot));
-  const auto fit = fit_joint(table, without);
+  const auto fit = fit_joint_at_size(table, without);
   if (!fit) return tl::unexpected(fit.error());
   auto problem = joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());

@@ -69,7 +69,7 @@ TEST(Whitener, ResidualIsAsLargeAsItsFreedom) {
   EXPECT_NEAR(sum / dof, 1, 0.04);
 }
 
-TEST(Whitener, CorrelationFromPoseToPoseIsEstimatedWithoutBias) {
+TEST(Whitener, CorrelationFromPoseToPoseIsEstimatedWithItsMarginAndNoOtherBias) {
   for (const double rho : {0.0, 0.5, 0.8}) {
     double sum = 0;
     constexpr int kRuns = 8;
@@ -77,8 +77,11 @@ TEST(Whitener, CorrelationFromPoseToPoseIsEstimatedWithoutBias) {
       const JointFit fit = fit_of(hidden_run({.rho = rho}, 60 + seed));
       sum += pose_correlation(fit.problem, fit.state) / kRuns;
     }
-    // A median of twelve channels of 157 poses scatters by 0.03; at zero it is cut at zero.
-    EXPECT_NEAR(sum, rho, 0.04) << rho;
+    // The margin: 1.5 standard errors of a median of twelve channels of 157 poses, where there is a
+    // correlation.
+    const double margin = rho > 0 ? 1.5 * 1.25 * std::sqrt((1 - rho * rho) / (12 * 157)) : 0;
+    // The median scatters by 0.03; at zero it is cut at zero.
+    EXPECT_NEAR(sum, rho + margin, 0.04) << rho;
   }
 }
 
