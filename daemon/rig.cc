@@ -17,7 +17,11 @@ constexpr auto kFreshAngles = std::chrono::seconds(10);
 SamplerConfig sampler_config(const Config& config) {
   SamplerConfig out;
   out.rate_hz = config.rate_hz;
-  for (std::size_t i = 0; i < kSensors; ++i) out.latency_s.at(i) = config.sensors.at(i).latency_s;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const DeviceConfig& sensor = config.sensors.at(i);
+    out.latency_s.at(i) = sensor.latency_s;
+    out.wire_s.at(i) = wire_s(sensor.device->line_bytes(), sensor.device->baud());
+  }
   out.silence_s *= config.speed_up;
   return out;
 }

@@ -39,6 +39,12 @@ struct SamplerConfig {
   double negligible_shift{2e-3};  ///< of a period: no interpolation below it (nor below the clock bound)
 };
 
+/// Time that bytes need on a line with one start and one stop bit, s.
+[[nodiscard]] constexpr double wire_s(std::size_t bytes, int baud) {
+  constexpr double kBitsPerByte = 10;
+  return baud > 0 ? kBitsPerByte * static_cast<double>(bytes) / baud : 0;
+}
+
 struct SensorStreamHealth {
   std::uint64_t samples{0};
   std::uint64_t lost{0};          ///< frames missing in the device's own count, or found missing by time

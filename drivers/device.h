@@ -36,6 +36,10 @@ class Device {
   /// Line speed the device's settings ask for.
   [[nodiscard]] virtual int baud() const = 0;
 
+  /// Bytes of its shortest line that carries a reading: what the line needs before a reading can arrive. 0
+  /// where that does not matter.
+  [[nodiscard]] virtual std::size_t line_bytes() const { return 0; }
+
   /// True when the device should be closed and opened again (it stopped answering).
   [[nodiscard]] virtual bool wants_reopen() const { return false; }
 

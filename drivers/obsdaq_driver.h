@@ -33,6 +33,9 @@ class ObsdaqDriver final : public LineDevice {
   void on_tick(Stamp now) override;
   void on_close(Stamp now) override;
   void on_shutdown(Stamp now) override;
+  [[nodiscard]] std::size_t line_bytes() const override {
+    return kLineBytes + (settings_.palmacq ? kPrefixBytes : 0);
+  }
 
  protected:
   Verdict on_line(std::string_view line, Stamp arrival) override;

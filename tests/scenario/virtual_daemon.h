@@ -154,6 +154,10 @@ class VirtualDaemon {
   [[nodiscard]] SamplerConfig sampler_config() const {
     SamplerConfig sampler;
     sampler.rate_hz = config_.rate_hz;
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      const drivers::Device& device = *config_.sensors.at(i).device;
+      sampler.wire_s.at(i) = wire_s(device.line_bytes(), device.baud());
+    }
     return sampler;
   }
   void add_ports() {
