@@ -90,8 +90,10 @@ std::string svg_bars(const std::vector<Bar>& bars, std::optional<double> mark, c
   if (mark) {
     const double x = kLabel + unit * *mark;
     fmt::format_to(to, "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"0\" y2=\"{1}\" class=\"mark\"/>", x, y + 4);
-    fmt::format_to(to, "<text x=\"{:.1f}\" y=\"{}\" class=\"quiet\">{}</text>", x + 5, y + 13,
-                   escaped(mark_text));
+    // Beside the line, on the side where there is room.
+    const bool right = x > kWidth / 2;
+    fmt::format_to(to, "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"{}\" class=\"quiet\">{}</text>",
+                   x + (right ? -5 : 5), y + 13, right ? "end" : "start", escaped(mark_text));
   }
   return out + "</svg>";
 }
