@@ -12,7 +12,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kRounds = 24;
+constexpr std::size_t kRounds = 24;
 /// Rise of the error on poses left out that is not chance any more.
 constexpr double kVeto = 1.01;
 
@@ -54,8 +54,8 @@ double price_of(const JointFit& before, const JointFit& after) {
   return out;
 }
 
-std::string stop_text(Finding left) {
-  switch (left) {
+std::string stop_text(const ExplainReport& explained) {
+  switch (explained.left) {
     case Finding::unknown:
       return "something is left that no effect of the library looks like";
     case Finding::bad_data:
@@ -63,16 +63,19 @@ std::string stop_text(Finding left) {
     case Finding::pass:
       return "nothing stands out any more";
     default:
-      return "the number of rounds is reached";
+      if (explained.rounds.size() >= kRounds) return "the number of rounds is reached";
+      return "something stands out, and nothing that stands for it could be added" +
+             (explained.notes.empty() ? std::string() : ": " + explained.notes.back());
   }
 }
 
 }  // namespace
 
 Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options) {
-  const auto explained = explain(table, {.fit = options, .rounds = kRounds, .suspects = {}});
+  const auto explained =
+      explain(table, {.fit = options, .rounds = static_cast<int>(kRounds), .suspects = {}});
   if (!explained) return tl::unexpected(explained.error());
-  ImproveReport out{.finding = explained->left, .stopped = stop_text(explained->left), .fit = {}};
+  ImproveReport out{.finding = explained->left, .stopped = stop_text(*explained), .fit = {}};
   JointOptions joint = joint_options(options);
   auto before = stage_of(table, joint);
   if (!before) return tl::unexpected(before.error());
