@@ -8,11 +8,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/request_rate.h"
 #include "proto/control_codec.h"
 #include "proto/error.h"
+#include "proto/status_report.h"
 
 /// The control socket (control_codec.h): who may connect may command, and the file's mode says who that is.
-/// Reads requests, has them answered, sends the replies in order. Decides nothing itself.
+/// Reads requests, has them answered, sends the replies in order. Who has control is decided by
+/// control_lease.h and answered here; the rest is the handler's. A client that asks too often, sends too long
+/// a line or does not read is told why and disconnected.
 ///
 /// Everything runs on the io_context's thread; the server must not outlive the io_context.
 namespace mgtd::daemon {
@@ -21,6 +25,7 @@ struct ControlConfig {
   std::string path{"/run/mgtd/control.sock"};
   int mode{0660};
   std::size_t max_clients{32};
+  RateLimit rate{.per_s = 50, .burst = 200};  ///< of requests, per client
 };
 
 class ControlServer {
@@ -35,7 +40,7 @@ class ControlServer {
 
   [[nodiscard]] Result<void> start();
   void stop();
-  [[nodiscard]] std::size_t clients() const;
+  [[nodiscard]] ControlStatus stats() const;
 
  private:
   class State;

@@ -248,6 +248,13 @@ void Rig::tick() {
   });
 }
 
+void Rig::tell_drops(const StatusReport& status, Instant at) {
+  const std::uint64_t drops = status.stream.dropped() + status.control.dropped();
+  if (drops == std::exchange(told_drops_, drops)) return;
+  if (!status.stream.last_drop.empty()) quiet_.warn("stream client", status.stream.last_drop, at);
+  if (!status.control.last_drop.empty()) quiet_.warn("control client", status.control.last_drop, at);
+}
+
 void Rig::every_second(Stamp now) {
   const Instant host = std::chrono::steady_clock::now();
   const std::uint64_t epochs = sampler_.health().epochs;
@@ -257,7 +264,9 @@ void Rig::every_second(Stamp now) {
   epochs_at_second_ = epochs;
   watch_links(now);
   tell_left_out();
-  stream_.publish(report());
+  const StatusReport status = report();
+  tell_drops(status, now.mono);
+  stream_.publish(status);
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),
                             name(run_.status(now.mono).state)));
   // Fed by the data path: epochs, or honest gaps, must have come out since the last time. Before the first

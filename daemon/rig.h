@@ -51,6 +51,7 @@ class Rig {
   void tell_criticism();
   [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
   void watch_links(Stamp now);
+  void tell_drops(const StatusReport& status, Instant at);
 
   [[nodiscard]] Result<nlohmann::ordered_json> answer(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_run(const ControlRequest& request);
@@ -84,6 +85,7 @@ class Rig {
   std::uint64_t epochs_at_second_{0};
   std::optional<double> rate_hz_;
   std::map<std::string, LinkState> link_states_;
+  std::uint64_t told_drops_{0};  ///< clients that were disconnected, as far as the log knows
   std::optional<Instant> last_second_, last_watchdog_;
   std::optional<Duration> watchdog_;
   bool stopping_{false};

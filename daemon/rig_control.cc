@@ -44,6 +44,10 @@ Reply Rig::answer(const ControlRequest& request) {
     case ControlCommand::calibrations_import:
     case ControlCommand::calibrations_rollback:
       return answer_calibrations(request);
+    case ControlCommand::control_take:
+    case ControlCommand::control_release:
+    case ControlCommand::control_break:
+      break;  // answered by the control server
   }
   return fail(ErrorCode::internal, "a command without an answer");
 }

@@ -28,6 +28,7 @@ StatusReport Rig::report() const {
   out.sampler = {
       .epochs = sampler.epochs, .gaps = sampler.gaps, .rate_hz = rate_hz_, .skew_bound_s = last_skew_s_};
   out.stream = stream_.stats();
+  out.control = control_.stats();
   out.journal.state = journal_ ? (journal_->recording() ? "writing" : "stopped: the disk refused") : "off";
   out.journal.bytes = journal_ ? journal_->bytes_written() : 0;
   std::error_code ec;

@@ -10,6 +10,7 @@
 #include "daemon/listener.h"
 #include "daemon/sample_ring.h"
 #include "daemon/subscription.h"
+#include "drivers/clock.h"
 #include "proto/tensor_encoder.h"
 #include "proto/watch_request.h"
 
@@ -22,7 +23,8 @@ constexpr std::size_t kBatch = LineConnection::kBatch;  // bytes written to a cl
 
 struct Client {
   std::shared_ptr<LineConnection> connection;
-  Subscription subscription;
+  RequestRate rate;
+  Subscription subscription{};
   int bad_lines{0};
 };
 
@@ -69,7 +71,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   void refill(Client& client, std::string& out);
   void serve_later();
   void serve();
-  void drop(Client& client, const Error& reason);
+  void drop(Client& client, DropReason reason, const Error& why);
 
   boost::asio::io_context& io_;
   StreamConfig config_;
@@ -80,6 +82,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   std::uint16_t tcp_port_{0};
   std::vector<std::shared_ptr<Client>> clients_;
   StreamStatus counted_;
+  drivers::Clock clock_;
   bool serving_{false};  ///< serve() is queued
 };
 
@@ -127,8 +130,8 @@ void StreamServer::State::admit(LineConnection::Socket socket) {
     return connection->close("too many clients");
   }
   ++counted_.accepted;
-  const auto client = std::make_shared<Client>();
-  client->connection = connection;
+  const auto client =
+      std::make_shared<Client>(Client{connection, RequestRate(config_.rate, clock_.now().mono)});
   clients_.push_back(client);
   // The connection is closed, and these handlers gone, before the server is.
   connection->start({.on_line = [this, client](std::string_view line) { on_line(*client, line); },
@@ -140,6 +143,12 @@ void StreamServer::State::admit(LineConnection::Socket socket) {
 }
 
 void StreamServer::State::on_line(Client& client, std::string_view line) {
+  if (!client.rate.admit(clock_.now().mono)) {
+    return drop(
+        client, DropReason::too_often,
+        {ErrorCode::refused, fmt::format("disconnected: more than {:g} lines a second", config_.rate.per_s),
+         "send one watch and read"});
+  }
   const auto request = parse_watch(line);
   if (!request) return bad_line(client, request.error());
   client.bad_lines = 0;
@@ -147,7 +156,8 @@ void StreamServer::State::on_line(Client& client, std::string_view line) {
   client.subscription.watch(*request, ring_, out);
   client.connection->send(out);
   if (client.connection->backlog() > kReplyBacklog) {
-    return drop(client, {ErrorCode::refused, "the client asks and does not read the answers", ""});
+    return drop(client, DropReason::unread,
+                {ErrorCode::refused, "the client asks and does not read the answers", ""});
   }
   serve_later();
 }
@@ -155,8 +165,9 @@ void StreamServer::State::on_line(Client& client, std::string_view line) {
 void StreamServer::State::bad_line(Client& client, const Error& error) {
   client.connection->send(encode(error) + '\n');
   if (++client.bad_lines < kBadLines && client.connection->backlog() <= kReplyBacklog) return;
-  drop(client, {ErrorCode::refused, fmt::format("disconnected: {} bad lines in a row", client.bad_lines),
-                "see the errors before this one"});
+  drop(client, DropReason::bad_lines,
+       {ErrorCode::refused, fmt::format("disconnected: {} bad lines in a row", client.bad_lines),
+        "see the errors before this one"});
 }
 
 void StreamServer::State::refill(Client& client, std::string& out) {
@@ -165,11 +176,11 @@ void StreamServer::State::refill(Client& client, std::string& out) {
   counted_.gaps += client.subscription.gaps() - before;
 }
 
-void StreamServer::State::drop(Client& client, const Error& reason) {
+void StreamServer::State::drop(Client& client, DropReason reason, const Error& why) {
   if (!client.connection->open()) return;
-  ++counted_.dropped;
-  if (client.connection->backlog() == 0) client.connection->send(encode(reason) + '\n');
-  client.connection->close(reason.message);
+  counted_.drop(reason, why.message);
+  if (client.connection->backlog() == 0) client.connection->send(encode(why) + '\n');
+  client.connection->close(why.message);
 }
 
 void StreamServer::State::serve_later() {
@@ -185,8 +196,9 @@ void StreamServer::State::serve() {
   for (std::size_t i = clients_.size(); i-- > 0;) {  // a client that closes takes only itself out
     const auto client = clients_[i];
     if (client->subscription.stays_behind(ring_)) {
-      drop(*client, {ErrorCode::refused, "disconnected: the client stayed behind the stream",
-                     "read faster, or ask for fewer samples with rate_hz"});
+      drop(*client, DropReason::behind,
+           {ErrorCode::refused, "disconnected: the client stayed behind the stream",
+            "read faster, or ask for fewer samples with rate_hz"});
     } else {
       client->connection->flush();
     }

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/request_rate.h"
 #include "proto/epoch.h"
 #include "proto/error.h"
 #include "proto/status_report.h"
@@ -21,7 +22,7 @@
 /// Every sample is encoded once, into a ring of lines that all clients read at their own pace. publish()
 /// writes to no socket: clients are served afterwards on the io_context, without blocking, so that none
 /// delays acquisition or another client. A client that the ring overtakes is told so with a GAP, and is
-/// disconnected with a reason when it stays behind or floods.
+/// disconnected with a reason when it stays behind, floods or asks too often.
 ///
 /// Everything runs on the io_context's thread; the server must not outlive the io_context.
 namespace mgtd::daemon {
@@ -31,7 +32,8 @@ struct StreamConfig {
   std::string unix_path{"/run/mgtd/stream.sock"};  ///< empty: no Unix socket
   int unix_mode{0666};                             ///< reading is for everyone who may enter the directory
   std::size_t max_clients{64};
-  std::size_t ring_lines{16'384};  ///< what `from_seq` can go back to, and how late a client may be
+  RateLimit rate{.per_s = 10, .burst = 64};  ///< of lines from one client
+  std::size_t ring_lines{16'384};            ///< what `from_seq` can go back to, and how late a client may be
 };
 
 class StreamServer {

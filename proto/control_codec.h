@@ -28,10 +28,15 @@
 ///   calibrations.accept  args: calibration_request.h  -> {"active"}
 ///   calibrations.import  args: calibration_request.h  -> {"id","state","forced"}
 ///   calibrations.rollback
+///   control.take         args: control_hold.h         -> the holder
+///   control.release                                   -> {}
+///   control.break        takes control from whoever has it        -> {"was": holder or null}
+///
+/// What changes something needs control, which one connection has at a time (the daemon's control_lease.h).
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 1;
+inline constexpr int kControlProtocolMinor = 2;
 inline constexpr std::size_t kControlLineLimit =
     1 << 20;  ///< a calibration with a hundred coefficients: 0.4 MB
 
@@ -52,8 +57,11 @@ enum class ControlCommand : std::uint8_t {
   calibrations_accept,
   calibrations_import,
   calibrations_rollback,
+  control_take,
+  control_release,
+  control_break,
 };
-inline constexpr std::array<std::string_view, 16> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 19> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -68,7 +76,10 @@ inline constexpr std::array<std::string_view, 16> kControlCommandNames{"version"
                                                                        "calibrations.show",
                                                                        "calibrations.accept",
                                                                        "calibrations.import",
-                                                                       "calibrations.rollback"};
+                                                                       "calibrations.rollback",
+                                                                       "control.take",
+                                                                       "control.release",
+                                                                       "control.break"};
 [[nodiscard]] std::string_view name(ControlCommand command);
 
 struct ControlRequest {

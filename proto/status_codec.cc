@@ -45,6 +45,25 @@ Json to_json(const DeviceStatus& device, Instant now) {
           {"last_frame_age_s", h.last_frame ? Json(to_seconds(now - *h.last_frame)) : Json(nullptr)}};
 }
 
+Json clients(const ClientCounts& counts) {
+  Json drops = Json::object();
+  for (std::size_t i = 0; i < counts.drops.size(); ++i) drops[std::string(kDropNames[i])] = counts.drops[i];
+  return {{"clients", counts.clients},   {"accepted", counts.accepted},     {"refused", counts.refused},
+          {"dropped", counts.dropped()}, {"dropped_for", std::move(drops)}, {"last_drop", counts.last_drop}};
+}
+
+Json stream_json(const StreamStatus& stream) {
+  Json out = clients(stream);
+  out["gaps"] = stream.gaps;
+  return out;
+}
+
+Json control_json(const ControlStatus& control) {
+  Json out = clients(control);
+  out["holder"] = to_json(control.holder);
+  return out;
+}
+
 Json to_json(const Check& check) {
   return {{"name", check.name},
           {"passed", check.passed},
@@ -146,12 +165,8 @@ Json to_json(const StatusReport& report) {
             {"gaps", report.sampler.gaps},
             {"rate_hz", optional(report.sampler.rate_hz)},
             {"skew_bound_s", optional(report.sampler.skew_bound_s)}}},
-          {"stream",
-           {{"clients", report.stream.clients},
-            {"accepted", report.stream.accepted},
-            {"refused", report.stream.refused},
-            {"gaps", report.stream.gaps},
-            {"dropped", report.stream.dropped}}},
+          {"stream", stream_json(report.stream)},
+          {"control", control_json(report.control)},
           {"journal", {{"state", report.journal.state}, {"bytes", report.journal.bytes}}},
           {"disk_free_bytes", optional(report.disk_free_bytes)},
           {"run", to_json(report.run)}};

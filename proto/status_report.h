@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "proto/client_counts.h"
+#include "proto/control_hold.h"
 #include "proto/health.h"
 #include "proto/run_status.h"
 #include "proto/time.h"
@@ -26,12 +28,12 @@ struct SamplerStatus {
   std::optional<double> skew_bound_s;  ///< of the newest epoch
 };
 
-struct StreamStatus {
-  std::uint64_t clients{0};   ///< connected now
-  std::uint64_t accepted{0};  ///< since the start
-  std::uint64_t refused{0};   ///< beyond the limit of clients
-  std::uint64_t gaps{0};      ///< GAP records sent to clients that were too slow
-  std::uint64_t dropped{0};   ///< clients disconnected because they stayed behind or flooded
+struct StreamStatus : ClientCounts {
+  std::uint64_t gaps{0};  ///< GAP records sent to clients that were too slow
+};
+
+struct ControlStatus : ClientCounts {
+  std::optional<ControlHolder> holder;
 };
 
 struct JournalStatus {
@@ -68,6 +70,7 @@ struct StatusReport {
   std::vector<DeviceStatus> devices;
   SamplerStatus sampler;
   StreamStatus stream;
+  ControlStatus control;
   JournalStatus journal;
   std::optional<std::uint64_t> disk_free_bytes;
   RunStatus run;

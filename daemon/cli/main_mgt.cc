@@ -5,7 +5,7 @@ namespace {
 
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
-    "Live (talks to mgtd):     status, watch, run, calibrations\n"
+    "Live (talks to mgtd):     status, watch, run, calibrations, control\n"
     "Offline (files):          plan, fit, apply, check, diff, import, export, check-config, ports\n"
     "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, report\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   add_watch(app, session);
   add_run(app, session);
   add_calibrations(app, session);
+  add_control(app, session);
   add_fit(app, session);
   add_apply(app, session);
   add_plan(app, session);

@@ -79,6 +79,22 @@ void print_calibration(const nlohmann::json& s) {
              criticism.at("limit").get<std::string>(), criticism.at("remedy").get<std::string>());
 }
 
+/// Who listens, who was sent away, who has control.
+void print_clients(const nlohmann::json& s) {
+  const auto& stream = s.at("stream");
+  fmt::print("clients   {} of the stream", stream.at("clients").get<std::uint64_t>());
+  if (stream.at("dropped") != 0)
+    fmt::print(", {} sent away (the last: {})", stream.at("dropped").get<std::uint64_t>(),
+               stream.at("last_drop").get<std::string>());
+  const auto& control = s.at("control");
+  const auto& holder = control.at("holder");
+  if (!holder.is_null())
+    fmt::print("; control is with pid {} (uid {}) since {}", holder.at("pid").get<std::int64_t>(),
+               holder.at("uid").get<std::int64_t>(), holder.at("since").get<std::string>());
+  if (control.at("dropped") != 0) fmt::print("\n          {}", control.at("last_drop").get<std::string>());
+  fmt::print("\n");
+}
+
 int run_status(const Session& session, double patience_s) {
   const auto status = status_after(session, patience_s);
   if (!status) return report(session, status.error());
@@ -99,6 +115,7 @@ int run_status(const Session& session, double patience_s) {
   fmt::print("\ncalibr.   {}\n", text_or(s, "cal", "none: the stream is raw and says so"));
   print_calibration(s);
   fmt::print("journal   {}\n", s.at("journal").at("state").get<std::string>());
+  print_clients(s);
   print_devices(s.at("devices"));
   print_run(s.at("run"));
   return code;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <memory>
@@ -35,9 +36,10 @@ Result<nlohmann::ordered_json> echo(const ControlRequest& request) {
 
 class ControlServerTest : public ::testing::Test {
  protected:
-  void start(ControlServer::Handler handler = echo, std::size_t max_clients = 4) {
-    server_ =
-        std::make_unique<ControlServer>(io_, ControlConfig{path_, 0660, max_clients}, std::move(handler));
+  void start(ControlServer::Handler handler = echo, std::size_t max_clients = 4,
+             RateLimit rate = {.per_s = 50, .burst = 200}) {
+    server_ = std::make_unique<ControlServer>(io_, ControlConfig{path_, 0660, max_clients, rate},
+                                              std::move(handler));
     const auto started = server_->start();
     ASSERT_TRUE(started) << started.error().text();
   }
@@ -96,16 +98,68 @@ TEST_F(ControlServerTest, ARequestWithoutEndIsCutOff) {
   EXPECT_THAT(peer.lines[0], HasSubstr(fmt::format("longer than {} bytes", kControlLineLimit)));
 }
 
-TEST_F(ControlServerTest, WhoAsksAndNeverReadsIsClosed) {
+TEST_F(ControlServerTest, WhoAsksTooOftenIsToldAndDisconnectedAndOthersAreNot) {
+  start(echo, 4, {.per_s = 0.001, .burst = 8});
+  LinePeer calm = LinePeer::unix_socket(path_);
+  LinePeer hasty = LinePeer::unix_socket(path_);
+  for (int i = 0; i < 9; ++i) hasty.send_line(R"({"cmd":"version"})");
+  ASSERT_TRUE(wait(hasty, [&] { return hasty.closed; }));
+  ASSERT_EQ(hasty.lines.size(), 9U);
+  EXPECT_THAT(hasty.lines[8], HasSubstr("disconnected: more than 0.001 requests a second"));
+  calm.send_line(R"({"cmd":"version"})");
+  ASSERT_TRUE(wait(calm, [&] { return calm.lines.size() == 1; }));
+  const ControlStatus counted = server_->stats();
+  EXPECT_EQ(counted.drops[static_cast<std::size_t>(DropReason::too_often)], 1U);
+  EXPECT_THAT(counted.last_drop, HasSubstr("more than 0.001 requests"));
+}
+
+TEST_F(ControlServerTest, OneControlsTheOtherIsToldWhoDoes) {
   start();
+  LinePeer first = LinePeer::unix_socket(path_);
+  first.send_line(R"({"cmd":"control.take","args":{"why":"at the table"},"id":1})");
+  ASSERT_TRUE(wait(first, [&] { return first.lines.size() == 1; }));
+  EXPECT_THAT(first.lines[0], HasSubstr(fmt::format(R"("ok":true,"id":1,"result":{{"pid":{})", getpid())));
+  LinePeer second = LinePeer::unix_socket(path_);
+  for (const char* line :
+       {R"({"cmd":"run.finish"})", R"({"cmd":"run.abort"})", R"({"cmd":"control.release"})"})
+    second.send_line(line);
+  ASSERT_TRUE(wait(second, [&] { return second.lines.size() == 3; }));
+  EXPECT_THAT(second.lines[0], HasSubstr(fmt::format("pid {} (uid {})", getpid(), getuid())));
+  EXPECT_THAT(second.lines[0], HasSubstr("at the table"));
+  EXPECT_THAT(second.lines[1], HasSubstr(R"("command":"run.abort")"));
+  EXPECT_THAT(second.lines[2], HasSubstr(R"("ok":false)"));
+  EXPECT_TRUE(server_->stats().holder);
+  first.close();
+  ASSERT_TRUE(wait(second, [&] { return server_->stats().clients == 1; }));
+  EXPECT_FALSE(server_->stats().holder) << "gone with its connection";
+  second.send_line(R"({"cmd":"run.finish"})");
+  ASSERT_TRUE(wait(second, [&] { return second.lines.size() == 4; }));
+  EXPECT_THAT(second.lines[3], HasSubstr(R"("command":"run.finish")"));
+}
+
+TEST_F(ControlServerTest, ControlIsBrokenByWhoeverAsksForThat) {
+  start();
+  LinePeer first = LinePeer::unix_socket(path_);
+  first.send_line(R"({"cmd":"control.take"})");
+  ASSERT_TRUE(wait(first, [&] { return first.lines.size() == 1; }));
+  LinePeer second = LinePeer::unix_socket(path_);
+  second.send_line(R"({"cmd":"control.break"})");
+  second.send_line(R"({"cmd":"run.finish"})");
+  ASSERT_TRUE(wait(second, [&] { return second.lines.size() == 2; }));
+  EXPECT_THAT(second.lines[0], HasSubstr(fmt::format(R"("was":{{"pid":{})", getpid())));
+  EXPECT_THAT(second.lines[1], HasSubstr(R"("ok":true)"));
+}
+
+TEST_F(ControlServerTest, WhoAsksAndNeverReadsIsClosed) {
+  start(echo, 4, {.per_s = 1, .burst = 1e9});
   LinePeer peer = LinePeer::unix_socket(path_);
   std::string requests;
   for (int i = 0; i < 200; ++i) requests += "{\"cmd\":\"status\"}\n";
   bool seen = false;
   ASSERT_TRUE(mgtd::testing::run_until(io_, [&] {
     peer.send(requests);
-    seen = seen || server_->clients() == 1;
-    return seen && server_->clients() == 0;
+    seen = seen || server_->stats().clients == 1;
+    return seen && server_->stats().clients == 0;
   }));
 }
 
@@ -159,7 +213,7 @@ class ClientTest : public ::testing::Test {
 };
 
 TEST_F(ClientTest, ControlClientAsksAndIsAnswered) {
-  ControlServer server(io_, {scratch_ / "c.sock", 0660, 4}, echo);
+  ControlServer server(io_, {.path = scratch_ / "c.sock"}, echo);
   ASSERT_TRUE(server.start());
   run();
   auto client = ControlClient::connect(scratch_ / "c.sock");
@@ -179,7 +233,7 @@ TEST_F(ClientTest, ADaemonThatIsSilentOrAbsentIsUnreachable) {
   const auto absent = ControlClient::connect(scratch_ / "c.sock");
   ASSERT_FALSE(absent);
   EXPECT_EQ(exit_code(absent.error().code), 3);
-  ControlServer server(io_, {scratch_ / "c.sock", 0660, 4}, echo);
+  ControlServer server(io_, {.path = scratch_ / "c.sock"}, echo);
   ASSERT_TRUE(server.start());  // accepts in the kernel; nobody runs its loop
   auto client = ControlClient::connect(scratch_ / "c.sock");
   ASSERT_TRUE(client);
@@ -222,7 +276,7 @@ TEST_F(ClientTest, StreamReaderIsGreetedAndReads) {
 }
 
 TEST_F(ClientTest, StreamReaderRefusesWhatIsNoStream) {
-  ControlServer server(io_, {scratch_ / "c.sock", 0660, 4}, echo);
+  ControlServer server(io_, {.path = scratch_ / "c.sock"}, echo);
   ASSERT_TRUE(server.start());
   auto absent = StreamReader::open(scratch_ / "s.sock", {});
   ASSERT_FALSE(absent);

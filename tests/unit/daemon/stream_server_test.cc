@@ -24,8 +24,10 @@ constexpr const char* kWatchTensor = R"({"watch":{"class":["TENSOR"]}})";
 
 class StreamServerTest : public ::testing::Test {
  protected:
-  void start(std::size_t ring_lines = 1024, std::size_t max_clients = 8) {
+  void start(std::size_t ring_lines = 1024, std::size_t max_clients = 8,
+             RateLimit rate = StreamConfig{}.rate) {
     StreamConfig config;
+    config.rate = rate;
     config.tcp = "127.0.0.1:0";
     config.unix_path = scratch_ / "stream.sock";
     config.max_clients = max_clients;
@@ -184,7 +186,7 @@ TEST_F(StreamServerTest, AFloodOfBadLinesEndsWithAReason) {
   ASSERT_TRUE(wait(peer, [&] { return peer.closed; }));
   EXPECT_EQ(peer.count("32 bad lines in a row"), 1U);
   EXPECT_EQ(server_->stats().clients, 0U);
-  EXPECT_EQ(server_->stats().dropped, 1U);
+  EXPECT_EQ(server_->stats().dropped(), 1U);
 }
 
 TEST_F(StreamServerTest, AFloodWithoutALineEndEndsToo) {
@@ -195,11 +197,25 @@ TEST_F(StreamServerTest, AFloodWithoutALineEndEndsToo) {
     peer.pump();
     return peer.closed;
   }));
-  EXPECT_EQ(server_->stats().dropped, 1U);
+  EXPECT_EQ(server_->stats().dropped(), 1U);
+}
+
+TEST_F(StreamServerTest, WhoAsksTooOftenIsToldAndDisconnected) {
+  start(1024, 8, {.per_s = 0.001, .burst = 5});
+  LinePeer calm = connect();
+  LinePeer hasty = connect();
+  for (int i = 0; i < 6; ++i) hasty.send_line(kWatchTensor);
+  ASSERT_TRUE(wait(hasty, [&] { return hasty.closed; }));
+  EXPECT_EQ(hasty.count("disconnected: more than 0.001 lines a second"), 1U);
+  EXPECT_EQ(server_->stats().drops[static_cast<std::size_t>(DropReason::too_often)], 1U);
+  EXPECT_THAT(server_->stats().last_drop, HasSubstr("more than 0.001 lines"));
+  watch(calm, kWatchTensor);
+  publish(0, 3);
+  ASSERT_TRUE(wait(calm, [&] { return seqs(calm).size() == 4; }));
 }
 
 TEST_F(StreamServerTest, AClientThatAsksAndNeverReadsIsDropped) {
-  start(/*ring_lines=*/8);
+  start(/*ring_lines=*/8, 8, {.per_s = 1, .burst = 1e9});
   publish(0, 3);
   LinePeer peer = connect();
   const std::string ahead = R"({"watch":{"from_seq":999999}})"
@@ -210,7 +226,7 @@ TEST_F(StreamServerTest, AClientThatAsksAndNeverReadsIsDropped) {
     peer.send(ahead);
     return server_->stats().clients == 0;
   }));
-  EXPECT_EQ(server_->stats().dropped, 1U);
+  EXPECT_EQ(server_->stats().dropped(), 1U);
 }
 
 TEST_F(StreamServerTest, ADeadClientIsDroppedAndTheOthersLoseNothing) {
@@ -226,7 +242,7 @@ TEST_F(StreamServerTest, ADeadClientIsDroppedAndTheOthersLoseNothing) {
       next += 100;
       alive.lines.reserve(next);
     }
-    return server_->stats().dropped == 1;
+    return server_->stats().dropped() == 1;
   }));
   ASSERT_TRUE(wait(alive, [&] { return seqs(alive).size() == next; }));
   EXPECT_EQ(alive.count("GAP"), 0U);
@@ -243,7 +259,7 @@ TEST_F(StreamServerTest, ASlowClientIsToldWhatItLostAndThenWhyItWasDisconnected)
     publish(next, next + 255);
     next += 256;
     slow.pump(16 * 1024);  // an eighth of what is published
-    return slow.closed || server_->stats().dropped == 1;
+    return slow.closed || server_->stats().dropped() == 1;
   }));
   ASSERT_TRUE(wait(slow, [&] { return slow.closed; }));
   EXPECT_GE(slow.count("client too slow"), 1U);
@@ -277,7 +293,7 @@ TEST_F(StreamServerTest, AClientThatHangsUpIsForgottenEvenInTheMiddleOfWriting) 
     ++next;
     return server_->stats().clients == 0;
   }));
-  EXPECT_EQ(server_->stats().dropped, 0U);
+  EXPECT_EQ(server_->stats().dropped(), 0U);
 }
 
 TEST_F(StreamServerTest, AClientThatEndsItsSendingStillHearsTheStream) {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who has control of the daemon: shown, held for oneself, taken away.
+#include <fmt/format.h>
+#include <pwd.h>
+
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "daemon/cli/ask.h"
+
+namespace mgtd::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+constexpr auto kBetweenSigns = std::chrono::milliseconds(500);
+constexpr double kSilence_s = 10;  // a holder that hangs or is stopped loses control after it
+
+std::string user_name(std::int64_t uid) {
+  const passwd* const user = uid < 0 ? nullptr : ::getpwuid(static_cast<uid_t>(uid));
+  return user == nullptr ? fmt::format("uid {}", uid) : user->pw_name;
+}
+
+std::string in_words(const nlohmann::json& holder) {
+  if (holder.is_null()) return "nobody has control: the next one who changes something gets it";
+  const std::string why = holder.at("why");
+  return fmt::format("{} (pid {}) has control since {}{}{}", user_name(holder.at("uid")),
+                     holder.at("pid").get<std::int64_t>(), holder.at("since").get<std::string>(),
+                     holder.at("taken") == true ? ", on request" : ", by a command",
+                     why.empty() ? "" : ": " + why);
+}
+
+int show(const Session& session) {
+  const auto status = ask(session, ControlCommand::status);
+  if (!status) return report(session, status.error());
+  const nlohmann::json& holder = status->at("control").at("holder");
+  if (session.json)
+    print_json({{"holder", holder}});
+  else
+    fmt::print("{}\n", in_words(holder));
+  return 0;
+}
+
+int take_away(const Session& session) {
+  const auto reply = ask(session, ControlCommand::control_break);
+  if (!reply) return report(session, reply.error());
+  if (session.json)
+    print_json(*reply);
+  else
+    fmt::print("{}\n", reply->at("was").is_null() ? std::string("nobody had control")
+                                                  : "taken away; before: " + in_words(reply->at("was")));
+  return 0;
+}
+
+/// Until Ctrl-C, or until control was taken away.
+int hold(const Session& session, const std::string& why) {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
+  auto client = daemon::ControlClient::connect(session.control_socket);
+  if (!client) return report(session, client.error());
+  const auto mine = client->request(ControlCommand::control_take, {{"why", why}, {"idle_s", kSilence_s}});
+  if (!mine) return report(session, mine.error());
+  if (session.json) print_json(*mine);
+  fmt::print(stderr, "control is yours until Ctrl-C; others can look, pause and abort\n");
+  while (interrupted == 0) {
+    std::this_thread::sleep_for(kBetweenSigns);
+    const auto status = client->request(ControlCommand::status);
+    if (!status) return report(session, status.error());
+    const nlohmann::json& holder = status->at("control").at("holder");
+    if (!holder.is_null() && holder.at("since") == mine->at("since") && holder.at("pid") == mine->at("pid"))
+      continue;
+    return report(session, {ErrorCode::state, "control was taken away; now " + in_words(holder), ""});
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_control(CLI::App& app, Session& session) {
+  CLI::App* const group =
+      app.add_subcommand("control", "who may change things now: one controls, many look; show, hold, break");
+  group->require_subcommand(1);
+  add_command(*group, session, "show", "who has control, and since when",
+              [&session] { return show(session); });
+  auto why = std::make_shared<std::string>();
+  CLI::App* const held =
+      add_command(*group, session, "hold",
+                  "keep everyone else from starting or changing anything until Ctrl-C, for instance while "
+                  "somebody works at the table",
+                  [why, &session] { return hold(session, *why); });
+  held->add_option("--why", *why, "told to everyone who is refused");
+  add_command(*group, session, "break", "take control away from whoever has it",
+              [&session] { return take_away(session); });
+}
+
+}  // namespace mgtd::cli
