@@ -44,7 +44,7 @@ class Reader {
 
   Config& config_;
   std::vector<drivers::SettingError> errors_;
-  std::map<std::string, int> port_lines_;
+  std::map<std::string, int> port_lines_, serial_lines_;
 };
 
 constexpr std::array<std::string_view, 11> kSections{
@@ -209,6 +209,10 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
   if (entry->has_port) read_port(s, device);
   if (role == Role::table) read_mounts(s);
   device.device = entry->make(slot, s);
+  if (const std::string serial = s.has("serial") ? s.text("serial", "") : ""; !serial.empty()) {
+    const auto [where, fresh] = serial_lines_.emplace(serial, s.line_of("serial"));
+    if (!fresh) s.object("serial", fmt::format("'{}' is already used in line {}", serial, where->second));
+  }
   device.baud = static_cast<int>(s.integer("baud", 0));
   close(s);
   return device;

@@ -52,6 +52,7 @@ void Dialogue::say(Instant now) {
 
 void Dialogue::on_line(std::string_view line, Instant now) {
   if (outcome_ != Outcome::running || step().kind != Step::Kind::ask) return;
+  if (step().tolerant && !step().refusal.empty() && line == step().refusal) return enter(at_ + 1, now);
   if (!matches(line, step().reply)) {
     heard_ = line;
     return;

@@ -21,7 +21,8 @@ struct Step {
   std::string send;
   std::string reply;  ///< ask: the whole line expected; ends in '*': any line that starts so and is longer
   double seconds{0};
-  bool tolerant{false};  ///< ask: go on when no reply came
+  bool tolerant{false};   ///< ask: go on when no reply came ...
+  std::string refusal{};  ///< ... or when a line is this
 };
 
 class Dialogue {
@@ -44,7 +45,7 @@ class Dialogue {
   [[nodiscard]] const Step& step() const { return steps_.at(at_); }
   /// The last line that was not the expected one; empty when nothing came.
   [[nodiscard]] const std::string& heard() const { return heard_; }
-  /// The reply to an ask whose reply ends in '*'.
+  /// The last reply to an ask whose reply ends in '*'.
   [[nodiscard]] const std::string& identity() const { return identity_; }
 
  private:

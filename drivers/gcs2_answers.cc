@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/gcs2_driver.h"
+#include "drivers/identity.h"
 #include "proto/units.h"
 
 namespace mgtd::drivers::gcs2 {
@@ -69,6 +70,8 @@ bool Gcs2Driver::take_start_up(const Question& question, std::string_view line) 
     queue_.answered(now_.mono);
     if (health_.identity != line) emit(DeviceNote{now_, "identified as " + std::string(line)});
     health_.identity = line;
+    if (auto wanted = check_serial(settings_.serial, serial_of_idn(line)); !wanted)
+      fail_start(wanted.error().message, wanted.error().remedy);
     return true;
   }
   if (question.ask == Ask::axes) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "drivers/identity.h"
 #include "proto/units.h"
 
 namespace mgtd::drivers::gcs2 {
@@ -42,6 +43,7 @@ Gcs2Settings read_gcs2_settings(Settings& s) {
     s.object("baud", "must be a line speed like 115200");
     out.baud = kDefaultBaud;
   }
+  out.serial = read_serial(s);
   for (const auto& [turns, name] : kTurns) {
     const std::string key = fmt::format("axes.{}", name);
     AxisSettings axis{turns, std::string(name), s.text(key, turns == Turns::azimuth ? "1" : ""),

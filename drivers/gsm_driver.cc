@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "drivers/identity.h"
+
 namespace mgtd::drivers::gsm {
 namespace {
 
@@ -22,6 +24,7 @@ GsmSettings read_gsm_settings(Settings& s) {
     s.object("baud", "must be a line speed like 115200");
     out.baud = kDefaultBaud;
   }
+  out.serial = read_serial(s);
   out.init = s.texts("init");
   const std::vector<double> range = s.numbers("range_nT", 2, {out.min_nT, out.max_nT});
   out.min_nT = range[0];
@@ -42,6 +45,7 @@ std::unique_ptr<Device> GsmDriver::make(int /*slot*/, Settings& settings) {
 void GsmDriver::on_open(Stamp now) {
   LineDevice::on_open(now);
   set_state(LinkState::probing, "waiting for the first reading");
+  another_.reset();
   next_init_ = 0;
   silence_.set(now.mono, settings_.silence_s + kInitPause_s * static_cast<double>(settings_.init.size()));
   send_init(now);
@@ -61,7 +65,7 @@ void GsmDriver::on_tick(Stamp now) {
     next_.clear();
     send_init(now);
   }
-  if (!silence_.passed(now.mono)) return;
+  if (another_ || !silence_.passed(now.mono)) return;
   silence_.clear();
   set_state(
       LinkState::silent,
@@ -79,11 +83,22 @@ Verdict GsmDriver::on_line(std::string_view line, Stamp arrival) {
   if (const auto* why = std::get_if<Reject>(&parsed)) return Verdict::rejected(*why);
   if (line.find("z-save") != std::string_view::npos) send("z");
   if (std::get<GsmText>(parsed).header && line.find("GSM") != std::string_view::npos)
-    health_.identity = line.substr(1);
+    identify(line.substr(1), arrival);
   return Verdict::resync();
 }
 
+void GsmDriver::identify(std::string_view header, Stamp now) {
+  health_.identity = header;
+  const auto wanted = check_serial(settings_.serial, serial_of_gsm(header));
+  if (!wanted && !another_) {
+    emit(DeviceFault{now, wanted.error().message, wanted.error().remedy});
+    set_state(LinkState::failed, wanted.error().text());
+  }
+  another_ = wanted ? std::nullopt : std::optional(wanted.error());
+}
+
 Verdict GsmDriver::on_reading(const GsmReading& reading, Stamp arrival) {
+  if (another_) return Verdict::resync();
   if (reading.f_nT < settings_.min_nT || reading.f_nT > settings_.max_nT)
     return Verdict::rejected(Reject::range);
   silence_.set(arrival.mono, settings_.silence_s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,14 +10,18 @@
 #include "drivers/gsm_protocol.h"
 #include "drivers/line_device.h"
 #include "drivers/settings.h"
+#include "proto/error.h"
 
 /// Scalar reference: listens to a GSM-90 or GSM-19, after sending set-up strings when some are configured.
 ///
 ///   port, baud = 115200
 ///   init = ["S", "5", "T048.5", "C", "{utc}", "R"]   optional; sent one by one without ending, at least a
 ///                                        second apart; "{utc}" becomes the time for the clock menu
-///   range_nT = [20000, 120000]           a reading outside is rejected
-///   silence_s = 15                       without a reading the link is silent
+///   serial = ""                          of the instrument; stated: one whose header tells another is
+///   refused range_nT = [20000, 120000]           a reading outside is rejected silence_s = 15 without a
+///   reading the link is silent
+///
+/// Its serial number is in the header that it prints when it starts; one that prints none is believed.
 ///
 /// A ScalarReading is good when its quality is 99, or when the line has no quality at all (quality -1): then
 /// nothing speaks against it. A menu that offers "z-save" is answered by z.
@@ -25,6 +30,7 @@ namespace mgtd::drivers::gsm {
 struct GsmSettings {
   int baud{kDefaultBaud};
   std::vector<std::string> init;
+  std::string serial;  ///< empty: any
   double min_nT{20'000};
   double max_nT{120'000};
   double silence_s{15};
@@ -46,12 +52,14 @@ class GsmDriver final : public LineDevice {
 
  private:
   void send_init(Stamp now);
+  void identify(std::string_view header, Stamp now);
   Verdict on_reading(const GsmReading& reading, Stamp arrival);
 
   GsmSettings settings_;
   std::size_t next_init_{0};
   Deadline next_, silence_;
   std::string last_text_;
+  std::optional<Error> another_;  ///< it is not the instrument that was stated
 };
 
 }  // namespace mgtd::drivers::gsm

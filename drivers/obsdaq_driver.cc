@@ -7,12 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/identity.h"
+
 namespace mgtd::drivers::obsdaq {
 namespace {
 
 constexpr std::size_t kLongestLine = 128;
 constexpr double kSilence_s = 0.3;  ///< that ends a drain
 constexpr double kReply_s = 2.0;
+constexpr double kOptionalReply_s = 0.3;
 constexpr double kRetry_s = 10.0;
 
 using Kind = Step::Kind;
@@ -41,6 +44,11 @@ std::vector<Step> start_up(const ObsdaqSettings& s) {
   steps.push_back({Kind::drain, quick_stop(), "", kSilence_s});
   steps.push_back({Kind::tell, stop(s.address), "", 0.2});
   steps.push_back({Kind::ask, identify(s.address), fmt::format("!{}*", s.address), kReply_s});
+  Step serial{Kind::ask, serial_number(s.address), fmt::format("!{}*", s.address),
+              s.serial.empty() ? kOptionalReply_s : kReply_s};
+  serial.tolerant = s.serial.empty();  // an old firmware that does not know the question
+  serial.refusal = fmt::format("?{}", s.address);
+  steps.push_back(std::move(serial));
   steps.push_back(ask(trigger(s.address, 0, 0)));
   steps.push_back({Kind::tell, "", "", 1.0});
   for (int channel = 0; channel < 3; ++channel)
@@ -96,6 +104,7 @@ void ObsdaqDriver::on_shutdown(Stamp /*now*/) {
 
 void ObsdaqDriver::start(Stamp now) {
   phase_ = Phase::starting;
+  told_.clear();
   dialogue_.start(now.mono);
   send(dialogue_.take_send());
 }
@@ -114,16 +123,7 @@ void ObsdaqDriver::on_tick(Stamp now) {
 
 void ObsdaqDriver::pump(Stamp now) {
   send(dialogue_.take_send());
-  const std::string& identity = dialogue_.identity();
-  if (!identity.empty() && health_.identity != identity.substr(3)) {
-    if (!is_obsdaq(identity)) {
-      refuse(now, fmt::format("the device calls itself '{}', not an ObsDAQ", identity.substr(3)),
-             "check which device is on this port");
-      return;
-    }
-    health_.identity = identity.substr(3);
-    emit(DeviceNote{now, "identified as " + health_.identity});
-  }
+  if (dialogue_.identity() != told_ && !identified(now)) return;
   if (dialogue_.outcome() == Dialogue::Outcome::done) {
     go_live(now);
   } else if (dialogue_.outcome() != Dialogue::Outcome::running) {
@@ -131,8 +131,36 @@ void ObsdaqDriver::pump(Stamp now) {
   }
 }
 
+/// Its name, then its serial number, as each is told. False: it is not the one that is wanted.
+bool ObsdaqDriver::identified(Stamp now) {
+  const bool names_itself = told_.empty();
+  told_ = dialogue_.identity();
+  const std::string said = told_.substr(3);
+  if (names_itself) {
+    model_ = said;
+    if (is_obsdaq(said)) return true;
+    refuse(now, fmt::format("the device calls itself '{}', not an ObsDAQ", said),
+           "check which device is on this port");
+    return false;
+  }
+  const std::string serial = serial_after_sn(said);
+  if (auto wanted = check_serial(settings_.serial, serial); !wanted) {
+    refuse(now, wanted.error().message, wanted.error().remedy);
+    return false;
+  }
+  identify(now, fmt::format("{}, serial {}", model_, serial));
+  return true;
+}
+
+void ObsdaqDriver::identify(Stamp now, std::string as) {
+  if (health_.identity == as) return;
+  health_.identity = std::move(as);
+  emit(DeviceNote{now, "identified as " + health_.identity});
+}
+
 void ObsdaqDriver::go_live(Stamp now) {
   phase_ = Phase::streaming;
+  if (!health_.identity.starts_with(model_)) identify(now, model_);  // its serial number was not told
   seq_ = 0;
   any_good_line_ = false;
   bytes_at_good_line_ = health_.bytes_in;

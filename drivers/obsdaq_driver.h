@@ -12,12 +12,12 @@
 
 /// One fluxgate behind an ObsDAQ: started, verified and kept streaming.
 ///
-///   probing    quick stop, silence, identity, trigger off, three channels, trigger, start; each echo checked
-///   live       FieldReading per line, TemperatureReading once a second
-///   silent     no answer, or no valid line for 2 s (10 periods when slower): started over; the port is
-///   opened
+///   probing    quick stop, silence, identity, serial number, trigger off, three channels, trigger, start;
+///   each echo checked live       FieldReading per line, TemperatureReading once a second silent     no
+///   answer, or no valid line for 2 s (10 periods when slower): started over; the port is opened
 ///              again when nothing at all came for 10 s
-///   failed     the port answers with something else: DeviceFault, tried again every 10 s
+///   failed     the port answers with something else, or is another one than stated: DeviceFault, tried again
+///   every 10 s
 ///
 /// y_nT = volts * scale_nT_per_V + offset_nT, per axis. seq counts from the start of the acquisition; a
 /// rejected line counts as many samples as it shows starts of ('*'), at least one unless it is a reply. Lines
@@ -46,6 +46,8 @@ class ObsdaqDriver final : public LineDevice {
 
   void start(Stamp now);
   void pump(Stamp now);
+  [[nodiscard]] bool identified(Stamp now);
+  void identify(Stamp now, std::string as);
   void go_live(Stamp now);
   void give_up(Stamp now);
   void refuse(Stamp now, std::string what, std::string remedy);
@@ -59,6 +61,7 @@ class ObsdaqDriver final : public LineDevice {
   Phase phase_{Phase::closed};
   Dialogue dialogue_;
   Deadline silence_, retry_;
+  std::string told_, model_;  ///< in the conversation under way
   std::uint64_t seq_{0};
   std::uint64_t bytes_at_good_line_{0};
   bool any_good_line_{false};

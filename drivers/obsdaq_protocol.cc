@@ -121,6 +121,7 @@ double highest_rate_hz(int baud, std::size_t line_bytes) {
 std::string quick_stop() { return std::string(30, '|'); }
 std::string stop(std::string_view address) { return fmt::format("#{}ST\r", address); }
 std::string identify(std::string_view address) { return fmt::format("${}M\r", address); }
+std::string serial_number(std::string_view address) { return fmt::format("${}SN\r", address); }
 
 Exchange trigger(std::string_view address, std::uint16_t period, std::uint16_t low) {
   return {fmt::format("#{}PP{:04X}{:04X}\r", address, period, low),

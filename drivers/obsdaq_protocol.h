@@ -21,6 +21,7 @@
 ///   ||||... (30)        -              quick stop, repeated until silent
 ///   #AAST               -              stop, idle
 ///   $AAM                !AA<name>      identity, e.g. !01<obsDAQ V5.5.7>
+///   $AASN               !AA..SN<serial>  serial number
 ///   $AAnWS0201ccdd      !AA0201ccdd    channel n = 0..2: range cc, data rate dd
 ///   #AAPPeeeeffff       !AAeeeeffff    internal trigger: period, low time, in 64/9.8304 MHz = 6.5104 us
 ///   #AAPP00000000       !AA00000000    trigger off; needed before configuring, then wait 1 s
@@ -79,6 +80,7 @@ struct Exchange {
 [[nodiscard]] std::string quick_stop();
 [[nodiscard]] std::string stop(std::string_view address);
 [[nodiscard]] std::string identify(std::string_view address);
+[[nodiscard]] std::string serial_number(std::string_view address);
 [[nodiscard]] Exchange trigger(std::string_view address, std::uint16_t period, std::uint16_t low);
 [[nodiscard]] Exchange configure(std::string_view address, int channel, std::string_view range_code,
                                  std::string_view rate_code);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "drivers/identity.h"
 #include "proto/number.h"
 
 namespace mgtd::drivers::obsdaq {
@@ -93,6 +94,7 @@ ObsdaqSettings read_obsdaq_settings(Settings& s) {
   out.address = s.text("address", out.address);
   const bool is_hex = out.address.find_first_not_of("0123456789ABCDEF") == std::string::npos;
   if (out.address.size() != 2 || !is_hex) s.object("address", "must be two hex digits like \"01\"");
+  out.serial = read_serial(s);
   out.palmacq = s.boolean("palmacq", false);
   out.baud = static_cast<int>(s.integer("baud", out.palmacq ? kPalmAcqBaud : kDirectBaud));
   if (out.baud < 1200 || out.baud > 4'000'000) {

@@ -10,6 +10,7 @@
 /// What the configuration says about one ObsDAQ and the fluxgate behind it:
 ///
 ///   port, baud, address = "01"
+///   serial = ""                 the device's own; stated: another device is refused
 ///   palmacq = false             behind a PalmAcq time-stamper: 57600 Bd instead of 19200
 ///   rate_hz = 50
 ///   range_V = 10                10, 5 or 2.5
@@ -30,6 +31,7 @@ struct Thermometer {
 
 struct ObsdaqSettings {
   std::string address{"01"};
+  std::string serial;  ///< empty: any
   int baud{kDirectBaud};
   bool palmacq{false};
   double rate_hz{50};

@@ -49,6 +49,7 @@ class Digitiser {
   void reply(std::string command) {
     command.erase(0, command.find_first_not_of('|'));
     if (command == "$01M") pty_.write("!01<obsDAQ V5.5.7>\r");
+    if (command == "$01SN") pty_.write("!01SN1001\r");
     if (command.starts_with("#01PP")) pty_.write("!01" + command.substr(5) + "\r");
     if (command.size() == 14 && command.substr(4, 2) == "WS") pty_.write("!01" + command.substr(6) + "\r");
     if (command == "#01CS") {

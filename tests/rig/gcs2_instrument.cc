@@ -139,7 +139,7 @@ void Gcs2Instrument::command(std::string_view line, double now_s) {
   if (line.size() > kMaxLine) {
     error_ = kTooLong;
   } else if (verb == "*IDN?") {
-    put("(c)2024 Physik Instrumente (PI) GmbH & Co. KG, C-867.simulated, 0, 1.0\n", now_s);
+    put("(c)2024 Physik Instrumente (PI) GmbH & Co. KG, C-867.simulated, 867001, 1.0\n", now_s);
   } else if (verb == "ERR?") {
     put(fmt::format("{}\n", std::exchange(error_, 0)), now_s);
   } else if (verb == "SAI?") {

@@ -45,6 +45,16 @@ TEST(Config, AFileThatIsNotThereSaysWhatToDo) {
   EXPECT_THAT(config.error().lines.at(0), HasSubstr("--config"));
 }
 
+TEST(Config, OneSerialNumberIsOneDevice) {
+  const auto config = parse_config(
+      "[[sensor]]\ndriver = \"obsdaq\"\nport = \"/dev/a\"\nprofile = \"mag-13-100\"\nserial = \"1001\"\n"
+      "[[sensor]]\ndriver = \"obsdaq\"\nport = \"/dev/b\"\nprofile = \"mag-13-100\"\nserial = \"1001\"\n",
+      "rig.toml");
+  ASSERT_FALSE(config);
+  EXPECT_THAT(config.error().lines, Contains(HasSubstr("rig.toml:10: [[sensor]] s2: 'serial': '1001' is "
+                                                       "already used in line 5")));
+}
+
 TEST(Config, AnUnknownDriverIsRefused) {
   const auto config = parse_config("[table]\ndriver = \"bartington\"\nport = \"/dev/x\"\n", "rig.toml");
   ASSERT_FALSE(config);

@@ -164,6 +164,20 @@ TEST_F(Gcs2DriverTest, AMissingAxisFailsWithWhatIsThere) {
   EXPECT_THAT(driver.health().detail, HasSubstr("has no axis '1'; it answers 'A', 'B'"));
 }
 
+TEST_F(Gcs2DriverTest, AnotherControllerThanTheStatedOneIsRefused) {
+  for (const auto& [stated, state] : {std::pair{"1", LinkState::live}, std::pair{"2", LinkState::failed}}) {
+    Gcs2Settings wanted = settings();
+    wanted.serial = stated;
+    Gcs2Driver device(wanted);
+    DeviceBench stage(device, std::ref(controller));
+    stage.open();
+    ASSERT_TRUE(stage.pass_until([&] { return device.health().state == state; })) << stated;
+    if (state == LinkState::failed) {
+      EXPECT_THAT(device.health().detail, HasSubstr("its serial number is 1, not 2"));
+    }
+  }
+}
+
 TEST_F(Gcs2DriverTest, ADeadPortIsSilent) {
   DeviceBench stage(driver);
   stage.open();

@@ -32,6 +32,24 @@ TEST(GsmDriver, ReadsLinesWithTheirQuality) {
   EXPECT_TRUE(driver.health().balanced());
 }
 
+TEST(GsmDriver, AnotherInstrumentThanTheStatedOneIsRefused) {
+  GsmSettings settings;
+  settings.serial = "3101329";
+  GsmDriver driver{settings};
+  DeviceBench bench(driver);
+  bench.open();
+  bench.feed("115013.0  48484.12 99\r\n");
+  EXPECT_EQ(bench.events<ScalarReading>().size(), 1U) << "no header yet: believed";
+  bench.feed("/Gem Systems GSM-19W 7022463 v6.0\r\n115014.0  48484.12 99\r\n");
+  EXPECT_EQ(bench.events<ScalarReading>().size(), 1U);
+  EXPECT_EQ(driver.health().state, LinkState::failed);
+  EXPECT_THAT(driver.health().detail, HasSubstr("its serial number is 7022463, not 3101329"));
+  EXPECT_EQ(bench.events<DeviceFault>().size(), 1U);
+  bench.feed("/Gem Systems GSM-19W 3101329 v6.0\r\n115015.0  48484.12 99\r\n");
+  EXPECT_EQ(driver.health().state, LinkState::live);
+  EXPECT_EQ(bench.events<ScalarReading>().size(), 2U);
+}
+
 TEST(GsmDriver, AFieldThatCannotBeIsRejected) {
   GsmDriver driver{GsmSettings{}};
   DeviceBench bench(driver);

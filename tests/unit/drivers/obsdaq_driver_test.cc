@@ -18,8 +18,9 @@ using ::testing::HasSubstr;
 /// A digitiser on the bench, optionally behind a PalmAcq; answers as in the captured dialogues.
 struct Instrument {
   std::string identity{"!01<obsDAQ V5.5.7>"};
-  std::string spoil;  ///< commands that start so are answered by "?01"
-  std::string mute;   ///< commands that start so are not answered
+  std::string serial{"1001"};  ///< empty: a firmware that does not know the question
+  std::string spoil;           ///< commands that start so are answered by "?01"
+  std::string mute;            ///< commands that start so are not answered
   bool palmacq{false};
   bool streaming{false};
   bool transparent{false}, forwarding{false};
@@ -58,6 +59,7 @@ struct Instrument {
       return "";
     }
     if (c == "$01M") return identity + "\r";
+    if (c == "$01SN" && !serial.empty()) return "!01SN" + serial + "\r";
     if (c.starts_with("#01PP")) return "!01" + c.substr(5) + "\r";
     if (c.size() == 14 && c.substr(4, 2) == "WS") return "!01" + c.substr(6) + "\r";
     if (c == "#01CS") {
@@ -95,10 +97,10 @@ class ObsdaqDriverTest : public ::testing::Test {
 TEST_F(ObsdaqDriverTest, StartsAsDocumented) {
   go_live();
   EXPECT_EQ(instrument.commands,
-            (std::vector<std::string>{"#01ST", "$01M", "#01PP00000000", "$010WS02010263", "$011WS02010263",
-                                      "$012WS02010263", "#01PP0C00026E", "#01CS"}));
+            (std::vector<std::string>{"#01ST", "$01M", "$01SN", "#01PP00000000", "$010WS02010263",
+                                      "$011WS02010263", "$012WS02010263", "#01PP0C00026E", "#01CS"}));
   EXPECT_TRUE(bench.sent().starts_with("||||||||||||||||||||||||||||||#01ST\r"));
-  EXPECT_EQ(driver.health().identity, "<obsDAQ V5.5.7>");
+  EXPECT_EQ(driver.health().identity, "<obsDAQ V5.5.7>, serial 1001");
   EXPECT_TRUE(driver.health().balanced());
 }
 
@@ -210,6 +212,42 @@ TEST_F(ObsdaqDriverTest, AnotherDeviceOnThePortIsNamed) {
   instrument.identity = "!01<obsDAQ V5.5.7>";  // the operator exchanges the plugs
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
   EXPECT_EQ(bench.events<DeviceFault>().size(), 1U);
+}
+
+TEST_F(ObsdaqDriverTest, AFirmwareThatKnowsNoSerialNumberIsUsedWithoutDelay) {
+  instrument.serial.clear();
+  const double before_s = bench.t_s();
+  go_live();
+  EXPECT_LT(bench.t_s() - before_s, 3);
+  EXPECT_EQ(driver.health().identity, "<obsDAQ V5.5.7>");
+}
+
+TEST_F(ObsdaqDriverTest, AnotherOneOfTheSameMakeIsRefusedUntilThePlugsAreExchanged) {
+  ObsdaqSettings stated = settings();
+  stated.serial = "1001";
+  instrument.serial = "1002";
+  ObsdaqDriver device(0, stated);
+  DeviceBench stage(device, std::ref(instrument));
+  stage.open();
+  ASSERT_TRUE(stage.pass_until([&] { return device.health().state == LinkState::failed; }));
+  EXPECT_THAT(device.health().detail,
+              HasSubstr("wrong device on the port: its serial number is 1002, not 1001"));
+  EXPECT_THAT(device.health().detail, HasSubstr("exchange the plugs"));
+  EXPECT_FALSE(instrument.streaming);
+  instrument.serial = "1001";
+  ASSERT_TRUE(stage.pass_until([&] { return device.health().state == LinkState::live; }));
+  EXPECT_EQ(stage.events<DeviceFault>().size(), 1U);
+}
+
+TEST_F(ObsdaqDriverTest, WhereASerialNumberIsStatedOneMustBeTold) {
+  ObsdaqSettings stated = settings();
+  stated.serial = "1001";
+  instrument.serial.clear();
+  ObsdaqDriver device(0, stated);
+  DeviceBench stage(device, std::ref(instrument));
+  stage.open();
+  ASSERT_TRUE(stage.pass_until([&] { return device.health().state == LinkState::failed; }));
+  EXPECT_THAT(device.health().detail, HasSubstr("'$01SN' was answered by '?01'"));
 }
 
 TEST_F(ObsdaqDriverTest, EveryRefusedOrMissingEchoIsNoticed) {
