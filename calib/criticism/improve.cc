@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/criticism/polish.h"
+#include "calib/criticism/model_stage.h"
 #include "calib/fit/joint_errors.h"
 #include "calib/fit/joint_report.h"
 
@@ -13,8 +14,6 @@ namespace mgtd::calib {
 namespace {
 
 constexpr std::size_t kRounds = 24;
-/// Rise of the error on poses left out that is not chance any more.
-constexpr double kVeto = 1.01;
 
 struct Stage {
   JointFit fit;
@@ -39,19 +38,8 @@ void polish(const PoseTable& table, const FitOptions& options, const JointOption
   tidy.effects = *std::move(effects);
   const auto after = stage_of(table, tidy);
   if (!after) return;
-  if (before.held_out_nT && after->held_out_nT && *after->held_out_nT > kVeto * *before.held_out_nT) return;
+  if (before.held_out_nT && after->held_out_nT && *after->held_out_nT > kHeldOutVeto * *before.held_out_nT) return;
   best.effects = std::move(tidy.effects);
-}
-
-/// Largest ratio of the variances of the sensors' parameters, the scatter taken out.
-double price_of(const JointFit& before, const JointFit& after) {
-  double out = 1;
-  for (int i = 0; i < kSensorBlock; ++i) {
-    const double ratio = after.covariance(i, i) / std::pow(after.spread, 2) /
-                         (before.covariance(i, i) / std::pow(before.spread, 2));
-    if (std::isfinite(ratio)) out = std::max(out, ratio);
-  }
-  return out;
 }
 
 std::string stop_text(const ExplainReport& explained) {
@@ -85,7 +73,7 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
     joint.effects = round.model;
     auto after = stage_of(table, joint);
     if (!after) return tl::unexpected(after.error());
-    if (before->held_out_nT && after->held_out_nT && *after->held_out_nT > kVeto * *before->held_out_nT) {
+    if (before->held_out_nT && after->held_out_nT && *after->held_out_nT > kHeldOutVeto * *before->held_out_nT) {
       out.stopped =
           fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
                       round.added.spec, *before->held_out_nT, *after->held_out_nT);
@@ -100,7 +88,7 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
                           .held_out_after_nT = after->held_out_nT,
                           .predicted_fall = round.added.fall,
                           .realised_fall = round.chi2_before - round.chi2_after,
-                          .price = price_of(before->fit, after->fit)});
+                          .price = variance_price(before->fit, after->fit)});
     best.effects = joint.effects;
     before = std::move(after);
   }

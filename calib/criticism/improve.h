@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/criticism/explain.h"
+#include "calib/criticism/model_stage.h"
 
 /// explain -> add -> fit, round by round and unattended, until nothing more is justified. What is added is
 /// decided by calibrated p-values; the error on poses that were left out is a veto, never a reason.
@@ -16,7 +17,7 @@ struct ImproveRound {
   double rms_before_nT{0}, rms_after_nT{0};
   std::optional<double> held_out_before_nT{}, held_out_after_nT{};
   double predicted_fall{0}, realised_fall{0};  ///< of chi-square
-  double price{1};  ///< largest growth of the variance of a parameter of the sensors
+  VariancePrice price{};  ///< what the parameters of the sensors lose
 };
 
 struct ImproveReport {

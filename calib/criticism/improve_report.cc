@@ -33,7 +33,7 @@ json round_json(const ImproveRound& r) {
           {"held_out_after_nT", maybe(r.held_out_after_nT)},
           {"predicted_fall", r.predicted_fall},
           {"realised_fall", r.realised_fall},
-          {"variance_price", r.price}};
+          {"variance_price", {{"growth_of_sd", r.price.growth}, {"parameter", r.price.parameter}}}};
 }
 
 std::string held_out(const std::optional<double>& x) { return x ? fmt::format("{:.3f}", *x) : "-"; }
@@ -63,10 +63,12 @@ std::string to_text(const ImproveReport& r) {
   }
   for (const ImproveRound& x : r.rounds) {
     fmt::format_to(to, "{:<34} {:>8.1f} {:>8}  {:>8.3f} {:>8} {:>6.2f}  {}\n", x.added.spec, x.added.d,
-                   p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT), x.price,
+                   p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT), x.price.growth,
                    bar(x.rms_after_nT));
     if (!x.possible.empty()) fmt::format_to(to, "    could also be {}\n", fmt::join(x.possible, ", "));
   }
+  if (!r.rounds.empty())
+    out += "price: growth of the standard deviation of that parameter of the sensors that loses most\n";
   fmt::format_to(to, "stopped: {}\n", r.stopped);
   return out;
 }

@@ -99,7 +99,7 @@ Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options
   out.realised = chi2_of(*before, before->fit) - chi2_of(*before, same ? *same : after->fit);
   Eigen::Index first = 0;
   out.coefficients = coefficients_of(after->fit, options.effects.size(), first);
-  if (same) out.price = variance_price(before->fit, *same);
+  out.price = variance_price(before->fit, after->fit);
   fill(*before, *after, out);
   return out;
 }
@@ -120,7 +120,7 @@ Result<ModelChange> drop_effect(const PoseTable& table, const FitOptions& option
   out.predicted = wald_rise(before->fit, first, out.k);
   const auto same = fit_under_same_weights(table, *before, narrower.effects);
   out.realised = chi2_of(*before, same ? *same : after->fit) - chi2_of(*before, before->fit);
-  if (same) out.price = variance_price(*same, before->fit);
+  out.price = variance_price(after->fit, before->fit);
   fill(*before, *after, out);
   return out;
 }

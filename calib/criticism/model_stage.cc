@@ -9,6 +9,18 @@
 #include "calib/fit/tune.h"
 
 namespace mgtd::calib {
+namespace {
+
+/// The poses of `to`, the same as those of `from`, take over what their observations weigh.
+void weigh_alike(const JointProblem& from, JointProblem& to) {
+  for (std::size_t k = 0; k < to.poses.size(); ++k) {
+    to.poses[k].weight = from.poses[k].weight;
+    to.poses[k].attitude_weight = from.poses[k].attitude_weight;
+    to.poses[k].f_weight = from.poses[k].f_weight;
+  }
+}
+
+}  // namespace
 
 Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options) {
   JointOptions joint = joint_options(options);
@@ -30,12 +42,7 @@ Result<JointFit> fit_under_same_weights(const PoseTable& table, const ModelStage
   auto problem = joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
   fix_gauge(*problem, options);
-  const auto& weighed = stage.fit.problem.poses;
-  for (std::size_t k = 0; k < problem->poses.size(); ++k) {
-    problem->poses[k].weight = weighed[k].weight;
-    problem->poses[k].attitude_weight = weighed[k].attitude_weight;
-    problem->poses[k].f_weight = weighed[k].f_weight;
-  }
+  weigh_alike(stage.fit.problem, *problem);
   JointState start =
       joint_state(*problem, stage.fit.state.sensors, stage.fit.state.direction, stage.fit.state.f_nT);
   auto solved = solve(*problem, std::move(start));
@@ -49,7 +56,9 @@ Result<JointFit> fit_under_same_weights(const PoseTable& table, const ModelStage
 
 VariancePrice variance_price(const JointFit& narrow, const JointFit& wide) {
   VariancePrice out;
-  const auto before = covariance_of(reduce(narrow.problem, narrow.state, 0).S);
+  JointProblem same = narrow.problem;
+  weigh_alike(wide.problem, same);
+  const auto before = covariance_of(reduce(same, narrow.state, 0).S);
   const auto after = covariance_of(reduce(wide.problem, wide.state, 0).S);
   if (!before || !after) return out;
   for (int i = 0; i < kSensorBlock; ++i) {

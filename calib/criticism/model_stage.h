@@ -29,7 +29,8 @@ struct VariancePrice {
   double growth{1};         ///< of its standard deviation
   std::string parameter{};  ///< "s3.cx"
 };
-/// Both under the same weights. No growth where one of them tells nothing.
+/// Two fits of the same poses, both weighed as the wide one: what the data would tell without the effect at
+/// the noise that is left with it. No growth where one of them tells nothing.
 [[nodiscard]] VariancePrice variance_price(const JointFit& narrow, const JointFit& wide);
 
 /// Rise of the error on poses left out that is not chance any more: beyond it an effect is not added.
