@@ -140,6 +140,17 @@ void Reader::read_service(const toml::table& root) {
   Settings store = section(root, "store");
   config_.store_dir = store.text("dir", config_.store_dir);
   config_.journal = store.boolean("journal", config_.journal);
+  config_.journal_mb = store.integer("journal_mb", config_.journal_mb);
+  require(store, "journal_mb", config_.journal_mb == 0 || config_.journal_mb >= 16,
+          "16 MB or more, or 0 for no limit");
+  config_.journal_days = store.number("journal_days", config_.journal_days);
+  require(store, "journal_days", config_.journal_days >= 0 && config_.journal_days <= 36'500,
+          "0 (no limit) to 36500 days");
+  config_.ring_mb = store.integer("ring_mb", config_.ring_mb);
+  require(store, "ring_mb", config_.ring_mb == 0 || (config_.ring_mb >= 1 && config_.ring_mb <= 1'000'000),
+          "1 to 1000000 MB, or 0 for none");
+  config_.reserve_mb = store.integer("reserve_mb", config_.reserve_mb);
+  require(store, "reserve_mb", config_.reserve_mb >= 0, "0 MB or more");
   close(store);
   Settings stream = section(root, "stream");
   config_.stream_tcp = stream.text("tcp", config_.stream_tcp);

@@ -66,6 +66,10 @@ struct Config {
   RunDefaults run;
   std::string store_dir{"/var/lib/mgtd"};
   bool journal{true};
+  std::int64_t journal_mb{8192};  ///< of all raw journals together; 0: no limit
+  double journal_days{0};         ///< older ones are removed; 0: no limit
+  std::int64_t ring_mb{256};      ///< of the stream's samples; 0: they are not kept
+  std::int64_t reserve_mb{256};   ///< left free on the disk: below it journal and samples are not recorded
   std::string stream_tcp{"127.0.0.1:7450"};
   std::string stream_unix{"/run/mgtd/stream.sock"};
   std::string control_unix{"/run/mgtd/control.sock"};

@@ -6,8 +6,23 @@ namespace {
 
 constexpr std::size_t kTable = kSensors;
 constexpr Duration kTick = std::chrono::milliseconds(20);
+/// drivers::Direction as the journal calls it.
+constexpr std::array<RawDirection, 6> kRecorded{RawDirection::received, RawDirection::sent,
+                                                RawDirection::opened,   RawDirection::closed,
+                                                RawDirection::tick,     RawDirection::ended};
 
 }  // namespace
+
+void carry_out(const TableOrder& order, drivers::Turntable& table) {
+  switch (order.what) {
+    case TableOrder::What::home:
+      return table.home();
+    case TableOrder::What::move:
+      return table.move_to(order.target);
+    case TableOrder::What::stop:
+      return table.stop();
+  }
+}
 
 Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
                          Callbacks callbacks)
@@ -30,11 +45,10 @@ void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, 
   };
   port.on_state = [this, name](const LinkHealth& health) { callbacks_.on_link(name, health); };
   port.on_raw = [this, number](drivers::Direction direction, std::span<const std::byte> bytes, Stamp at) {
-    callbacks_.on_raw(
-        {.device = number,
-         .direction = direction == drivers::Direction::in ? RawDirection::received : RawDirection::sent,
-         .at = at,
-         .bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
+    callbacks_.on_raw({.device = number,
+                       .direction = kRecorded.at(static_cast<std::size_t>(direction)),
+                       .at = at,
+                       .bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
   };
   instruments_.push_back(
       {name, device.driver, device.port, device.device,
@@ -66,8 +80,11 @@ void Instruments::listen() {
 }
 
 void Instruments::deliver(const Instrument& instrument) {
-  for (const DeviceEvent& event : instrument.device->take_events())
+  for (const DeviceEvent& event : instrument.device->take_events()) {
+    if (const auto* reading = std::get_if<TableReading>(&event))
+      callbacks_.on_note(TableNote{*reading}, reading->arrival);
     callbacks_.on_event(instrument.name, event);
+  }
 }
 
 void Instruments::shutdown() {
@@ -81,7 +98,9 @@ drivers::Turntable& Instruments::table() {
   return static_cast<drivers::Turntable&>(*instruments_[kTable].device);
 }
 
-void Instruments::flush_table() {
+void Instruments::order(const TableOrder& order) {
+  if (instruments_[kTable].link != nullptr) callbacks_.on_note(order, clock_.now());
+  carry_out(order, table());
   if (instruments_[kTable].link != nullptr) instruments_[kTable].link->flush();
 }
 

@@ -9,6 +9,7 @@
 #include "drivers/clock.h"
 #include "drivers/patient_timer.h"
 #include "drivers/port_link.h"
+#include "proto/journal_note.h"
 #include "proto/raw_log.h"
 #include "proto/status_report.h"
 
@@ -17,6 +18,8 @@
 /// for.
 namespace mgtd::daemon {
 
+void carry_out(const TableOrder& order, drivers::Turntable& table);
+
 class Instruments {
  public:
   struct Callbacks {
@@ -24,6 +27,8 @@ class Instruments {
     /// The link became live, or is no longer, or has another reason for it.
     std::function<void(const std::string& device, const LinkHealth& health)> on_link;
     std::function<void(const RawRecord& record)> on_raw;
+    /// What the journal has to know beside the wires.
+    std::function<void(const JournalNote& note, Stamp at)> on_note;
   };
 
   /// `io` and `clock` outlive this.
@@ -35,8 +40,8 @@ class Instruments {
   void shutdown();
 
   [[nodiscard]] drivers::Turntable& table();
-  /// Sends what the table has been asked for.
-  void flush_table();
+  /// Asks the table and sends what it says to that.
+  void order(const TableOrder& order);
   [[nodiscard]] std::vector<DeviceStatus> status() const;
   [[nodiscard]] std::vector<std::pair<std::string, LinkHealth>> links() const;
 

@@ -12,60 +12,51 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr int kMaxFiles = 1'000'000;
+void sync_and_close(int fd) {
+  ::fdatasync(fd);
+  ::close(fd);
+}
 
 }  // namespace
 
-Result<Journal> Journal::open(JournalConfig config, Instant now) {
+Journal::Journal(JournalConfig config, Instant now)
+    : config_(std::move(config)), now_(now), last_write_(now), last_sync_(now), last_try_(now) {
+  if (config_.family.empty()) config_.family = config_.name + ".";
+  start_file();
+}
+
+Journal::~Journal() {
+  if (recording() && !buffer_.empty()) flush();
+  if (recording()) sync_and_close(fd_);
+  for (const int fd : syncs_) sync_and_close(fd);
+}
+
+/// A number that is free: a journal is never written over.
+void Journal::start_file() {
   std::error_code error;
-  std::filesystem::create_directories(config.directory, error);
-  Journal journal(std::move(config));
-  if (auto ok = journal.retry(now); !ok) return tl::unexpected(ok.error());
-  return journal;
-}
-
-Journal::Journal(Journal&& other) noexcept { *this = std::move(other); }
-
-Journal& Journal::operator=(Journal&& other) noexcept {
-  if (this == &other) return *this;
-  close();
-  config_ = std::move(other.config_);
-  file_ = std::move(other.file_);
-  fd_ = std::exchange(other.fd_, -1);
-  number_ = other.number_;
-  buffer_ = std::exchange(other.buffer_, {});
-  in_file_ = other.in_file_;
-  written_ = other.written_;
-  lost_ = other.lost_;
-  last_write_ = other.last_write_;
-  last_sync_ = other.last_sync_;
-  unsynced_ = std::exchange(other.unsynced_, false);
-  error_ = std::move(other.error_);
-  return *this;
-}
-
-Journal::~Journal() { close(); }
-
-Result<void> Journal::retry(Instant now) {
-  if (recording()) return {};
-  last_write_ = last_sync_ = now;
-  error_.reset();
-  return start_file();
-}
-
-/// The next number that is free: a journal is never written over.
-Result<void> Journal::start_file() {
+  std::filesystem::create_directories(config_.directory, error);
+  std::uint64_t number = next_number(config_.directory, config_.name, config_.suffix);
+  removed_ += remove_oldest(rotated_files(config_.directory, config_.family, config_.suffix), config_.keep,
+                            config_.rotate_bytes);
   do {
-    file_ = config_.directory / fmt::format("{}.{:03}.raw", config_.name, number_++);
+    file_ = rotated_name(config_.directory, config_.name, number++, config_.suffix);
     fd_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0640);
-  } while (fd_ < 0 && errno == EEXIST && number_ < kMaxFiles);
-  if (fd_ < 0) {
-    return fail(ErrorCode::io, fmt::format("cannot create {}: {}", file_.string(), std::strerror(errno)),
-                "check the directory's owner and the space on its disk");
+  } while (fd_ < 0 && errno == EEXIST);
+  if (fd_ < 0) return stop(refused(errno, "create"));
+  const std::string header = encode_header(config_.header);
+  if (const ssize_t n = ::write(fd_, header.data(), header.size());
+      n != static_cast<ssize_t>(header.size())) {
+    const int os_error = n < 0 ? errno : ENOSPC;
+    ::unlink(file_.c_str());
+    return stop(refused(os_error, "write"));
   }
-  in_file_ = 0;
-  buffer_.insert(0, encode_header(config_.header));
-  return {};
+  in_file_ = header.size();
+  written_ += header.size();
+  unsynced_ = true;
+  file_since_ = now_;
+  encoder_ = {};
+  resumed_ = trouble_.has_value();
+  trouble_.reset();
 }
 
 void Journal::append(const RawRecord& record) {
@@ -73,33 +64,31 @@ void Journal::append(const RawRecord& record) {
     lost_ += record.bytes.size();
     return;
   }
-  encode_record(record, buffer_);
+  encoder_.encode(record, buffer_);
   if (buffer_.size() >= config_.buffer_bytes) flush();
 }
 
 void Journal::tick(Instant now) {
-  if (!recording()) return;
-  if (now - last_write_ >= config_.write_every) {
-    last_write_ = now;
-    flush();
+  now_ = now;
+  if (!recording()) {
+    if (held_ || now - last_try_ < config_.retry_every) return;
+    last_try_ = now;
+    start_file();
   }
-  if (recording() && unsynced_ && now - last_sync_ >= config_.sync_every) {
-    last_sync_ = now;
-    unsynced_ = false;
-    if (::fdatasync(fd_) != 0) stop(errno, "sync");
-  }
+  if (now - last_write_ < config_.write_every) return;
+  last_write_ = now;
+  flush();
 }
 
 void Journal::flush() {
   std::size_t done = 0;
-  while (done < buffer_.size()) {
+  while (recording() && done < buffer_.size()) {
     const ssize_t n = ::write(fd_, buffer_.data() + done, buffer_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       const int os_error = n == 0 ? ENOSPC : errno;
-      lost_ += buffer_.size() - done;
-      stop(os_error, "write");
-      return;
+      buffer_.erase(0, done);
+      return stop(refused(os_error, "write"));
     }
     done += static_cast<std::size_t>(n);
     in_file_ += static_cast<std::uint64_t>(n);
@@ -107,33 +96,67 @@ void Journal::flush() {
     unsynced_ = true;
   }
   buffer_.clear();
-  if (in_file_ < config_.rotate_bytes) return;
-  close();
-  if (auto next = start_file(); !next) error_ = next.error();
+  if (in_file_ >= config_.rotate_bytes || now_ - file_since_ >= config_.rotate_after) rotate();
 }
 
-void Journal::close() {
-  if (fd_ < 0) return;
-  if (!buffer_.empty()) {
-    const std::uint64_t rotate = std::exchange(config_.rotate_bytes, UINT64_MAX);
-    flush();
-    config_.rotate_bytes = rotate;
-  }
-  if (fd_ < 0) return;
-  ::fdatasync(fd_);
-  ::close(std::exchange(fd_, -1));
+void Journal::rotate() {
+  if (!recording()) return;
+  syncs_.push_back(std::exchange(fd_, -1));
   unsynced_ = false;
+  start_file();
 }
 
-void Journal::stop(int os_error, const char* doing) {
-  error_ = Error{ErrorCode::io,
-                 fmt::format("cannot {} {}: {}; raw bytes are no longer recorded, everything else goes on",
-                             doing, file_.string(), std::strerror(os_error)),
-                 "free space on its disk; recording starts again with the next run"};
-  buffer_.clear();
-  ::close(std::exchange(fd_, -1));
+std::vector<int> Journal::take_syncs() {
+  std::vector<int> out = std::exchange(syncs_, {});
+  if (recording() && unsynced_ && now_ - last_sync_ >= config_.sync_every) {
+    last_sync_ = now_;
+    unsynced_ = false;
+    if (const int copy = ::fcntl(fd_, F_DUPFD_CLOEXEC, 0); copy >= 0) out.push_back(copy);
+  }
+  return out;
 }
 
-std::optional<Error> Journal::take_error() { return std::exchange(error_, std::nullopt); }
+void Journal::synced(int os_error) {
+  if (os_error != 0 && recording()) stop(refused(os_error, "sync"));
+}
+
+void Journal::hold(Error why) {
+  if (std::exchange(held_, true)) return;
+  if (recording() && !buffer_.empty()) flush();
+  stop(std::move(why));
+}
+
+void Journal::release() {
+  if (!std::exchange(held_, false) || recording()) return;
+  last_try_ = now_;
+  start_file();
+}
+
+Error Journal::refused(int os_error, const char* doing) const {
+  return {ErrorCode::io,
+          fmt::format("cannot {} {}: {}; {} are no longer recorded, everything else goes on", doing,
+                      file_.string(), std::strerror(os_error), config_.what),
+          os_error == ENOSPC || os_error == EDQUOT || os_error == EFBIG
+              ? "free space on its disk; recording goes on by itself"
+              : "check the disk and the directory's owner; recording goes on by itself"};
+}
+
+void Journal::stop(Error why) {
+  lost_ += std::exchange(buffer_, {}).size();
+  if (recording()) ::close(std::exchange(fd_, -1));
+  if (!trouble_) {
+    ++stops_;
+    untold_ = why;
+    resumed_ = false;
+  }
+  trouble_ = std::move(why);
+}
+
+std::optional<Error> Journal::take_error() { return std::exchange(untold_, std::nullopt); }
+
+std::optional<std::uint64_t> Journal::take_resumed() {
+  if (!std::exchange(resumed_, false)) return std::nullopt;
+  return lost_ - std::exchange(lost_told_, lost_);
+}
 
 }  // namespace mgtd::daemon

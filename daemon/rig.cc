@@ -6,25 +6,13 @@
 
 #include <system_error>
 
+#include "calib/calibration_json.h"
 #include "daemon/service_notify.h"
 
 namespace mgtd::daemon {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(20);
-constexpr auto kFreshAngles = std::chrono::seconds(10);
-
-SamplerConfig sampler_config(const Config& config) {
-  SamplerConfig out;
-  out.rate_hz = config.rate_hz;
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    const DeviceConfig& sensor = config.sensors.at(i);
-    out.latency_s.at(i) = sensor.latency_s;
-    out.wire_s.at(i) = wire_s(sensor.device->line_bytes(), sensor.device->baud());
-  }
-  out.silence_s *= config.speed_up;
-  return out;
-}
 
 StreamConfig stream_config(const Config& config) {
   StreamConfig out;
@@ -50,19 +38,17 @@ Rig::Rig(boost::asio::io_context& io, Config config, CalibrationStore store)
                                        const DeviceEvent& event) { on_event(device, event); },
                     .on_link = [this](const std::string& device,
                                       const LinkHealth& health) { on_link(device, health); },
-                    .on_raw =
-                        [this](const RawRecord& record) {
-                          if (journal_) journal_->append(record);
-                        }}),
-      sampler_(sampler_config(config_)),
-      live_(calib::Geometry{config_.baseline_m}),
+                    .on_raw = [this](const RawRecord& record) { on_raw(record); },
+                    .on_note = [this](const JournalNote& what, Stamp at) { note(what, at); }}),
+      pipeline_(sampler_config(config_), config_.baseline_m),
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
       run_(config_, runs_directory(config_), store_, worker_,
            {.table = [this]() -> drivers::Turntable& { return instruments_.table(); },
-            .flush_table = [this] { instruments_.flush_table(); },
+            .order = [this](const TableOrder& order) { instruments_.order(order); },
             .publish = [this](const RunStatus& status) { stream_.publish(status); }}),
+      disk_sync_(io),
       timer_(io),
       started_(clock_.now()) {}
 
@@ -75,17 +61,7 @@ Result<void> Rig::start() {
     return fail(ErrorCode::io, fmt::format("{}: {}", runs_directory(config_).string(), ec.message()),
                 "set [store] dir to a directory mgtd may write");
   }
-  if (config_.journal) {
-    auto journal = Journal::open({.directory = runs_directory(config_),
-                                  .name = "raw-" + fmt::format("{}", started_.wall.ns / 1'000'000'000),
-                                  .header = {config_.rig_name, ""}},
-                                 started_.mono);
-    if (journal) {
-      journal_ = *std::move(journal);
-    } else {
-      spdlog::error("no raw journal: {}", journal.error().text());
-    }
-  }
+  start_recording();
   use_active_calibration();
   run_.find_interrupted();
   if (auto bound = stream_.start(); !bound) return bound;
@@ -111,42 +87,30 @@ void Rig::stop() {
 
 void Rig::use_active_calibration() {
   auto active = store_.active();
+  std::shared_ptr<const calib::Calibration> used;
   if (!active) {
     spdlog::error("the active calibration cannot be read, streaming raw: {}", active.error().text());
-    live_ = calib::LiveTensor(calib::Geometry{config_.baseline_m});
-    criticism_ = {};
-    return;
-  }
-  if (*active) {
+  } else if (*active) {
     spdlog::info("calibration {} is active", (*active)->id);
-    criticism_ = calib::LiveCriticism(**active);
-    live_ = calib::LiveTensor(std::make_shared<const calib::Calibration>(**std::move(active)));
+    used = std::make_shared<const calib::Calibration>(**std::move(active));
   } else {
     spdlog::info("no calibration is active: the stream is raw and says so");
-    criticism_ = {};
-    live_ = calib::LiveTensor(calib::Geometry{config_.baseline_m});
   }
-}
-
-/// Where the array stands is known while a referenced table stands still and says so.
-calib::LiveConditions Rig::conditions(Instant at) const {
-  calib::LiveConditions out;
-  if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
-    out.angles = table_->angles;
-  return out;
+  note(CalibrationNote{used ? calib::to_json_text(*used) : std::string()}, clock_.now());
+  pipeline_.use(std::move(used));
 }
 
 void Rig::tell_left_out() {
-  if (live_.left_out() == told_left_out_) return;
-  for (const auto& [effect, lacks] : live_.left_out())
+  if (pipeline_.live().left_out() == told_left_out_) return;
+  for (const auto& [effect, lacks] : pipeline_.live().left_out())
     spdlog::warn("{} is not corrected: {} is not measured; the samples say incomplete", effect, lacks);
-  if (live_.left_out().empty()) spdlog::info("every effect of the calibration is corrected");
-  told_left_out_ = live_.left_out();
+  if (pipeline_.live().left_out().empty()) spdlog::info("every effect of the calibration is corrected");
+  told_left_out_ = pipeline_.live().left_out();
 }
 
 /// On a change of state only.
 void Rig::tell_criticism() {
-  const calib::LiveVerdict& verdict = criticism_.verdict();
+  const calib::LiveVerdict& verdict = pipeline_.verdict();
   if (verdict.state == calib::LiveState::suspect) {
     spdlog::warn("the calibration is suspect: {}; limit {}; {}", verdict.measured, verdict.limit,
                  verdict.remedy);
@@ -159,11 +123,14 @@ void Rig::tell_criticism() {
 
 void Rig::on_event(const std::string& device, const DeviceEvent& event) {
   const Stamp now = clock_.now();
-  if (const auto* reading = std::get_if<FieldReading>(&event)) return on_reading(*reading);
-  if (const auto* temperature = std::get_if<TemperatureReading>(&event)) return sampler_.push(*temperature);
+  if (const auto* reading = std::get_if<FieldReading>(&event)) {
+    pipeline_.push(*reading);
+    return deliver();
+  }
+  if (const auto* temperature = std::get_if<TemperatureReading>(&event)) return pipeline_.push(*temperature);
   if (const auto* scalar = std::get_if<ScalarReading>(&event)) return run_.feed(*scalar, now);
   if (const auto* table = std::get_if<TableReading>(&event)) {
-    table_ = *table;
+    pipeline_.push(*table);
     return run_.feed(*table, now);
   }
   if (const auto* note = std::get_if<DeviceNote>(&event)) return spdlog::info("{}: {}", device, note->what);
@@ -182,7 +149,10 @@ void Rig::on_link(const std::string& device, const LinkHealth& health) {
   const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(health.state));
   if (answers(health.state) && !answered) {
     spdlog::info("{}: live, {}", device, health.identity);
-    if (device.starts_with('s') && device.size() == 2) sampler_.reopened(device[1] - '1');
+    if (device.starts_with('s') && device.size() == 2) {
+      note(ReopenedNote{device[1] - '1'}, now);
+      pipeline_.reopened(device[1] - '1');
+    }
     run_.feed(DeviceBack{device}, now);
   } else if (health.state == LinkState::live) {
     spdlog::info("{}: live again", device);
@@ -192,31 +162,21 @@ void Rig::on_link(const std::string& device, const LinkHealth& health) {
   if (answered && !answers(health.state)) run_.feed(DeviceLost{device, health.detail}, now);
 }
 
-void Rig::on_reading(const FieldReading& reading) {
-  sampler_.push(reading, pending_);
-  deliver();
-}
-
 void Rig::deliver() {
-  for (const EpochOrGap& item : pending_) {
-    if (const auto* epoch = std::get_if<Epoch>(&item)) {
-      publish(*epoch);
-    } else {
-      stream_.publish(std::get<Gap>(item));
-      run_.feed(std::get<Gap>(item), clock_.now());
-    }
-    ++published_;
-  }
-  pending_.clear();
+  pipeline_.deliver(
+      [this](const Epoch& epoch, const TensorSample& sample, bool verdict_changed) {
+        if (verdict_changed) tell_criticism();
+        publish(epoch, sample);
+        ++published_;
+      },
+      [this](const Gap& gap) {
+        stream_.publish(gap);
+        run_.feed(gap, clock_.now());
+        ++published_;
+      });
 }
 
-void Rig::publish(const Epoch& epoch) {
-  TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
-  if (run_.active()) sample.flags |= Flag::calibrating;
-  if (const auto& used = live_.calibration(); used && !used->accepted_by_checks) sample.flags |= Flag::forced;
-  if (criticism_.add(sample, epoch.T_degC)) tell_criticism();
-  if (criticism_.verdict().state == calib::LiveState::suspect) sample.flags |= Flag::suspect;
-  if (criticism_.verdict().state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
+void Rig::publish(const Epoch& epoch, const TensorSample& sample) {
   stream_.publish(sample);
   last_skew_s_ = epoch.skew_bound_s;
   run_.feed(epoch, clock_.now());
@@ -229,14 +189,12 @@ void Rig::watch_links(Stamp now) {
 
 void Rig::tick() {
   const Stamp now = clock_.now();
-  sampler_.advance(now.mono, pending_);
+  on_raw({.device = kRawDaemon, .direction = RawDirection::tick, .at = now, .bytes = {}});
+  pipeline_.advance(now.mono);
   deliver();
   if (run_.status(now.mono).state == RunState::preflight) watch_links(now);
   run_.feed(Tick{}, now);
-  if (journal_) {
-    journal_->tick(now.mono);
-    if (const auto error = journal_->take_error()) spdlog::error("raw journal: {}", error->text());
-  }
+  record(now);
   const Instant host = std::chrono::steady_clock::now();
   if (!last_second_ || host - *last_second_ >= std::chrono::seconds(1)) {
     every_second(now);
@@ -257,12 +215,13 @@ void Rig::tell_drops(const StatusReport& status, Instant at) {
 
 void Rig::every_second(Stamp now) {
   const Instant host = std::chrono::steady_clock::now();
-  const std::uint64_t epochs = sampler_.health().epochs;
+  const std::uint64_t epochs = pipeline_.sampler().health().epochs;
   if (last_second_)
     rate_hz_ =
         static_cast<double>(epochs - epochs_at_second_) / to_seconds(host - *last_second_) / config_.speed_up;
   epochs_at_second_ = epochs;
   watch_links(now);
+  guard_reserve();
   tell_left_out();
   const StatusReport status = report();
   tell_drops(status, now.mono);

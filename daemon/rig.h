@@ -7,16 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "calib/criticism/live_criticism.h"
-#include "calib/live_tensor.h"
 #include "daemon/calibration_store.h"
 #include "daemon/config.h"
 #include "daemon/control_server.h"
+#include "daemon/disk_ring.h"
+#include "daemon/disk_sync.h"
 #include "daemon/instruments.h"
 #include "daemon/journal.h"
+#include "daemon/live_pipeline.h"
 #include "daemon/log.h"
 #include "daemon/run_conductor.h"
-#include "daemon/sampler.h"
 #include "daemon/stream_server.h"
 #include "daemon/worker.h"
 #include "drivers/patient_timer.h"
@@ -41,17 +41,23 @@ class Rig {
  private:
   void on_event(const std::string& device, const DeviceEvent& event);
   void on_link(const std::string& device, const LinkHealth& health);
-  void on_reading(const FieldReading& reading);
+  void on_raw(const RawRecord& record);
+  void note(const JournalNote& note, Stamp at);
   void deliver();
-  void publish(const Epoch& epoch);
+  void publish(const Epoch& epoch, const TensorSample& sample);
   void tick();
   void every_second(Stamp now);
   void use_active_calibration();
   void tell_left_out();
   void tell_criticism();
-  [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
+  void settle_calibrating(Stamp at);
   void watch_links(Stamp now);
   void tell_drops(const StatusReport& status, Instant at);
+  void start_recording();
+  void start_disk_ring(LifeNote& life);
+  void record(Stamp now);
+  void watch_recording(Journal& journal, const std::string& what, Instant now);
+  void guard_reserve();
 
   [[nodiscard]] Result<nlohmann::ordered_json> answer(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_run(const ControlRequest& request);
@@ -66,20 +72,18 @@ class Rig {
   CalibrationStore store_;
   Worker worker_;
   Instruments instruments_;
-  Sampler sampler_;
-  calib::LiveTensor live_;
-  calib::LiveCriticism criticism_;
+  LivePipeline pipeline_;
+  std::optional<DiskRing> disk_ring_;
   StreamServer stream_;
   ControlServer control_;
   RunConductor run_;
   std::optional<Journal> journal_;
+  DiskSync disk_sync_;
   drivers::PatientTimer timer_;
   QuietLog quiet_;
 
-  std::optional<TableReading> table_;  ///< the last
   std::vector<calib::LeftOutEffect> told_left_out_;
   Stamp started_;
-  std::vector<EpochOrGap> pending_;  ///< reused, so that a sample allocates nothing
   std::optional<double> last_skew_s_;
   std::uint64_t published_{0}, published_at_watchdog_{0};
   std::uint64_t epochs_at_second_{0};
@@ -88,7 +92,7 @@ class Rig {
   std::uint64_t told_drops_{0};  ///< clients that were disconnected, as far as the log knows
   std::optional<Instant> last_second_, last_watchdog_;
   std::optional<Duration> watchdog_;
-  bool stopping_{false};
+  bool stopping_{false}, calibrating_{false};
 };
 
 }  // namespace mgtd::daemon

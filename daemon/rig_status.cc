@@ -6,6 +6,20 @@
 
 namespace mgtd::daemon {
 
+namespace {
+
+RecordingStatus recording(const Journal& journal) {
+  RecordingStatus out;
+  out.state = journal.recording() ? "writing" : "stopped";
+  if (journal.trouble()) out.why = journal.trouble()->text();
+  out.bytes = journal.bytes_written();
+  out.bytes_lost = journal.bytes_lost();
+  out.stops = journal.stops();
+  return out;
+}
+
+}  // namespace
+
 StatusReport Rig::report() const {
   const Stamp now = clock_.now();
   StatusReport out;
@@ -15,22 +29,25 @@ StatusReport Rig::report() const {
   out.rig = config_.rig_name;
   out.speed_up = config_.speed_up;
   out.calibration = store_.active_id();
-  if (const auto& used = live_.calibration()) {
+  if (const auto& used = pipeline_.live().calibration()) {
     out.calibration_use.forced = !used->accepted_by_checks;
-    for (const auto& [effect, lacks] : live_.left_out())
+    for (const auto& [effect, lacks] : pipeline_.live().left_out())
       out.calibration_use.left_out.push_back({effect, lacks});
   }
-  const calib::LiveVerdict& verdict = criticism_.verdict();
+  const calib::LiveVerdict& verdict = pipeline_.verdict();
   out.criticism = {std::string(calib::to_string(verdict.state)), verdict.measured, verdict.limit,
                    verdict.remedy};
   out.devices = instruments_.status();
-  const SamplerHealth sampler = sampler_.health();
+  const SamplerHealth sampler = pipeline_.sampler().health();
   out.sampler = {
       .epochs = sampler.epochs, .gaps = sampler.gaps, .rate_hz = rate_hz_, .skew_bound_s = last_skew_s_};
   out.stream = stream_.stats();
   out.control = control_.stats();
-  out.journal.state = journal_ ? (journal_->recording() ? "writing" : "stopped: the disk refused") : "off";
-  out.journal.bytes = journal_ ? journal_->bytes_written() : 0;
+  if (journal_) out.journal = recording(*journal_);
+  if (disk_ring_) {
+    out.ring = recording(disk_ring_->journal());
+    out.oldest_seq = disk_ring_->oldest_seq();
+  }
   std::error_code ec;
   if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
     out.disk_free_bytes = space.available;

@@ -234,14 +234,10 @@ void RunConductor::carry_out(const std::vector<Action>& actions, Stamp now) {
   for (const Action& action : actions) std::visit([&](const auto& a) { act(a, now); }, action);
 }
 
-void RunConductor::act(const HomeTable&, Stamp) {
-  hooks_.table().home();
-  hooks_.flush_table();
-}
+void RunConductor::act(const HomeTable&, Stamp) { hooks_.order({TableOrder::What::home, {}}); }
 
 void RunConductor::act(const MoveTable& action, Stamp) {
-  hooks_.table().move_to(action.target);
-  hooks_.flush_table();
+  hooks_.order({TableOrder::What::move, action.target});
 }
 
 void RunConductor::act(const SetTable& action, Stamp) {
@@ -260,10 +256,7 @@ void RunConductor::act(const DropPoses& action, Stamp) {
   poses_ = std::move(left);
 }
 
-void RunConductor::act(const StopTable&, Stamp) {
-  hooks_.table().stop();
-  hooks_.flush_table();
-}
+void RunConductor::act(const StopTable&, Stamp) { hooks_.order({TableOrder::What::stop, {}}); }
 
 void RunConductor::act(const StorePose& action, Stamp) {
   auto stored = file_->append_pose(action.pose);
@@ -377,8 +370,7 @@ RunStatus RunConductor::status(Instant now) const {
 
 void RunConductor::abandon() {
   if (!active()) return;
-  hooks_.table().stop();
-  hooks_.flush_table();
+  hooks_.order({TableOrder::What::stop, {}});
   spdlog::warn("run {} is left with its poses on disk; it can be resumed when the daemon is back",
                file_->header().run_id);
 }

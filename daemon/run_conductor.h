@@ -13,6 +13,7 @@
 #include "daemon/run_file.h"
 #include "daemon/run_fsm.h"
 #include "daemon/worker.h"
+#include "proto/journal_note.h"
 #include "proto/run_request.h"
 
 /// Carries out what the run's state machine asks for: moves the table, keeps the run file, has the worker
@@ -23,7 +24,7 @@ namespace mgtd::daemon {
 
 struct RunHooks {
   std::function<drivers::Turntable&()> table;
-  std::function<void()> flush_table;
+  std::function<void(const TableOrder&)> order;
   std::function<void(const RunStatus&)> publish;
 };
 

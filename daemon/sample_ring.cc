@@ -5,7 +5,8 @@
 
 namespace mgtd::daemon {
 
-SampleRing::SampleRing(std::size_t capacity) : slots_(std::max<std::size_t>(capacity, 1)) {}
+SampleRing::SampleRing(std::size_t capacity, std::uint64_t next_seq)
+    : slots_(std::max<std::size_t>(capacity, 1)), next_seq_(next_seq) {}
 
 void SampleRing::push(StreamClass stream_class, std::uint64_t from_seq, std::uint64_t to_seq, Instant at,
                       std::string_view line) {

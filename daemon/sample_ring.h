@@ -24,7 +24,8 @@ struct StreamRecord {
 
 class SampleRing {
  public:
-  explicit SampleRing(std::size_t capacity);
+  /// `next_seq`: the first epoch that will be pushed, when earlier ones were in another life.
+  explicit SampleRing(std::size_t capacity, std::uint64_t next_seq = 0);
 
   void push_sample(std::uint64_t seq, Instant at, std::string_view line);
   void push_gap(std::uint64_t from_seq, std::uint64_t to_seq, std::string_view line);

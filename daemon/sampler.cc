@@ -43,6 +43,7 @@ Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.r
     streams_.emplace_back(ClockModel(clock), capacity);
   }
   T_degC_.fill(std::numeric_limits<double>::quiet_NaN());
+  next_seq_ = config_.first_seq;
 }
 
 void Sampler::begin(const Stamp& stamp) {

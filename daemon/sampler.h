@@ -36,6 +36,7 @@ struct SamplerConfig {
   double max_drift{2e-3};  ///< of a device's rate against rate_hz, relative
   std::uint64_t settle_samples{100};
   double temperature_s{300};      ///< a temperature is attached to epochs for so long
+  std::uint64_t first_seq{0};     ///< number of the first epoch
   double negligible_shift{2e-3};  ///< of a period: no interpolation below it (nor below the clock bound)
 };
 

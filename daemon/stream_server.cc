@@ -25,6 +25,7 @@ struct Client {
   std::shared_ptr<LineConnection> connection;
   RequestRate rate;
   Subscription subscription{};
+  std::optional<RingReader> past{};  ///< while it reads what is on disk
   int bad_lines{0};
 };
 
@@ -44,12 +45,22 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   Result<void> start();
   void stop();
 
+  void keep(DiskRing& disk) {
+    disk_ = &disk;
+    const auto& between = disk.between();
+    ring_ = SampleRing(config_.ring_lines, between ? between->from_seq : disk.first_seq());
+    if (between) publish(*between);
+  }
   void publish(const TensorSample& sample) {
-    ring_.push_sample(sample.seq, sample.t.mono, encoder_.encode(sample));
+    const std::string_view line = encoder_.encode(sample);
+    ring_.push_sample(sample.seq, sample.t.mono, line);
+    if (disk_ != nullptr) disk_->push({RingRecord::Kind::sample, sample.seq, sample.seq, sample.t, line});
     serve_later();
   }
   void publish(const Gap& gap) {
-    ring_.push_gap(gap.from_seq, gap.to_seq, encode(gap));
+    const std::string line = encode(gap);
+    ring_.push_gap(gap.from_seq, gap.to_seq, line);
+    if (disk_ != nullptr) disk_->push({RingRecord::Kind::gap, gap.from_seq, gap.to_seq, gap.at, line});
     serve_later();
   }
   void publish_line(StreamClass stream_class, std::string_view line) {
@@ -69,6 +80,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   void on_line(Client& client, std::string_view line);
   void bad_line(Client& client, const Error& error);
   void refill(Client& client, std::string& out);
+  void read_past(Client& client, std::string& out);
   void serve_later();
   void serve();
   void drop(Client& client, DropReason reason, const Error& why);
@@ -77,6 +89,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   StreamConfig config_;
   std::string greeting_;
   SampleRing ring_;
+  DiskRing* disk_{nullptr};
   TensorEncoder encoder_;
   std::vector<Listener> listeners_;
   std::uint16_t tcp_port_{0};
@@ -153,7 +166,10 @@ void StreamServer::State::on_line(Client& client, std::string_view line) {
   if (!request) return bad_line(client, request.error());
   client.bad_lines = 0;
   std::string out;
-  client.subscription.watch(*request, ring_, out);
+  const bool goes_back = disk_ != nullptr && request->from_seq;
+  client.subscription.watch(*request, ring_, out, goes_back ? disk_->oldest_seq() : std::nullopt);
+  client.past.reset();
+  if (const auto seq = client.subscription.behind()) client.past = disk_->read_from(*seq);
   client.connection->send(out);
   if (client.connection->backlog() > kReplyBacklog) {
     return drop(client, DropReason::unread,
@@ -172,8 +188,20 @@ void StreamServer::State::bad_line(Client& client, const Error& error) {
 
 void StreamServer::State::refill(Client& client, std::string& out) {
   const std::uint64_t before = client.subscription.gaps();
-  client.subscription.fill(ring_, out, kBatch);
+  if (client.past) read_past(client, out);
+  if (!client.past) client.subscription.fill(ring_, out, kBatch);
   counted_.gaps += client.subscription.gaps() - before;
+}
+
+/// A piece of the disk per turn: nobody waits long.
+void StreamServer::State::read_past(Client& client, std::string& out) {
+  Subscription& subscription = client.subscription;
+  const bool more = client.past->read([&](const RingRecord& record) {
+    if (subscription.behind()) subscription.take(record, ring_, out);
+  });
+  if (!more && subscription.behind()) subscription.catch_up(ring_, out);
+  if (!subscription.behind()) client.past.reset();
+  serve_later();
 }
 
 void StreamServer::State::drop(Client& client, DropReason reason, const Error& why) {
@@ -209,6 +237,7 @@ StreamServer::StreamServer(boost::asio::io_context& io, StreamConfig config, Gre
     : state_(std::make_shared<State>(io, std::move(config), greeting)) {}
 StreamServer::~StreamServer() { state_->stop(); }
 
+void StreamServer::keep(DiskRing& disk) { state_->keep(disk); }
 Result<void> StreamServer::start() { return state_->start(); }
 void StreamServer::stop() { state_->stop(); }
 void StreamServer::publish(const TensorSample& sample) { state_->publish(sample); }

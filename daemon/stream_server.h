@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/disk_ring.h"
 #include "daemon/request_rate.h"
 #include "proto/epoch.h"
 #include "proto/error.h"
@@ -43,6 +44,9 @@ class StreamServer {
   StreamServer(const StreamServer&) = delete;
   StreamServer& operator=(const StreamServer&) = delete;
 
+  /// What is published is also kept on disk, and clients go back to what is there. Before start(); the ring
+  /// outlives the server. Begins with what lies between the last life and this one.
+  void keep(DiskRing& disk);
   /// Binds and listens. On an error nothing is left listening.
   [[nodiscard]] Result<void> start();
   /// Says why to every client, closes, removes the Unix socket.

@@ -5,10 +5,14 @@
 #include <string>
 
 #include "daemon/sample_ring.h"
+#include "proto/ring_record.h"
 #include "proto/watch_request.h"
 
 /// What one client of the stream is still owed: its wishes and its place in the ring. Pure: lines go from the
 /// ring to a buffer here, sockets are elsewhere.
+///
+/// A client that asks for samples older than the ring's is `behind`: the owner shows it what is on disk by
+/// take(), and catch_up() when there is no more; then it goes on in the ring.
 ///
 /// A client that the ring has overtaken is told by a GAP which epochs it lost ("client too slow") and goes on
 /// with the newest sample. Overtaken three times without keeping up for a ring length in between, it has
@@ -20,8 +24,16 @@ class Subscription {
   static constexpr int kStrikes = 3;
 
   /// Replaces the wishes. What has to be said at once (epochs asked for and no longer held, a from_seq that
-  /// lies ahead) is appended to `out`.
-  void watch(const WatchRequest& request, const SampleRing& ring, std::string& out);
+  /// lies ahead) is appended to `out`. `on_disk`: the first epoch that is kept there.
+  void watch(const WatchRequest& request, const SampleRing& ring, std::string& out,
+             std::optional<std::uint64_t> on_disk = std::nullopt);
+
+  /// The epoch to be read from disk next; nothing when the ring has the rest.
+  [[nodiscard]] std::optional<std::uint64_t> behind() const;
+  /// A line from the disk, in order. False: the ring has the rest.
+  bool take(const RingRecord& record, const SampleRing& ring, std::string& out);
+  /// There is no more on disk.
+  void catch_up(const SampleRing& ring, std::string& out);
 
   /// Appends lines that are due until `out` holds at least `limit` bytes or nothing more is due.
   void fill(const SampleRing& ring, std::string& out, std::size_t limit);
@@ -32,7 +44,7 @@ class Subscription {
   [[nodiscard]] bool stays_behind(const SampleRing& ring) const;
 
  private:
-  [[nodiscard]] bool wanted(const StreamRecord& record);
+  [[nodiscard]] bool wanted(StreamClass stream_class, Instant at);
   [[nodiscard]] bool is_due(Instant at);
   void skip_lost(const SampleRing& ring, std::string& out);
   /// Of epochs from_seq .. end_seq - 1.
@@ -43,6 +55,7 @@ class Subscription {
   std::uint64_t next_seq_{0};       ///< epoch after the last one looked at
   std::optional<Instant> due_;      ///< of the next sample to take, when decimating
   std::optional<Instant> last_at_;  ///< of the newest sample, taken or not
+  bool behind_{false};
   std::uint64_t gaps_{0};
   int strikes_{0};
   std::uint64_t kept_up_{0};  ///< records looked at since it was last overtaken

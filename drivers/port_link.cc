@@ -70,6 +70,14 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
   void write();
   void send_last_words();
   bool send_output();
+  void tell_raw(Direction direction, std::span<const std::byte> bytes, Stamp at) const {
+    if (callbacks_.on_raw) callbacks_.on_raw(direction, bytes, at);
+  }
+  [[nodiscard]] Stamp tell_now(Direction what) const {
+    const Stamp now = clock_.now();
+    tell_raw(what, {}, now);
+    return now;
+  }
   void report_state();
 
   const Clock& clock_;
@@ -114,7 +122,7 @@ void PortLink::Impl::try_open() {
   ++generation_;
   life_.opened();
   stream_.assign(port_->fd());
-  device_->on_open(clock_.now());
+  device_->on_open(tell_now(Direction::opened));
   read();
   deliver();
 }
@@ -136,7 +144,7 @@ void PortLink::Impl::close_port() {
 void PortLink::Impl::lost(const std::string& why) {
   life_.lost(why);
   close_port();
-  device_->on_close(clock_.now());
+  device_->on_close(tell_now(Direction::closed));
   static_cast<void>(device_->take_output());
   report_state();  // first that the device is lost, then what it says about it
   deliver();
@@ -148,7 +156,7 @@ void PortLink::Impl::tick() {
   tick_timer_.wait(std::clamp(clock_.host(kTick), kShortestTick, kTick), [self = shared_from_this()] {
     if (self->ended_) return;
     if (self->port_) {
-      self->device_->on_tick(self->clock_.now());
+      self->device_->on_tick(self->tell_now(Direction::tick));
       self->deliver();
       if (self->device_->health().state == LinkState::live) self->life_.live();
       if (self->port_ && self->device_->wants_reopen())
@@ -170,7 +178,7 @@ void PortLink::Impl::read() {
           return;
         }
         const std::span<const std::byte> bytes(self->in_.data(), n);
-        if (self->callbacks_.on_raw) self->callbacks_.on_raw(Direction::in, bytes, now);
+        self->tell_raw(Direction::in, bytes, now);
         self->device_->on_bytes(bytes, now);
         self->deliver();
         if (self->port_ && generation == self->generation_) self->read();
@@ -197,8 +205,7 @@ void PortLink::Impl::write() {
 bool PortLink::Impl::send_output() {
   const std::string bytes = device_->take_output();
   if (bytes.empty() || !port_) return false;
-  if (callbacks_.on_raw)
-    callbacks_.on_raw(Direction::out, std::as_bytes(std::span(bytes.data(), bytes.size())), clock_.now());
+  tell_raw(Direction::out, std::as_bytes(std::span(bytes.data(), bytes.size())), clock_.now());
   out_ += bytes;
   write();
   return true;
@@ -227,10 +234,10 @@ void PortLink::Impl::flush() {
 
 /// Blocking, but for no longer than kLastWords_ms: there is no event loop left to wait in.
 void PortLink::Impl::send_last_words() {
-  device_->on_shutdown(clock_.now());
+  device_->on_shutdown(tell_now(Direction::ended));
   const std::string words = device_->take_output();
-  if (callbacks_.on_raw && !words.empty())
-    callbacks_.on_raw(Direction::out, std::as_bytes(std::span(words.data(), words.size())), clock_.now());
+  if (!words.empty())
+    tell_raw(Direction::out, std::as_bytes(std::span(words.data(), words.size())), clock_.now());
   std::string_view rest = words;
   const int fd = port_->fd();
   stream_.release();
@@ -251,7 +258,7 @@ void PortLink::Impl::shutdown() {
   send_last_words();
   life_.ended();
   port_.reset();
-  device_->on_close(clock_.now());
+  device_->on_close(tell_now(Direction::closed));
 }
 
 PortLink::PortLink(asio::io_context& io, const Clock& clock, PortSettings settings,

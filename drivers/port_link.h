@@ -27,7 +27,8 @@ class io_context;
 /// by flush(); they must not destroy the link.
 namespace mgtd::drivers {
 
-enum class Direction { in, out };
+/// What crossed the port, or was told to the device beside it.
+enum class Direction { in, out, opened, closed, tick, ended };
 
 struct PortSettings {
   std::string path;
@@ -36,7 +37,8 @@ struct PortSettings {
 
 struct PortCallbacks {
   std::function<void(std::vector<DeviceEvent>)> on_events;
-  /// Every byte as it crossed the port, for the journal.
+  /// Every byte as it crossed the port, and every opening, closing and tick before the device is told of it
+  /// (without bytes), for the journal: whoever tells a device the same again hears the same of it.
   std::function<void(Direction, std::span<const std::byte>, Stamp)> on_raw;
   /// State or detail changed. Loss of the port is told before the events it causes, all else after them.
   std::function<void(const LinkHealth&)> on_state;

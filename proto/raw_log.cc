@@ -7,11 +7,15 @@
 #include <array>
 #include <utility>
 
+#include "proto/byte_order.h"
+
 namespace mgtd {
 namespace {
 
 constexpr std::string_view kMagic{"MGTDRAW1"};
 constexpr char kMark = '\xA5';
+constexpr char kShortTick = '\xA6';
+constexpr std::size_t kShortTickBytes = 1 + 1 + 4 + 2;
 constexpr std::size_t kRecordHead = 1 + 1 + 1 + 8 + 8 + 4;
 constexpr std::size_t kCrc = 4;
 
@@ -26,16 +30,15 @@ constexpr std::array<std::uint32_t, 256> crc_table() {
 }
 constexpr auto kCrcTable = crc_table();
 
-void put(std::string& out, std::uint64_t value, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) out += static_cast<char>((value >> (8 * i)) & 0xFFU);
+// A damaged file may hold any time: unsigned, so that sums may wrap.
+
+std::uint64_t elapsed_ns(Instant from, Instant to) {
+  return static_cast<std::uint64_t>(to.time_since_epoch().count()) -
+         static_cast<std::uint64_t>(from.time_since_epoch().count());
 }
 
-std::uint64_t get(std::string_view from, std::size_t at, std::size_t bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    value |= std::uint64_t{static_cast<unsigned char>(from[at + i])} << (8 * i);
-  }
-  return value;
+std::int64_t later(std::int64_t ns, std::uint64_t by_ns) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(ns) + by_ns);
 }
 
 }  // namespace
@@ -49,26 +52,41 @@ std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
 std::string encode_header(const RawLogHeader& header) {
   std::string text = header.rig.substr(0, 0x7000) + '\0' + header.run_id.substr(0, 0x7000);
   std::string out(kMagic);
-  put(out, text.size(), 2);
+  put_little(out, text.size(), 2);
   out += text;
-  put(out, crc32(out), kCrc);
+  put_little(out, crc32(out), kCrc);
   return out;
 }
 
-void encode_record(const RawRecord& record, std::string& out) {
+bool RawLogEncoder::is_short(const RawRecord& record) const {
+  if (record.direction != RawDirection::tick || !record.bytes.empty() || !last_) return false;
+  const std::uint64_t since = elapsed_ns(last_->mono, record.at.mono);
+  return since <= UINT32_MAX &&
+         static_cast<std::uint64_t>(record.at.wall.ns) == static_cast<std::uint64_t>(last_->wall.ns) + since;
+}
+
+void RawLogEncoder::encode(const RawRecord& record, std::string& out) {
+  const bool tick = is_short(record);
+  const std::uint64_t since = tick ? elapsed_ns(last_->mono, record.at.mono) : 0;
+  last_ = record.at;
   std::string_view rest = record.bytes;
   do {
     const std::string_view part = rest.substr(0, kRawRecordMax);
     rest.remove_prefix(part.size());
     const std::size_t start = out.size();
-    out += kMark;
-    put(out, record.device, 1);
-    put(out, static_cast<std::uint64_t>(record.direction), 1);
-    put(out, static_cast<std::uint64_t>(record.at.mono.time_since_epoch().count()), 8);
-    put(out, static_cast<std::uint64_t>(record.at.wall.ns), 8);
-    put(out, part.size(), 4);
+    out += tick ? kShortTick : kMark;
+    put_little(out, record.device, 1);
+    if (tick) {
+      put_little(out, since, 4);
+      put_little(out, crc32(std::string_view(out).substr(start)) & 0xFFFFU, 2);
+      return;
+    }
+    put_little(out, static_cast<std::uint64_t>(record.direction), 1);
+    put_little(out, static_cast<std::uint64_t>(record.at.mono.time_since_epoch().count()), 8);
+    put_little(out, static_cast<std::uint64_t>(record.at.wall.ns), 8);
+    put_little(out, part.size(), 4);
     out += part;
-    put(out, crc32(std::string_view(out).substr(start)), kCrc);
+    put_little(out, crc32(std::string_view(out).substr(start)), kCrc);
   } while (!rest.empty());
 }
 
@@ -78,11 +96,12 @@ void RawLogDecoder::feed(std::string_view bytes) {
   buffer_ += bytes;
 }
 
-void RawLogDecoder::damage(std::string what) {
+std::nullopt_t RawLogDecoder::damage(std::string what) {
   state_ = State::damaged;
   damage_ = std::move(what);
   buffer_.clear();
   at_ = 0;
+  return std::nullopt;
 }
 
 /// False: not yet, or damaged.
@@ -94,9 +113,9 @@ bool RawLogDecoder::take_header() {
     return false;
   }
   if (all.size() < kMagic.size() + 2) return false;
-  const std::size_t body = kMagic.size() + 2 + get(all, kMagic.size(), 2);
+  const std::size_t body = kMagic.size() + 2 + get_little(all, kMagic.size(), 2);
   if (all.size() < body + kCrc) return false;
-  if (crc32(all.substr(0, body)) != get(all, body, kCrc)) {
+  if (crc32(all.substr(0, body)) != get_little(all, body, kCrc)) {
     damage("the header's checksum is wrong");
     return false;
   }
@@ -112,28 +131,48 @@ bool RawLogDecoder::take_header() {
 std::optional<RawRecord> RawLogDecoder::next() {
   if (state_ == State::damaged || (state_ == State::header && !take_header())) return std::nullopt;
   const std::string_view rest = std::string_view(buffer_).substr(at_);
-  if (!rest.empty() && rest[0] != kMark) {
-    damage("a record does not begin where it should");
-    return std::nullopt;
+  if (rest.empty()) return std::nullopt;
+  if (rest[0] == kShortTick) return take_tick(rest);
+  if (rest[0] == kMark) return take_record(rest);
+  return damage("a record does not begin where it should");
+}
+
+std::optional<RawRecord> RawLogDecoder::take_tick(std::string_view rest) {
+  if (rest.size() < kShortTickBytes) return std::nullopt;
+  if ((crc32(rest.substr(0, kShortTickBytes - 2)) & 0xFFFFU) != get_little(rest, kShortTickBytes - 2, 2)) {
+    return damage("a tick's checksum is wrong");
   }
+  if (!last_) return damage("a short tick has no record before it");
+  const std::uint64_t since = get_little(rest, 2, 4);
+  RawRecord tick;
+  tick.device = static_cast<std::uint8_t>(get_little(rest, 1, 1));
+  tick.direction = RawDirection::tick;
+  tick.at = {Instant{Duration{later(last_->mono.time_since_epoch().count(), since)}},
+             WallTime{later(last_->wall.ns, since)}};
+  last_ = tick.at;
+  at_ += kShortTickBytes;
+  good_ += kShortTickBytes;
+  return tick;
+}
+
+std::optional<RawRecord> RawLogDecoder::take_record(std::string_view rest) {
   if (rest.size() < kRecordHead) return std::nullopt;
-  const std::size_t length = get(rest, kRecordHead - 4, 4);
-  const std::uint64_t direction = get(rest, 2, 1);
-  if (length > kRawRecordMax || direction > static_cast<std::uint64_t>(RawDirection::closed)) {
-    damage("a record's head makes no sense");
-    return std::nullopt;
+  const std::size_t length = get_little(rest, kRecordHead - 4, 4);
+  const std::uint64_t direction = get_little(rest, 2, 1);
+  if (length > kRawRecordMax || direction > static_cast<std::uint64_t>(RawDirection::ended)) {
+    return damage("a record's head makes no sense");
   }
   if (rest.size() < kRecordHead + length + kCrc) return std::nullopt;
-  if (crc32(rest.substr(0, kRecordHead + length)) != get(rest, kRecordHead + length, kCrc)) {
-    damage("a record's checksum is wrong");
-    return std::nullopt;
+  if (crc32(rest.substr(0, kRecordHead + length)) != get_little(rest, kRecordHead + length, kCrc)) {
+    return damage("a record's checksum is wrong");
   }
   RawRecord record;
-  record.device = static_cast<std::uint8_t>(get(rest, 1, 1));
+  record.device = static_cast<std::uint8_t>(get_little(rest, 1, 1));
   record.direction = static_cast<RawDirection>(direction);
-  record.at.mono = Instant{Duration{static_cast<std::int64_t>(get(rest, 3, 8))}};
-  record.at.wall.ns = static_cast<std::int64_t>(get(rest, 11, 8));
+  record.at.mono = Instant{Duration{static_cast<std::int64_t>(get_little(rest, 3, 8))}};
+  record.at.wall.ns = static_cast<std::int64_t>(get_little(rest, 11, 8));
   record.bytes = rest.substr(kRecordHead, length);
+  last_ = record.at;
   at_ += kRecordHead + length + kCrc;
   good_ += kRecordHead + length + kCrc;
   return record;

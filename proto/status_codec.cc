@@ -64,6 +64,14 @@ Json control_json(const ControlStatus& control) {
   return out;
 }
 
+Json to_json(const RecordingStatus& recording) {
+  return {{"state", recording.state},
+          {"why", recording.why},
+          {"bytes", recording.bytes},
+          {"bytes_lost", recording.bytes_lost},
+          {"stops", recording.stops}};
+}
+
 Json to_json(const Check& check) {
   return {{"name", check.name},
           {"passed", check.passed},
@@ -167,7 +175,9 @@ Json to_json(const StatusReport& report) {
             {"skew_bound_s", optional(report.sampler.skew_bound_s)}}},
           {"stream", stream_json(report.stream)},
           {"control", control_json(report.control)},
-          {"journal", {{"state", report.journal.state}, {"bytes", report.journal.bytes}}},
+          {"journal", to_json(report.journal)},
+          {"ring", to_json(report.ring)},
+          {"oldest_seq", optional(report.oldest_seq)},
           {"disk_free_bytes", optional(report.disk_free_bytes)},
           {"run", to_json(report.run)}};
 }

@@ -36,9 +36,13 @@ struct ControlStatus : ClientCounts {
   std::optional<ControlHolder> holder;
 };
 
-struct JournalStatus {
-  std::string state;  ///< "off", "writing", or why it is not
-  std::uint64_t bytes{0};
+/// Something that is recorded all the time: the raw journal, the stream's samples.
+struct RecordingStatus {
+  std::string state{"off"};     ///< "off", "writing" or "stopped"
+  std::string why;              ///< while it is stopped, and what to do
+  std::uint64_t bytes{0};       ///< written since the start
+  std::uint64_t bytes_lost{0};  ///< not written because the disk refused
+  std::uint64_t stops{0};       ///< how often it did
 };
 
 /// An effect of the calibration that is not removed now, and what it lacks ("s3_T_degC").
@@ -72,6 +76,9 @@ struct StatusReport {
   StreamStatus stream;
   ControlStatus control;
   JournalStatus journal;
+  RecordingStatus journal;
+  RecordingStatus ring;                     ///< the stream's samples on disk
+  std::optional<std::uint64_t> oldest_seq;  ///< from where on a client gets them
   std::optional<std::uint64_t> disk_free_bytes;
   RunStatus run;
 };

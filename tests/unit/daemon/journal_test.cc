@@ -2,7 +2,9 @@
 #include "daemon/journal.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 
@@ -35,22 +37,56 @@ std::string payloads(const std::filesystem::path& file, bool whole = true) {
   return all;
 }
 
+/// Of one file.
+std::uint64_t header_bytes() { return encode_header({"cross", "r1"}).size(); }
+
+void sync(Journal& journal, int os_error = 0) {
+  for (const int fd : journal.take_syncs()) {
+    ::close(fd);
+    journal.synced(os_error);
+  }
+}
+
 TEST(Journal, IsOnDiskWithinItsPeriodAndComplete) {
   TempDir dir;
   std::filesystem::path file;
   {
-    auto journal = Journal::open(config_in(dir), at(0)).value();
+    Journal journal(config_in(dir), at(0));
     file = journal.file();
     journal.append({0, RawDirection::received, {}, "*0102"});
     journal.tick(at(0.4));
-    EXPECT_EQ(std::filesystem::file_size(file), 0U);
+    EXPECT_EQ(std::filesystem::file_size(file), header_bytes());
     journal.tick(at(0.5));
     EXPECT_EQ(payloads(file), "*0102");
     journal.append({1, RawDirection::sent, {}, "#01CS"});
-    const Journal moved = std::move(journal);
-    EXPECT_TRUE(moved.recording());
+    EXPECT_TRUE(journal.recording());
   }
   EXPECT_EQ(payloads(file), "*0102#01CS");
+}
+
+TEST(Journal, SyncsWhenDueAndLeavesItToOthers) {
+  TempDir dir;
+  Journal journal(config_in(dir), at(0));
+  journal.append({0, RawDirection::received, {}, "*0102"});
+  journal.tick(at(1));
+  EXPECT_TRUE(journal.take_syncs().empty()) << "not due yet";
+  journal.tick(at(10));
+  const auto due = journal.take_syncs();
+  ASSERT_EQ(due.size(), 1U);
+  EXPECT_EQ(::fdatasync(due[0]), 0);
+  ::close(due[0]);
+  EXPECT_TRUE(journal.take_syncs().empty());
+  journal.synced(0);
+  EXPECT_TRUE(journal.recording());
+  journal.synced(EIO);
+  EXPECT_FALSE(journal.recording());
+  ASSERT_TRUE(journal.trouble());
+}
+
+std::string all_payloads(const JournalConfig& config) {
+  std::string found;
+  for (const RotatedFile& file : rotated_files(config.directory, "r1.", ".raw")) found += payloads(file.path);
+  return found;
 }
 
 TEST(Journal, RotatesAndNeverWritesOver) {
@@ -60,27 +96,73 @@ TEST(Journal, RotatesAndNeverWritesOver) {
   config.buffer_bytes = 100;
   std::string sent;
   for (int opening = 0; opening < 2; ++opening) {
-    auto journal = Journal::open(config, at(0)).value();
+    Journal journal(config, at(0));
     for (int i = 0; i < 60; ++i) {
       const std::string bytes = "line " + std::to_string(100 * opening + i) + "\r";
       sent += bytes;
       journal.append({2, RawDirection::received, {}, bytes});
     }
+    sync(journal);
   }
-  std::string found;
-  int files = 0;
-  for (; std::filesystem::exists(config.directory / ("r1.00" + std::to_string(files) + ".raw")); ++files) {
-    found += payloads(config.directory / ("r1.00" + std::to_string(files) + ".raw"));
-  }
-  EXPECT_GT(files, 4);
-  EXPECT_EQ(found, sent);
+  EXPECT_GT(rotated_files(config.directory, "r1.", ".raw").size(), 4U);
+  EXPECT_EQ(all_payloads(config), sent);
 }
 
-TEST(Journal, FullDiskStopsRecordingOnceAndSaysSo) {
+TEST(Journal, BeginsANewFileWhenOneIsOld) {
+  TempDir dir;
+  auto config = config_in(dir);
+  Journal journal(config, at(0));
+  for (double t_s = 0; t_s < 3 * 86'400; t_s += 3600) {
+    journal.append({2, RawDirection::received, {}, "x"});
+    journal.tick(at(t_s));
+    sync(journal);
+  }
+  EXPECT_EQ(rotated_files(config.directory, "r1.", ".raw").size(), 3U);
+}
+
+TEST(Journal, TheOldestGoWhenThereAreTooManyOfTheWholeFamily) {
+  TempDir dir;
+  auto config = config_in(dir);
+  config.rotate_bytes = 1000;
+  config.buffer_bytes = 100;
+  config.family = "r";
+  config.keep.bytes = 5000;
+  std::filesystem::create_directories(config.directory);
+  std::ofstream(config.directory / "other.raw") << std::string(9000, 'x');
+  for (const char* life : {"r0", "r1"}) {
+    config.name = life;
+    Journal journal(config, at(0));
+    for (int i = 0; i < 400; ++i) journal.append({2, RawDirection::received, {}, "0123456789"});
+    EXPECT_GT(journal.files_removed(), 5U);
+    std::uint64_t total = 0;
+    for (const RotatedFile& file : rotated_files(config.directory, "r", ".raw")) total += file.bytes;
+    EXPECT_LE(total, config.keep.bytes + config.buffer_bytes);
+    sync(journal);
+  }
+  EXPECT_TRUE(rotated_files(config.directory, "r0", ".raw").empty()) << "the older life went first";
+  EXPECT_TRUE(std::filesystem::exists(config.directory / "other.raw"));
+}
+
+TEST(Journal, FilesThatAreTooOldGo) {
+  TempDir dir;
+  auto config = config_in(dir);
+  config.keep.age = std::chrono::hours{24};
+  std::filesystem::path old;
+  {
+    const Journal journal(config, at(0));
+    old = journal.file();
+  }
+  std::filesystem::last_write_time(old, std::filesystem::last_write_time(old) - std::chrono::hours{25});
+  const Journal journal(config, at(0));
+  EXPECT_FALSE(std::filesystem::exists(old));
+  EXPECT_TRUE(std::filesystem::exists(journal.file()));
+}
+
+TEST(Journal, FullDiskStopsRecordingOnceAndItGoesOnByItself) {
   TempDir dir;
   auto config = config_in(dir);
   config.buffer_bytes = 100;
-  auto journal = Journal::open(config, at(0)).value();
+  Journal journal(config, at(0));
   const auto first = journal.file();
   {
     const FullDisk full(2000);
@@ -91,23 +173,56 @@ TEST(Journal, FullDiskStopsRecordingOnceAndSaysSo) {
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code, ErrorCode::io);
     EXPECT_FALSE(journal.take_error());
-    journal.tick(at(100));
+    EXPECT_TRUE(journal.trouble());
   }
+  {
+    const FullDisk full(0);
+    journal.tick(at(100));
+    EXPECT_FALSE(journal.recording());
+    EXPECT_FALSE(journal.take_error()) << "said once";
+  }
+  EXPECT_EQ(rotated_files(config.directory, "r1.", ".raw").size(), 1U) << "a try leaves nothing behind";
   EXPECT_GT(payloads(first, false).size(), 300U);
-  ASSERT_TRUE(journal.retry(at(101)));
+  journal.tick(at(105));
+  EXPECT_FALSE(journal.recording()) << "tried every ten seconds";
+  journal.tick(at(110));
+  EXPECT_TRUE(journal.recording());
+  EXPECT_EQ(journal.take_resumed(), journal.bytes_lost());
+  EXPECT_FALSE(journal.take_resumed());
+  EXPECT_FALSE(journal.trouble());
+  EXPECT_EQ(journal.stops(), 1U);
   journal.append({0, RawDirection::received, {}, "again"});
-  journal.tick(at(102));
+  journal.tick(at(112));
   EXPECT_NE(journal.file(), first);
   EXPECT_EQ(payloads(journal.file()), "again");
 }
 
-TEST(Journal, RefusesADirectoryItCannotHave) {
+TEST(Journal, HeldItStopsUntilItIsReleased) {
+  TempDir dir;
+  Journal journal(config_in(dir), at(0));
+  journal.append({0, RawDirection::received, {}, "before"});
+  journal.hold({ErrorCode::io, "little room", ""});
+  EXPECT_EQ(payloads(journal.file()), "before");
+  journal.tick(at(60));
+  EXPECT_FALSE(journal.recording());
+  journal.append({0, RawDirection::received, {}, "lost"});
+  journal.release();
+  EXPECT_TRUE(journal.recording());
+  EXPECT_EQ(journal.take_resumed(), 4U);
+}
+
+TEST(Journal, ADirectoryItCannotHaveIsTroubleAndIsTriedAgain) {
   TempDir dir;
   auto config = config_in(dir);
   std::ofstream(dir / "raw") << "a file";
-  const auto refused = Journal::open(config, at(0));
-  ASSERT_FALSE(refused);
-  EXPECT_FALSE(refused.error().remedy.empty());
+  Journal journal(config, at(0));
+  EXPECT_FALSE(journal.recording());
+  const auto error = journal.take_error();
+  ASSERT_TRUE(error);
+  EXPECT_FALSE(error->remedy.empty());
+  std::filesystem::remove(dir / "raw");
+  journal.tick(at(11));
+  EXPECT_TRUE(journal.recording());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/stream_server.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,6 +34,7 @@ class StreamServerTest : public ::testing::Test {
     config.max_clients = max_clients;
     config.ring_lines = ring_lines;
     server_ = std::make_unique<StreamServer>(io_, config, Greeting{"bench rig", "mgtd test"});
+    if (disk_) server_->keep(*disk_);
     const auto started = server_->start();
     ASSERT_TRUE(started) << started.error().text();
   }
@@ -84,8 +86,44 @@ class StreamServerTest : public ::testing::Test {
 
   boost::asio::io_context io_;
   mgtd::testing::ScratchDirectory scratch_;
+  std::optional<DiskRing> disk_;
   std::unique_ptr<StreamServer> server_;
 };
+
+/// Every epoch from `next` on, once, as a sample or in a gap; gives the one after the last.
+std::uint64_t expect_whole(const LinePeer& peer, std::uint64_t next) {
+  for (const std::string& line : peer.lines) {
+    const Json object = Json::parse(line);
+    const bool is_gap = object["class"] == "GAP";
+    if (!is_gap && object["class"] != "TENSOR") continue;
+    EXPECT_EQ(object[is_gap ? "from_seq" : "seq"], next) << line;
+    next = object[is_gap ? "to_seq" : "seq"].get<std::uint64_t>() + 1;
+  }
+  return next;
+}
+
+TEST_F(StreamServerTest, AClientThatComesBackAfterARestartGetsWhatItMissed) {
+  const auto at = [](double s) { return Stamp{Instant{from_seconds(s)}, WallTime{from_seconds(s).count()}}; };
+  const DiskRingConfig config{.directory = scratch_ / "ring", .rig = "bench", .bytes = 8U << 20U};
+  disk_.emplace(config, at(0));
+  start(64);
+  publish(0, 4999);
+  server_.reset();
+  disk_.emplace(config, at(110));
+  start(64);
+  const std::uint64_t again = disk_->first_seq();
+  EXPECT_GE(again, 5500U);
+  publish(again, again + 499);
+  disk_->tick(at(130));
+  for (const std::uint64_t from : {std::uint64_t{0}, std::uint64_t{3333}, again + 10, again + 490}) {
+    LinePeer peer = connect();
+    watch(peer, R"({"watch":{"class":["TENSOR"],"from_seq":)" + std::to_string(from) + "}}");
+    const std::string last = fmt::format("\"seq\":{},", again + 499);
+    ASSERT_TRUE(wait(peer, [&] { return peer.count(last) == 1; })) << from;
+    EXPECT_EQ(expect_whole(peer, from), again + 500);
+    EXPECT_EQ(peer.count("without a word") + peer.count("was stopped"), from < 5000 ? 1U : 0U);
+  }
+}
 
 TEST_F(StreamServerTest, GreetsAndThenSaysNothingUntilAsked) {
   start();

@@ -154,6 +154,81 @@ TEST(Subscription, ResumeInsideAGapRepeatsTheGap) {
   EXPECT_EQ(seqs(out), range(8, 9));
 }
 
+RingRecord sample_on_disk(std::uint64_t seq, const std::string& line, double t_s = 0) {
+  return {RingRecord::Kind::sample, seq, seq, {Instant{from_seconds(t_s)}, {}}, line};
+}
+
+// The disk holds 5 .. 27 but for 12 .. 14, the ring 20 .. 29.
+TEST(Subscription, ReadsTheDiskUntilTheRingHasTheRest) {
+  SampleRing ring(10);
+  push_samples(ring, 0, 29);
+  Subscription subscription;
+  std::string out;
+  subscription.watch(samples_from(2), ring, out, 5);
+  ASSERT_EQ(subscription.behind(), 5U);
+  EXPECT_EQ(objects(out)[0],
+            Json({{"class", "GAP"}, {"from_seq", 2}, {"to_seq", 4}, {"why", "no longer held"}}));
+  out.clear();
+  for (std::uint64_t seq = 5; subscription.behind(); seq += seq == 11 ? 4 : 1) {
+    ASSERT_LT(seq, 28U);
+    subscription.take(sample_on_disk(seq, Json{{"class", "TENSOR"}, {"seq", seq}}.dump()), ring, out);
+  }
+  subscription.fill(ring, out, kNoLimit);
+  std::uint64_t next = 5;
+  int gaps = 0;
+  for (const Json& object : objects(out)) {
+    const bool is_gap = object["class"] == "GAP";
+    EXPECT_EQ(object[is_gap ? "from_seq" : "seq"], next);
+    next = object[is_gap ? "to_seq" : "seq"].get<std::uint64_t>() + 1;
+    gaps += is_gap ? 1 : 0;
+    if (is_gap) {
+      EXPECT_EQ(object["from_seq"], 12);
+    }
+  }
+  EXPECT_EQ(next, 30U);
+  EXPECT_EQ(gaps, 1);
+}
+
+TEST(Subscription, ADiskThatEndsEarlyIsAGapUpToTheRing) {
+  SampleRing ring(10);
+  push_samples(ring, 0, 29);
+  Subscription subscription;
+  std::string out;
+  subscription.watch(samples_from(5), ring, out, 0);
+  subscription.take(sample_on_disk(5, R"({"class":"TENSOR","seq":5})"), ring, out);
+  subscription.catch_up(ring, out);
+  EXPECT_FALSE(subscription.behind());
+  subscription.fill(ring, out, kNoLimit);
+  EXPECT_EQ(objects(out)[1]["from_seq"], 6);
+  EXPECT_EQ(objects(out)[1]["to_seq"], 19);
+  EXPECT_EQ(seqs(out).back(), 29U);
+}
+
+TEST(Subscription, ARateHoldsAcrossLivesWhoseClocksDiffer) {
+  SampleRing ring(10, 1000);
+  Subscription subscription;
+  std::string out;
+  WatchRequest request = samples_from(0);
+  request.rate_hz = 10;
+  subscription.watch(request, ring, out, 0);
+  for (std::uint64_t seq = 0; seq < 200; ++seq) {
+    const double t_s =
+        static_cast<double>(seq % 100) / 50 + (seq < 100 ? 9000 : 3);  // the host was restarted
+    subscription.take(sample_on_disk(seq, Json{{"class", "TENSOR"}, {"seq", seq}}.dump(), t_s), ring, out);
+  }
+  EXPECT_EQ(seqs(out), range(0, 199, 5));
+}
+
+TEST(Subscription, AClientOfThePastThatTakesNothingIsSeen) {
+  SampleRing ring(10);
+  push_samples(ring, 0, 29);
+  Subscription subscription;
+  std::string out;
+  subscription.watch(samples_from(5), ring, out, 0);
+  push_samples(ring, 30, 70);
+  EXPECT_TRUE(subscription.stays_behind(ring));
+}
+
 TEST(Subscription, RateTakesEveryKthSampleByTime) {
   for (const auto& [rate_hz, step] : {std::pair{10.0, 5U}, {25.0, 2U}, {50.0, 1U}, {200.0, 1U}, {1.0, 50U}}) {
     SampleRing ring(1000);

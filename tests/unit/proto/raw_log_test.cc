@@ -29,12 +29,20 @@ std::vector<Kept> drain(RawLogDecoder& decoder) {
 std::string sample_log(std::vector<Kept>& kept, int records) {
   std::mt19937_64 random(11);
   std::string log = encode_header({"cross 1", "r1"});
+  RawLogEncoder encoder;
   for (int i = 0; i < records; ++i) {
-    Kept k{static_cast<std::uint8_t>(random() % 6), static_cast<RawDirection>(random() % 4),
+    Kept k{static_cast<std::uint8_t>(random() % 6), static_cast<RawDirection>(random() % 6),
            static_cast<std::int64_t>(random()), -static_cast<std::int64_t>(random() % 1000),
            std::string(random() % 80, '\0')};
     for (char& c : k.bytes) c = static_cast<char>(random());
-    encode_record({k.device, k.direction, {Instant{Duration{k.mono_ns}}, {k.wall_ns}}, k.bytes}, log);
+    if (i % 3 == 2) {  // after any record, at any distance, with and without a step of the wall clock
+      k = {kept.back().device, RawDirection::tick, kept.back().mono_ns, kept.back().wall_ns, ""};
+      const auto since = static_cast<std::int64_t>(random() % 5'000'000'000);
+      k.mono_ns = kept.back().mono_ns / 2 + since;
+      k.wall_ns += k.mono_ns - kept.back().mono_ns / 2 + (i % 2 == 0 ? 1'000'000'000 : 0);
+      if (i % 4 == 0) k.mono_ns = kept.back().mono_ns + since;
+    }
+    encoder.encode({k.device, k.direction, {Instant{Duration{k.mono_ns}}, {k.wall_ns}}, k.bytes}, log);
     kept.push_back(k);
   }
   return log;
@@ -94,7 +102,7 @@ TEST(RawLog, EveryFlippedBitIsSeen) {
 TEST(RawLog, LongPayloadsAreSplit) {
   std::string log = encode_header({});
   const std::string bytes(2 * kRawRecordMax + 5, 'x');
-  encode_record({1, RawDirection::sent, {}, bytes}, log);
+  RawLogEncoder().encode({1, RawDirection::sent, {}, bytes}, log);
   RawLogDecoder decoder;
   decoder.feed(log);
   const auto found = drain(decoder);

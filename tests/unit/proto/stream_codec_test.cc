@@ -118,7 +118,7 @@ TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
   report.devices = {device, {"table", "gcs2", "/dev/mgt/table", {}}};
   report.devices[1].health.bytes_in = 1;
   report.sampler = {500, 3, 50.0, 1e-4};
-  report.journal = {"writing", 4096};
+  report.journal = {"stopped", "no space", 4096, 17, 1};
   report.run.remaining_s = std::numeric_limits<double>::quiet_NaN();
 
   const Json status = Json::parse(encode(report));
@@ -135,7 +135,12 @@ TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
   EXPECT_TRUE(status["devices"][1]["last_frame_age_s"].is_null());
   EXPECT_EQ(status["sampler"],
             Json({{"epochs", 500}, {"gaps", 3}, {"rate_hz", 50.0}, {"skew_bound_s", 1e-4}}));
-  EXPECT_EQ(status["journal"], Json({{"state", "writing"}, {"bytes", 4096}}));
+  EXPECT_EQ(status["journal"], Json({{"state", "stopped"},
+                                     {"why", "no space"},
+                                     {"bytes", 4096},
+                                     {"bytes_lost", 17},
+                                     {"stops", 1}}));
+  EXPECT_EQ(status["ring"]["state"], "off");
   EXPECT_TRUE(status["disk_free_bytes"].is_null());
   EXPECT_EQ(status["run"]["state"], "idle");
   EXPECT_TRUE(status["run"]["remaining_s"].is_null());

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "calib/criticism/live_criticism.h"
+#include "calib/live_tensor.h"
+#include "daemon/config.h"
+#include "daemon/sampler.h"
+
+/// From readings to what is streamed: sampler, tensor with the active calibration, and what the stream says
+/// of that calibration. Pure: the daemon and the replay of a journal run the very same, and from the same
+/// readings, ticks and orders it makes the same samples to the last bit.
+namespace mgtd::daemon {
+
+/// As the configuration wants it.
+[[nodiscard]] SamplerConfig sampler_config(const Config& config);
+
+class LivePipeline {
+ public:
+  LivePipeline(const SamplerConfig& sampler, double baseline_m);
+
+  /// From the next epoch on; null: the samples are raw and say so.
+  void use(std::shared_ptr<const calib::Calibration> calibration);
+  /// A run has the table, or no longer.
+  void set_calibrating(bool on) { calibrating_ = on; }
+
+  void push(const FieldReading& reading) { sampler_.push(reading, ready_); }
+  void push(const TemperatureReading& reading) { sampler_.push(reading); }
+  void push(const TableReading& reading) { table_ = reading; }
+  void reopened(int slot) { sampler_.reopened(slot); }
+  void advance(Instant now) { sampler_.advance(now, ready_); }
+
+  /// Shows what became complete: on_epoch(epoch, sample, verdict_changed), on_gap(gap).
+  template <class OnEpoch, class OnGap>
+  void deliver(OnEpoch on_epoch, OnGap on_gap) {
+    for (const EpochOrGap& item : ready_) {
+      if (const auto* epoch = std::get_if<Epoch>(&item)) {
+        bool changed = false;
+        const TensorSample sample = tensor(*epoch, changed);
+        on_epoch(*epoch, sample, changed);
+      } else {
+        on_gap(std::get<Gap>(item));
+      }
+    }
+    ready_.clear();
+  }
+
+  [[nodiscard]] const Sampler& sampler() const { return sampler_; }
+  [[nodiscard]] const calib::LiveTensor& live() const { return live_; }
+  [[nodiscard]] const calib::LiveVerdict& verdict() const { return criticism_.verdict(); }
+
+ private:
+  [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& verdict_changed);
+  [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
+
+  double baseline_m_;
+  Sampler sampler_;
+  calib::LiveTensor live_;
+  calib::LiveCriticism criticism_;
+  std::optional<TableReading> table_;  ///< the last
+  bool calibrating_{false};
+  std::vector<EpochOrGap> ready_;  ///< reused, so that a sample allocates nothing
+};
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "proto/time.h"
+
+/// Files that follow each other: STEM.000000.SUFFIX, STEM.000001.SUFFIX, ... and the rule by which the oldest
+/// go. Names sort by age.
+namespace mgtd::daemon {
+
+struct RotatedFile {
+  std::filesystem::path path;
+  std::uint64_t bytes{0};
+  std::filesystem::file_time_type written;
+};
+
+/// What may stay. Zero: no limit.
+struct KeepRule {
+  std::uint64_t bytes{0};  ///< of all files together
+  Duration age{0};         ///< since a file was last written
+};
+
+[[nodiscard]] std::filesystem::path rotated_name(const std::filesystem::path& directory,
+                                                 const std::string& stem, std::uint64_t number,
+                                                 const std::string& suffix);
+/// All files whose name begins with `prefix` and ends with `suffix`, the oldest first.
+[[nodiscard]] std::vector<RotatedFile> rotated_files(const std::filesystem::path& directory,
+                                                     const std::string& prefix, const std::string& suffix);
+/// The number in the name of the newest file of this stem, plus one; 0 when there is none.
+[[nodiscard]] std::uint64_t next_number(const std::filesystem::path& directory, const std::string& stem,
+                                        const std::string& suffix);
+/// Removes the oldest until `rule` holds with `coming` bytes more. Gives how many went.
+std::size_t remove_oldest(const std::vector<RotatedFile>& files, const KeepRule& rule, std::uint64_t coming);
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/journal_note.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace mgtd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 3> kOrders{"home", "move", "stop"};
+
+Json to_json(const TableAngles& a) { return {a.azimuth_rad, a.pitch_rad, a.roll_rad}; }
+TableAngles angles(const Json& j) { return {j.at(0), j.at(1), j.at(2)}; }
+
+Json to_json(const LifeNote& n) {
+  Json out{{"note", "life"}, {"software", n.software}, {"first_seq", n.first_seq}, {"config", n.config}};
+  if (n.before)
+    out["before"] = {{"from_seq", n.before->from_seq}, {"to_seq", n.before->to_seq}, {"why", n.before->why}};
+  return out;
+}
+Json to_json(const CalibrationNote& n) {
+  return {{"note", "calibration"}, {"calibration", n.json.empty() ? Json(nullptr) : Json(n.json)}};
+}
+Json to_json(const CalibratingNote& n) { return {{"note", "calibrating"}, {"on", n.on}}; }
+Json to_json(const ReopenedNote& n) { return {{"note", "reopened"}, {"slot", n.slot}}; }
+Json to_json(const TableOrder& n) {
+  return {{"note", "order"},
+          {"what", kOrders.at(static_cast<std::size_t>(n.what))},
+          {"target_rad", to_json(n.target)}};
+}
+Json to_json(const TableNote& n) {
+  const TableReading& r = n.reading;
+  return {{"note", "table"},
+          {"mono_ns", r.arrival.mono.time_since_epoch().count()},
+          {"wall_ns", r.arrival.wall.ns},
+          {"angles_rad", to_json(r.angles)},
+          {"referenced", r.referenced},
+          {"moving", r.moving},
+          {"on_target", r.on_target}};
+}
+Json to_json(const LostNote& n) { return {{"note", "lost"}, {"bytes", n.bytes}}; }
+
+LifeNote life(const Json& j) {
+  LifeNote n{j.at("software"), j.at("config"), j.at("first_seq"), {}};
+  if (j.contains("before")) {
+    const Json& b = j.at("before");
+    n.before = Gap{b.at("from_seq"), b.at("to_seq"), {}, b.at("why")};
+  }
+  return n;
+}
+
+TableOrder order(const Json& j) {
+  const std::string what = j.at("what");
+  TableOrder out{TableOrder::What::stop, angles(j.at("target_rad"))};
+  for (std::size_t i = 0; i < kOrders.size(); ++i) {
+    if (what == kOrders.at(i)) out.what = static_cast<TableOrder::What>(i);
+  }
+  return out;
+}
+
+TableNote table(const Json& j) {
+  TableNote n;
+  n.reading.arrival = {Instant{Duration{j.at("mono_ns").get<std::int64_t>()}},
+                       WallTime{j.at("wall_ns").get<std::int64_t>()}};
+  n.reading.angles = angles(j.at("angles_rad"));
+  n.reading.referenced = j.at("referenced");
+  n.reading.moving = j.at("moving");
+  n.reading.on_target = j.at("on_target");
+  return n;
+}
+
+std::optional<JournalNote> note_of(const Json& j) {
+  const std::string kind = j.at("note");
+  if (kind == "life") return life(j);
+  if (kind == "calibration") {
+    const Json& text = j.at("calibration");
+    return CalibrationNote{text.is_null() ? std::string() : text.get<std::string>()};
+  }
+  if (kind == "calibrating") return CalibratingNote{j.at("on").get<bool>()};
+  if (kind == "reopened") return ReopenedNote{j.at("slot").get<int>()};
+  if (kind == "order") return order(j);
+  if (kind == "table") return table(j);
+  if (kind == "lost") return LostNote{j.at("bytes").get<std::uint64_t>()};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string encode(const JournalNote& note) {
+  return std::visit(
+      [](const auto& n) { return to_json(n).dump(-1, ' ', false, Json::error_handler_t::replace); }, note);
+}
+
+Result<JournalNote> parse_note(std::string_view text) {
+  // The library's only way of saying that a key is missing is to throw.
+  try {
+    if (auto note = note_of(Json::parse(text))) return *std::move(note);
+  } catch (const nlohmann::json::exception&) {
+  }
+  return fail(ErrorCode::bad_input, "a note of the journal is not understood",
+              "use the version of mgt that wrote it, or a later one");
+}
+
+}  // namespace mgtd
