@@ -75,7 +75,6 @@ struct StatusReport {
   SamplerStatus sampler;
   StreamStatus stream;
   ControlStatus control;
-  JournalStatus journal;
   RecordingStatus journal;
   RecordingStatus ring;                     ///< the stream's samples on disk
   std::optional<std::uint64_t> oldest_seq;  ///< from where on a client gets them
