@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/dcon_driver.h"
 #include "drivers/gcs2_driver.h"
 #include "drivers/gsm_driver.h"
 #include "drivers/hand_table.h"
@@ -13,6 +14,9 @@ namespace mgtd::drivers {
 namespace {
 
 constexpr std::array kDrivers{
+    DriverEntry{"dcon", Role::auxiliary,
+                "analogue input module that speaks DCON (I-7000, ADAM-4000): currents, temperatures",
+                &dcon::DconDriver::make},
     DriverEntry{"gcs2", Role::table, "Physik Instrumente GCS 2.0 turntable, one to three axes",
                 &gcs2::Gcs2Driver::make},
     DriverEntry{"gsm", Role::scalar, "GEM Systems GSM-90 or GSM-19 total-field magnetometer",

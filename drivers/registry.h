@@ -11,7 +11,7 @@
 /// registry.cc.
 namespace mgtd::drivers {
 
-enum class Role { sensor, table, scalar };
+enum class Role { sensor, table, scalar, auxiliary };
 
 struct DriverEntry {
   std::string_view name;

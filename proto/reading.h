@@ -6,7 +6,9 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "proto/flags.h"
 #include "proto/time.h"
@@ -51,6 +53,12 @@ struct ScalarReading {
   bool good{false};
 };
 
+/// Inputs of an auxiliary module (currents near the array, voltages), each under the name of its column.
+struct AuxiliaryReading {
+  Stamp arrival;
+  std::vector<std::pair<std::string, double>> values;  ///< those that were measured
+};
+
 /// Table angles as named in the pose table: b_platform = Rz(azimuth) Ry(pitch) Rx(roll) B_site, passive.
 struct TableAngles {
   double azimuth_rad{0};
@@ -80,7 +88,7 @@ struct DeviceNote {
   std::string what;
 };
 
-using DeviceEvent =
-    std::variant<FieldReading, TemperatureReading, ScalarReading, TableReading, DeviceFault, DeviceNote>;
+using DeviceEvent = std::variant<FieldReading, TemperatureReading, ScalarReading, AuxiliaryReading,
+                                 TableReading, DeviceFault, DeviceNote>;
 
 }  // namespace mgtd

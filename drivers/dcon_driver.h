@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/dcon_protocol.h"
+#include "drivers/deadline.h"
+#include "drivers/line_device.h"
+#include "drivers/settings.h"
+
+/// An analogue input module that is asked for its channels now and then: currents, voltages, temperatures
+/// that act on the rig.
+///
+///   port, baud = 9600
+///   address = "01"               two hexadecimal digits
+///   checksum = false             as the module is set
+///   channels = ["motor_A", "", "s3_T_degC"]   column of each input in its order; "" is not used
+///   scale = [0.1, 1, 1]          column = scale * reading + offset; 1 and 0 when not given
+///   offset = [0, 0, 0]
+///   every_s = 1
+///
+/// A column sN_T_degC is the temperature of that sensor (TemperatureReading); every other goes out as
+/// AuxiliaryReading under its own name. What a module calls out of range is not measured: it is left out.
+/// Three questions in a row without an answer make the link silent; it is asked on.
+namespace mgtd::drivers::dcon {
+
+struct Channel {
+  std::string column;  ///< empty: not used
+  double scale{1};
+  double offset{0};
+  std::optional<int> slot;  ///< of the sensor whose temperature this is
+};
+
+struct DconSettings {
+  int baud{kDefaultBaud};
+  std::string address{"01"};
+  bool checksum{false};
+  std::vector<Channel> channels;
+  double every_s{1};
+};
+
+/// Mistakes are left in `settings`.
+[[nodiscard]] DconSettings read_dcon_settings(Settings& settings);
+
+class DconDriver final : public LineDevice {
+ public:
+  explicit DconDriver(DconSettings settings);
+  [[nodiscard]] static std::unique_ptr<Device> make(int slot, Settings& settings);
+
+  void on_open(Stamp now) override;
+  void on_tick(Stamp now) override;
+
+ protected:
+  Verdict on_line(std::string_view line, Stamp arrival) override;
+
+ private:
+  void ask(std::string_view what, Instant now);
+  void unanswered(Stamp now);
+  Verdict on_values(const Values& values, Stamp arrival);
+  Verdict on_refusal(Stamp arrival);
+
+  DconSettings settings_;
+  Deadline next_, answer_;
+  bool named_{false};  ///< it was asked for its name, and answered or not
+  int missed_{0};      ///< questions in a row
+};
+
+}  // namespace mgtd::drivers::dcon

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/dcon_driver.h"
+#include "tests/fuzz/device_fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view line(reinterpret_cast<const char*>(data), size);
+  static_cast<void>(mgtd::drivers::dcon::parse_reply(line, "01", true));
+  mgtd::drivers::dcon::DconSettings settings;
+  settings.channels = {{"motor_A", 1, 0, std::nullopt}, {"s1_T_degC", 1, 0, 0}};
+  mgtd::drivers::dcon::DconDriver driver(settings);
+  mgtd::testing::live_through(driver, data, size);
+  return 0;
+}

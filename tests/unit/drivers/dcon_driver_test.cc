@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/dcon_driver.h"
+
+#include <gmock/gmock.h>
+
+#include "drivers/registry.h"
+#include "tests/support/device_bench.h"
+
+namespace mgtd::drivers::dcon {
+namespace {
+
+using mgtd::testing::DeviceBench;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+using ::testing::SizeIs;
+
+DconSettings three_channels() {
+  DconSettings out;
+  out.channels = {{"motor_A", 0.1, 0.5, std::nullopt}, {"", 1, 0, std::nullopt}, {"s3_T_degC", 1, 0, 2}};
+  return out;
+}
+
+std::string module(std::string_view sent) {
+  return sent == "$01M\r" ? "!017033\r" : sent == "#01\r" ? ">+025.00+001.00+021.50\r" : "";
+}
+
+TEST(DconDriver, AsksForItsChannelsAndNamesThem) {
+  DconDriver driver(three_channels());
+  DeviceBench bench(driver, &module);
+  bench.open();
+  bench.pass(3.1);
+  EXPECT_EQ(driver.health().state, LinkState::live);
+  EXPECT_EQ(driver.health().identity, "7033");
+  const auto readings = bench.events<AuxiliaryReading>();
+  ASSERT_THAT(readings, SizeIs(4)) << "at once, and every second";
+  EXPECT_THAT(readings[0].values, ElementsAre(Pair("motor_A", 3.0)));
+  const auto temperatures = bench.events<TemperatureReading>();
+  ASSERT_THAT(temperatures, SizeIs(4));
+  EXPECT_EQ(temperatures[0].slot, 2);
+  EXPECT_EQ(temperatures[0].sensor_degC, 21.5);
+  EXPECT_TRUE(driver.health().balanced());
+}
+
+TEST(DconDriver, AChannelOutOfRangeIsLeftOut) {
+  DconDriver driver(three_channels());
+  DeviceBench bench(driver, [](std::string_view sent) -> std::string {
+    return sent == "#01\r" ? ">+9999+001.00-0000\r" : "";
+  });
+  bench.open();
+  bench.pass(2);
+  EXPECT_EQ(driver.health().state, LinkState::live);
+  EXPECT_THAT(bench.events<AuxiliaryReading>(), IsEmpty());
+  EXPECT_THAT(bench.events<TemperatureReading>(), IsEmpty());
+}
+
+TEST(DconDriver, SilenceIsNoticedAndTheModuleAskedOn) {
+  bool answers = true;
+  DconDriver driver(three_channels());
+  DeviceBench bench(driver, [&](std::string_view sent) { return answers ? module(sent) : std::string(); });
+  bench.open();
+  bench.pass(2);
+  answers = false;
+  ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::silent; }, 10));
+  EXPECT_THAT(driver.health().detail, HasSubstr("address (01)"));
+  answers = true;
+  EXPECT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }, 3));
+  answers = false;
+  EXPECT_TRUE(bench.pass_until([&] { return driver.wants_reopen(); }, 60));
+}
+
+TEST(DconDriver, FewerChannelsThanConfiguredIsAFailureThatSaysSo) {
+  DconDriver driver(three_channels());
+  DeviceBench bench(driver,
+                    [](std::string_view sent) -> std::string { return sent == "#01\r" ? ">+025.00\r" : ""; });
+  bench.open();
+  bench.pass(2);
+  EXPECT_EQ(driver.health().state, LinkState::failed);
+  EXPECT_THAT(driver.health().detail, HasSubstr("1 channels, 3 are configured"));
+  EXPECT_THAT(bench.events<AuxiliaryReading>(), IsEmpty());
+}
+
+TEST(DconSettingsTest, MistakesAreNamed) {
+  Settings s("[[auxiliary]]", 1);
+  s.set("baud", std::int64_t{1}, 2);
+  s.set("address", std::string("1"), 3);
+  s.set("every_s", 0.0, 4);
+  s.set("channels", std::vector<std::string>{"motor A", "x", "x"}, 5);
+  s.set("scale", std::vector<double>{1, 2}, 6);
+  static_cast<void>(read_dcon_settings(s));
+  EXPECT_EQ(s.errors().size(), 6U);
+}
+
+TEST(DconRegistry, IsAnAuxiliaryModule) {
+  const DriverEntry* entry = find_driver("dcon");
+  ASSERT_NE(entry, nullptr);
+  EXPECT_EQ(entry->role, Role::auxiliary);
+}
+
+}  // namespace
+}  // namespace mgtd::drivers::dcon
