@@ -36,6 +36,7 @@ class Reader {
   void read_run(const toml::table& root);
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
+  void read_auxiliary(const toml::table& root);
   DeviceConfig read_device(Settings settings, std::string name, Role role, int slot);
   void read_port(Settings& s, DeviceConfig& device);
   void read_mounts(Settings& s);
@@ -47,8 +48,9 @@ class Reader {
   std::map<std::string, int> port_lines_, serial_lines_;
 };
 
-constexpr std::array<std::string_view, 11> kSections{
-    "rig", "sensor", "table", "scalar", "site", "calibration", "run", "store", "stream", "control", "daemon"};
+constexpr std::array<std::string_view, 12> kSections{"rig",       "sensor", "table",       "scalar",
+                                                     "auxiliary", "site",   "calibration", "run",
+                                                     "store",     "stream", "control",     "daemon"};
 
 Settings Reader::section(const toml::table& root, std::string_view name) {
   const toml::node* const node = root.get(name);
@@ -249,6 +251,22 @@ void Reader::read_sensors(const toml::table& root) {
   }
 }
 
+void Reader::read_auxiliary(const toml::table& root) {
+  const toml::node* const node = root.get("auxiliary");
+  if (node == nullptr) return;
+  const toml::array* const list = node->as_array();
+  if (list == nullptr || !list->is_homogeneous<toml::table>()) {
+    complain(static_cast<int>(node->source().begin.line),
+             "each module is a section of its own: [[auxiliary]]");
+    return;
+  }
+  for (const toml::node& module : *list) {
+    const std::string name = fmt::format("aux{}", config_.auxiliary.size() + 1);
+    config_.auxiliary.push_back(
+        read_device(to_settings(*module.as_table(), "[[auxiliary]] " + name), name, Role::auxiliary, 0));
+  }
+}
+
 void Reader::refuse_unknown_sections(const toml::table& root) {
   for (const auto& [key, node] : root) {
     if (std::find(kSections.begin(), kSections.end(), key.str()) == kSections.end()) {
@@ -270,6 +288,7 @@ void Reader::read(const toml::table& root) {
   if (const toml::node* scalar = root.get("scalar"); scalar != nullptr && scalar->is_table()) {
     config_.scalar = read_device(to_settings(*scalar->as_table(), "[scalar]"), "scalar", Role::scalar, 0);
   }
+  read_auxiliary(root);
   read_site(root);
   read_calibration(root);
   read_run(root);

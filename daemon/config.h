@@ -19,7 +19,7 @@ namespace mgtd::daemon {
 
 /// A serial port and the device behind it. The device has read and checked its own settings.
 struct DeviceConfig {
-  std::string name;  ///< "s1" .. "s4", "table", "scalar"
+  std::string name;  ///< "s1" .. "s4", "table", "scalar", "aux1", ...
   std::string driver;
   std::string port;
   int baud{0};
@@ -50,6 +50,7 @@ struct Config {
   std::array<DeviceConfig, kSensors> sensors;
   DeviceConfig table;
   std::optional<DeviceConfig> scalar;
+  std::vector<DeviceConfig> auxiliary;
   std::vector<TableAngles> mounts;  ///< ways in which the array is mounted on the table by hand; may be empty
 
   /// The table is turned by hand.

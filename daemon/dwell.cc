@@ -54,6 +54,15 @@ void Dwell::add(const ScalarReading& reading) {
   if (reading.good && inside(reading.arrival.mono)) f_nT_.push_back(reading.f_nT);
 }
 
+void Dwell::add(const AuxiliaryReading& reading) {
+  if (!inside(reading.arrival.mono)) return;
+  for (const auto& [column, value] : reading.values) {
+    Sum& sum = auxiliary_[column];
+    sum.sum += value;
+    ++sum.count;
+  }
+}
+
 bool Dwell::complete(Instant now) const { return past_end_ || now >= end_ + from_seconds(config_.grace_s); }
 
 DwellQuality Dwell::quality() const {
@@ -175,6 +184,8 @@ Result<Pose> Dwell::pose(const DwellPlace& place) const {
   for (std::size_t i = 0; i < kSensors; ++i) {
     if (T_count_[i] > 0) pose.T_degC[i] = T_sum_degC_[i] / static_cast<double>(T_count_[i]);
   }
+  for (const auto& [column, sum] : auxiliary_)
+    pose.covariates[column] = sum.sum / static_cast<double>(sum.count);
   return pose;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "proto/epoch.h"
@@ -15,7 +17,8 @@
 /// mean per axis over the n epochs whose time lies in the dwell; sd of one sample and n_eff such that
 ///     sd^2 / n_eff = variance of the mean = scatter^2 (1 + 2 sum of autocorrelations) / n
 /// on every axis: sd is that of a raw sample even where the sampler's interpolation smoothed the epochs;
-/// scalar: mean of the good readings, f_sd = standard uncertainty of that mean; temperatures: means.
+/// scalar: mean of the good readings, f_sd = standard uncertainty of that mean; temperatures and
+/// auxiliary inputs: means.
 /// What makes a pose unusable is an Error of pose(): too many gaps, saturation, a sensor whose value stands
 /// still.
 namespace mgtd::daemon {
@@ -57,6 +60,7 @@ class Dwell {
   /// Epochs and readings before begin or after the end are ignored.
   void add(const EpochOrGap& item);
   void add(const ScalarReading& reading);
+  void add(const AuxiliaryReading& reading);
   /// The epochs of the whole dwell are in, or will not come (grace_s after its end).
   [[nodiscard]] bool complete(Instant now) const;
   [[nodiscard]] Instant begin() const { return begin_; }
@@ -81,6 +85,11 @@ class Dwell {
   std::vector<double> f_nT_;
   std::array<double, kSensors> T_sum_degC_{};
   std::array<std::size_t, kSensors> T_count_{};
+  struct Sum {
+    double sum{0};
+    std::size_t count{0};
+  };
+  std::map<std::string, Sum> auxiliary_;  ///< by column
   std::array<std::size_t, kSensors> repeats_{};
   std::size_t saturated_{0};
   bool past_end_{false};

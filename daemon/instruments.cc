@@ -27,13 +27,15 @@ void carry_out(const TableOrder& order, drivers::Turntable& table) {
 Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
                          Callbacks callbacks)
     : callbacks_(std::move(callbacks)), clock_(clock), timer_(io) {
-  for (const DeviceConfig& sensor : config.sensors) add(io, clock, sensor);
-  add(io, clock, config.table);
-  if (config.scalar) add(io, clock, *config.scalar);
+  std::uint8_t number = 0;
+  for (const DeviceConfig& sensor : config.sensors) add(io, clock, sensor, number++);
+  add(io, clock, config.table, number++);
+  if (config.scalar) add(io, clock, *config.scalar, number);
+  for (const DeviceConfig& auxiliary : config.auxiliary) add(io, clock, auxiliary, ++number);
 }
 
-void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device) {
-  const auto number = static_cast<std::uint8_t>(instruments_.size());
+void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device,
+                      std::uint8_t number) {
   const std::string name = device.name;
   if (device.port.empty()) {
     instruments_.push_back({name, device.driver, {}, device.device, nullptr});

@@ -51,7 +51,8 @@ class Instruments {
     std::shared_ptr<drivers::Device> device;
     std::unique_ptr<drivers::PortLink> link;  ///< null: the device has no port
   };
-  void add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device);
+  void add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device,
+           std::uint8_t number);
   [[nodiscard]] static LinkHealth health(const Instrument& instrument);
   /// What a device without a port has to say.
   void listen();
@@ -60,7 +61,7 @@ class Instruments {
   Callbacks callbacks_;
   const drivers::Clock& clock_;
   drivers::PatientTimer timer_;
-  std::vector<Instrument> instruments_;  ///< s1 .. s4, table, scalar
+  std::vector<Instrument> instruments_;  ///< s1 .. s4, table, scalar, aux1, ...
 };
 
 }  // namespace mgtd::daemon

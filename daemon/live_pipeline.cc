@@ -7,6 +7,7 @@ namespace mgtd::daemon {
 namespace {
 
 constexpr auto kFreshAngles = std::chrono::seconds(10);
+constexpr auto kFreshInput = std::chrono::seconds(120);  // twice the slowest asking
 
 }  // namespace
 
@@ -35,11 +36,21 @@ void LivePipeline::use(std::shared_ptr<const calib::Calibration> calibration) {
   live_ = calib::LiveTensor(calibration);
 }
 
-/// Where the array stands is known while a referenced table stands still and says so.
-calib::LiveConditions LivePipeline::conditions(Instant at) const {
+void LivePipeline::push(const AuxiliaryReading& reading) {
+  for (const auto& [column, value] : reading.values) {
+    auxiliary_[column] = value;
+    auxiliary_at_[column] = reading.arrival.mono;
+  }
+}
+
+/// Where the array stands is known while a referenced table stands still and says so; an input that has not
+/// been heard of for long is not known any more.
+calib::LiveConditions LivePipeline::conditions(Instant at) {
+  std::erase_if(auxiliary_, [&](const auto& input) { return at - auxiliary_at_[input.first] > kFreshInput; });
   calib::LiveConditions out;
   if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
     out.angles = table_->angles;
+  out.covariates = &auxiliary_;
   return out;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -29,6 +31,7 @@ class LivePipeline {
 
   void push(const FieldReading& reading) { sampler_.push(reading, ready_); }
   void push(const TemperatureReading& reading) { sampler_.push(reading); }
+  void push(const AuxiliaryReading& reading);
   void push(const TableReading& reading) { table_ = reading; }
   void reopened(int slot) { sampler_.reopened(slot); }
   void advance(Instant now) { sampler_.advance(now, ready_); }
@@ -54,13 +57,15 @@ class LivePipeline {
 
  private:
   [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& verdict_changed);
-  [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
+  [[nodiscard]] calib::LiveConditions conditions(Instant at);
 
   double baseline_m_;
   Sampler sampler_;
   calib::LiveTensor live_;
   calib::LiveCriticism criticism_;
-  std::optional<TableReading> table_;  ///< the last
+  std::optional<TableReading> table_;            ///< the last
+  std::map<std::string, double> auxiliary_;      ///< the last of each column
+  std::map<std::string, Instant> auxiliary_at_;  ///< its time
   bool calibrating_{false};
   std::vector<EpochOrGap> ready_;  ///< reused, so that a sample allocates nothing
 };

@@ -129,6 +129,10 @@ void Rig::on_event(const std::string& device, const DeviceEvent& event) {
   }
   if (const auto* temperature = std::get_if<TemperatureReading>(&event)) return pipeline_.push(*temperature);
   if (const auto* scalar = std::get_if<ScalarReading>(&event)) return run_.feed(*scalar, now);
+  if (const auto* auxiliary = std::get_if<AuxiliaryReading>(&event)) {
+    pipeline_.push(*auxiliary);
+    return run_.feed(*auxiliary, now);
+  }
   if (const auto* table = std::get_if<TableReading>(&event)) {
     pipeline_.push(*table);
     return run_.feed(*table, now);

@@ -11,7 +11,8 @@
 #include "proto/reading.h"
 #include "proto/run_status.h"
 
-/// All that can happen to a run. Devices are named as in the configuration: "s1" .. "s4", "table", "scalar".
+/// All that can happen to a run. Devices are named as in the configuration: "s1" .. "s4", "table", "scalar",
+/// "aux1", ...
 namespace mgtd::daemon {
 
 enum class Request { pause, resume, abort, retry, finish, redo };  ///< of the operator
@@ -72,8 +73,8 @@ struct CalibrationProposed {
   Result<void> result;
 };
 
-using Event =
-    std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, TableReading, LinkSeen, DeviceLost,
-                 DeviceBack, DeviceFaulted, PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
+using Event = std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, AuxiliaryReading,
+                           TableReading, LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, PoseStored,
+                           AccuracyKnown, SolveDone, CalibrationProposed>;
 
 }  // namespace mgtd::daemon

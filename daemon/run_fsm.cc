@@ -71,6 +71,10 @@ void RunFsm::on(const ScalarReading& reading) {
   if (phase_ == Phase::dwelling) dwell_->add(reading);
 }
 
+void RunFsm::on(const AuxiliaryReading& reading) {
+  if (phase_ == Phase::dwelling) dwell_->add(reading);
+}
+
 void RunFsm::on(const TableReading& reading) {
   // The way of a hand is not known, nor is the attitude while the array is being mounted.
   const bool known = !config_.by_hand && (!plans_mounts(plan_) || mounted_);

@@ -84,6 +84,7 @@ class RunFsm {
   void on(const Gap& gap) { on_sample(EpochOrGap{gap}); }
   void on(const ScaleEntered& entered);
   void on(const ScalarReading& reading);
+  void on(const AuxiliaryReading& reading);
   void on(const TableReading& reading);
   void on(const LinkSeen& link);
   void on(const DeviceLost& lost);

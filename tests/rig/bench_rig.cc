@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "tests/rig/dcon_instrument.h"
 #include "tests/rig/gcs2_instrument.h"
 #include "tests/rig/gsm_instrument.h"
 #include "tests/rig/obsdaq_instrument.h"
@@ -16,6 +17,7 @@ namespace mgtd::rig {
 namespace {
 
 constexpr double kClockStep_s = 3;  ///< leap seconds learnt late
+constexpr std::size_t kTable = 4;
 constexpr std::array kLasting{FaultKind::unplug, FaultKind::torn, FaultKind::freeze, FaultKind::stall,
                               FaultKind::saturate};
 
@@ -28,7 +30,15 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
     instruments_.push_back(std::move(digitiser));
   }
   instruments_.push_back(std::make_unique<Gcs2Instrument>(world_));
-  if (world_.scenario().scalar) instruments_.push_back(std::make_unique<GsmInstrument>(world_, utc_s));
+  names_.assign(kPortNames.begin(), kPortNames.begin() + kTable + 1);
+  if (world_.scenario().scalar) {
+    instruments_.push_back(std::make_unique<GsmInstrument>(world_, utc_s));
+    names_.push_back("scalar");
+  }
+  if (auto inputs = recorded(world_.scenario().covariates); !inputs.empty()) {
+    instruments_.push_back(std::make_unique<DconInstrument>(std::move(inputs)));
+    names_.push_back("auxiliary");
+  }
   for (std::size_t i = 0; i < instruments_.size(); ++i)
     wires_.emplace_back(instruments_[i]->baud(), world_.scenario().seed + i);
   plugged_.assign(instruments_.size(), true);
@@ -59,8 +69,8 @@ void BenchRig::drop(std::size_t port, double now_s) {
 }
 
 tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s) {
-  const auto* const found = std::find(kPortNames.begin(), kPortNames.end(), fault.port);
-  const auto port = static_cast<std::size_t>(found - kPortNames.begin());
+  const auto port =
+      static_cast<std::size_t>(std::find(names_.begin(), names_.end(), fault.port) - names_.begin());
   if (port >= ports()) return tl::unexpected(fmt::format("this rig has no {}", fault.port));
   for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
   if (fault.kind == FaultKind::restore) {

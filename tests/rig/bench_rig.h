@@ -19,8 +19,10 @@ class BenchRig {
   /// `utc_s`: the hour on the instruments' clocks when the rig is switched on.
   BenchRig(Scenario scenario, double utc_s);
 
-  /// Index in kPortNames; the scalar reference is left out where the scenario has none.
+  /// In the order of kPortNames; the scalar reference and the auxiliary inputs are left out where the
+  /// scenario has none.
   [[nodiscard]] std::size_t ports() const { return instruments_.size(); }
+  [[nodiscard]] std::string_view name(std::size_t port) const { return names_.at(port); }
   void write(std::size_t port, std::string_view bytes, double now_s);
   /// Everything that has come out of the cable by now; empty while unplugged.
   [[nodiscard]] std::string read(std::size_t port, double now_s);
@@ -51,6 +53,7 @@ class BenchRig {
   void forget_endings(std::size_t port, FaultKind kind);
 
   World world_;
+  std::vector<std::string_view> names_;
   std::vector<std::unique_ptr<Instrument>> instruments_;
   std::vector<Wire> wires_;
   std::vector<bool> plugged_;

@@ -36,6 +36,14 @@ std::string table(const Scenario& s, const std::string& dir) {
       dir, s.table_velocity_deg_per_s, axes);
 }
 
+std::string auxiliary(const std::vector<Covariate>& inputs, const std::string& dir) {
+  std::string columns;
+  for (const Covariate& input : inputs)
+    columns += fmt::format("{}\"{}\"", columns.empty() ? "" : ", ", input.name);
+  return fmt::format("\n[[auxiliary]]\ndriver = \"dcon\"\nport = \"{}/auxiliary\"\nchannels = [{}]\n", dir,
+                     columns);
+}
+
 }  // namespace
 
 std::string config_text(const Scenario& s, const std::string& dir, const std::string& state_dir,
@@ -50,6 +58,7 @@ std::string config_text(const Scenario& s, const std::string& dir, const std::st
   } else {
     out += fmt::format("\n[site]\nfield_nT = {}\n", s.f_nT);
   }
+  if (const auto inputs = recorded(s.covariates); !inputs.empty()) out += auxiliary(inputs, dir);
   // Long enough that the host's own pauses, which a fast clock makes long, leave something to look at.
   const double preflight_s = 5 + (speed_up - 1) / 2;
   return out + fmt::format(

@@ -27,4 +27,9 @@ double Covariate::at(double t_s) const {
   return mean;
 }
 
+std::vector<Covariate> recorded(std::vector<Covariate> all) {
+  std::erase_if(all, [](const Covariate& c) { return !c.recorded; });
+  return all;
+}
+
 }  // namespace mgtd::rig

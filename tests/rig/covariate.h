@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 /// Something that changes during a run and can be written down beside the poses, or forgotten: a motor's
 /// current, the battery.
@@ -22,6 +23,9 @@ struct Covariate {
   std::uint64_t pattern{1};  ///< of the toggling
   [[nodiscard]] double at(double t_s) const;
 };
+
+/// Those that are written down: what an input module measures.
+[[nodiscard]] std::vector<Covariate> recorded(std::vector<Covariate> all);
 
 /// +1 or -1, at random for every `every_s`; the same pattern always toggles the same way.
 [[nodiscard]] double toggled(double t_s, double every_s, std::uint64_t pattern);

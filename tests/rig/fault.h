@@ -15,11 +15,11 @@
 ///   saturate PORT [for S]  the instrument is at the end of its range
 ///   clock PORT             its clock jumps 3 s ahead
 ///   restore PORT           all of it ends
-/// Ports: fluxgate1 .. fluxgate4, table, scalar.
+/// Ports: fluxgate1 .. fluxgate4, table, scalar, auxiliary.
 namespace mgtd::rig {
 
-inline constexpr std::array<std::string_view, 6> kPortNames{"fluxgate1", "fluxgate2", "fluxgate3",
-                                                            "fluxgate4", "table",     "scalar"};
+inline constexpr std::array<std::string_view, 7> kPortNames{
+    "fluxgate1", "fluxgate2", "fluxgate3", "fluxgate4", "table", "scalar", "auxiliary"};
 
 enum class FaultKind { unplug, garbage, torn, freeze, stall, saturate, clock, restore };
 

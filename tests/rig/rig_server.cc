@@ -81,7 +81,7 @@ std::string Server::open_ports() {
   std::filesystem::create_directories(options_.dir, ec);
   if (ec) return fmt::format("{}: {}", options_.dir, ec.message());
   for (std::size_t i = 0; i < rig_.ports(); ++i) {
-    ports_.push_back(std::make_unique<Pty>(fmt::format("{}/{}", options_.dir, kPortNames.at(i))));
+    ports_.push_back(std::make_unique<Pty>(fmt::format("{}/{}", options_.dir, rig_.name(i))));
     if (!ports_.back()->is_open()) return ports_.back()->why();
   }
   backlog_.resize(ports_.size());
@@ -192,8 +192,7 @@ std::string Server::status() const {
   const double now = now_s();
   nlohmann::json ports;
   for (std::size_t i = 0; i < ports_.size(); ++i)
-    ports[std::string(kPortNames.at(i))] = {{"plugged", rig_.plugged(i)},
-                                            {"listened", ports_[i]->listened()}};
+    ports[std::string(rig_.name(i))] = {{"plugged", rig_.plugged(i)}, {"listened", ports_[i]->listened()}};
   nlohmann::json angles;
   for (const TableAxis axis : {azimuth, pitch, roll})
     angles.push_back(rig_.world().axis(axis).indicated_deg(now));

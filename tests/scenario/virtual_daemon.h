@@ -164,6 +164,7 @@ class VirtualDaemon {
     for (const DeviceConfig& sensor : config_.sensors) ports_.push_back({sensor.name, sensor.device});
     ports_.push_back({config_.table.name, config_.table.device});
     if (config_.scalar) ports_.push_back({config_.scalar->name, config_.scalar->device});
+    for (const DeviceConfig& module : config_.auxiliary) ports_.push_back({module.name, module.device});
   }
 
   void exchange(std::size_t i) {
@@ -197,6 +198,7 @@ class VirtualDaemon {
   void on(const Port&, const FieldReading& reading) { sampler_.push(reading, pending_); }
   void on(const Port&, const TemperatureReading& reading) { sampler_.push(reading); }
   void on(const Port&, const ScalarReading& reading) { tell(reading); }
+  void on(const Port&, const AuxiliaryReading& reading) { tell(reading); }
   void on(const Port&, const TableReading& reading) { tell(reading); }
   void on(const Port& port, const DeviceFault& fault) {
     notes.push_back(port.name + ": " + fault.what);
