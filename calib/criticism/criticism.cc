@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/chi_square.h"
+#include "calib/criticism/refinement.h"
 #include "calib/fit/pose_residuals.h"
 
 namespace mgtd::calib {
@@ -79,6 +80,9 @@ Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t
     }
   }
   out.independent = calibrate(out.families, seed);
+  for (std::size_t f = 0; f < out.families.size(); ++f) {
+    if (out.rejects_named(f)) refine(fit.problem, fit.state, residual, out.noise.reference, out.families[f]);
+  }
   std::stable_sort(out.families.begin(), out.families.end(),
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
   out.maps = score_maps(residual_maps(fit.problem, fit.state), residual, out.noise.reference);

@@ -12,6 +12,8 @@
 #include "calib/criticism/criticism.h"
 #include "calib/criticism/growth.h"
 #include "calib/criticism/next_measurement.h"
+#include "calib/criticism/rest.h"
+#include "calib/criticism/sentence.h"
 #include "calib/fit/joint_report.h"
 
 namespace mgtd::calib {
@@ -102,7 +104,6 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   for (std::size_t i = 0; i < c.families.size(); ++i) {
     Candidate candidate = candidate_of(c.families[i], c, fit.worse);
     if (i == 0) weigh_poses(fit, c.evidence_by_pose(0), candidate);
-    candidate.rivals = i == 0 ? rivals_of(c.families, i) : std::vector<Rival>{};
     out.candidates.push_back(std::move(candidate));
     out.detectable.push_back(detectable_of(*c.families[i].suspect, c.families[i].signatures.front()));
   }
@@ -123,13 +124,52 @@ std::string doubt(const Round& round, const Criticism& before) {
   return {};
 }
 
+/// The first of the named laws that leaves something on its own axes; empty when none does.
+std::string leaves_something(const ExplainReport& report, const Criticism& last) {
+  for (const Round& round : report.rounds) {
+    const double log10_p = rest_log10_p(last, round.added.where);
+    if (log10_p < std::log10(kRestAlarm))
+      return fmt::format("{} is not all of it: with it {} still differs from noise, p {}", round.added.effect,
+                         round.added.where, p_text(log10_p));
+  }
+  return {};
+}
+
+bool overlap(const Where& a, const Where& b) {
+  for (int s = 0; s < kSensors; ++s) {
+    for (int x = 0; x < 3; ++x)
+      if (a.covers(s, x) && b.covers(s, x)) return true;
+  }
+  return false;
+}
+
+/// One name in all rounds, found axis by axis. Two searched numbers on one axis are no one law: a staircase
+/// follows any curve.
+bool one_law(const std::vector<Round>& rounds) {
+  std::vector<EffectSpec> seen;
+  for (const Round& round : rounds) {
+    if (round.added.effect != rounds.front().added.effect) return false;
+    const auto spec = EffectSpec::parse(round.added.spec);
+    if (!spec) return false;
+    for (const EffectSpec& other : seen) {
+      const bool together = !spec->where || !other.where || overlap(*spec->where, *other.where);
+      if (together && spec->parameters != other.parameters) return false;
+    }
+    seen.push_back(*spec);
+  }
+  return true;
+}
+
 Finding conclude(const ExplainReport& report, const Criticism& first, const Criticism& last,
                  std::vector<std::string>& notes) {
   if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
   const Round& round = report.rounds.front();
   if (last.rejects()) return Finding::partial;
-  const auto same = [&](const Round& r) { return r.added.effect == round.added.effect; };
-  if (!std::all_of(report.rounds.begin(), report.rounds.end(), same)) return Finding::partial;
+  if (std::string rest = leaves_something(report, last); !rest.empty()) {
+    notes.push_back(std::move(rest));
+    return Finding::partial;
+  }
+  if (!one_law(report.rounds)) return Finding::partial;
   if (!round.possible.empty()) return Finding::ambiguous;
   std::string why = doubt(round, first);
   if (why.empty()) return Finding::explained;
@@ -200,7 +240,7 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   const ScoredFamily& best = criticism.families[f];
   Round round{.added = candidate_of(best, criticism, fit.worse)};
   weigh_poses(fit, criticism.evidence_by_pose(f), round.added);
-  round.added.rivals = rivals_of(criticism.families, f);
+  round.added.rivals = rivals_of(criticism.families, f, search.seed);
   for (const Rival& rival : round.added.rivals)
     if (rival.possible) round.possible.push_back(rival.effect);
   keep_memory_possible(search, criticism, round);
@@ -216,7 +256,10 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
     search.failed.insert(round.added.effect);
     return false;
   }
-  if (report.rounds.empty()) report.next = next_measurements(search.table, fit, search.joint, round.added);
+  if (report.rounds.empty()) {
+    report.next = next_measurements(search.table, fit, search.joint, round.added);
+    report.candidates[f].rivals = round.added.rivals;
+  }
   round.chi2_before = chi2_of(fit, criticism), round.rms_before_nT = rms_nT(fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;

@@ -19,8 +19,11 @@ json candidate_json(const Candidate& c) {
   json coefficients = json::array(), rivals = json::array();
   for (const EffectCoefficient& x : c.coefficients) coefficients.push_back(coefficient_json(x));
   for (const Rival& r : c.rivals) {
-    rivals.push_back(
-        {{"effect", r.effect}, {"where", r.where}, {"p_right", r.p_right}, {"possible", r.possible}});
+    rivals.push_back({{"effect", r.effect},
+                      {"where", r.where},
+                      {"p_behind", r.p_behind},
+                      {"p_right", r.p_right},
+                      {"possible", r.possible}});
   }
   return {{"effect", c.effect},
           {"where", c.where},

@@ -22,7 +22,8 @@ bool holds(const Effect& whole, const Effect& part) {
 }  // namespace
 
 Result<std::vector<EffectPtr>> grown(const std::vector<EffectPtr>& model, const ScoredFamily& winner) {
-  auto added = winner.suspect->make(winner.where(), winner.winner().variant);
+  const Suspect& suspect = *winner.suspect;
+  auto added = suspect.make(&winner.where(), suspect.values[winner.winner().variant]);
   if (!added) return tl::unexpected(added.error());
   std::vector<EffectPtr> out;
   for (const EffectPtr& effect : model)

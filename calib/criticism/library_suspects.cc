@@ -10,8 +10,9 @@
 namespace mgtd::calib {
 namespace {
 
-/// Of a searched number no more values are tried: its neighbours are alike, and the fit refines it.
-constexpr std::size_t kVariants = 10;
+/// Of a searched number no more values are tried at first: neighbours are alike, and what comes near the
+/// winner is refined. An instant is told more sharply than a smooth number.
+constexpr std::size_t kVariants = 10, kInstants = 20;
 
 /// Values of the searched number; an empty one is the form without it.
 std::vector<std::optional<double>> variants(const EffectFamily& family, const EffectContext& context) {
@@ -19,7 +20,8 @@ std::vector<std::optional<double>> variants(const EffectFamily& family, const Ef
   const std::vector<double> all = scan_values(family, context);
   std::vector<std::optional<double>> out;
   if (family.scan->optional) out.emplace_back(std::nullopt);
-  const std::size_t n = std::min(all.size(), kVariants);
+  const bool instant = family.scan->range == Scan::Range::run;
+  const std::size_t n = std::min(all.size(), instant ? kInstants : kVariants);
   for (std::size_t i = 0; i < n; ++i) out.emplace_back(all[n < 2 ? 0 : i * (all.size() - 1) / (n - 1)]);
   return out;
 }
@@ -29,6 +31,23 @@ std::optional<Where> where_of(const Hypothesis& hypothesis) {
   const auto where = Where::parse(hypothesis.where);
   if (!where || where->scale == Where::Scale::own) return std::nullopt;
   return *where;
+}
+
+/// Half-way between two values; of instants one that lies between poses.
+std::function<std::optional<double>(double, double)> between(const EffectFamily& family,
+                                                             const EffectContext& context) {
+  if (!family.scan || family.scan->range == Scan::Range::index) return {};
+  const Scan scan = *family.scan;
+  if (scan.range == Scan::Range::logarithmic)
+    return [](double lower, double upper) { return std::optional(std::sqrt(lower * upper)); };
+  if (scan.range == Scan::Range::linear)
+    return [](double lower, double upper) { return std::optional((lower + upper) / 2); };
+  return [gaps = run_gaps_h(context)](double lower, double upper) -> std::optional<double> {
+    const auto first = std::upper_bound(gaps.begin(), gaps.end(), lower);
+    const auto last = std::lower_bound(first, gaps.end(), upper);
+    if (first == last) return std::nullopt;
+    return *(first + (last - first) / 2);
+  };
 }
 
 Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
@@ -45,9 +64,10 @@ Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
   }
   if (family.scan) out.parameter = family.scan->parameter;
   if (!out.variants.empty()) out.hypotheses = hypotheses_of(*out.variants.front());
-  out.make = [&family, context, values = out.values](const Hypothesis& h, std::size_t variant) {
-    return make(family, where_of(h), values[variant], context);
+  out.make = [&family, context](const Hypothesis* h, const std::optional<double>& value) {
+    return make(family, h == nullptr ? std::nullopt : where_of(*h), value, context);
   };
+  out.between = between(family, context);
   return out;
 }
 

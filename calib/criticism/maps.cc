@@ -15,7 +15,9 @@
 namespace mgtd::calib {
 namespace {
 
-/// Values of the functions of a map at a pose for one sensor; empty where the pose cannot feed it.
+/// Values of the functions of a map at a pose for one channel; empty where the pose cannot feed it.
+using ChannelFunctions = std::function<std::vector<double>(const JointPose& pose, int channel)>;
+/// The same for all channels of a sensor.
 using Functions = std::function<std::vector<double>(const JointPose& pose, int sensor)>;
 
 Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Eigen::Index count,
@@ -27,17 +29,16 @@ Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Ei
 }
 
 /// The functions free in each of the twelve channels.
-Map by_channel(const JointProblem& problem, std::string name, Eigen::Index m, const Functions& functions) {
+Map of_channels(const JointProblem& problem, std::string name, Eigen::Index m,
+                const ChannelFunctions& functions) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
   Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * kPoseRows, m * kChannels)};
   for (Eigen::Index k = 0; k < poses; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
-    for (int i = 0; i < kSensors; ++i) {
-      const std::vector<double> values = functions(pose, i);
-      for (int c = 3 * i; c < 3 * i + 3; ++c) {
-        for (std::size_t j = 0; j < values.size(); ++j)
-          out.rows(k * kPoseRows + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
-      }
+    for (int c = 0; c < kChannels; ++c) {
+      const std::vector<double> values = functions(pose, c);
+      for (std::size_t j = 0; j < values.size(); ++j)
+        out.rows(k * kPoseRows + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
     }
   }
   out.hypotheses.push_back(picked("all", kChannels, 1, 0, m * kChannels, m * kChannels));
@@ -46,6 +47,11 @@ Map by_channel(const JointProblem& problem, std::string name, Eigen::Index m, co
         picked(fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]), 1, kChannels, c * m, m, m * kChannels));
   }
   return out;
+}
+
+Map by_channel(const JointProblem& problem, std::string name, Eigen::Index m, const Functions& functions) {
+  return of_channels(problem, std::move(name), m,
+                     [&functions](const JointPose& pose, int c) { return functions(pose, c / 3); });
 }
 
 /// A covariate brought to [-1, 1] over the poses; not usable where it does not vary.
@@ -89,6 +95,19 @@ void add_azimuth(const JointProblem& problem, std::vector<Map>& out) {
     }
     return v;
   }));
+}
+
+/// Chebyshev polynomials of the axis' own part of the field.
+void add_own_reading(const JointProblem& problem, const JointState& state, std::vector<Map>& out) {
+  constexpr int kFirst = 2, kLast = 6;
+  out.push_back(
+      of_channels(problem, "own reading", kLast - kFirst + 1, [&state](const JointPose& pose, int c) {
+        const auto s = static_cast<std::size_t>(c / 3);
+        const Eigen::Vector3d u = (pose.y_nT.segment<3>(c - c % 3) - state.sensors[s].offset_nT).normalized();
+        std::vector<double> v;
+        for (int j = kFirst; j <= kLast; ++j) v.push_back(std::cos(j * std::acos(u[c % 3])));
+        return v;
+      }));
 }
 
 void add_direction(const JointProblem& problem, const JointState& state, std::vector<Map>& out) {
@@ -166,6 +185,7 @@ std::vector<Map> residual_maps(const JointProblem& problem, const JointState& st
   std::vector<Map> out;
   add_time(problem, out);
   add_azimuth(problem, out);
+  add_own_reading(problem, state, out);
   add_direction(problem, state, out);
   add_temperature(problem, out);
   add_previous(problem, out);
@@ -184,7 +204,7 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
   std::vector<MapScore> out;
   for (const Map& map : maps) {
     const Signature s = signature_of(residual, map.rows);
-    MapScore best{.map = map.name, .where = {}, .log10_p = 1, .fit = {}};
+    MapScore best{.map = map.name, .where = {}, .log10_p = 1, .by_channel = {}, .fit = {}};
     double scales = 0;
     for (const Hypothesis& h : map.hypotheses) {
       scales += 1.0 / h.alike;
@@ -192,7 +212,8 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
       const auto k = static_cast<int>(step.basis.cols());
       if (k == 0) continue;
       const Eigen::VectorXd t = step.basis.transpose() * s.by_residual;
-      const double log10_p = noise.log10_p(t.squaredNorm(), k, h.axes) + std::log10(h.alike);
+      const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
+      if (h.alike == kChannels) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
       if (log10_p >= best.log10_p) continue;
       best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
       best.fit = s.columns * (step.basis * t);

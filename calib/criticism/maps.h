@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 ///
 ///     time            8 cosines a channel          direction        monomials of degree 2 to 4 of the field
 ///     azimuth         4 harmonics a channel                         direction at the sensor, a channel
+///     own reading     polynomials of degree 2 to 6 of the axis' part of the field, a channel
 ///     temperature     cubic of the sensor's own    previous pose    last reading of the sensor, a channel
 ///     mount           a level for each mounting    site field       8 cosines of time, 3 components
 ///     site gradient   8 cosines, 5 components      site map         gradient and curvature, constant
@@ -32,7 +34,8 @@ struct MapScore {
   std::string where{};  ///< of the hypothesis that shows it best
   double S{0};
   int k{0};
-  double log10_p{0};      ///< of the map, its hypotheses counted
+  double log10_p{0};                           ///< of the map, its hypotheses counted
+  std::array<double, kChannels> by_channel{};  ///< log10 p of each channel alone; 0 where it has none
   Eigen::VectorXd fit{};  ///< the residual that the map explains, rows as Residual::value()
 };
 

@@ -71,7 +71,8 @@ double p_right(const PoseTable& table, const JointFit& fit, const JointOptions& 
     if (B.cols() == 0) continue;
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
     qr.setThreshold(1e-6);
-    lambda = std::min(lambda, (v - B * qr.solve(v)).squaredNorm());
+    const double told = (v - B * qr.solve(v)).squaredNorm();
+    lambda = std::min(lambda, rival->alike > kAlike ? beyond_form(told, v.squaredNorm()) : told);
   }
   return told_right(lambda);
 }

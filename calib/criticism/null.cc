@@ -6,20 +6,22 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <span>
 
 #include "calib/chi_square.h"
 
 namespace mgtd::calib {
 namespace {
 
-/// Of a scanned number no more values take part in the draws: neighbours are alike.
-constexpr std::size_t kDrawnVariants = 6;
+/// Of a searched number so many values take part in the draws of all families together: neighbours are
+/// alike. Draws of one family have all of them.
+constexpr std::size_t kTogether = 3;
 /// Share of the draws that decides about m.
 constexpr double kLower = 1.0 / 3;
 constexpr double kJitter = 1e-9;
 
-std::vector<std::size_t> drawn(const ScoredFamily& family) {
-  const std::size_t n = family.signatures.size(), m = std::min(n, kDrawnVariants);
+std::vector<std::size_t> drawn(const ScoredFamily& family, std::size_t most) {
+  const std::size_t n = family.signatures.size(), m = std::min(n, most);
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < m; ++i) out.push_back(m < 2 ? 0 : i * (n - 1) / (m - 1));
   return out;
@@ -57,12 +59,12 @@ Eigen::MatrixXd normal(Eigen::Index rows, Eigen::Index columns, std::uint64_t se
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return gauss(random); });
 }
 
-Draws draw(const std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
+Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64_t seed, int draws) {
   Draws out;
   Eigen::Index m = 0, rows = 0;
   for (const ScoredFamily& family : families) {
     out.first.emplace_back();
-    for (const std::size_t v : drawn(family)) {
+    for (const std::size_t v : drawn(family, most)) {
       out.first.back().emplace_back(v, m);
       m += family.signatures[v].columns.cols();
       rows = family.signatures[v].columns.rows();
@@ -137,14 +139,20 @@ double best_of(double log10_p, double m) {
 
 double calibrate(std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
   if (families.empty()) return 1;
-  const Draws drawn = draw(families, seed, draws);
+  const Draws together = draw(families, kTogether, seed, draws);
   std::map<int, Tail> tails;
   std::vector<double> best(static_cast<std::size_t>(draws), 0.0);
   for (std::size_t f = 0; f < families.size(); ++f) {
-    const std::vector<double> own = smallest(families[f], drawn, f, tails);
+    ScoredFamily& family = families[f];
+    const std::vector<double> own = smallest(family, together, f, tails);
     const double m = rate_of(own);
-    families[f].calibrated = best_of(families[f].priced, m);
     for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
+    family.asked = m;
+    if (family.signatures.size() > kTogether) {
+      const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1, draws);
+      family.asked = rate_of(smallest(family, alone, 0, tails));
+    }
+    family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
   }
   return std::max(1.0, rate_of(std::move(best)));
 }

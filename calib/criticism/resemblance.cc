@@ -99,9 +99,9 @@ Result<Suspect> formula_suspect(const EffectSpec& formula) {
                         .names = {}};
   for (const Coefficient& c : first.coefficients()) everything.names.push_back(c.name);
   out.hypotheses = {std::move(everything)};
-  out.make = [formula, scan, values](const Hypothesis&, std::size_t variant) {
+  out.make = [formula, scan](const Hypothesis*, const std::optional<double>& value) {
     EffectSpec spec = formula;
-    if (scan) spec.set(scan->parameter, values[variant]);
+    if (scan && value) spec.set(scan->parameter, *value);
     return make_formula(spec);
   };
   return out;

@@ -3,64 +3,76 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
+
+#include "calib/criticism/contenders.h"
 
 namespace mgtd::calib {
 namespace {
 
-constexpr double kPossible = 2.6;   ///< one true name in 200 would be lost
-constexpr double kShown = 0.999;    ///< pairs that are told apart better than this are no rivals
-constexpr double kNothing = 1e-3;   ///< of a chi-square
-constexpr double kHopeless = 0.25;  ///< of the winner's fall of chi-square: z is above kPossible then
+constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
+constexpr double kShown = 0.999;   ///< pairs that are told apart better than this are no rivals
+constexpr double kNothing = 1e-3;  ///< of a chi-square
+/// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
+constexpr double kGone = 16;
 
-/// The space of a hypothesis and its fit to the residual.
-struct Explained {
-  Eigen::MatrixXd U;
-  Eigen::VectorXd v;
-};
+/// Length in squares of what of `v` is not in the space of U.
+double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& U) {
+  return (v - U * (U.transpose() * v)).squaredNorm();
+}
 
-Explained explained(const ScoredFamily& family, const Score& score) {
-  const Signature& s = family.signatures[score.variant];
-  const OneStep step = one_step(s, family.suspect->hypotheses[score.hypothesis]);
-  Explained out{.U = s.columns * step.basis, .v = {}};
-  out.v = out.U * (step.basis.transpose() * s.by_residual);
+double share_inside(const Eigen::VectorXd& v, double outside) {
+  return 1 - outside / std::max(v.squaredNorm(), kNothing);
+}
+
+Rival compare(const Contenders& contenders, const std::vector<ScoredFamily>& families, const Contender& a,
+              const Contender& b) {
+  const ScoredFamily& family = families[b.family];
+  const Hypothesis& h = family.suspect->hypotheses[b.score->hypothesis];
+  const Eigen::VectorXd v_a = contenders.signature(a), v_b = contenders.signature(b);
+  const double lambda_ba = outside(v_b, contenders.space(a)), lambda_ab = outside(v_a, contenders.space(b));
+  Rival out{.effect = family.suspect->name,
+            .where = h.where,
+            .spec = spec_of(*family.suspect, h, b.score->variant)};
+  out.alike = share_inside(v_b, lambda_ba);
+  const Hypothesis& won = families[a.family].suspect->hypotheses[a.score->hypothesis];
+  if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
+  out.p_right = told_right(out.alike > kAlike ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
+  if (a.L - b.L < kGone) out.p_behind = contenders.behind(b);
+  out.possible = out.p_behind >= kLost || out.alike > kAlike;
   return out;
 }
 
-Rival compare(const Score& won, const Explained& a, const ScoredFamily& family, const Score& score) {
-  const Explained b = explained(family, score);
-  const double lambda_ba = (b.v - a.U * (a.U.transpose() * b.v)).squaredNorm();
-  const double lambda_ab = (a.v - b.U * (b.U.transpose() * a.v)).squaredNorm();
-  const double deficit = (won.S - won.k) - (score.S - score.k);
-  Rival out{.effect = family.suspect->name,
-            .where = family.suspect->hypotheses[score.hypothesis].where,
-            .spec = spec_of(*family.suspect, family.suspect->hypotheses[score.hypothesis], score.variant)};
-  out.z = (deficit + lambda_ba) / (2 * std::sqrt(std::max(lambda_ba, 1e-12)));
-  out.alike = 1 - lambda_ba / std::max(b.v.squaredNorm(), kNothing);
-  out.possible = out.z < kPossible || lambda_ba < kNothing || out.alike > kAlike;
-  out.p_right = told_right(lambda_ab);
-  return out;
+bool nearer(const Rival& x, const Rival& y) {
+  return std::make_pair(x.possible, x.p_behind) > std::make_pair(y.possible, y.p_behind);
 }
 
 }  // namespace
 
 double told_right(double lambda) { return 0.5 * std::erfc(-std::sqrt(lambda / 8)); }
 
-std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a) {
-  const Score& won = families[a].winner();
-  const Explained best = explained(families[a], won);
+double beyond_form(double lambda, double length2) { return std::max(0.0, lambda - (1 - kAlike) * length2); }
+
+std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a, std::uint64_t seed) {
+  Contenders contenders(families, a);
+  const auto& all = contenders.all();
+  const auto winner = std::find_if(all.begin(), all.end(), [&](const Contender& c) {
+    return c.family == a && c.score == &families[a].winner();
+  });
+  if (winner == all.end()) return {};
+  contenders.draw(seed, kRuns);
   std::vector<Rival> out;
   for (std::size_t b = 0; b < families.size(); ++b) {
     if (b == a) continue;
-    Rival closest{.z = std::numeric_limits<double>::infinity()};
-    for (const Score& score : families[b].scores) {
-      if (score.S < kHopeless * (won.S - won.k)) continue;
-      Rival rival = compare(won, best, families[b], score);
-      if (rival.z < closest.z) closest = std::move(rival);
+    std::optional<Rival> nearest;
+    for (const Contender& c : all) {
+      if (c.family != b) continue;
+      Rival rival = compare(contenders, families, *winner, c);
+      if (!nearest || nearer(rival, *nearest)) nearest = std::move(rival);
     }
-    if (closest.possible || closest.p_right < kShown) out.push_back(std::move(closest));
+    if (nearest && (nearest->possible || nearest->p_right < kShown)) out.push_back(*std::move(nearest));
   }
-  std::sort(out.begin(), out.end(), [](const Rival& x, const Rival& y) { return x.z < y.z; });
+  std::sort(out.begin(), out.end(), nearer);
   return out;
 }
 

@@ -68,27 +68,31 @@ Score score_one(const Signature& s, const Hypothesis& h) {
 
 }  // namespace
 
+void ScoredFamily::score_last(const NoiseReference& noise) {
+  for (std::size_t h = 0; h < suspect->hypotheses.size(); ++h) {
+    const Hypothesis& hypothesis = suspect->hypotheses[h];
+    Score score = score_one(signatures.back(), hypothesis);
+    if (score.k == 0) continue;
+    score.hypothesis = h;
+    score.variant = signatures.size() - 1;
+    score.log10_p = noise.log10_p(score.S, score.k, hypothesis.axes);
+    const double asked_here = score.log10_p + std::log10(hypothesis.alike);
+    if (scores.empty() || asked_here < priced) {
+      priced = asked_here;
+      best = scores.size();
+    }
+    scores.push_back(score);
+  }
+}
+
 ScoredFamily score_family(const JointProblem& problem, const JointState& state, const Residual& residual,
                           const NoiseReference& noise, const Suspect& suspect) {
   ScoredFamily out{.suspect = &suspect};
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < suspect.variants.size(); ++v) {
-    out.signatures.push_back(signature_of(residual, effect_rows(problem, state, suspect.variants[v])));
-    for (std::size_t h = 0; h < suspect.hypotheses.size(); ++h) {
-      Score score = score_one(out.signatures.back(), suspect.hypotheses[h]);
-      if (score.k == 0) continue;
-      score.hypothesis = h;
-      score.variant = v;
-      score.log10_p = noise.log10_p(score.S, score.k, suspect.hypotheses[h].axes);
-      const double priced = score.log10_p + std::log10(suspect.hypotheses[h].alike);
-      if (priced < best) {
-        best = priced;
-        out.best = out.scores.size();
-      }
-      out.scores.push_back(score);
-    }
+  for (const EffectPtr& variant : suspect.variants) {
+    out.signatures.push_back(signature_of(residual, effect_rows(problem, state, variant)));
+    out.score_last(noise);
   }
-  out.priced = out.calibrated = std::min(0.0, best);
+  out.calibrated = std::min(0.0, out.priced);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,14 +56,18 @@ struct OneStep {
 
 struct ScoredFamily {
   const Suspect* suspect{nullptr};
-  std::vector<Signature> signatures{};  ///< by variant
-  std::vector<Score> scores{};          ///< every hypothesis that has a rank, every variant
+  std::shared_ptr<const Suspect> own{};  ///< that suspect, where it was refined: see refinement.h
+  std::vector<Signature> signatures{};   ///< by variant
+  std::vector<Score> scores{};           ///< every hypothesis that has a rank, every variant
   std::size_t best{0};
   double priced{0};      ///< log10 p of the best question times `alike`
-  double calibrated{0};  ///< log10 p of the family, by draws: see null.h
+  double asked{1};       ///< independent questions in the family, by draws: see null.h
+  double calibrated{0};  ///< log10 p of the family, that many questions counted
   [[nodiscard]] const Score& winner() const { return scores[best]; }
   [[nodiscard]] const Hypothesis& where() const { return suspect->hypotheses[winner().hypothesis]; }
   [[nodiscard]] bool testable() const { return !scores.empty(); }
+  /// Scores every hypothesis of the signature added last.
+  void score_last(const NoiseReference& noise);
 };
 
 [[nodiscard]] Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows);

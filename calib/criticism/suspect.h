@@ -32,8 +32,10 @@ struct Suspect {
   std::string parameter{};  ///< its name
   double typical{1}, bound{0};
   std::vector<Hypothesis> hypotheses{};
-  /// The effect of one hypothesis and one variant, for the model.
-  std::function<Result<EffectPtr>(const Hypothesis&, std::size_t variant)> make{};
+  /// The effect of one hypothesis, for the model; null: at its finest scale.
+  std::function<Result<EffectPtr>(const Hypothesis*, const std::optional<double>& value)> make{};
+  /// A value of the searched number between two others; empty where there is none. See refinement.h.
+  std::function<std::optional<double>(double lower, double upper)> between{};
 };
 
 /// What cannot be tested at all, and why.
