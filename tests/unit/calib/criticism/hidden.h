@@ -67,9 +67,11 @@ class AxisLaw final : public EffectOf<AxisLaw> {
 };
 
 inline Suspect suspect(const std::string& name, const AxisLaw::Shape& shape) {
-  Suspect out{.name = name, .variants = {AxisLaw::finest(name, shape)}};
+  Suspect out{.name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
   out.hypotheses = hypotheses_of(*out.variants.front());
-  out.make = [name, shape](const Hypothesis& h, std::size_t) -> Result<EffectPtr> {
+  out.make = [name, shape](const Hypothesis* part, const std::optional<double>&) -> Result<EffectPtr> {
+    if (part == nullptr) return AxisLaw::finest(name, shape);
+    const Hypothesis& h = *part;
     std::array<int, 12> groups{};
     for (Eigen::Index c = 0; c < 12; ++c) {
       Eigen::Index column = 0;
