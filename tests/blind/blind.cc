@@ -13,11 +13,19 @@
 namespace mgtd::calib::testing {
 namespace {
 
+double told_at_best(const ExplainReport& r) {
+  double out = 1;
+  if (r.rounds.empty()) return out;
+  for (const Rival& rival : r.rounds.front().added.rivals) out = std::min(out, rival.p_right);
+  return out;
+}
+
 void count(const ExplainReport& r, const std::string& truth, Answers& out) {
   ++out.runs;
   ++out.findings[r.finding];
   if (r.finding == Finding::pass) return;
   ++out.detected;
+  out.told_at_best += told_at_best(r);
   if (r.named.empty()) return;
   ++out.first[r.named.front()];
   std::vector<std::string> set = r.named;
@@ -63,7 +71,7 @@ int Answers::of(Finding finding) const {
 Answers& Answers::operator+=(const Answers& other) {
   runs += other.runs, refused += other.refused, detected += other.detected;
   named_first += other.named_first, in_set += other.in_set, wrong_single += other.wrong_single;
-  advised += other.advised;
+  advised += other.advised, told_at_best += other.told_at_best;
   set_sizes.insert(set_sizes.end(), other.set_sizes.begin(), other.set_sizes.end());
   for (const auto& [finding, count] : other.findings) findings[finding] += count;
   for (const auto& [name, count] : other.first) first[name] += count;

@@ -18,6 +18,9 @@ struct Answers {
   int named_first{0};   ///< the first name is the right one, of those detected
   int in_set{0};        ///< the right name is among those that are named or possible
   int wrong_single{0};  ///< EXPLAINED by something else
+  /// Sum over detections of the probability that ranking by likelihood puts the right one of two laws first,
+  /// the first name and the one that is hardest to tell from it.
+  double told_at_best{0};
   std::map<std::string, int> first;
   std::vector<int> set_sizes;  ///< of each detection
   int advised{0};              ///< the advice is a change of the field
