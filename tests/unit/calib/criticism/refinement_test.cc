@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib/criticism/explain.h"
 #include "calib/effects/effect_spec.h"
 #include "tests/blind/blind.h"
@@ -10,10 +12,14 @@
 namespace mgtd::calib::testing {
 namespace {
 
+const HiddenLaw& law(std::string_view name) {
+  return *std::find_if(hidden_laws().begin(), hidden_laws().end(),
+                       [&](const HiddenLaw& l) { return l.name == name; });
+}
+
 TEST(Refinement, AnInstantBetweenThoseThatAreTriedFirstIsFoundToThePose) {
   // The step lies after pose 90; twenty instants are tried, eight poses apart.
-  const HiddenLaw& step = *std::find_if(hidden_laws().begin(), hidden_laws().end(),
-                                        [](const HiddenLaw& l) { return l.name == "axis.offset.step"; });
+  const HiddenLaw& step = law("axis.offset.step");
   const double size = 20 * crb_of(step, 1, 2, 5);
   const auto report = explain(hidden_run({.hidden = hide(step, 1, 2, size)}, 5), {});
   ASSERT_TRUE(report.has_value());
@@ -24,6 +30,19 @@ TEST(Refinement, AnInstantBetweenThoseThatAreTriedFirstIsFoundToThePose) {
   ASSERT_NE(spec->find("ts"), nullptr);
   EXPECT_NEAR(std::stod(*spec->find("ts")), 0.754, 1.5 / 120);
   EXPECT_EQ(report->rounds.size(), 1U);
+}
+
+// A drift whose own entry is taken out: three steps follow it to the noise, and that is no explanation.
+TEST(Refinement, AStaircaseIsNotOneLaw) {
+  const HiddenLaw& drift = law("axis.offset.drift");
+  const PoseTable table = hidden_run({.hidden = hide(drift, 0, 0, 20 * crb_of(drift, 0, 0, 74'004))}, 74'004);
+  ExplainOptions options;
+  options.suspects = library_suspects(table).testable;
+  std::erase_if(*options.suspects, [](const Suspect& s) { return s.name == "axis.offset.drift"; });
+  const auto report = explain(table, options);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->named.front(), "axis.offset.step");
+  EXPECT_EQ(report->finding, Finding::partial);
 }
 
 }  // namespace
