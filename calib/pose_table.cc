@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calib/pose_columns.h"
+#include "calib/pose_list.h"
 #include "proto/number.h"
 #include "proto/sha256.h"
 
@@ -53,6 +54,8 @@ class Reader {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
   [[nodiscard]] Result<PoseTable> read();
+  /// Where each pose stands.
+  [[nodiscard]] const std::vector<int>& lines() const { return lines_; }
 
  private:
   bool next_line();
@@ -77,6 +80,7 @@ class Reader {
   std::string_view text_, file_, line_;
   Rows rows_;
   std::size_t line_number_{0};
+  std::vector<int> lines_;
   std::vector<std::string> names_;
   std::vector<const PoseColumn*> known_;  ///< beside names_; null: not one of pose_columns()
 };
@@ -191,6 +195,7 @@ Result<PoseTable> Reader::read() {
                       "give every pose a number of its own; equal angles may repeat");
     }
     table.poses.push_back(*std::move(pose));
+    lines_.push_back(static_cast<int>(line_number_));
   }
   if (table.poses.empty()) {
     return fail(ErrorCode::bad_input, fmt::format("{}: a header but no pose", file_),
@@ -207,6 +212,13 @@ Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file)
 
 Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file) {
   return Reader(text, file, Rows::planned).read();
+}
+
+Result<PoseList> read_pose_list(std::string_view text, std::string_view file) {
+  Reader reader(text, file, Rows::planned);
+  auto table = reader.read();
+  if (!table) return tl::unexpected(table.error());
+  return PoseList{*std::move(table), reader.lines()};
 }
 
 std::string format_pose_table(const PoseTable& table) {

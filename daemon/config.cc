@@ -33,6 +33,7 @@ class Reader {
   void read_rig(const toml::table& root);
   void read_site(const toml::table& root);
   void read_calibration(const toml::table& root);
+  void read_disturbance(Settings& s, RunDefaults& r);
   void read_run(const toml::table& root);
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
@@ -110,6 +111,19 @@ void Reader::read_calibration(const toml::table& root) {
   close(s);
 }
 
+void Reader::read_disturbance(Settings& s, RunDefaults& r) {
+  r.disturbance_nT = s.number("disturbance_nT", r.disturbance_nT);
+  require(s, "disturbance_nT", r.disturbance_nT > 0, "above 0 nT");
+  r.false_alarm = s.number("false_alarm", r.false_alarm);
+  require(s, "false_alarm", r.false_alarm >= 1e-12 && r.false_alarm <= 0.1, "1e-12 to 0.1 of the dwells");
+  r.field_step_nT = s.number("field_step_nT", r.field_step_nT);
+  require(s, "field_step_nT", r.field_step_nT >= 0, "0 (not looked at) or more");
+  r.calm_s = s.number("calm_s", r.calm_s);
+  r.calm_max_s = s.number("calm_max_s", r.calm_max_s);
+  require(s, "calm_max_s", r.calm_s >= 1 && r.calm_max_s > r.calm_s,
+          "longer than calm_s, which is 1 s or more");
+}
+
 void Reader::read_run(const toml::table& root) {
   Settings s = section(root, "run");
   RunDefaults& r = config_.run;
@@ -132,6 +146,7 @@ void Reader::read_run(const toml::table& root) {
   require(s, "preflight_s", r.preflight_s >= 1, "1 s or more");
   r.retries = static_cast<int>(s.integer("retries", r.retries));
   require(s, "retries", r.retries >= 0, "0 or more");
+  read_disturbance(s, r);
   r.answer_max_s = s.number("answer_max_s", r.answer_max_s);
   require(s, "answer_max_s", r.answer_max_s >= 10, "10 s or more");
   r.seed = static_cast<std::uint64_t>(s.integer("seed", static_cast<std::int64_t>(r.seed)));

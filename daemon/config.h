@@ -37,6 +37,10 @@ struct RunDefaults {
   double settle_max_s{30};
   double preflight_s{5};
   int retries{3};
+  double disturbance_nT{0.5};  ///< change of the field while the table stands, rms
+  double false_alarm{1e-4};    ///< of it, in a dwell
+  double field_step_nT{5};     ///< of the scalar reference from pose to pose; 0: not looked at
+  double calm_s{5}, calm_max_s{600};
   double answer_max_s{900};
   std::uint64_t seed{1};
 };

@@ -18,6 +18,8 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::run_status:
     case ControlCommand::calibrations_list:
     case ControlCommand::calibrations_show:
+    case ControlCommand::magnet_status:
+    case ControlCommand::magnet_stop:
     case ControlCommand::control_take:
     case ControlCommand::control_release:
     case ControlCommand::control_break:
@@ -27,6 +29,7 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::run_finish:
     case ControlCommand::run_enter:
     case ControlCommand::run_redo:
+    case ControlCommand::magnet_start:
     case ControlCommand::calibrations_accept:
     case ControlCommand::calibrations_import:
     case ControlCommand::calibrations_rollback:

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/wiring.h"
+
 namespace mgtd::daemon {
 namespace {
 
@@ -136,6 +138,18 @@ Check Preflight::skew() const {
       "a port delivers late: lower its latency timer, or use another USB hub");
 }
 
+Check Preflight::wiring(const Statistics& s) const {
+  Wiring seen;
+  std::array<Eigen::Vector3d, kSensors> y_nT;
+  for (int slot = 0; slot < kSensors; ++slot)
+    y_nT.at(static_cast<std::size_t>(slot)) = s.mean_nT.segment<3>(Eigen::Index{3} * slot);
+  seen.add(y_nT, std::nullopt);
+  const std::vector<std::string> findings = seen.findings();
+  return check("wiring", true,
+               findings.empty() ? "all four alike" : fmt::format("{}", fmt::join(findings, "; ")),
+               "none; the first turns of the table tell more", "");
+}
+
 Check Preflight::noise(int slot, const Statistics& s) const {
   const Eigen::Vector3d sd_nT = s.noise_nT.segment<3>(Eigen::Index{3} * slot);
   const bool known = s.pairs >= kMinPairs;
@@ -233,6 +247,7 @@ std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant
   all.insert(all.end(), {rate(), gaps(), saturation(), skew()});
   for (int slot = 0; slot < kSensors; ++slot)
     all.insert(all.end(), {alive(slot, s), noise(slot, s), rest(slot, s), field(slot, s)});
+  all.push_back(wiring(s));
   if (config_.scalar) all.push_back(scalar());
   all.push_back(table(limits, now));
   return all;

@@ -19,8 +19,9 @@
 /// to do when it fails.
 ///
 /// Noise of one sample, per axis, from first differences: sd = sqrt(mean (y[k+1] - y[k])^2 / 2), which no
-/// drift and no slow disturbance enters; the total scatter against it shows those. Not judged here: whether
-/// the sensors are the right way round (the fit sees that).
+/// drift and no slow disturbance enters; the total scatter against it shows those. Sensors that are turned or
+/// mirrored against the others are named as far as one attitude shows it, and refused for nothing: they may
+/// be meant so, and the fit finds every mounting (wiring.h).
 namespace mgtd::daemon {
 
 struct PreflightConfig {
@@ -69,6 +70,7 @@ class Preflight {
   [[nodiscard]] Check gaps() const;
   [[nodiscard]] Check saturation() const;
   [[nodiscard]] Check skew() const;
+  [[nodiscard]] Check wiring(const Statistics& s) const;
   [[nodiscard]] Check noise(int slot, const Statistics& s) const;
   [[nodiscard]] Check rest(int slot, const Statistics& s) const;
   [[nodiscard]] Check alive(int slot, const Statistics& s) const;

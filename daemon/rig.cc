@@ -181,6 +181,7 @@ void Rig::deliver() {
 }
 
 void Rig::publish(const Epoch& epoch, const TensorSample& sample) {
+  follow_magnet_test(epoch.t.mono, &epoch);
   stream_.publish(sample);
   last_skew_s_ = epoch.skew_bound_s;
   run_.feed(epoch, clock_.now());
@@ -198,6 +199,7 @@ void Rig::tick() {
   deliver();
   if (run_.status(now.mono).state == RunState::preflight) watch_links(now);
   run_.feed(Tick{}, now);
+  follow_magnet_test(now.mono, nullptr);
   record(now);
   const Instant host = std::chrono::steady_clock::now();
   if (!last_second_ || host - *last_second_ >= std::chrono::seconds(1)) {
@@ -208,6 +210,17 @@ void Rig::tick() {
   timer_.wait(kTick, [this] {
     if (!stopping_) tick();
   });
+}
+
+/// Without an epoch, time only passes.
+void Rig::follow_magnet_test(Instant now, const Epoch* epoch) {
+  if (!magnet_ || magnet_->ended()) return;
+  if (epoch != nullptr) magnet_->add(*epoch);
+  magnet_->advance(now);
+  if (!magnet_->ended()) return;
+  const MagnetStatus found = magnet_->status();
+  spdlog::info("magnet test: {}", found.text);
+  for (const std::string& finding : findings(found)) spdlog::warn("magnet test: {}", finding);
 }
 
 void Rig::tell_drops(const StatusReport& status, Instant at) {

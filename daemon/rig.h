@@ -16,6 +16,7 @@
 #include "daemon/journal.h"
 #include "daemon/live_pipeline.h"
 #include "daemon/log.h"
+#include "daemon/magnet_test.h"
 #include "daemon/run_conductor.h"
 #include "daemon/stream_server.h"
 #include "daemon/worker.h"
@@ -52,6 +53,7 @@ class Rig {
   void tell_criticism();
   void settle_calibrating(Stamp at);
   void watch_links(Stamp now);
+  void follow_magnet_test(Instant now, const Epoch* epoch);
   void tell_drops(const StatusReport& status, Instant at);
   void start_recording();
   void start_disk_ring(LifeNote& life);
@@ -61,6 +63,7 @@ class Rig {
 
   [[nodiscard]] Result<nlohmann::ordered_json> answer(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_run(const ControlRequest& request);
+  [[nodiscard]] Result<nlohmann::ordered_json> answer_magnet(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_calibrations(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> import_calibration(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> dry_run(const RunRequest& request) const;
@@ -82,6 +85,7 @@ class Rig {
   drivers::PatientTimer timer_;
   QuietLog quiet_;
 
+  std::optional<MagnetTest> magnet_;  ///< under way, or the last
   std::vector<calib::LeftOutEffect> told_left_out_;
   Stamp started_;
   std::optional<double> last_skew_s_;

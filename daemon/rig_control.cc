@@ -44,6 +44,10 @@ Reply Rig::answer(const ControlRequest& request) {
     case ControlCommand::calibrations_import:
     case ControlCommand::calibrations_rollback:
       return answer_calibrations(request);
+    case ControlCommand::magnet_start:
+    case ControlCommand::magnet_status:
+    case ControlCommand::magnet_stop:
+      return answer_magnet(request);
     case ControlCommand::control_take:
     case ControlCommand::control_release:
     case ControlCommand::control_break:
@@ -59,6 +63,8 @@ Reply Rig::answer_run(const ControlRequest& request) {
     const auto wanted = parse_run_request(request.args);
     if (!wanted) return tl::unexpected(wanted.error());
     if (request.command == ControlCommand::run_dry_run) return dry_run(*wanted);
+    if (magnet_ && !magnet_->ended())
+      return fail(ErrorCode::state, "a magnet test is going on", "wait for it, or end it where it runs");
     done = run_.start(*wanted, now);
   } else if (request.command == ControlCommand::run_pause) {
     done = run_.request(Request::pause, now);
@@ -78,6 +84,23 @@ Reply Rig::answer_run(const ControlRequest& request) {
   if (!done) return tl::unexpected(done.error());
   watch_links(now);
   return to_json(run_.status(now.mono));
+}
+
+Reply Rig::answer_magnet(const ControlRequest& request) {
+  const bool under_way = magnet_ && !magnet_->ended();
+  if (request.command == ControlCommand::magnet_start) {
+    if (under_way)
+      return fail(ErrorCode::state, "a magnet test is going on", "end it first: Ctrl-C where it runs");
+    if (run_.active())
+      return fail(ErrorCode::state, "a run is going on: a magnet would spoil it",
+                  "wait for it, or: mgt run abort");
+    spdlog::info("magnet test: begun");
+    magnet_.emplace(clock_.now().mono, MagnetTest::kAnswer_s * config_.speed_up);
+  } else if (request.command == ControlCommand::magnet_stop && under_way) {
+    magnet_->stop();
+  }
+  if (!magnet_) return fail(ErrorCode::state, "there was no magnet test", "mgt run magnet-test begins one");
+  return to_json(magnet_->status());
 }
 
 Reply Rig::dry_run(const RunRequest& request) const {

@@ -59,8 +59,9 @@ void Rig::note(const JournalNote& note, Stamp at) {
 
 /// Between records only, so that a replay does it at the same sample.
 void Rig::settle_calibrating(Stamp at) {
-  if (run_.active() == calibrating_) return;
-  calibrating_ = run_.active();
+  const bool calibrating = run_.active() || (magnet_ && !magnet_->ended());
+  if (calibrating == calibrating_) return;
+  calibrating_ = calibrating;
   pipeline_.set_calibrating(calibrating_);
   note(CalibratingNote{calibrating_}, at);
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "daemon/listed_plan.h"
 #include "daemon/run_plan_json.h"
 #include "daemon/solver.h"
 #include "drivers/hand_table.h"
@@ -96,7 +97,9 @@ void RunConductor::find_interrupted() {
 }
 
 Result<RunPlan> RunConductor::plan(const RunRequest& request) const {
-  return make_plan(plan_options(config_, request), hooks_.table().limits());
+  const PlanOptions options = plan_options(config_, request);
+  const drivers::TableLimits& limits = hooks_.table().limits();
+  return request.poses.empty() ? make_plan(options, limits) : listed_plan(request, options, limits);
 }
 
 Pace RunConductor::pace() const { return {}; }
@@ -111,6 +114,10 @@ RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& 
   out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config_.rate_hz;
   out.settle.min_s = config_.run.settle_min_s;
   out.settle.max_s = config_.run.settle_max_s;
+  out.unrest = {.limit_nT = config_.run.disturbance_nT, .false_alarm = config_.run.false_alarm};
+  out.field_step_nT = config_.run.field_step_nT;
+  out.calm_s = config_.run.calm_s;
+  out.calm_max_s = config_.run.calm_max_s;
   // A sped-up clock makes the host's own delays longer: 1 ms of scheduling or disk is that many ms of the
   // rig's time.
   // What the clocks then show is the host, not the rig.

@@ -8,6 +8,7 @@
 #include "daemon/preflight.h"
 #include "daemon/run_duration.h"
 #include "daemon/settle.h"
+#include "daemon/unrest.h"
 #include "drivers/device.h"
 #include "proto/units.h"
 
@@ -30,6 +31,11 @@ struct RunConfig {
 
   bool by_hand{false};       ///< the table is turned by hand: its scales are asked for
   double answer_max_s{900};  ///< wait for the operator's entry, then the run pauses
+
+  UnrestLimits unrest;      ///< the field while the table stands
+  double field_step_nT{5};  ///< of the scalar reference from one pose to the next; 0: not looked at
+  double calm_s{5};         ///< without unrest, and a disturbance is over
+  double calm_max_s{600};   ///< wait for that, then the run pauses
 
   double home_max_s{180};
   double lost_max_s{120};  ///< wait for a device to come back

@@ -31,7 +31,9 @@ double pose_s(const Pace& pace, const RunPlan& plan, std::size_t index) {
     before.azimuth_rad -= pose.sense * kApproach_rad;
     way_s = move_s(pace, from, before) + move_s(pace, before, pose.target);
   }
-  return hands_s + way_s + pace.settle_s + pose.dwell_s;
+  const double rest_s =
+      std::max(pace.settle_s + pose.dwell_s, pose.since_stop_s.value_or(0) + pose.dwell_s / 2);
+  return hands_s + way_s + rest_s;
 }
 
 namespace {
@@ -55,6 +57,10 @@ std::string describe(const RunPlan& plan, const Pace& pace) {
   const auto random = count([](const PlannedPose& p) { return p.set == "random"; });
   const auto revisits = count([](const PlannedPose& p) { return p.revisit_of.has_value(); });
   const double minutes = total_s(pace, plan) / 60;
+  if (!plan.options.list.empty()) {
+    return fmt::format("{} poses of {}, in its order; about {:.0f} min\n", plan.poses.size(),
+                       plan.options.list, std::ceil(minutes));
+  }
   std::string text = fmt::format(
       "{} poses: {} standard in {} deg steps, {} random ({} of them revisits, seed {}); dwells of {} and {} "
       "s; about {:.0f} min, {:.1f} of them so that the azimuth comes from both sides\n",

@@ -42,7 +42,9 @@ RunFsm::RunFsm(RunConfig config, RunPlan plan, Stamp now, const std::optional<Ea
       now_(now),
       entered_(now.mono),
       message_("looking at the instruments"),
-      preflight_(config_.preflight, now.mono) {
+      preflight_(config_.preflight, now.mono),
+      field_noise_(config_.dwell.scalar_sd_nT) {
+  watch_field(now.mono);
   for (std::size_t i = 0; earlier && i < plan_.poses.size(); ++i) {
     if (earlier->stored.contains(plan_.poses[i].number)) progress_.set_done(i);
   }
@@ -63,12 +65,14 @@ std::vector<Action> RunFsm::step(const Event& event, Stamp now) {
 void RunFsm::on_sample(const EpochOrGap& item) {
   if (phase_ == Phase::preflight) preflight_.add(item);
   if (phase_ == Phase::moving) settle_->add(item);
+  if (still_) still_->add(item);
   if (phase_ == Phase::dwelling) dwell_->add(item);
 }
 
 void RunFsm::on(const ScalarReading& reading) {
   if (phase_ == Phase::preflight) preflight_.add(reading);
   if (phase_ == Phase::dwelling) dwell_->add(reading);
+  if (still_) still_->add(reading);
 }
 
 void RunFsm::on(const AuxiliaryReading& reading) {
@@ -83,6 +87,7 @@ void RunFsm::on(const TableReading& reading) {
     path_.back().angles = recorded(reading.angles);
   }
   if (path_.size() >= kPathBuffer) flush_path();
+  follow_rest(reading);
   table_ = reading;
   if (!reading.referenced && homed_) homed_ = false;
   if (phase_ == Phase::preflight) preflight_.add(reading);
@@ -114,6 +119,8 @@ void RunFsm::on(const PoseStored& stored) {
       last_stored_ = i;
     }
     if (stored_ && by_hand() && !doubtful_) field_turn_.add(*stored_);
+    if (stored_) level_nT_ = stored_->f_nT;
+    if (stored_) look_at_wiring(*stored_);
     stored_.reset();
     attempt_ = 0;
     if (phase_ == Phase::storing) go_on();
@@ -172,6 +179,7 @@ bool RunFsm::measuring() const {
     case Phase::approaching:
     case Phase::moving:
     case Phase::dwelling:
+    case Phase::suspended:
     case Phase::storing:
     case Phase::waiting:
       return true;
@@ -235,6 +243,9 @@ RunStatus RunFsm::status(Instant now) const {
     case Phase::dwelling:
     case Phase::storing:
       s.state = RunState::dwelling;
+      break;
+    case Phase::suspended:  // for an operator: not settled yet, and the message says why
+      s.state = RunState::settling;
       break;
     case Phase::paused:
     case Phase::waiting:

@@ -14,12 +14,15 @@
 #include "daemon/run_plan.h"
 #include "daemon/run_progress.h"
 #include "daemon/settle.h"
+#include "daemon/wiring.h"
 
 /// A calibration run as a state machine: events and the time in, actions out. It reads no clock and touches
 /// nothing; the caller carries out the actions in their order and brings the answers back as events.
 ///
 ///     preflight -> homing -> [ asking? -> moving -> settling -> dwelling -> stored ]* -> solving -> done |
-///                                                                                          rejected
+///                                                        |  A                                rejected
+///                                                        V  | calm
+///                                                     suspended
 ///
 /// - What is set by hand (the mounting of the array, the scales of a table without motors) is asked for, and
 ///   the entry is what is stored. An entry that disagrees with the turn of the field is asked for again; the
@@ -27,6 +30,9 @@
 ///   for the last entry again and measures again what rests on it.
 /// - A pose that cannot be used (not settled, disturbed, gaps, saturated, frozen) is measured again, up to
 ///   `retries` times; then the run pauses with what was measured, the limit and what to do.
+/// - A field that changes while the table stands (unrest.h), or that is at another level than at the pose
+///   before, suspends the dwell; the pose is measured again, by itself, when the field was calm for calm_s,
+///   and the run pauses when it does not become so within calm_max_s.
 /// - The table does not move between StorePose and its PoseStored.
 /// - A fault of a device, or a pose that cannot be stored, stops the table and pauses. A device that is lost
 ///   stops the table; the pose is repeated when it comes back within lost_max_s, else the run fails.
@@ -69,6 +75,7 @@ class RunFsm {
     approaching,  ///< to a point before the target, so that the azimuth arrives in its planned sense
     moving,       ///< and settling
     dwelling,
+    suspended,  ///< until the field is calm
     storing,
     paused,   ///< until the operator says
     waiting,  ///< for a lost device
@@ -96,6 +103,7 @@ class RunFsm {
   void on(const CalibrationProposed& proposed);
   void on_sample(const EpochOrGap& item);
   void follow_settling(const TableReading& reading);
+  void follow_rest(const TableReading& reading);
 
   void pause();
   void abort();
@@ -118,6 +126,7 @@ class RunFsm {
   void advance_approach();
   void advance_move();
   void advance_dwell();
+  void advance_suspended();
   void advance_stopping();
 
   /// What comes next, judged from what is done: preflight, home, a pose, the fit.
@@ -128,8 +137,17 @@ class RunFsm {
   void enter_pose(std::size_t index);
   void move_to_target();
   void settle_at_scales();
+  [[nodiscard]] Instant wished_begin() const;
   void enter_dwell();
   void store(Pose pose);
+  // The field at rest.
+  [[nodiscard]] std::optional<Instant> stopped() const;
+  void watch_field(Instant from);
+  [[nodiscard]] std::optional<Unrest> disturbed(double length_s);
+  [[nodiscard]] std::optional<std::string> at_another_level(std::optional<double> f_nT) const;
+  void suspend(const std::string& why);
+
+  void look_at_wiring(const Pose& pose);
   void lost_reference();
   void bad_pose(const Error& why);
   void hold(const std::string& message);  ///< stop and ask the operator
@@ -178,7 +196,13 @@ class RunFsm {
   std::optional<Settle> settle_;
   std::optional<Dwell> dwell_;
   std::vector<TableAngles> at_rest_;  ///< reported during the dwell
-  std::optional<int> unanswered_;     ///< number of the pose whose PoseStored is awaited
+  std::optional<TableReading>
+      rests_;                        ///< the first word of the table at rest here, whatever it was told since
+  std::optional<StillField> still_;  ///< since the table stands; in the preflight, too
+  std::size_t judged_{0};            ///< blocks of it
+  FieldNoise field_noise_;
+  std::optional<double> level_nT_;  ///< of the scalar reference at the last good pose
+  std::optional<int> unanswered_;   ///< number of the pose whose PoseStored is awaited
 
   std::optional<OperatorPrompt> prompt_;
   std::optional<int> mounted_;          ///< mounting of the array, by number ...
@@ -194,6 +218,8 @@ class RunFsm {
 
   std::optional<double> tensor_sd_nT_per_m_;
   bool enough_{false};  ///< no further pose
+  Wiring wiring_;
+  std::vector<std::string> wiring_told_;
   std::vector<Check> checks_;
   std::string proposed_;
   RunState final_{RunState::idle};

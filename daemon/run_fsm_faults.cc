@@ -30,7 +30,9 @@ Result<void> RunFsm::possible(Request request) const {
       return {};
     case Request::retry:
       if (phase_ == Phase::paused) return possible(Request::resume);
-      if (phase_ == Phase::approaching || phase_ == Phase::moving || phase_ == Phase::dwelling) return {};
+      if (phase_ == Phase::approaching || phase_ == Phase::moving || phase_ == Phase::dwelling ||
+          phase_ == Phase::suspended)
+        return {};
       return refuse("no pose is under way that could be measured again", "");
     case Request::redo:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
@@ -91,6 +93,7 @@ void RunFsm::finish_early() {
 void RunFsm::hold(const std::string& message) {
   act(StopTable{});
   flush_path();
+  level_nT_.reset();   // whoever goes on takes the field as it is
   scales_of_.reset();  // a hand may be at the table meanwhile
   enter(Phase::paused, message);
   act(Record{"paused: " + message});
@@ -119,6 +122,7 @@ void RunFsm::on(const DeviceLost& lost) {
   if (lost.device == "table") {
     homed_ = false;
     table_.reset();
+    rests_.reset();
   }
   lost_.insert(lost.device);
   act(Record{fmt::format("{} is lost: {}", lost.device, lost.why)});

@@ -43,6 +43,7 @@ void RunFsm::go_on() {
 
 void RunFsm::enter_preflight() {
   preflight_ = Preflight(config_.preflight, now_.mono);
+  watch_field(now_.mono);
   enter(Phase::preflight, "looking at the instruments");
 }
 
@@ -127,6 +128,8 @@ void RunFsm::advance() {
       return advance_move();
     case Phase::dwelling:
       return advance_dwell();
+    case Phase::suspended:
+      return advance_suspended();
     case Phase::storing:
       if (timed_out(config_.store_max_s))
         hold(fmt::format("pose {} is not on disk after {:.0f} s; check the disk", planned().number,
@@ -168,6 +171,7 @@ void RunFsm::advance_preflight() {
   preflight_passed_ = all_passed(checks_);
   if (preflight_passed_) {
     config_.settle.noise_nT = preflight_.noise_nT();
+    field_noise_.begin(*still_);
     act(Record{fmt::format("preflight passed: {} checks, noise of a sample {:.2f} nT at most", checks_.size(),
                            config_.settle.noise_nT)});
     homed_ = false;
@@ -216,10 +220,18 @@ void RunFsm::advance_approach() {
 void RunFsm::advance_move() {
   if (!homed_) return lost_reference();
   const SettleVerdict verdict = settle_->judge(now_.mono);
-  if (verdict.state == SettleState::settled) return enter_dwell();
+  if (verdict.state == SettleState::settled && now_.mono >= wished_begin()) return enter_dwell();
+  if (verdict.state == SettleState::settled) return;
   if (verdict.state == SettleState::settling) return;
   bad_pose({ErrorCode::refused, fmt::format("not settled: {} (limit {})", verdict.measured, verdict.limit),
             verdict.remedy});
+}
+
+/// A pose may ask for a rest before its dwell.
+Instant RunFsm::wished_begin() const {
+  const auto since = stopped();
+  if (!planned().since_stop_s || !since) return now_.mono;
+  return *since + from_seconds(*planned().since_stop_s - planned().dwell_s / 2);
 }
 
 void RunFsm::lost_reference() {
@@ -230,6 +242,7 @@ void RunFsm::enter_dwell() {
   DwellConfig config = config_.dwell;
   config.length_s = planned().dwell_s;
   dwell_.emplace(config, now_.mono);
+  watch_field(now_.mono);
   at_rest_.clear();
   enter(Phase::dwelling, fmt::format("pose {} of {}: measuring for {} s", planned().number,
                                      plan_.poses.size(), planned().dwell_s));
@@ -242,6 +255,7 @@ void RunFsm::advance_dwell() {
     return bad_pose({ErrorCode::refused,
                      "the table moved during the dwell: it reports " + in_words(table_->angles),
                      "clamp or balance the table, or keep its servo on during the dwell"});
+  if (const auto seen = disturbed(planned().dwell_s)) return suspend(seen->in_words());
   if (!dwell_->complete(now_.mono)) return;
   DwellPlace place;
   place.number = planned().number;
@@ -249,12 +263,14 @@ void RunFsm::advance_dwell() {
   place.angles = recorded(angles_at_rest());
   place.mount = planned().mount;
   place.run_start = run_start_;
-  place.stopped = settle_->stopped();
+  place.stopped = stopped();
   place.sense = sense_;
   auto pose = dwell_->pose(place);
   if (!pose) return bad_pose(pose.error());
   if (auto ok = undisturbed(*pose); !ok) return bad_pose(ok.error());
+  if (const auto level = at_another_level(pose->f_nT)) return suspend(*level);
   if (!believed(*pose)) return;
+  field_noise_.add(*still_);
   store(std::move(*pose));
 }
 
@@ -298,6 +314,27 @@ void RunFsm::store(Pose pose) {
   stored_ = pose;
   enter(Phase::storing, fmt::format("storing pose {}", pose.number));
   act(StorePose{std::move(pose)});
+}
+
+/// Said when the turns of the table have shown it, and again when further ones show more.
+void RunFsm::look_at_wiring(const Pose& pose) {
+  constexpr std::size_t kFirst = 4, kLast = 32;
+  if (wiring_.attitudes() >= kLast) return;
+  wiring_.add(pose.y_nT, pose.angles());
+  const std::size_t seen = wiring_.attitudes();
+  if (seen < kFirst || (seen & (seen - 1)) != 0) return;
+  std::vector<std::string> findings = wiring_.findings();
+  if (findings == wiring_told_) return;
+  wiring_told_ = std::move(findings);
+  const Check check{
+      "wiring", wiring_told_.empty(),
+      wiring_told_.empty() ? "all four alike" : fmt::format("{}", fmt::join(wiring_told_, "; ")),
+      "all four alike, turning as the table does",
+      "if it is meant so, go on: the calibration finds every mounting; else look at the sensor's "
+      "place and the wires of its axes"};
+  act(Record{"wiring: " + check.measured + (check.passed ? "" : "; " + check.remedy)});
+  std::erase_if(checks_, [](const Check& c) { return c.name == "wiring"; });
+  checks_.push_back(check);
 }
 
 void RunFsm::bad_pose(const Error& why) {

@@ -33,6 +33,7 @@ struct PlanOptions {
   /// Ways to mount the array on the table by hand (mounting.h), for a table of one axis; see mount_plan.h.
   std::vector<TableAngles> mounts{};
   bool by_hand{false};  ///< the table itself is turned by hand
+  std::string list{};   ///< name of the list that the poses are from (listed_plan.h); empty: made here
   bool operator==(const PlanOptions&) const = default;
 };
 
@@ -45,6 +46,8 @@ struct PlannedPose {
   std::optional<int> mount{};       ///< counts the mountings of the array from 1
   TableAngles mounting{};           ///< of it on the table, where `mount` is set
   std::optional<int> revisit_of{};  ///< number of the earlier pose
+  /// From the stop to the middle of the dwell, at least; empty: as soon as it has settled.
+  std::optional<double> since_stop_s{};
   bool operator==(const PlannedPose&) const = default;
 };
 

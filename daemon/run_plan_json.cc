@@ -29,7 +29,8 @@ json to_json(const PlannedPose& p) {
           {"sense", p.sense},
           {"mount", p.mount ? json(*p.mount) : json(nullptr)},
           {"mounting", p.mount ? scale_entry_json(p.mounting) : json(nullptr)},
-          {"revisit_of", p.revisit_of ? json(*p.revisit_of) : json(nullptr)}};
+          {"revisit_of", p.revisit_of ? json(*p.revisit_of) : json(nullptr)},
+          {"since_stop_s", p.since_stop_s ? json(*p.since_stop_s) : json(nullptr)}};
 }
 
 TableAngles angles_from(const json& j) {
@@ -48,6 +49,8 @@ PlannedPose pose_from(const json& j) {
     p.mount = j["mount"].get<int>();
     p.mounting = angles_from(j.at("mounting"));
   }
+  if (j.contains("since_stop_s") && !j["since_stop_s"].is_null())
+    p.since_stop_s = j["since_stop_s"].get<double>();
   if (!j.at("revisit_of").is_null()) p.revisit_of = j.at("revisit_of").get<int>();
   return p;
 }
@@ -61,6 +64,7 @@ PlanOptions options_from(const json& j) {
   o.dwell_long_s = j.at("dwell_long_s").get<double>();
   o.seed = j.at("seed").get<std::uint64_t>();
   o.by_hand = j.value("by_hand", false);
+  o.list = j.value("list", "");
   for (const json& mount : j.value("mounts", json::array())) o.mounts.push_back(angles_from(mount));
   return o;
 }
@@ -90,6 +94,7 @@ json to_json(const RunPlan& plan) {
             {"dwell_long_s", o.dwell_long_s},
             {"seed", o.seed},
             {"by_hand", o.by_hand},
+            {"list", o.list},
             {"mounts", std::move(mounts)}}},
           {"notes", plan.notes},
           {"poses", std::move(poses)}};

@@ -23,6 +23,7 @@
 ///   run.pause, run.resume, run.finish, run.abort, run.status       -> RUN
 ///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
 ///   run.redo             the pose before the one that is asked for, again                    -> RUN
+///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
 ///   calibrations.list                                  -> {"calibrations":[{"id","state","since","origin"}]}
 ///   calibrations.show    args: {"id":".."}            -> CAL.json
 ///   calibrations.accept  args: calibration_request.h  -> {"active"}
@@ -57,11 +58,14 @@ enum class ControlCommand : std::uint8_t {
   calibrations_accept,
   calibrations_import,
   calibrations_rollback,
+  magnet_start,
+  magnet_status,
+  magnet_stop,
   control_take,
   control_release,
   control_break,
 };
-inline constexpr std::array<std::string_view, 19> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 22> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -77,6 +81,9 @@ inline constexpr std::array<std::string_view, 19> kControlCommandNames{"version"
                                                                        "calibrations.accept",
                                                                        "calibrations.import",
                                                                        "calibrations.rollback",
+                                                                       "magnet-test.start",
+                                                                       "magnet-test.status",
+                                                                       "magnet-test.stop",
                                                                        "control.take",
                                                                        "control.release",
                                                                        "control.break"};

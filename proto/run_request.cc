@@ -47,6 +47,28 @@ class Arguments {
       object(key, *value, "a whole number from 0 on");
     }
   }
+  void poses(const char* key, std::vector<RequestedPose>& out) {
+    const Json* const value = take(key);
+    if (value == nullptr) return;
+    if (!value->is_array() || value->empty()) return object(key, *value, "a list of poses");
+    for (const Json& entry : *value) {
+      auto pose = requested_pose_from_json(entry);
+      if (pose) {
+        out.push_back(*std::move(pose));
+      } else if (!objection_) {
+        objection_ = pose.error();
+      }
+    }
+  }
+  void text(const char* key, std::string& out) {
+    const Json* const value = take(key);
+    if (value == nullptr) return;
+    if (value->is_string()) {
+      out = excerpt(value->get<std::string>());
+    } else {
+      object(key, *value, "text");
+    }
+  }
   [[nodiscard]] std::optional<Error> objection() const {
     if (objection_) return objection_;
     for (const auto& [key, value] : args_.items()) {
@@ -89,7 +111,13 @@ Result<RunRequest> parse_run_request(const Json& args) {
   arguments.number("dwell_long_s", 0.05, 3600, request.dwell_long_s);
   arguments.seed("seed", request.seed);
   arguments.number("until_tensor_sd_nT_per_m", 1e-3, 1e6, request.until_tensor_sd_nT_per_m);
+  arguments.text("list", request.list);
+  arguments.poses("poses", request.poses);
   if (auto objection = arguments.objection()) return tl::unexpected(std::move(*objection));
+  const bool sets = request.step_deg || request.random || request.revisits || request.seed;
+  if (!request.poses.empty() && sets)
+    return fail(ErrorCode::usage, "the poses are given, and so are step, random, revisits or seed",
+                "leave one of both out");
   return request;
 }
 
@@ -106,6 +134,8 @@ Json to_json(const RunRequest& request) {
   put("dwell_long_s", request.dwell_long_s);
   put("seed", request.seed);
   put("until_tensor_sd_nT_per_m", request.until_tensor_sd_nT_per_m);
+  if (!request.list.empty()) args["list"] = request.list;
+  for (const RequestedPose& pose : request.poses) args["poses"].push_back(to_json(pose));
   return args;
 }
 

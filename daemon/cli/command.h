@@ -49,6 +49,7 @@ void add_export(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_improve(CLI::App& app, Session& session);
+void add_magnet_test(CLI::App& run, Session& session);
 void add_model(CLI::App& app, Session& session);
 void add_next(CLI::App& app, Session& session);
 void add_plan(CLI::App& app, Session& session);

@@ -4,13 +4,16 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <thread>
 
+#include "calib/pose_list.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
+#include "daemon/listed_plan.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
 
@@ -21,6 +24,7 @@ volatile std::sig_atomic_t interrupted = 0;
 
 struct Arguments {
   RunRequest request;
+  std::string poses_file;
   bool detach{false};
   std::vector<double> scales_deg;
 };
@@ -98,8 +102,29 @@ int follow(const Session& session) {
   return 0;
 }
 
+/// The request with the poses of the file, if one is named.
+Result<nlohmann::json> request_of(const Arguments& args) {
+  RunRequest request = args.request;
+  if (!args.poses_file.empty()) {
+    const auto text = read_file(args.poses_file);
+    if (!text) return tl::unexpected(text.error());
+    const auto list = calib::read_pose_list(*text, args.poses_file);
+    if (!list) return tl::unexpected(list.error());
+    request.list = std::filesystem::path(args.poses_file).filename();
+    request.poses = daemon::requested_poses(*list);
+  }
+  nlohmann::json out = to_json(request);
+  if (out.dump().size() + 100 > kControlLineLimit)
+    return fail(ErrorCode::bad_input,
+                fmt::format("{}: {} poses are too many for one run", args.poses_file, request.poses.size()),
+                "split the list");
+  return out;
+}
+
 int start(const Session& session, const Arguments& args) {
-  const auto reply = ask(session, ControlCommand::run_start, to_json(args.request));
+  const auto request = request_of(args);
+  if (!request) return report(session, request.error());
+  const auto reply = ask(session, ControlCommand::run_start, *request);
   if (!reply) return report(session, reply.error());
   if (!args.detach) return follow(session);
   if (session.json) print_json(*reply);
@@ -107,7 +132,9 @@ int start(const Session& session, const Arguments& args) {
 }
 
 int dry_run(const Session& session, const Arguments& args) {
-  const auto reply = ask(session, ControlCommand::run_dry_run, to_json(args.request));
+  const auto request = request_of(args);
+  if (!request) return report(session, request.error());
+  const auto reply = ask(session, ControlCommand::run_dry_run, *request);
   if (!reply) return report(session, reply.error());
   if (session.json) {
     print_json(*reply);
@@ -145,7 +172,10 @@ int enter(const Session& session, const Arguments& args) {
   return 0;
 }
 
-void add_plan_options(CLI::App* command, RunRequest& r) {
+void add_plan_options(CLI::App* command, Arguments& args) {
+  RunRequest& r = args.request;
+  command->add_option("--poses", args.poses_file,
+                      "measure the poses of this list (CSV), as mgt next -o writes it, instead of sets");
   command->add_option("--step", r.step_deg, "degrees between standard poses: 10 or 20");
   command->add_option("--random", r.random, "random poses");
   command->add_option("--revisits", r.revisits, "of them at attitudes measured before");
@@ -159,20 +189,20 @@ void add_plan_options(CLI::App* command, RunRequest& r) {
 
 void add_run(CLI::App& app, Session& session) {
   CLI::App* const group = app.add_subcommand(
-      "run", "a calibration run: start, dry-run, follow, enter, redo, pause, resume, finish, abort");
+      "run", "a calibration run: start, dry-run, magnet-test, follow, enter, redo, pause, resume, finish, abort");
   group->require_subcommand(1);
   auto args = std::make_shared<Arguments>();
   CLI::App* const begin = add_command(
       *group, session, "start", "preflight, home, measure every pose, solve, propose; shows the progress",
       [args, &session] { return start(session, *args); });
-  add_plan_options(begin, args->request);
+  add_plan_options(begin, *args);
   begin->add_option("--until-tensor-sd", args->request.until_tensor_sd_nT_per_m,
                     "end the run once the calibration leaves so little in the tensor, nT/m, worst component");
   begin->add_flag("--detach", args->detach, "do not wait for the end");
   CLI::App* const dry = add_command(*group, session, "dry-run",
                                     "what a run would do, and how long it would take; moves nothing",
                                     [args, &session] { return dry_run(session, *args); });
-  add_plan_options(dry, args->request);
+  add_plan_options(dry, *args);
   add_command(*group, session, "follow", "show the run that is going on",
               [&session] { return follow(session); });
   add_command(*group, session, "status", "the run in one object",
@@ -187,6 +217,7 @@ void add_run(CLI::App& app, Session& session) {
   entered->add_option("ANGLES", args->scales_deg, "azimuth, pitch and roll in degrees")
       ->required()
       ->expected(3);
+  add_magnet_test(*group, session);
   add_command(*group, session, "redo", "ask for the last entry again, and measure again what rests on it",
               [&session] { return simple(session, ControlCommand::run_redo, false); });
   add_command(*group, session, "finish", "measure no more, fit the poses so far",

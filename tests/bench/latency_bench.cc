@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <thread>
@@ -20,6 +21,7 @@
 #include "drivers/port_link.h"
 #include "drivers/registry.h"
 #include "tests/support/event_loop.h"
+#include "tests/support/line_peer.h"
 #include "tests/support/pty.h"
 
 namespace mgtd::daemon {
@@ -147,12 +149,12 @@ class Acquisition {
 };
 
 /// When each TENSOR line had been received.
-std::vector<HostClock::time_point> receive(const std::string& where) {
+std::vector<HostClock::time_point> receive(const std::string& where, std::size_t wanted = kWanted) {
   std::vector<HostClock::time_point> out;
   WatchRequest request{StreamClasses{}, std::nullopt, std::nullopt};
   request.classes.add(StreamClass::tensor);
   auto reader = StreamReader::open(where, request);
-  while (reader && out.size() < kWanted) {
+  while (reader && out.size() < wanted) {
     const auto line = reader->next_line(std::chrono::seconds(30));
     const auto now = HostClock::now();
     if (!line || !*line) break;
@@ -202,6 +204,86 @@ void bytes_to_client(benchmark::State& state) {
     state.counters["max_us"] = us.back();
   }
 }
+double thread_cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// One that asks for everything and then does not read, or a byte a second.
+class BadClient {
+ public:
+  BadClient(const std::string& where, bool reads_a_byte)
+      : peer_(mgtd::testing::LinePeer::unix_socket(where)) {
+    peer_.send_line(R"({"watch":{}})");
+    if (!reads_a_byte) return;
+    thread_ = std::thread([this] {
+      while (!stopping_) {
+        peer_.pump(1);
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+      }
+    });
+  }
+  ~BadClient() {
+    stopping_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  mgtd::testing::LinePeer peer_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+/// 16 clients at 50 Hz, one dead and one that reads a byte a second: what the 14 others wait, and what the
+/// thread that acquires and serves takes of a core. Goals: 99th percentile 5 ms, 10 % of a core.
+void sixteen_clients(benchmark::State& state) {
+  constexpr std::size_t kReaders = 14, kSamples = 1500;
+  for (auto _ : state) {
+    const mgtd::testing::ScratchDirectory scratch;
+    Instruments instruments(scratch, std::chrono::milliseconds(0));
+    boost::asio::io_context io;
+    StreamConfig config;
+    config.tcp.clear();
+    config.unix_path = scratch / "stream.sock";
+    StreamServer server(io, config, {});
+    if (!server.start()) return state.SkipWithError("cannot listen");
+    std::vector<std::vector<HostClock::time_point>> received(kReaders);
+    double cpu_share = 0;
+    {
+      const Acquisition acquisition(io, scratch, server);
+      const BadClient dead(config.unix_path, false), slow(config.unix_path, true);
+      std::atomic<std::size_t> left{kReaders};
+      std::vector<std::thread> readers;
+      for (auto& times : received) {
+        readers.emplace_back([&] {
+          times = receive(config.unix_path, kSamples);
+          if (--left == 0) io.stop();
+        });
+      }
+      const double cpu_s = thread_cpu_s();
+      const auto begun = HostClock::now();
+      io.run();
+      cpu_share = (thread_cpu_s() - cpu_s) / std::chrono::duration<double>(HostClock::now() - begun).count();
+      for (std::thread& reader : readers) reader.join();
+    }
+    const auto& written = instruments.stop();
+    std::vector<double> us;
+    for (const auto& times : received) {
+      if (times.size() < kSamples) return state.SkipWithError("too few samples came");
+      const auto one = latencies_us(written, times);
+      us.insert(us.end(), one.begin(), one.end());
+    }
+    std::sort(us.begin(), us.end());
+    state.counters["median_us"] = us[us.size() / 2];
+    state.counters["p99_us"] = us[us.size() * 99 / 100];
+    state.counters["max_us"] = us.back();
+    state.counters["core_percent"] = 100 * cpu_share;
+    state.counters["gaps"] = static_cast<double>(server.stats().gaps);
+  }
+}
+BENCHMARK(sixteen_clients)->Iterations(1)->Unit(benchmark::kSecond);
+
 BENCHMARK(bytes_to_client)->ArgName("stagger_ms")->Arg(0)->Arg(4)->Iterations(1)->Unit(benchmark::kSecond);
 
 }  // namespace

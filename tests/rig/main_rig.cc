@@ -50,6 +50,7 @@ constexpr const char* kScenarioHelp =
                  hands = "mount" (one axis, the array is mounted by hand) or "table" (no motors)
   [scalar]       present, noise_nT, period_s, bad_every
   [[fault]]      at_s, do = "unplug fluxgate2 for 3"
+  [[vehicle]]    at_s, nearest_m, speed_m_per_s, stands_s, moment_Am2: passes, or stands for a while
   [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern
   [[effect]]     name and coefficients; where = all, s1 .. s4, s1.x .. s4.z (default all):
 )";
@@ -72,6 +73,7 @@ struct Arguments {
   bool print_config{false};
   std::vector<std::string> words;
   std::vector<double> angles_deg;
+  int arm{0};
   OperatorOptions hands;
   double for_s{0};
   int code{0};
@@ -219,6 +221,10 @@ void add_hands(CLI::App& app, Arguments& args) {
   mount->add_option("ANGLES", args.angles_deg, "azimuth, pitch and roll on the table in degrees")
       ->required()
       ->expected(3);
+  CLI::App* const magnet = add(app, "magnet", "hold a magnet to the end of an arm", args,
+                               [](const Arguments& a) { return ask(a, fmt::format("magnet {}", a.arm)); });
+  magnet->add_option("DIR", args.dir, "directory of the rig")->required();
+  magnet->add_option("ARM", args.arm, "1 to 4; 0 puts it away")->required()->check(CLI::Range(0, 4));
   CLI::App* const operate_command =
       add(app, "operate", "do what a daemon asks its operator to do, until the run ends", args,
           [](const Arguments& a) { return operate(a.hands); });
@@ -226,6 +232,7 @@ void add_hands(CLI::App& app, Arguments& args) {
   operate_command->add_option("--control", args.hands.control, "control socket of the daemon")->required();
   operate_command->add_option("--error", args.hands.error_deg, "degrees to which things are set")
       ->capture_default_str();
+  operate_command->add_flag("--magnet", args.hands.magnet, "hold a magnet where a magnet test asks for it");
   operate_command->add_option("--blunder", args.hands.blunder, "misread the scale at this prompt, once");
 }
 

@@ -24,6 +24,7 @@ class Operator {
   explicit Operator(const OperatorOptions& options) : options_(options), random_(options.seed) {}
 
   int work();
+  int hold_magnets() const;
 
  private:
   [[nodiscard]] std::optional<json> say(const std::string& command, const json& args) const {
@@ -75,8 +76,25 @@ int Operator::work() {
   }
 }
 
+int Operator::hold_magnets() const {
+  for (bool begun = false;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+    const auto reply = say("magnet-test.status", json::object());
+    if (!reply) return 3;
+    const json status = reply->value("result", json::object());
+    const bool active = status.value("active", false);
+    if (!active && begun) return status.value("state", "") == "done" ? 0 : 1;
+    begun = begun || active;
+    const bool here = active && status.value("state", "") == "waiting";
+    static_cast<void>(
+        ask_rig(options_.dir, fmt::format("magnet {}", here ? status.at("arm").get<int>() : 0)));
+  }
+}
+
 }  // namespace
 
-int operate(const OperatorOptions& options) { return Operator(options).work(); }
+int operate(const OperatorOptions& options) {
+  Operator hands(options);
+  return options.magnet ? hands.hold_magnets() : hands.work();
+}
 
 }  // namespace mgtd::rig

@@ -13,9 +13,11 @@ struct OperatorOptions {
   double error_deg{1};  ///< things are set to this; the scales are read to a tenth of a degree
   int blunder{0};       ///< at this prompt the roll is misread by 30 degrees, once
   std::uint64_t seed{1};
+  bool magnet{false};  ///< holds a magnet where a magnet test asks for it, instead
 };
 
-/// Until the run ends. Exit code: 0 the run is done, 1 it ended otherwise or paused, 3 nobody is there.
+/// Until the run, or the magnet test, ends. Exit code: 0 it is done, 1 it ended otherwise or paused, 3 nobody
+/// is there.
 [[nodiscard]] int operate(const OperatorOptions& options);
 
 }  // namespace mgtd::rig

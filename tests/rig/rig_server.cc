@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <istream>
+#include <sstream>
 
 #include "tests/rig/bench_rig.h"
 #include "tests/rig/fault_client.h"
@@ -61,6 +62,7 @@ class Server {
   void accept();
   void answer(const std::shared_ptr<local::socket>& socket);
   [[nodiscard]] std::string reply_to(const std::string& line);
+  bool magnet(const std::string& line);
   [[nodiscard]] std::string status() const;
   [[nodiscard]] std::string field() const;
 
@@ -171,11 +173,21 @@ void Server::answer(const std::shared_ptr<local::socket>& socket) {
 std::string Server::reply_to(const std::string& line) {
   if (line == "status") return status();
   if (line == "field") return field();
-  if (rig_.mount(line, now_s())) return "ok";
+  if (rig_.mount(line, now_s()) || magnet(line)) return "ok";
   const auto fault = parse_fault(line);
   if (!fault) return fault.error();
   const auto applied = rig_.apply(*fault, now_s());
   return applied ? "ok" : applied.error();
+}
+
+/// "magnet ARM": held to the end of that arm; 0: put away. False: that is something else.
+bool Server::magnet(const std::string& line) {
+  std::istringstream in(line);
+  std::string word;
+  int arm = -1;
+  if (!(in >> word >> arm) || word != "magnet" || arm < 0 || arm > 4) return false;
+  rig_.world().hold_magnet(arm);
+  return true;
 }
 
 /// The answer that a daemon on this rig should stream.

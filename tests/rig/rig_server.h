@@ -8,7 +8,8 @@
 ///
 /// `dir` gets the links fluxgate1 .. fluxgate4, table, scalar, the socket fault.sock and, when all is there,
 /// the file `ready` with the process number. A client of the socket sends one line, a fault (fault.h) or
-/// "status" or "field", and gets one line back: "ok", what is wrong with it, or the answer as JSON.
+/// "status", "field", "mount AZIMUTH PITCH ROLL" or "magnet ARM", and gets one line back: "ok", what is wrong
+/// with it, or the answer as JSON.
 namespace mgtd::rig {
 
 struct ServerOptions {

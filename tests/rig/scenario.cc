@@ -58,6 +58,7 @@ class Reader {
   void read_covariates(Scenario& s);
   void read_effects(Scenario& s);
   void read_faults(Scenario& s);
+  void read_vehicles(Scenario& s);
   template <class Body>
   void for_each(std::string_view name, Body body);
 
@@ -66,9 +67,9 @@ class Reader {
 };
 
 void Reader::refuse_unknown_sections() {
-  static const std::set<std::string_view> kSections{"rig",    "site",      "temperature", "sensors", "s1",
-                                                    "s2",     "s3",        "s4",          "visit",   "table",
-                                                    "scalar", "covariate", "effect",      "fault"};
+  static const std::set<std::string_view> kSections{
+      "rig",   "site",  "temperature", "sensors",   "s1",     "s2",    "s3",     "s4",
+      "visit", "table", "scalar",      "covariate", "effect", "fault", "vehicle"};
   for (const auto& [key, node] : root_) {
     if (!kSections.contains(key.str())) {
       mistakes_.push_back({node.source().begin.line, fmt::format("unknown section '{}'; there are: {}",
@@ -282,6 +283,18 @@ void Reader::read_faults(Scenario& s) {
                    [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
 }
 
+void Reader::read_vehicles(Scenario& s) {
+  for_each("vehicle", [&](Section& section) {
+    Vehicle v;
+    section.read("at_s", v.at_s, {0, 1e9});
+    section.read("nearest_m", v.nearest_m, {2, 1e4});
+    section.read("speed_m_per_s", v.speed_m_per_s, {0.1, 100});
+    section.read("stands_s", v.stands_s, {0, 1e9});
+    section.read("moment_Am2", v.moment_Am2, {-1e6, 1e6});
+    s.vehicles.push_back(v);
+  });
+}
+
 Scenario Reader::read() {
   Scenario scenario;
   refuse_unknown_sections();
@@ -295,6 +308,7 @@ Scenario Reader::read() {
   read_covariates(scenario);
   read_effects(scenario);
   read_faults(scenario);
+  read_vehicles(scenario);
   return scenario;
 }
 

@@ -13,6 +13,7 @@
 #include "tests/rig/effect.h"
 #include "tests/rig/noise.h"
 #include "tests/rig/truth.h"
+#include "tests/rig/vehicle.h"
 
 /// What a simulated rig is and what happens on it. Written in TOML; `mgt-rig --help` and tests/scenarios show
 /// how.
@@ -72,6 +73,7 @@ struct Scenario {
   std::vector<Covariate> covariates;
   std::vector<std::shared_ptr<const Effect>> effects;
   std::vector<TimedFault> faults;  ///< in the order of their times
+  std::vector<Vehicle> vehicles;
 };
 
 /// Errors are all reported at once, "file:line: ...".

@@ -12,6 +12,7 @@ namespace {
 
 /// Longest step of the path that an effect with memory is shown while the table moves.
 constexpr double kPathStep_s = 0.05;
+constexpr double kMagnet_Am2 = 1, kMagnetBeyond_m = 0.2;
 
 AxisMotion make_axis(const Scenario& s) {
   return {s.table_velocity_deg_per_s, s.table_acceleration_deg_per_s2, s.table_accuracy_deg};
@@ -107,6 +108,12 @@ const World::Moment& World::moment(double t_s) const {
               about_x(angle_deg[roll]);
   for (std::size_t i = 0; i < 4; ++i)
     moment_.b_nT.at(i) = moment_.R * site_field(t_s, moment_.R.transpose() * position_m_.at(i));
+  if (magnet_at_ > 0) {
+    const Eigen::Vector3d& arm_m = position_m_.at(at(magnet_at_ - 1));
+    const Eigen::Vector3d magnet_m = arm_m + kMagnetBeyond_m * arm_m.normalized();
+    for (std::size_t i = 0; i < 4; ++i)
+      moment_.b_nT.at(i) += dipole_nT(kMagnet_Am2 * Eigen::Vector3d::UnitZ(), position_m_.at(i) - magnet_m);
+  }
   return moment_;
 }
 
@@ -124,6 +131,12 @@ Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const 
   const double f_nT = scenario_.f_nT + scenario_.field_drift_nT_per_h * hours + scenario_.diurnal_nT * day;
   Eigen::Vector3d B = f_nT * direction_;
   for (const auto& effect : effects_) B += effect->site_nT(t_s, x_m);
+  return B + vehicles_nT(t_s, x_m);
+}
+
+Eigen::Vector3d World::vehicles_nT(double t_s, const Eigen::Vector3d& x_m) const {
+  Eigen::Vector3d B(0, 0, 0);
+  for (const Vehicle& vehicle : scenario_.vehicles) B += vehicle.field_nT(t_s, x_m, direction_);
   return B;
 }
 

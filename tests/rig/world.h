@@ -36,6 +36,13 @@ class World {
   [[nodiscard]] bool moving(double t_s) const;
   /// When the last of the axes stands.
   [[nodiscard]] double arrival_s() const;
+  /// A bar magnet of 1 A m2 in a hand, 0.2 m beyond the end of an arm (1 .. 4); 0: put away.
+  void hold_magnet(int arm) {
+    magnet_at_ = arm;
+    moment_.known = false;
+  }
+  /// What passing vehicles add at the centre of the array, site frame.
+  [[nodiscard]] Eigen::Vector3d vehicles_nT(double t_s, const Eigen::Vector3d& x_m) const;
   /// Puts the array on the table in another way, the table standing.
   void remount(const Eigen::Matrix3d& table_to_platform, double now_s);
 
@@ -92,6 +99,7 @@ class World {
   std::mt19937_64 scalar_random_, table_random_;
   std::normal_distribution<double> normal_;
   mutable Moment moment_;
+  int magnet_at_{0};
 };
 
 }  // namespace mgtd::rig

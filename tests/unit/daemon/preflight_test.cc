@@ -90,7 +90,7 @@ TEST(Preflight, HealthyRigPassesEveryCheck) {
   const auto checks = Rig{}.checks();
   EXPECT_EQ(failed(checks), "");
   EXPECT_TRUE(all_passed(checks));
-  EXPECT_EQ(checks.size(), 2u + 4 + 16 + 1 + 1);  // links, epochs, sensors, scalar, table
+  EXPECT_EQ(checks.size(), 2u + 4 + 16 + 1 + 1 + 1);  // links, epochs, sensors, wiring, scalar, table
 }
 
 TEST(Preflight, NoiseIsThatOfASample) {

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "proto/error.h"
+#include "proto/pose.h"
+
+/// Poses that are still to be measured, and where each stands in its file: for complaints that come later.
+namespace mgtd::calib {
+
+struct PoseList {
+  PoseTable table;
+  std::vector<int> lines;  ///< beside table.poses, from 1
+};
+
+/// As parse_pose_list (pose_table.h).
+[[nodiscard]] Result<PoseList> read_pose_list(std::string_view text, std::string_view file);
+
+}  // namespace mgtd::calib
