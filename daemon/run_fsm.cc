@@ -65,14 +65,14 @@ std::vector<Action> RunFsm::step(const Event& event, Stamp now) {
 void RunFsm::on_sample(const EpochOrGap& item) {
   if (phase_ == Phase::preflight) preflight_.add(item);
   if (phase_ == Phase::moving) settle_->add(item);
-  if (still_) still_->add(item);
+  if (watching_field()) still_->add(item);
   if (phase_ == Phase::dwelling) dwell_->add(item);
 }
 
 void RunFsm::on(const ScalarReading& reading) {
   if (phase_ == Phase::preflight) preflight_.add(reading);
   if (phase_ == Phase::dwelling) dwell_->add(reading);
-  if (still_) still_->add(reading);
+  if (watching_field()) still_->add(reading);
 }
 
 void RunFsm::on(const AuxiliaryReading& reading) {

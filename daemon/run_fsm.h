@@ -143,6 +143,9 @@ class RunFsm {
   // The field at rest.
   [[nodiscard]] std::optional<Instant> stopped() const;
   void watch_field(Instant from);
+  [[nodiscard]] bool watching_field() const {
+    return phase_ == Phase::preflight || phase_ == Phase::dwelling || phase_ == Phase::suspended;
+  }
   [[nodiscard]] std::optional<Unrest> disturbed(double length_s);
   [[nodiscard]] std::optional<std::string> at_another_level(std::optional<double> f_nT) const;
   void suspend(const std::string& why);
