@@ -77,7 +77,8 @@ TEST(DisturbedField, TheSameTrafficSpoilsPosesWhenNobodyLooks) {
   config.field_step_nT = 0;
   daemon.start(plan_for(daemon), config);
   ASSERT_TRUE(daemon.run(3600));
-  EXPECT_GT(worst_nT(daemon), 5.0) << "the test above would prove nothing";
+  // The scatter within a dwell still tells the quickest of them.
+  EXPECT_GT(worst_nT(daemon), 1.0) << "the test above would prove nothing";
 }
 
 /// It comes while the table moves and is gone while it moves: the dwells between see nothing of it.
