@@ -13,6 +13,15 @@ constexpr std::array<RawDirection, 6> kRecorded{RawDirection::received, RawDirec
 
 }  // namespace
 
+std::vector<const DeviceConfig*> devices_of(const Config& config) {
+  std::vector<const DeviceConfig*> out;
+  for (const DeviceConfig& sensor : config.sensors) out.push_back(&sensor);
+  out.push_back(&config.table);
+  out.push_back(config.scalar ? &*config.scalar : nullptr);
+  for (const DeviceConfig& auxiliary : config.auxiliary) out.push_back(&auxiliary);
+  return out;
+}
+
 void carry_out(const TableOrder& order, drivers::Turntable& table) {
   switch (order.what) {
     case TableOrder::What::home:
@@ -27,11 +36,10 @@ void carry_out(const TableOrder& order, drivers::Turntable& table) {
 Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
                          Callbacks callbacks)
     : callbacks_(std::move(callbacks)), clock_(clock), timer_(io) {
-  std::uint8_t number = 0;
-  for (const DeviceConfig& sensor : config.sensors) add(io, clock, sensor, number++);
-  add(io, clock, config.table, number++);
-  if (config.scalar) add(io, clock, *config.scalar, number);
-  for (const DeviceConfig& auxiliary : config.auxiliary) add(io, clock, auxiliary, ++number);
+  const auto devices = devices_of(config);
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (devices[i] != nullptr) add(io, clock, *devices[i], static_cast<std::uint8_t>(i));
+  }
 }
 
 void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device,

@@ -18,6 +18,9 @@
 /// for.
 namespace mgtd::daemon {
 
+/// Every device at its number in the journal: sensors, table, scalar (null without one), auxiliary inputs.
+[[nodiscard]] std::vector<const DeviceConfig*> devices_of(const Config& config);
+
 void carry_out(const TableOrder& order, drivers::Turntable& table);
 
 class Instruments {

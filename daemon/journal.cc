@@ -43,7 +43,9 @@ void Journal::start_file() {
     fd_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0640);
   } while (fd_ < 0 && errno == EEXIST);
   if (fd_ < 0) return stop(refused(errno, "create"));
-  const std::string header = encode_header(config_.header);
+  RawLogHeader names = config_.header;
+  if (names.run_id.empty()) names.run_id = file_.stem().string();
+  const std::string header = encode_header(names);
   if (const ssize_t n = ::write(fd_, header.data(), header.size());
       n != static_cast<ssize_t>(header.size())) {
     const int os_error = n < 0 ? errno : ENOSPC;

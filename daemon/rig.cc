@@ -6,7 +6,6 @@
 
 #include <system_error>
 
-#include "calib/calibration_json.h"
 #include "daemon/service_notify.h"
 
 namespace mgtd::daemon {
@@ -67,7 +66,7 @@ Result<void> Rig::start() {
   if (auto bound = stream_.start(); !bound) return bound;
   if (auto bound = control_.start(); !bound) return bound;
   instruments_.start();
-  watchdog_ = watchdog_period();
+  if (const auto period = watchdog_period()) watchdog_.emplace(*period);
   tick();
   if (config_.speed_up != 1)
     spdlog::warn("time runs {} times faster than real: only for a simulated rig", config_.speed_up);
@@ -245,14 +244,7 @@ void Rig::every_second(Stamp now) {
   stream_.publish(status);
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),
                             name(run_.status(now.mono).state)));
-  // Fed by the data path: epochs, or honest gaps, must have come out since the last time. Before the first
-  // sensor is there nothing can.
-  const bool moved = published_ != published_at_watchdog_ || epochs == 0;
-  if (watchdog_ && moved && (!last_watchdog_ || host - *last_watchdog_ >= *watchdog_ / 2)) {
-    notify_watchdog();
-    last_watchdog_ = host;
-    published_at_watchdog_ = published_;
-  }
+  if (watchdog_ && watchdog_->is_due(published_, epochs, host)) notify_watchdog();
 }
 
 }  // namespace mgtd::daemon

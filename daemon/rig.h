@@ -19,6 +19,7 @@
 #include "daemon/magnet_test.h"
 #include "daemon/run_conductor.h"
 #include "daemon/stream_server.h"
+#include "daemon/watchdog_feed.h"
 #include "daemon/worker.h"
 #include "drivers/patient_timer.h"
 
@@ -89,13 +90,13 @@ class Rig {
   std::vector<calib::LeftOutEffect> told_left_out_;
   Stamp started_;
   std::optional<double> last_skew_s_;
-  std::uint64_t published_{0}, published_at_watchdog_{0};
+  std::uint64_t published_{0};
   std::uint64_t epochs_at_second_{0};
   std::optional<double> rate_hz_;
   std::map<std::string, LinkState> link_states_;
   std::uint64_t told_drops_{0};  ///< clients that were disconnected, as far as the log knows
-  std::optional<Instant> last_second_, last_watchdog_;
-  std::optional<Duration> watchdog_;
+  std::optional<Instant> last_second_;
+  std::optional<WatchdogFeed> watchdog_;
   bool stopping_{false}, calibrating_{false};
 };
 

@@ -32,7 +32,7 @@ struct PortHandle {
   PortHandle(const PortHandle&) = delete;
   PortHandle& operator=(const PortHandle&) = delete;
   ~PortHandle() {
-    if (fd >= 0 && owned) ::ioctl(fd, TIOCNXCL);  // a pty would stay locked for others after the close
+    if (fd >= 0 && owned) ::ioctl(fd, TIOCNXCL);
     if (port != nullptr) {
       if (fd >= 0) sp_close(port);
       sp_free_port(port);
@@ -130,9 +130,11 @@ Result<void> open_real(PortHandle& handle, const std::string& path, int baud) {
 }
 
 /// What neither way of opening does: a read waits for a byte, nobody else gets in, children do not inherit.
-Result<void> claim(int fd, const std::string& path) {
+/// Not TIOCEXCL on a pty: it stays there when its owner is killed, as long as the other end is open, and then
+/// nobody but root gets in again.
+Result<void> claim(int fd, const std::string& path, bool pty) {
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return tl::unexpected(os_error(path, "locking", errno));
-  if (::ioctl(fd, TIOCEXCL) != 0) return tl::unexpected(os_error(path, "claiming", errno));
+  if (!pty && ::ioctl(fd, TIOCEXCL) != 0) return tl::unexpected(os_error(path, "claiming", errno));
   termios line{};
   if (::tcgetattr(fd, &line) != 0) return tl::unexpected(os_error(path, "reading the line settings", errno));
   line.c_cc[VMIN] = 1;  // with 0, an idle read looks like a hang-up
@@ -174,7 +176,7 @@ Result<SerialPort> SerialPort::open(const std::string& path, int baud, Way way) 
   const bool pty = way == Way::automatic && real.starts_with("/dev/pts/");
   if (auto opened = pty ? open_pty(*handle, real, baud) : open_real(*handle, real, baud); !opened)
     return tl::unexpected(std::move(opened.error()));
-  if (auto claimed = claim(handle->fd, path); !claimed) {
+  if (auto claimed = claim(handle->fd, path, pty); !claimed) {
     handle->owned = false;
     return tl::unexpected(std::move(claimed.error()));
   }

@@ -6,7 +6,8 @@
 #include "proto/error.h"
 
 /// An open serial port: 8N1, no flow control, a read waits for at least one byte, the descriptor is
-/// non-blocking and not inherited. Exclusive: TIOCEXCL, and flock against root, whom TIOCEXCL does not stop.
+/// non-blocking and not inherited. Exclusive: TIOCEXCL (but on a pty), and flock against root, whom TIOCEXCL
+/// does not stop.
 ///
 /// Real ports are opened and set up by libserialport. It refuses ptys (they have no entry in /sys/class/tty),
 /// so these are opened by plain termios. Names are those of port_list.h: a path, a

@@ -47,7 +47,7 @@ struct RawRecord {
 
 struct RawLogHeader {
   std::string rig;
-  std::string run_id;  ///< empty outside runs
+  std::string run_id;  ///< what the file belongs to; of the daemon's own journal: its name and number
 };
 
 inline constexpr std::size_t kRawRecordMax = 1U << 20U;  ///< bytes of payload; longer is refused as damage

@@ -54,6 +54,7 @@ void add_model(CLI::App& app, Session& session);
 void add_next(CLI::App& app, Session& session);
 void add_plan(CLI::App& app, Session& session);
 void add_ports(CLI::App& app, Session& session);
+void add_replay(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 void add_run(CLI::App& app, Session& session);
 void add_status(CLI::App& app, Session& session);

@@ -6,7 +6,7 @@ namespace {
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations, control\n"
-    "Offline (files):          plan, fit, apply, check, diff, import, export, check-config, ports\n"
+    "Offline (files):          plan, fit, apply, check, diff, import, export, replay, check-config, ports\n"
     "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, report\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   add_model(app, session);
   add_define(app, session);
   add_next(app, session);
+  add_replay(app, session);
   add_report(app, session);
   add_import(app, session);
   add_export(app, session);

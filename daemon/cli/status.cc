@@ -25,7 +25,6 @@ void print_devices(const nlohmann::json& devices) {
     const std::string said = d.at("state") == "live" ? text_or(d, "identity", "") : text_or(d, "detail", "");
     fmt::print("{:<8} {:<8} {:>10} {:>9}  {}\n", d.at("name").get<std::string>(),
                d.at("state").get<std::string>(), d.at("frames").get<std::uint64_t>(), rejected, said);
-    if (!d.at("balanced").get<bool>()) fmt::print("         bytes do not add up: please report this\n");
   }
 }
 
@@ -95,6 +94,33 @@ void print_clients(const nlohmann::json& s) {
   fmt::print("\n");
 }
 
+void print_recording(const char* what, const nlohmann::json& recording) {
+  fmt::print("{:<9} {}", what, recording.at("state").get<std::string>());
+  if (recording.at("state") != "off")
+    fmt::print(", {:.1f} MB on disk since the start", recording.at("bytes").get<double>() / 1e6);
+  if (recording.at("bytes_lost") > 0)
+    fmt::print(", {:.1f} MB not", recording.at("bytes_lost").get<double>() / 1e6);
+  fmt::print("\n");
+  if (const std::string why = recording.at("why"); !why.empty()) fmt::print("          {}\n", why);
+}
+
+/// Where every byte of every device went.
+void print_bytes(const nlohmann::json& devices) {
+  fmt::print("\n{:<8} {:>12} = {:>12} + {:>9} + {:>9} + {:>8}  {}\n", "bytes", "in", "in frames", "rejected",
+             "resync", "pending", "frames rejected for");
+  for (const auto& d : devices) {
+    std::string reasons;
+    for (const auto& [reason, count] : d.at("rejected").items()) {
+      if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", reason, count.dump());
+    }
+    const auto bytes = [&](const char* key) { return d.at(key).get<std::uint64_t>(); };
+    fmt::print("{:<8} {:>12} = {:>12} + {:>9} + {:>9} + {:>8}  {}\n", d.at("name").get<std::string>(),
+               bytes("bytes_in"), bytes("bytes_in_frames"), bytes("bytes_rejected"), bytes("bytes_resync"),
+               bytes("bytes_pending"), reasons);
+    if (!d.at("balanced").get<bool>()) fmt::print("         these do not add up: please report this\n");
+  }
+}
+
 int run_status(const Session& session, double patience_s) {
   const auto status = status_after(session, patience_s);
   if (!status) return report(session, status.error());
@@ -114,9 +140,11 @@ int run_status(const Session& session, double patience_s) {
     fmt::print(", skew below {:.3f} ms", 1e3 * sampler.at("skew_bound_s").get<double>());
   fmt::print("\ncalibr.   {}\n", text_or(s, "cal", "none: the stream is raw and says so"));
   print_calibration(s);
-  fmt::print("journal   {}\n", s.at("journal").at("state").get<std::string>());
+  print_recording("journal", s.at("journal"));
+  print_recording("samples", s.at("ring"));
   print_clients(s);
   print_devices(s.at("devices"));
+  print_bytes(s.at("devices"));
   print_run(s.at("run"));
   return code;
 }
