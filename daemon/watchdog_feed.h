@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <optional>
 
 #include "proto/time.h"
 
@@ -19,15 +18,15 @@ class WatchdogFeed {
   /// `published`: epochs and gaps that came out so far; `epochs`: those of them that were measured.
   [[nodiscard]] bool is_due(std::uint64_t published, std::uint64_t epochs, Instant now) {
     const bool moved = epochs == 0 || published != published_;
-    if (!moved || (last_ && now - *last_ < period_ / 2)) return false;
-    last_ = now;
+    if (!moved || now < next_) return false;
+    next_ = now + period_ / 2;
     published_ = published;
     return true;
   }
 
  private:
   Duration period_;
-  std::optional<Instant> last_;
+  Instant next_{Instant::min()};
   std::uint64_t published_{0};
 };
 
