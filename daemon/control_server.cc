@@ -2,6 +2,7 @@
 #include "daemon/control_server.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
 #include <optional>
@@ -118,8 +119,13 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
       if (auto done = lease_.release(peer, now.mono); !done) return tl::unexpected(done.error());
       return nlohmann::ordered_json::object();
     }
-    if (request.command == ControlCommand::control_break)
-      return nlohmann::ordered_json{{"was", to_json(lease_.break_hold(now.mono))}};
+    if (request.command == ControlCommand::control_break) {
+      const auto was = lease_.break_hold(now.mono);
+      if (was)
+        spdlog::warn("control was taken from pid {} (uid {}) by pid {} (uid {})", was->pid, was->uid,
+                     peer.pid, peer.uid);
+      return nlohmann::ordered_json{{"was", to_json(was)}};
+    }
     return handler_(request);
   }
 
