@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "drivers/baud.h"
+
 namespace mgtd::drivers::dcon {
 namespace {
 
@@ -62,11 +64,7 @@ void read_channels(Settings& s, std::vector<Channel>& out) {
 
 DconSettings read_dcon_settings(Settings& s) {
   DconSettings out;
-  out.baud = static_cast<int>(s.integer("baud", kDefaultBaud));
-  if (out.baud < 300 || out.baud > 921'600) {
-    s.object("baud", "must be a line speed like 9600");
-    out.baud = kDefaultBaud;
-  }
+  out.baud = read_baud(s, kDefaultBaud);
   out.address = s.text("address", out.address);
   if (out.address.size() != 2 || !is_hexadecimal(out.address))
     s.object("address", "must be two hexadecimal digits, like \"01\" or \"0A\"");

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "drivers/baud.h"
 #include "drivers/identity.h"
 #include "proto/units.h"
 
@@ -38,11 +39,7 @@ TableLimits::Range& travel(TableLimits& limits, Turns turns) {
 
 Gcs2Settings read_gcs2_settings(Settings& s) {
   Gcs2Settings out;
-  out.baud = static_cast<int>(s.integer("baud", kDefaultBaud));
-  if (out.baud < 1200 || out.baud > 4'000'000) {
-    s.object("baud", "must be a line speed like 115200");
-    out.baud = kDefaultBaud;
-  }
+  out.baud = read_baud(s, kDefaultBaud);
   out.serial = read_serial(s);
   for (const auto& [turns, name] : kTurns) {
     const std::string key = fmt::format("axes.{}", name);

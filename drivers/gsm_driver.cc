@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "drivers/baud.h"
 #include "drivers/identity.h"
 
 namespace mgtd::drivers::gsm {
@@ -19,11 +20,7 @@ constexpr std::string_view kUtc = "{utc}";
 
 GsmSettings read_gsm_settings(Settings& s) {
   GsmSettings out;
-  out.baud = static_cast<int>(s.integer("baud", kDefaultBaud));
-  if (out.baud < 300 || out.baud > 4'000'000) {
-    s.object("baud", "must be a line speed like 115200");
-    out.baud = kDefaultBaud;
-  }
+  out.baud = read_baud(s, kDefaultBaud);
   out.serial = read_serial(s);
   out.init = s.texts("init");
   const std::vector<double> range = s.numbers("range_nT", 2, {out.min_nT, out.max_nT});

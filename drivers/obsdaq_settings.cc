@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "drivers/baud.h"
 #include "drivers/identity.h"
 #include "proto/number.h"
 
@@ -96,11 +97,7 @@ ObsdaqSettings read_obsdaq_settings(Settings& s) {
   if (out.address.size() != 2 || !is_hex) s.object("address", "must be two hex digits like \"01\"");
   out.serial = read_serial(s);
   out.palmacq = s.boolean("palmacq", false);
-  out.baud = static_cast<int>(s.integer("baud", out.palmacq ? kPalmAcqBaud : kDirectBaud));
-  if (out.baud < 1200 || out.baud > 4'000'000) {
-    s.object("baud", "must be a line speed like 19200");
-    out.baud = kDirectBaud;
-  }
+  out.baud = read_baud(s, out.palmacq ? kPalmAcqBaud : kDirectBaud);
   out.rate_hz = s.number("rate_hz", out.rate_hz);
   const double range_V = s.number("range_V", 10.0);
   const auto range =
