@@ -14,6 +14,9 @@
 /// window holds block minima: blocks grow with age until kBlocks of them span window_s, so a sample costs one
 /// comparison.
 ///
+/// Where delivery waits for a timer (USB: 16 ms), delays come in steps that beat slowly with the samples; for
+/// as long as a beat may take the bound holds one step more.
+///
 /// A delay that is never small within the window cannot be told from latency; it is a configured constant
 /// then. Seconds throughout, on any common origin.
 namespace mgtd::daemon {
@@ -73,6 +76,7 @@ class ClockModel {
   std::size_t in_block_{0}, block_{1}, block_max_{1};
   std::uint64_t samples_{0};
   double bound_s_{0}, residual_s_{0}, last_delay_s_{0};
+  double near_{0};  ///< share of delays that are close to none
 };
 
 }  // namespace mgtd::daemon

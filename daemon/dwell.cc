@@ -38,13 +38,19 @@ void Dwell::add(const EpochOrGap& item) {
   const Sample y = stacked(epoch);
   for (std::size_t i = 0; i < kSensors; ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
-    if (!y_nT_.empty() && y.segment<3>(at) == y_nT_.back().segment<3>(at)) ++repeats_[i];
+    if (last_nT_ && y.segment<3>(at) == last_nT_->segment<3>(at)) ++repeats_[i];
     if (std::isfinite(epoch.T_degC[i])) {
       T_sum_degC_[i] += epoch.T_degC[i];
       ++T_count_[i];
     }
   }
+  last_nT_ = y;
+  ++heard_;
   if (epoch.flags.has(Flag::saturated)) ++saturated_;
+  if (config_.frozen_check && epoch.flags.has(Flag::frozen)) {
+    ++frozen_;
+    return;
+  }
   if (!first_) first_ = epoch.t;
   y_nT_.push_back(y);
   seq_.push_back(epoch.seq);
@@ -72,6 +78,7 @@ DwellQuality Dwell::quality() const {
   q.missing =
       q.epochs >= static_cast<std::size_t>(expected) ? 0 : static_cast<std::size_t>(expected) - q.epochs;
   q.gap_share = expected > 0 ? static_cast<double>(q.missing) / expected : 0;
+  q.frozen = frozen_;
   q.saturated = saturated_;
   q.repeats = repeats_;
   return q;
@@ -79,22 +86,24 @@ DwellQuality Dwell::quality() const {
 
 Result<void> Dwell::acceptable() const {
   const DwellQuality q = quality();
-  if (q.gap_share > config_.max_gap_share || q.epochs < kMinSamples) {
+  const bool thin = q.gap_share > config_.max_gap_share || q.epochs < kMinSamples;
+  const double allowed = thin && q.frozen > 0 ? 0 : kFrozenShare * static_cast<double>(heard_ - 1);
+  const auto most = std::max_element(q.repeats.begin(), q.repeats.end());
+  if (config_.frozen_check && static_cast<double>(*most) > allowed) {
+    return fail(ErrorCode::refused,
+                fmt::format("s{} gave exactly the same three values in {} of {} successive samples",
+                            most - q.repeats.begin() + 1, *most, heard_ - 1),
+                "the digitiser repeats an old sample: power-cycle it and check the sensor's supply");
+  }
+  if (thin) {
     return fail(ErrorCode::refused,
                 fmt::format("{} of {} epochs of the dwell are missing ({:.0f} %, limit {:.0f} %)", q.missing,
                             q.missing + q.epochs, 100 * q.gap_share, 100 * config_.max_gap_share),
                 "see which sensor the GAP records name, and the state of its port");
   }
-  if (static_cast<double>(q.saturated) > config_.max_saturated_share * static_cast<double>(q.epochs)) {
-    return fail(ErrorCode::refused, fmt::format("{} of {} epochs are saturated", q.saturated, q.epochs),
+  if (static_cast<double>(q.saturated) > config_.max_saturated_share * static_cast<double>(heard_)) {
+    return fail(ErrorCode::refused, fmt::format("{} of {} epochs are saturated", q.saturated, heard_),
                 "choose the sensor's larger range, or look for iron near the array");
-  }
-  for (std::size_t i = 0; config_.frozen_check && i < kSensors; ++i) {
-    if (static_cast<double>(q.repeats[i]) <= kFrozenShare * static_cast<double>(q.epochs - 1)) continue;
-    return fail(ErrorCode::refused,
-                fmt::format("s{} gave exactly the same three values in {} of {} successive samples", i + 1,
-                            q.repeats[i], q.epochs - 1),
-                "the digitiser repeats an old sample: power-cycle it and check the sensor's supply");
   }
   return {};
 }

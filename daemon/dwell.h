@@ -17,10 +17,10 @@
 /// mean per axis over the n epochs whose time lies in the dwell; sd of one sample and n_eff such that
 ///     sd^2 / n_eff = variance of the mean = scatter^2 (1 + 2 sum of autocorrelations) / n
 /// on every axis: sd is that of a raw sample even where the sampler's interpolation smoothed the epochs;
-/// scalar: mean of the good readings, f_sd = standard uncertainty of that mean; temperatures and
-/// auxiliary inputs: means.
-/// What makes a pose unusable is an Error of pose(): too many gaps, saturation, a sensor whose value stands
-/// still.
+/// scalar: mean of the good readings, f_sd = standard uncertainty of that mean; temperatures and auxiliary
+/// inputs: means. An epoch with a sensor that repeats itself (Flag::frozen) is no measurement: it counts as
+/// missing. What makes a pose unusable is an Error of pose(): too many epochs missing, saturation, a sensor
+/// whose value stands still.
 namespace mgtd::daemon {
 
 struct DwellConfig {
@@ -46,7 +46,8 @@ struct DwellPlace {
 /// Progress and quality, for the operator.
 struct DwellQuality {
   std::size_t epochs{0};
-  std::size_t missing{0};  ///< of those expected so far
+  std::size_t missing{0};  ///< of those expected so far, frozen ones included
+  std::size_t frozen{0};
   std::size_t saturated{0};
   std::array<std::size_t, kSensors>
       repeats{};  ///< successive epochs with all three axes of a sensor exactly equal
@@ -90,8 +91,9 @@ class Dwell {
     std::size_t count{0};
   };
   std::map<std::string, Sum> auxiliary_;  ///< by column
+  std::optional<Sample> last_nT_;  ///< of any epoch of the dwell
   std::array<std::size_t, kSensors> repeats_{};
-  std::size_t saturated_{0};
+  std::size_t heard_{0}, saturated_{0}, frozen_{0};
   bool past_end_{false};
   std::optional<Stamp> first_;  ///< relates monotonic and wall time
 };

@@ -7,7 +7,7 @@ namespace mgtd::daemon {
 namespace {
 
 constexpr double kStrange = 1e-3;
-constexpr std::uint64_t kLong = 50;
+constexpr std::uint64_t kLong = 15;
 
 /// Share of `of`, of which `seen` were so, as far as that is known.
 double share(std::uint64_t seen, std::uint64_t of) {
@@ -21,11 +21,12 @@ bool RepeatWatch::stands_still(const Eigen::Vector3d& y_nT) {
   last_nT_ = y_nT;
   if (repeated) {
     ++row_;
+    if (readings_ <= 1) return true;  // it has said one thing so far
     const double first = share(rows_, readings_), next = share(continued_, rows_ + continued_);
     return first * std::pow(next, static_cast<double>(row_ - 1)) < kStrange;
   }
   // A short row was the sensor's own way, whatever was thought of it; a long one was a standstill.
-  if (row_ > 0 && row_ < kLong) {
+  if (row_ > 0 && row_ < kLong && readings_ > 1) {
     ++rows_;
     continued_ += row_ - 1;
   }
@@ -33,5 +34,7 @@ bool RepeatWatch::stands_still(const Eigen::Vector3d& y_nT) {
   row_ = 0;
   return false;
 }
+
+bool RepeatWatch::repeats_are_rare() const { return share(rows_, readings_) < kStrange; }
 
 }  // namespace mgtd::daemon

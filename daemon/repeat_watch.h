@@ -10,13 +10,16 @@
 /// resolution against noise and is learnt from the stream itself. With p the share of readings that begin a
 /// row of repeats and q that of repeats that are followed by another, r repeats in a row are taken for a
 /// standstill when p q^(r-1) < 1e-3. A fine digitiser is caught at the first repeat, once some hundred
-/// readings are known; one coarser than its noise needs more and is not accused wrongly. Pure.
+/// readings are known; one coarser than its noise needs more and is not accused wrongly. What has only ever
+/// said one thing is not known to measure. Pure.
 namespace mgtd::daemon {
 
 class RepeatWatch {
  public:
   /// The next reading, nT: whether the sensor stands still, this reading included.
   [[nodiscard]] bool stands_still(const Eigen::Vector3d& y_nT);
+  /// One repeat says something already.
+  [[nodiscard]] bool repeats_are_rare() const;
 
  private:
   Eigen::Vector3d last_nT_{Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};

@@ -143,6 +143,7 @@ Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
                             interrupted_->stored, interrupted_->planned),
                 "mgt run resume goes on with it, mgt run abort gives it up");
   }
+  if (auto there = table_is_there(); !there) return there;
   auto planned = plan(request);
   if (!planned) return tl::unexpected(planned.error());
   failed_.reset();
@@ -181,7 +182,16 @@ void RunConductor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now
   feed(Tick{}, now);
 }
 
+/// How far it may turn is known from itself.
+Result<void> RunConductor::table_is_there() const {
+  const LinkHealth& table = hooks_.table().health();
+  if (table.state == LinkState::live) return {};
+  return fail(ErrorCode::state, "the table is not connected: " + table.detail,
+              "when mgt status shows it live, say it again");
+}
+
 Result<void> RunConductor::resume_interrupted(Stamp now) {
+  if (auto there = table_is_there(); !there) return there;
   auto file = RunFile::open(interrupted_->file, Access::resume);
   if (!file) return tl::unexpected(file.error());
   auto plan = plan_from_json(file->header().plan);

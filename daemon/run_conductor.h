@@ -63,6 +63,7 @@ class RunConductor {
   [[nodiscard]] RunConfig run_config(const std::string& run_id, const RunRequest& request) const;
   [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
                                                      const RunFile& file) const;
+  [[nodiscard]] Result<void> table_is_there() const;
   [[nodiscard]] Result<void> resume_interrupted(Stamp now);
   [[nodiscard]] Result<void> drop_interrupted();
   void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,

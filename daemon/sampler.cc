@@ -14,10 +14,19 @@ constexpr double kImpossiblyEarly = 0.5;    // periods before the model's sample
 constexpr double kPrompt = 0.2;             // periods of mean delay: lost frames can be counted by time
 constexpr std::int64_t kMerged = 2;         // frames that garbage can hide in one rejected line
 constexpr std::int64_t kConfirmed = 64;     // samples on time after a loss
-constexpr double kLate = 0.75;              // periods behind it
+constexpr std::int64_t kProved = 16;        // where delivery is never prompt
+constexpr double kAgree = 0.3;              // periods between count and time
+constexpr double kEarly = 0.1;              // periods before the line
+constexpr double kIdle = 0.9;               // periods since the last sample: nothing waits in the line
+constexpr double kNotYet = 0.7;             // periods since the last sample: no new one can be
+constexpr std::int64_t kOvertaken = 8;      // samples that a late one may come behind
+constexpr double kLate = 0.9;               // periods behind it, or ...
+constexpr double kLateResiduals = 2.5;      // ... so many of the usual delays ...
+constexpr double kLatest = 2;               // ... that are not themselves lateness
 constexpr std::uint64_t kLateSamples = 16;  // all late, and spread in time: frames were lost unseen
 constexpr double kHoldGap_s = 1.0;          // before a gap is told, so that a long one is one record
-constexpr double kRing_s = 16.0;            // of samples kept: a stalled host delivers so much at once
+constexpr double kNoDoubt_s = 1e9;
+constexpr double kRing_s = 16.0;  // of samples kept: a stalled host delivers so much at once
 
 std::int64_t whole(double x) { return static_cast<std::int64_t>(std::llround(x)); }
 
@@ -29,10 +38,25 @@ const Sampler::Sample* Sampler::Stream::find(std::int64_t k) const {
   return sample.k == k ? &sample : nullptr;
 }
 
-/// Late samples from one stalled delivery share their arrival; only a lasting delay makes the numbering
-/// suspect.
-bool Sampler::Stream::suspect(double period_s) const {
-  return late.samples >= 8 && late.span_s > 2 * period_s;
+void Sampler::Stream::renumber(std::int64_t from, std::int64_t by) {
+  const auto capacity = static_cast<std::int64_t>(ring.size());
+  for (std::int64_t k = last_k; k >= std::max(from, last_k - capacity + 1); --k) {
+    Sample& sample = ring[static_cast<std::size_t>(k) & (ring.size() - 1)];
+    if (sample.k != k) continue;
+    Sample moved = sample;
+    sample.k = -1;
+    moved.k += by;
+    ring[static_cast<std::size_t>(moved.k) & (ring.size() - 1)] = moved;
+  }
+  last_k += by;
+}
+
+void Sampler::Stream::lessen_doubt(std::int64_t from, double by_s) {
+  const auto capacity = static_cast<std::int64_t>(ring.size());
+  for (std::int64_t k = std::max(from, last_k - capacity + 1); k <= last_k; ++k) {
+    Sample& sample = ring[static_cast<std::size_t>(k) & (ring.size() - 1)];
+    if (sample.k == k) sample.doubt_s = std::max(0.0, sample.doubt_s - by_s);
+  }
 }
 
 Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.rate_hz) {
@@ -64,28 +88,32 @@ void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
   Stream& s = streams_[slot];
   const double arrival_s = seconds(reading.arrival.mono);
   const double sample_s = arrival_s - config_.wire_s[slot] - config_.latency_s[slot];
-  if (s.last && reading.seq == s.last->seq) {
-    ++s.health.duplicates;
-    return;
-  }
-  const auto numbered = number(reading.slot, reading, sample_s);
-  s.last = reading;
-  s.last_arrival_s = arrival_s;
+  const double since_last_s = arrival_s - std::exchange(s.last_arrival_s, arrival_s);
+  const auto numbered =
+      s.last && comes_again(s, reading, sample_s) ? std::nullopt : number(reading.slot, reading, sample_s);
   if (!numbered) {
     ++s.health.duplicates;
+    s.last->seq = std::max(s.last->seq, reading.seq);
     return;
   }
+  s.last = reading;
   const std::int64_t k = *numbered;
-  s.clock.add(k, sample_s);
+  // A number in doubt must not teach the clock that samples come earlier.
+  const double early_s = s.clock.time_of(static_cast<double>(k)) - sample_s;
+  if (s.doubtful == 0 || early_s < kEarly * period_s_) s.clock.add(k, sample_s);
   if (reading.y_nT.allFinite()) {
     Flags flags = reading.flags;
     if (s.repeats.stands_still(reading.y_nT)) flags |= Flag::frozen;
-    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, flags};
+    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, flags,
+                                                                 static_cast<double>(s.doubtful) * period_s_};
   }
   s.last_k = k;
   ++s.health.samples;
-  watch_lateness(s, arrival_s, sample_s - s.clock.time_of(static_cast<double>(k)));
-  emit_ready(out);
+  const double delay_s = sample_s - s.clock.time_of(static_cast<double>(k));
+  watch_lateness(s, arrival_s, delay_s);
+  watch_doubt(s, since_last_s, delay_s);
+  // The next bytes may tell; the next tick at the latest ends the wait.
+  if (!in_doubt()) emit_ready(out);
 }
 
 void Sampler::push(const TemperatureReading& reading) {
@@ -121,6 +149,7 @@ void Sampler::restart(int slot) {
   s.clock.reset();
   s.last.reset();
   s.late = {};
+  s.doubtful = 0;
 }
 
 std::int64_t Sampler::first_number(int slot, double sample_s) const {
@@ -138,9 +167,13 @@ std::optional<std::int64_t> Sampler::number(int slot, const FieldReading& readin
     restart(slot);
   }
   if (s.last) {
-    if (const std::int64_t by = step(s, reading, sample_s); by > 0) {
-      count_lost(s, by - 1);
-      return s.last_k + by;
+    if (const Step step = this->step(s, reading, sample_s); step.by > 0) {
+      count_lost(s, step.by - 1);
+      if (step.doubtful > 0) {
+        s.doubtful = std::max(s.doubtful, step.doubtful);
+        s.doubtful_since = s.last_k + step.by;
+      }
+      return s.last_k + step.by;
     }
     if (was_overcounted(s, sample_s)) return std::nullopt;
     ++s.health.clock_breaks;
@@ -163,13 +196,31 @@ bool Sampler::was_overcounted(Stream& s, double sample_s) const {
   const double early = (s.clock.time_of(static_cast<double>(s.last_k + 1)) - sample_s) / period_s_;
   if (s.inserted < 1 || early > static_cast<double>(s.inserted) + kImpossiblyEarly) return false;
   --s.inserted;
+  s.doubtful_since = s.last_k + 1;  // those before had it
+  // Nothing is interpolated across a sample that is dropped.
+  s.ring[static_cast<std::size_t>(s.last_k) & (s.ring.size() - 1)].k = -1;
   return true;
 }
 
+/// The same sample once more, or one whose successor came first. Without a time of its own a sample is the
+/// last one again when it reads the same and there was no time for another.
+bool Sampler::comes_again(const Stream& s, const FieldReading& reading, double sample_s) const {
+  if (reading.seq == s.last->seq) return true;
+  if (reading.device_time_s && s.last->device_time_s) {
+    const std::int64_t by = whole((*reading.device_time_s - *s.last->device_time_s) / period_s_);
+    const std::int64_t k = s.last_k + by;
+    return by == 0 || (by < 0 && by >= -kOvertaken && k >= s.first_k && s.find(k) == nullptr);
+  }
+  if (reading.y_nT != s.last->y_nT) return false;
+  const double due = s.clock.index_of(sample_s) - static_cast<double>(s.last_k);
+  const double since = to_seconds(reading.arrival.mono - s.last->arrival.mono) / period_s_;
+  return due < kNotYet || (since < kNotYet && s.repeats.repeats_are_rare());
+}
+
 /// By how much the number rises: as the device's clock or count says, as long as the sample does not then
-/// arrive before it was taken. A count that jumps is uncertain (torn lines merge); where delivery is prompt,
-/// the time between decides. 0: not even by one.
-std::int64_t Sampler::step(const Stream& s, const FieldReading& reading, double sample_s) const {
+/// arrive before it was taken. A count that jumps is uncertain (torn lines merge, garbage looks like lines);
+/// where delivery is prompt, the time between decides. 0: not even by one.
+Sampler::Step Sampler::step(const Stream& s, const FieldReading& reading, double sample_s) const {
   const auto counted = static_cast<std::int64_t>(reading.seq - s.last->seq);
   std::int64_t timed = 0;
   if (reading.device_time_s && s.last->device_time_s) {
@@ -179,32 +230,57 @@ std::int64_t Sampler::step(const Stream& s, const FieldReading& reading, double 
       s.clock.index_of(sample_s) - static_cast<double>(s.last_k);  // at most, delay being positive
   const double slack = s.clock.settled() ? kImpossiblyEarly : config_.silence_s / period_s_;
   const auto possible = [&](std::int64_t by) { return by > 0 && static_cast<double>(by) < due + slack; };
-  if (timed > 0 && possible(timed)) return timed;
+  if (timed > 0 && possible(timed)) return {timed, 0};
   const ClockState clock = s.clock.state();
   if (counted > 1 && clock.settled && clock.residual_s < kPrompt * period_s_) {
-    return std::clamp<std::int64_t>(whole(due - clock.residual_s / period_s_), 1, counted + kMerged);
+    const double prompt = due - clock.residual_s / period_s_;
+    const std::int64_t by = std::clamp<std::int64_t>(whole(prompt), 1, counted + kMerged);
+    return {by, std::abs(prompt - static_cast<double>(counted)) < kAgree ? 0 : by - 1};
   }
-  if (possible(counted)) return counted;
-  return possible(1) ? 1 : 0;
+  if (possible(counted)) return {counted, counted - 1};
+  return {possible(1) ? 1 : 0, 0};
 }
 
 /// Frames lost before the driver saw them leave no trace but time: from then on every sample is whole periods
 /// late.
 void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
   Lateness& late = s.late;
-  if (!s.clock.settled() || delay_s < kLate * period_s_) {
+  const double usual_s =
+      std::clamp(kLateResiduals * s.clock.state().residual_s, kLate * period_s_, kLatest * period_s_);
+  if (delay_s < usual_s) {
+    // All were delayed, none was lost.
+    if (late.samples > 0 && s.doubtful == 0) s.lessen_doubt(late.first_k, kNoDoubt_s);
     late.samples = 0;
     return;
   }
-  if (late.samples == 0) late = {0, arrival_s, delay_s, 0};
+  if (late.samples == 0) late = {0, s.last_k, arrival_s, delay_s, 0};
   ++late.samples;
+  Sample& newest = s.ring[static_cast<std::size_t>(s.last_k) & (s.ring.size() - 1)];
+  newest.doubt_s = std::max(newest.doubt_s, delay_s);
   late.least_s = std::min(late.least_s, delay_s);
   late.span_s = arrival_s - late.since_s;
-  if (late.samples < kLateSamples || late.span_s < config_.silence_s / 2) return;
+  if (!s.clock.settled() || late.samples < kLateSamples || late.span_s < config_.silence_s / 2) return;
   const std::int64_t lost = std::max<std::int64_t>(1, whole(late.least_s / period_s_));
-  s.last_k += lost;
+  s.renumber(late.first_k, lost);
+  s.lessen_doubt(late.first_k + lost, static_cast<double>(lost) * period_s_);
   count_lost(s, lost);
   late = {};
+}
+
+/// Numbers are proved by a prompt sample that nothing was waiting before, or by many that were not early.
+void Sampler::watch_doubt(Stream& s, double since_last_s, double delay_s) const {
+  if (s.doubtful == 0) return;
+  const double usual_s = s.clock.state().residual_s;
+  const bool prompt = delay_s < usual_s + kAgree * period_s_ && since_last_s > kIdle * period_s_;
+  const bool never_prompt = usual_s > kPrompt * period_s_;
+  if ((s.last_k > s.doubtful_since && prompt) || (never_prompt && s.last_k - s.doubtful_since >= kProved)) {
+    s.lessen_doubt(s.doubtful_since, kNoDoubt_s);
+    s.doubtful = 0;
+  }
+}
+
+bool Sampler::in_doubt() const {
+  return std::any_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.in_doubt(); });
 }
 
 double Sampler::grid_index(double t_s) const {

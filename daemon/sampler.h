@@ -22,6 +22,12 @@
 /// lost, rejected or never came, the epoch is a Gap that says whose and why: nothing is extrapolated, nothing
 /// bridged. Epochs and gaps tile the sequence without hole or overlap.
 ///
+/// Each sample gets a number in its stream, and by it a time. Where it carries the device's own time, that
+/// decides; else the count of the driver, held against the time of arrival. Where the two disagree (frames
+/// lost before anybody saw them, damage that looks like more or fewer frames, a line behind in its
+/// deliveries) the number is in doubt until a sample proves it: the epochs are flagged clock_unsettled and
+/// the doubt is part of their bound. A sample that comes twice, or after its successor, is dropped.
+///
 /// skew_bound_s = what the two worst clock models may be off + the largest shift left uninterpolated.
 /// Constant delays (filter group delay, wire time) must be configured; no software sees them.
 namespace mgtd::daemon {
@@ -49,7 +55,7 @@ struct SamplerConfig {
 struct SensorStreamHealth {
   std::uint64_t samples{0};
   std::uint64_t lost{0};          ///< frames missing in the device's own count, or found missing by time
-  std::uint64_t duplicates{0};    ///< dropped: number not above the last one
+  std::uint64_t duplicates{0};    ///< dropped: came twice, or after its successor
   std::uint64_t reopened{0};      ///< counter restarted
   std::uint64_t clock_breaks{0};  ///< the sample times jumped against the host clock; the model starts over
   std::uint64_t gaps{0};          ///< epochs not measured because of this sensor
@@ -85,11 +91,17 @@ class Sampler {
     double arrival_s{0};
     Eigen::Vector3d y_nT;
     Flags flags;
+    double doubt_s{0};  ///< by which its time may be wrong beside what the clock model says
   };
   /// Samples that all come more than a period late: frames were lost unseen, or delivery stalls.
   struct Lateness {
     std::uint64_t samples{0};
+    std::int64_t first_k{0};
     double since_s{0}, least_s{0}, span_s{0};
+  };
+  /// By how much a number rises, and how many of that may not have been.
+  struct Step {
+    std::int64_t by{0}, doubtful{0};
   };
   struct Stream {
     Stream(ClockModel model, std::size_t capacity) : clock(std::move(model)), ring(capacity) {}
@@ -104,10 +116,15 @@ class Sampler {
     Lateness late;
     std::int64_t inserted{0};  ///< numbers given to frames counted lost and not yet confirmed by time
     std::int64_t inserted_at{0};
+    std::int64_t doubtful{0};  ///< numbers that may be too many
+    std::int64_t doubtful_since{0};
     SensorStreamHealth health;
 
     [[nodiscard]] const Sample* find(std::int64_t k) const;
-    [[nodiscard]] bool suspect(double period_s) const;
+    /// Gives the samples from `from` on numbers that are higher by so many.
+    void renumber(std::int64_t from, std::int64_t by);
+    void lessen_doubt(std::int64_t from, double by_s);
+    [[nodiscard]] bool in_doubt() const { return late.samples > 0 || doubtful > 0; }
   };
   /// Where the reference sensor's samples lie while it has no clock model.
   struct Grid {
@@ -121,17 +138,23 @@ class Sampler {
     bool interpolated{false};
     Eigen::Vector3d y_nT;
     Flags flags;
+    double doubt_s{0};
+
+    void take(const Sample& sample);
   };
 
   void begin(const Stamp& stamp);
   [[nodiscard]] double seconds(Instant t) const { return to_seconds(t - origin_); }
   [[nodiscard]] std::optional<std::int64_t> number(int slot, const FieldReading& reading, double sample_s);
-  [[nodiscard]] std::int64_t step(const Stream& s, const FieldReading& reading, double sample_s) const;
+  [[nodiscard]] bool comes_again(const Stream& s, const FieldReading& reading, double sample_s) const;
+  [[nodiscard]] Step step(const Stream& s, const FieldReading& reading, double sample_s) const;
   [[nodiscard]] bool was_overcounted(Stream& s, double sample_s) const;
   void count_lost(Stream& s, std::int64_t frames) const;
   void restart(int slot);
   [[nodiscard]] std::int64_t first_number(int slot, double sample_s) const;
   void watch_lateness(Stream& s, double arrival_s, double delay_s);
+  void watch_doubt(Stream& s, double since_last_s, double delay_s) const;
+  [[nodiscard]] bool in_doubt() const;
   [[nodiscard]] double grid_index(double t_s) const;
   [[nodiscard]] double grid_time(std::int64_t k) const;
   void emit_ready(std::vector<EpochOrGap>& out);

@@ -14,6 +14,12 @@ constexpr double kMaxUninterpolated = 0.02;  // periods
 
 }  // namespace
 
+void Sampler::Pick::take(const Sample& sample) {
+  y_nT = sample.y_nT;
+  flags |= sample.flags;
+  doubt_s = std::max(doubt_s, sample.doubt_s);
+}
+
 /// The sample of one sensor at t: its nearest when that is near enough, else between its two neighbours.
 Sampler::Pick Sampler::pick(int slot, double t_s) const {
   const Stream& s = streams_[static_cast<std::size_t>(slot)];
@@ -37,8 +43,7 @@ Sampler::Pick Sampler::pick(int slot, double t_s) const {
     if (to.need != Need::ready) return to;
     const Sample* sample = s.find(k);
     to.shift_s = shift_s;
-    to.y_nT = sample->y_nT;
-    to.flags = sample->flags;
+    to.take(*sample);
     return to;
   }
   const auto k = static_cast<std::int64_t>(below);
@@ -47,8 +52,10 @@ Sampler::Pick Sampler::pick(int slot, double t_s) const {
   if (to.need != Need::ready) return to;
   const Sample *p = s.find(k), *q = s.find(k + 1);
   to.interpolated = true;
+  to.take(*p);
+  to.take(*q);
   to.y_nT = p->y_nT + (u - below) * (q->y_nT - p->y_nT);
-  to.flags = p->flags | q->flags | Flag::interpolated;
+  to.flags |= Flag::interpolated;
   return to;
 }
 
@@ -62,8 +69,7 @@ bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
   const double t_s = grid_time(next_k_);
   std::array<Pick, kSensors> picks;
   picks[kReference].need = Need::ready;
-  picks[kReference].y_nT = own->y_nT;
-  picks[kReference].flags = own->flags;
+  picks[kReference].take(*own);
   int waiting = -1;
   for (int slot = 1; slot < kSensors; ++slot) {
     Pick& p = picks[static_cast<std::size_t>(slot)];
@@ -111,15 +117,14 @@ void Sampler::emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, st
   double first = 0, second = 0, earliest = 0, latest = 0;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const Stream& s = streams_[i];
-    const bool suspect = s.suspect(period_s_);
-    const double bound_s = s.clock.bound_s() + (suspect ? s.late.least_s : 0);
+    const double bound_s = s.clock.bound_s() + picks[i].doubt_s;
     second = std::max(second, std::min(first, bound_s));
     first = std::max(first, bound_s);
     earliest = std::min(earliest, picks[i].shift_s);
     latest = std::max(latest, picks[i].shift_s);
     epoch.y_nT[i] = picks[i].y_nT;
     epoch.flags |= picks[i].flags;
-    if (suspect || !s.clock.settled()) epoch.flags |= Flag::clock_unsettled;
+    if (picks[i].doubt_s > 0 || !s.clock.settled()) epoch.flags |= Flag::clock_unsettled;
   }
   epoch.skew_bound_s = first + second + (latest - earliest);
   last_t_s_ = t_s;

@@ -32,6 +32,7 @@ void Settle::add(const TableReading& reading) {
 void Settle::add(const EpochOrGap& item) {
   const auto* epoch = std::get_if<Epoch>(&item);
   if (epoch == nullptr || !stopped_ || epoch->t.mono < *stopped_) return;
+  if (epoch->flags.has(Flag::frozen)) return;  // stands still, but not because the field does
   Point point{epoch->t.mono, {}};
   for (int slot = 0; slot < kSensors; ++slot) {
     point.y_nT.segment<3>(3 * slot) = epoch->y_nT[static_cast<std::size_t>(slot)];

@@ -13,6 +13,7 @@ namespace mgtd::drivers::gcs2 {
 namespace {
 
 constexpr double kRetry_s = 5.0;
+constexpr int kNotReferenced = 5;
 
 }  // namespace
 
@@ -61,6 +62,8 @@ bool Gcs2Driver::take_error(const Question& question, std::string_view line) {
     fail_start(fmt::format("'{}': {}", question.concerning, text.what), text.remedy);
   } else {
     fault(fmt::format("'{}': {}", question.concerning, text.what), text.remedy);
+    // Its power failed: its velocity is forgotten too, and whether it is referenced is to be asked.
+    if (*error == kNotReferenced) start();
   }
   return true;
 }

@@ -17,6 +17,8 @@ constexpr double kSilence_s = 0.3;  ///< that ends a drain
 constexpr double kReply_s = 2.0;
 constexpr double kOptionalReply_s = 0.3;
 constexpr double kRetry_s = 10.0;
+constexpr double kSilent_s = 1.0;
+constexpr int kSilentTicks = 50;
 
 using Kind = Step::Kind;
 
@@ -116,6 +118,7 @@ void ObsdaqDriver::on_tick(Stamp now) {
     pump(now);
   } else if (phase_ == Phase::streaming) {
     watch_silence(now);
+    if (phase_ == Phase::streaming) watch_rate(now);
   } else if (phase_ == Phase::waiting && retry_.passed(now.mono)) {
     start(now);
   }
@@ -165,7 +168,8 @@ void ObsdaqDriver::go_live(Stamp now) {
   any_good_line_ = false;
   bytes_at_good_line_ = health_.bytes_in;
   last_fault_.clear();
-  silence_.set(now.mono, silence_s());
+  silence_.set(now.mono, silence_s(), kSilentTicks);
+  rate_.restart();
   set_state(LinkState::live,
             fmt::format("{} at {:.2f} Hz, +-{} V{}", settings_.sensor, settings_.timing.rate_hz(),
                         settings_.range.volts, settings_.palmacq ? ", time-stamped by PalmAcq" : ""));
@@ -202,7 +206,21 @@ void ObsdaqDriver::refuse(Stamp now, std::string what, std::string remedy) {
   if (std::exchange(last_fault_, what) != what) emit(DeviceFault{now, std::move(what), std::move(remedy)});
 }
 
-double ObsdaqDriver::silence_s() const { return std::max(2.0, 10.0 / settings_.timing.rate_hz()); }
+/// Shorter than any device needs to come up again after its power failed: what was silent for so long is told
+/// its settings anew, range and rate, and not believed to have kept them.
+double ObsdaqDriver::silence_s() const { return std::max(kSilent_s, 10.0 / settings_.timing.rate_hz()); }
+
+/// The host's settings are those that count.
+void ObsdaqDriver::watch_rate(Stamp now) {
+  const double wanted_hz = settings_.timing.rate_hz();
+  const auto found_hz = rate_.wrong_hz(wanted_hz, now.mono);
+  if (!found_hz) return;
+  set_state(LinkState::silent,
+            fmt::format("it sends {:.2f} readings a second instead of {:.2f}; telling it its settings again",
+                        *found_hz, wanted_hz));
+  emit(DeviceNote{now, health_.detail});
+  start(now);
+}
 
 void ObsdaqDriver::watch_silence(Stamp now) {
   if (!silence_.passed(now.mono)) return;
@@ -239,7 +257,7 @@ Verdict ObsdaqDriver::on_stream_line(std::string_view line, Stamp arrival) {
   }
   any_good_line_ = true;
   bytes_at_good_line_ = health_.bytes_in;
-  silence_.set(arrival.mono, silence_s());
+  silence_.set(arrival.mono, silence_s(), kSilentTicks);
   emit_sample(*sample, arrival);
   return Verdict::accepted();
 }
@@ -248,6 +266,7 @@ void ObsdaqDriver::emit_sample(const Sample& sample, Stamp arrival) {
   FieldReading reading;
   reading.slot = slot_;
   reading.seq = seq_++;
+  rate_.heard(reading.seq, arrival.mono);
   reading.arrival = arrival;
   reading.device_time_s = sample.device_time_s;
   for (int axis = 0; axis < 3; ++axis) {

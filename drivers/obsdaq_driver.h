@@ -9,6 +9,7 @@
 #include "drivers/dialogue.h"
 #include "drivers/line_device.h"
 #include "drivers/obsdaq_settings.h"
+#include "drivers/rate_watch.h"
 
 /// One fluxgate behind an ObsDAQ: started, verified and kept streaming.
 ///
@@ -52,6 +53,7 @@ class ObsdaqDriver final : public LineDevice {
   void give_up(Stamp now);
   void refuse(Stamp now, std::string what, std::string remedy);
   void watch_silence(Stamp now);
+  void watch_rate(Stamp now);
   Verdict on_stream_line(std::string_view line, Stamp arrival);
   void emit_sample(const Sample& sample, Stamp arrival);
   [[nodiscard]] double silence_s() const;
@@ -62,6 +64,7 @@ class ObsdaqDriver final : public LineDevice {
   Dialogue dialogue_;
   Deadline silence_, retry_;
   std::string told_, model_;  ///< in the conversation under way
+  RateWatch rate_;
   std::uint64_t seq_{0};
   std::uint64_t bytes_at_good_line_{0};
   bool any_good_line_{false};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <random>
 
 /// One table axis: trapezoidal moves in indicated degrees, and a true angle that is never quite the indicated
@@ -20,16 +21,22 @@ class AxisMotion {
   /// Sticks where it is, in the middle of a move that it never ends until released (a jammed table).
   void jam(double now_s);
   void release(double now_s);
+  /// Turns on at its velocity, beside every move, until it no longer does: then it stands at once.
+  void run_away(double now_s);
+  void catch_up(double now_s);
 
   [[nodiscard]] double indicated_deg(double t_s) const;
   [[nodiscard]] double true_deg(double t_s) const;
-  [[nodiscard]] bool moving(double t_s) const { return (jammed_ ? jammed_at_s_ : t_s) < end_s_; }
+  [[nodiscard]] bool moving(double t_s) const {
+    return ran_away_s_ || (jammed_ ? jammed_at_s_ : t_s) < end_s_;
+  }
   [[nodiscard]] double end_s() const { return end_s_; }
   /// +1 or -1, the direction of the last move; 0 before the first.
   [[nodiscard]] int sense() const { return sense_; }
 
  private:
-  [[nodiscard]] double progress(double t_s) const;  ///< 0 .. 1 of the present move
+  [[nodiscard]] double progress(double t_s) const;  ///< 0 .. 1 of the way of the present move
+  [[nodiscard]] double settled(double t_s) const;   ///< 0 .. 1 from the old error to the new one
 
   double velocity_, acceleration_, accuracy_;
   double from_deg_{0}, to_deg_{0}, start_s_{0}, end_s_{0};
@@ -38,6 +45,7 @@ class AxisMotion {
   int sense_{0};
   bool jammed_{false};
   double jammed_at_s_{0};
+  std::optional<double> ran_away_s_;
 };
 
 }  // namespace mgtd::rig

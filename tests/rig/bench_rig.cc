@@ -12,14 +12,22 @@
 #include "tests/rig/gsm_instrument.h"
 #include "tests/rig/obsdaq_instrument.h"
 #include "tests/rig/rotations.h"
+#include "tests/rig/satellite_receiver.h"
 
 namespace mgtd::rig {
 namespace {
 
 constexpr double kClockStep_s = 3;  ///< leap seconds learnt late
+constexpr double kReplug_s = 1;     ///< from one instrument to another
 constexpr std::size_t kTable = 4;
-constexpr std::array kLasting{FaultKind::unplug, FaultKind::torn, FaultKind::freeze, FaultKind::stall,
-                              FaultKind::saturate};
+constexpr std::array kLasting{
+    FaultKind::stranger, FaultKind::unplug,    FaultKind::torn,  FaultKind::half,     FaultKind::twice,
+    FaultKind::swap,     FaultKind::freeze,    FaultKind::stall, FaultKind::saturate, FaultKind::power,
+    FaultKind::runaway,  FaultKind::backwards, FaultKind::limit};
+
+bool is_of_table(FaultKind kind) {
+  return kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit;
+}
 
 }  // namespace
 
@@ -41,12 +49,19 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
   }
   for (std::size_t i = 0; i < instruments_.size(); ++i)
     wires_.emplace_back(instruments_[i]->baud(), world_.scenario().seed + i);
-  plugged_.assign(instruments_.size(), true);
+  plugged_.assign(ports(), true);
+  strange_.assign(ports(), false);
+  unplugged_.assign(ports(), 0);
+  for (std::size_t i = 0; i < ports(); ++i)
+    stranger_.push_back(std::make_unique<SatelliteReceiver>(instruments_[i]->baud()));
 }
 
 void BenchRig::advance(std::size_t port, double now_s) {
   instruments_.at(port)->advance(now_s);
-  for (Utterance& said : instruments_[port]->take_utterances()) {
+  stranger_.at(port)->advance(now_s);
+  std::vector<Utterance> words = at_cable(port).take_utterances();
+  static_cast<void>((strange_[port] ? instruments_ : stranger_)[port]->take_utterances());
+  for (Utterance& said : words) {
     if (plugged_[port]) wires_[port].push(std::move(said));
   }
 }
@@ -55,7 +70,7 @@ void BenchRig::write(std::size_t port, std::string_view bytes, double now_s) {
   if (!plugged_.at(port) || bytes.empty()) return;
   // What was measured before a command must not know of it.
   for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
-  instruments_[port]->receive(bytes, now_s);
+  at_cable(port).receive(bytes, now_s);
 }
 
 std::string BenchRig::read(std::size_t port, double now_s) {
@@ -75,35 +90,67 @@ tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s
   for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
   if (fault.kind == FaultKind::restore) {
     for (const FaultKind kind : kLasting) {
-      set(port, kind, false);
+      if (port == kTable || !is_of_table(kind)) set(port, kind, false, now_s);
       forget_endings(port, kind);
     }
   } else if (fault.kind == FaultKind::garbage) {
     if (plugged_[port]) wires_[port].garbage(now_s);
   } else if (fault.kind == FaultKind::clock) {
     instruments_[port]->step_clock(kClockStep_s);
+  } else if (fault.kind == FaultKind::rate) {
+    instruments_[port]->halve_rate();
   } else {
-    set(port, fault.kind, true);
+    set(port, fault.kind, true, now_s);
     forget_endings(port, fault.kind);
     if (fault.for_s) endings_.push_back({now_s + *fault.for_s, port, fault.kind});
   }
   return {};
 }
 
-void BenchRig::set(std::size_t port, FaultKind kind, bool on) {
+void BenchRig::plug(std::size_t port, bool in) {
+  if (plugged_[port] && !in) ++unplugged_[port];
+  plugged_[port] = in;
+  wires_[port].clear();
+}
+
+void BenchRig::set(std::size_t port, FaultKind kind, bool on, double now_s) {
   Instrument& instrument = *instruments_[port];
-  if (kind == FaultKind::unplug) {
-    plugged_[port] = !on;
-    wires_[port].clear();
-  } else if (kind == FaultKind::torn) {
-    wires_[port].set_torn(on);
-  } else if (kind == FaultKind::freeze) {
-    instrument.set_frozen(on);
-  } else if (kind == FaultKind::stall) {
-    instrument.set_silent(on);
-  } else if (kind == FaultKind::saturate) {
-    instrument.set_saturated(on);
+  switch (kind) {
+    case FaultKind::unplug:
+      return plug(port, !on);
+    case FaultKind::stranger:
+      if (strange_[port] == on) return;
+      strange_[port] = on;
+      plug(port, false);
+      forget_endings(port, FaultKind::unplug);
+      endings_.push_back({now_s + kReplug_s, port, FaultKind::unplug});
+      return;
+    case FaultKind::torn:
+      return wires_[port].set_torn(on);
+    case FaultKind::half:
+      return wires_[port].set_half(on);
+    case FaultKind::twice:
+      return wires_[port].set_twice(on);
+    case FaultKind::swap:
+      return wires_[port].set_swapped(on);
+    case FaultKind::freeze:
+      return instrument.set_frozen(on);
+    case FaultKind::stall:
+      return instrument.set_silent(on);
+    case FaultKind::saturate:
+      return instrument.set_saturated(on);
+    case FaultKind::power:
+      return instrument.set_power(!on, now_s);
+    default:
+      return set_table(kind, on, now_s);
   }
+}
+
+void BenchRig::set_table(FaultKind kind, bool on, double now_s) {
+  auto& table = dynamic_cast<Gcs2Instrument&>(*instruments_[kTable]);
+  if (kind == FaultKind::runaway) world_.set_runaway(on, now_s);
+  if (kind == FaultKind::backwards) table.set_backwards(on);
+  if (kind == FaultKind::limit) table.set_at_limit(on);
 }
 
 void BenchRig::forget_endings(std::size_t port, FaultKind kind) {
@@ -117,11 +164,13 @@ void BenchRig::run_script(double now_s) {
     // The scenario's words were checked when it was read; a port it has not got is not there to fail.
     if (fault) static_cast<void>(apply(*fault, now_s));
   }
+  // The end of one may begin another.
+  std::vector<Ending> over;
   std::erase_if(endings_, [&](const Ending& ending) {
-    if (ending.at_s > now_s) return false;
-    set(ending.port, ending.kind, false);
-    return true;
+    if (ending.at_s <= now_s) over.push_back(ending);
+    return ending.at_s <= now_s;
   });
+  for (const Ending& ending : over) set(ending.port, ending.kind, false, now_s);
 }
 
 bool BenchRig::mount(std::string_view line, double now_s) {

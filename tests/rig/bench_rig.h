@@ -29,6 +29,8 @@ class BenchRig {
   /// The same when no host listens: the bytes are gone.
   void drop(std::size_t port, double now_s);
   [[nodiscard]] bool plugged(std::size_t port) const { return plugged_.at(port); }
+  /// How often the port was unplugged: a cable that was out and is in again is a new port.
+  [[nodiscard]] std::uint64_t unplugged(std::size_t port) const { return unplugged_.at(port); }
 
   /// Applies a fault at once; refuses a port this rig has not got, in words.
   [[nodiscard]] tl::expected<void, std::string> apply(const Fault& fault, double now_s);
@@ -49,14 +51,22 @@ class BenchRig {
   };
   /// Lets a port's instrument speak up to now, onto its cable.
   void advance(std::size_t port, double now_s);
-  void set(std::size_t port, FaultKind kind, bool on);
+  void set(std::size_t port, FaultKind kind, bool on, double now_s);
+  void plug(std::size_t port, bool in);
   void forget_endings(std::size_t port, FaultKind kind);
+
+  /// Who is at the end of the cable.
+  [[nodiscard]] Instrument& at_cable(std::size_t port) {
+    return strange_.at(port) ? *stranger_.at(port) : *instruments_.at(port);
+  }
+  void set_table(FaultKind kind, bool on, double now_s);
 
   World world_;
   std::vector<std::string_view> names_;
-  std::vector<std::unique_ptr<Instrument>> instruments_;
+  std::vector<std::unique_ptr<Instrument>> instruments_, stranger_;
   std::vector<Wire> wires_;
-  std::vector<bool> plugged_;
+  std::vector<bool> plugged_, strange_;
+  std::vector<std::uint64_t> unplugged_;
   std::vector<Ending> endings_;
   std::size_t next_fault_{0};
 };

@@ -18,14 +18,27 @@ struct Word {
   bool lasts;
 };
 
-constexpr std::array<Word, 8> kWords{{{"unplug", FaultKind::unplug, true},
-                                      {"garbage", FaultKind::garbage, false},
-                                      {"torn", FaultKind::torn, true},
-                                      {"freeze", FaultKind::freeze, true},
-                                      {"stall", FaultKind::stall, true},
-                                      {"saturate", FaultKind::saturate, true},
-                                      {"clock", FaultKind::clock, false},
-                                      {"restore", FaultKind::restore, false}}};
+constexpr std::array<Word, 17> kWords{{{"unplug", FaultKind::unplug, true},
+                                       {"garbage", FaultKind::garbage, false},
+                                       {"torn", FaultKind::torn, true},
+                                       {"half", FaultKind::half, true},
+                                       {"twice", FaultKind::twice, true},
+                                       {"swap", FaultKind::swap, true},
+                                       {"freeze", FaultKind::freeze, true},
+                                       {"stall", FaultKind::stall, true},
+                                       {"saturate", FaultKind::saturate, true},
+                                       {"clock", FaultKind::clock, false},
+                                       {"rate", FaultKind::rate, false},
+                                       {"power", FaultKind::power, true},
+                                       {"stranger", FaultKind::stranger, true},
+                                       {"runaway", FaultKind::runaway, true},
+                                       {"backwards", FaultKind::backwards, true},
+                                       {"limit", FaultKind::limit, true},
+                                       {"restore", FaultKind::restore, false}}};
+
+bool of_the_table(FaultKind kind) {
+  return kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit;
+}
 
 std::optional<double> seconds(std::string_view text) {
   double value = 0;
@@ -52,6 +65,9 @@ tl::expected<Fault, std::string> parse_fault(std::string_view text) {
   if (std::find(kPortNames.begin(), kPortNames.end(), words[1]) == kPortNames.end())
     return usage(fmt::format("no port '{}'; there are: {}", words[1], fmt::join(kPortNames, ", ")));
   Fault fault{found->kind, words[1], std::nullopt};
+  if (of_the_table(fault.kind) && fault.port != "table")
+    return usage(fmt::format("only the table has the fault '{}'", found->name));
+  if (fault.kind == FaultKind::power) fault.for_s = kPowerOff_s;
   if (words.size() == 2) return fault;
   if (!found->lasts) return usage(fmt::format("{} does not last, so no 'for'", words[0]));
   fault.for_s = seconds(words[3]);

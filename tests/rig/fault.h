@@ -10,10 +10,19 @@
 ///   unplug PORT [for S]    the port vanishes; it comes back after S simulated seconds, or by `restore`
 ///   garbage PORT           200 random bytes on the line
 ///   torn PORT [for S]      bytes get lost on the line, one in a hundred
+///   half PORT [for S]      every other line ends in its middle
+///   twice PORT [for S]     every line comes twice
+///   swap PORT [for S]      neighbouring lines change places
 ///   freeze PORT [for S]    the instrument repeats its last value; the table jams
 ///   stall PORT [for S]     the instrument neither speaks nor listens
 ///   saturate PORT [for S]  the instrument is at the end of its range
 ///   clock PORT             its clock jumps 3 s ahead
+///   rate PORT              it measures half as often
+///   power PORT [for S]     without current, 2 s long when nothing else is said; it forgets what it was told
+///   stranger PORT [for S]  unplugged, and after a second the cable leads to a satellite receiver
+///   runaway table [for S]  the azimuth turns on and on, whatever it is told
+///   backwards table [for S]  the axes turn the wrong way, and say that they are there
+///   limit table [for S]    every motion ends at a limit switch
 ///   restore PORT           all of it ends
 /// Ports: fluxgate1 .. fluxgate4, table, scalar, auxiliary.
 namespace mgtd::rig {
@@ -21,7 +30,25 @@ namespace mgtd::rig {
 inline constexpr std::array<std::string_view, 7> kPortNames{
     "fluxgate1", "fluxgate2", "fluxgate3", "fluxgate4", "table", "scalar", "auxiliary"};
 
-enum class FaultKind { unplug, garbage, torn, freeze, stall, saturate, clock, restore };
+enum class FaultKind {
+  unplug,
+  garbage,
+  torn,
+  half,
+  twice,
+  swap,
+  freeze,
+  stall,
+  saturate,
+  clock,
+  rate,
+  power,
+  stranger,
+  runaway,
+  backwards,
+  limit,
+  restore
+};
 
 struct Fault {
   FaultKind kind{FaultKind::restore};
@@ -29,8 +56,11 @@ struct Fault {
   std::optional<double> for_s;
 };
 
+inline constexpr double kPowerOff_s = 2;  ///< when nothing else is said
+
 inline constexpr const char* kFaultUsage =
-    "unplug|torn|freeze|stall|saturate PORT [for SECONDS], or garbage|clock|restore PORT";
+    "unplug|torn|half|twice|swap|freeze|stall|saturate|power|stranger PORT [for SECONDS], "
+    "runaway|backwards|limit table [for SECONDS], or garbage|clock|rate|restore PORT";
 
 [[nodiscard]] tl::expected<Fault, std::string> parse_fault(std::string_view text);
 

@@ -20,12 +20,14 @@ enum Gcs2Error : int {
   kStopped = 10,
   kInvalidAxis = 15,
   kOutOfRange = 17,
-  kMissingParameter = 26
+  kMissingParameter = 26,
+  kMotionError = -1024
 };
 
 constexpr double kReferenceTravel_deg = 20;  ///< the way past the reference mark and back
 constexpr double kMaxVelocity_deg_per_s = 720;
-constexpr double kEncoder_deg = 1e-4;  ///< sd of a position read
+constexpr double kFactory_deg_per_s = 5;  ///< until it is told
+constexpr double kEncoder_deg = 1e-4;     ///< sd of a position read
 constexpr std::size_t kMaxLine = 255;
 constexpr double kNever = 1e300;
 
@@ -64,9 +66,24 @@ void Gcs2Instrument::advance(double now_s) {
     axis.referenced = true;
     axis.reference_done_s = -1;
   }
+  if (at_limit_ && world_.moving(now_s)) meet_limit(now_s);
   if (jammed_ == frozen_) return;
   jammed_ = frozen_;
   world_.set_jammed(jammed_, now_s);
+}
+
+void Gcs2Instrument::meet_limit(double now_s) {
+  stop({0, 1, 2}, now_s);
+  for (Axis& axis : axes_) axis.servo = false;
+  error_ = kMotionError;
+}
+
+void Gcs2Instrument::switched_off(double now_s) {
+  stop({0, 1, 2}, now_s);
+  axes_ = {};
+  line_.clear();
+  error_ = 0;
+  for (const std::size_t i : {0U, 1U, 2U}) world_.set_velocity(which(i), kFactory_deg_per_s);
 }
 
 double Gcs2Instrument::next_s() const {
@@ -79,7 +96,7 @@ double Gcs2Instrument::next_s() const {
 
 void Gcs2Instrument::receive(std::string_view bytes, double now_s) {
   advance(now_s);
-  if (silent_) return;
+  if (!hears()) return;
   for (const char c : bytes) {
     if (c == '\x05' || c == '\x07' || c == '\x18') {
       immediate(c, now_s);
@@ -238,7 +255,10 @@ void Gcs2Instrument::carry_out(std::string_view verb, const Assignment& wanted, 
     world_.set_velocity(which(wanted.axis), wanted.value);
   } else if (verb == "MOV") {
     axis.target_deg = wanted.value;
-    world_.move(which(wanted.axis), wanted.value, now_s);
+    const double here_deg = world_.axis(which(wanted.axis)).indicated_deg(now_s);
+    const double limit = limit_deg(wanted.axis);
+    world_.move(which(wanted.axis),
+                backwards_ ? std::clamp(2 * here_deg - wanted.value, -limit, limit) : wanted.value, now_s);
   } else {
     axis.servo = wanted.value != 0;
     if (axis.servo) return;

@@ -23,6 +23,13 @@ class Gcs2Instrument final : public Instrument {
   void advance(double now_s) override;
   [[nodiscard]] double next_s() const override;
   [[nodiscard]] int baud() const override { return 115200; }
+  /// Its axes turn the wrong way, and it says that they are where they should be.
+  void set_backwards(bool backwards) { backwards_ = backwards; }
+  /// Every motion meets a limit switch, which takes the servo away.
+  void set_at_limit(bool at_limit) { at_limit_ = at_limit; }
+
+ protected:
+  void switched_off(double now_s) override;
 
  private:
   struct Axis {
@@ -45,6 +52,7 @@ class Gcs2Instrument final : public Instrument {
   [[nodiscard]] int refusal(std::string_view verb, const Assignment& wanted) const;
   void carry_out(std::string_view verb, const Assignment& wanted, double now_s);
   void stop(const std::vector<std::size_t>& axes, double now_s);
+  void meet_limit(double now_s);
   [[nodiscard]] bool busy(std::size_t axis, double now_s) const;
   [[nodiscard]] double limit_deg(std::size_t axis) const;
   /// The named axes, all of them when none is; sets the error when one does not exist.
@@ -56,7 +64,7 @@ class Gcs2Instrument final : public Instrument {
   std::normal_distribution<double> encoder_;
   std::string line_;
   int error_{0};
-  bool jammed_{false};
+  bool jammed_{false}, backwards_{false}, at_limit_{false};
 };
 
 }  // namespace mgtd::rig

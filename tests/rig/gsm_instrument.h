@@ -17,6 +17,11 @@ class GsmInstrument final : public Instrument {
   [[nodiscard]] double next_s() const override { return running_ ? next_s_ : 1e300; }
   [[nodiscard]] int baud() const override { return 115200; }
   void step_clock(double by_s) override { utc_s_ += by_s; }
+  void halve_rate() override { period_s_ *= 2; }
+
+ protected:
+  void switched_off(double now_s) override;
+  void switched_on(double now_s) override;
 
  private:
   void menu(char c, double now_s);

@@ -41,16 +41,32 @@ class Instrument {
   virtual void set_saturated(bool saturated) { saturated_ = saturated; }
   /// Its clock jumps.
   virtual void step_clock(double /*by_s*/) {}
+  /// It measures half as often; an instrument that is only asked has no rate.
+  virtual void halve_rate() {}
+  /// Without current; with current again it is as it came from the maker.
+  void set_power(bool on, double now_s) {
+    if (on == powered_) return;
+    powered_ = on;
+    if (on) {
+      switched_on(now_s);
+    } else {
+      switched_off(now_s);
+    }
+  }
 
  protected:
   void put(std::string bytes, double at_s) {
-    if (!silent_) said_.push_back({at_s, std::move(bytes)});
+    if (hears()) said_.push_back({at_s, std::move(bytes)});
   }
+  virtual void switched_off(double /*now_s*/) {}
+  virtual void switched_on(double /*now_s*/) {}
+  [[nodiscard]] bool hears() const { return powered_ && !silent_; }
   bool silent_{false};
   bool frozen_{false};
   bool saturated_{false};
 
  private:
+  bool powered_{true};
   std::vector<Utterance> said_;
 };
 

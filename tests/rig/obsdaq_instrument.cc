@@ -20,6 +20,8 @@ constexpr std::int64_t kMaxCount = 8388607;
 constexpr double kSensor_V = 10;  ///< of the analogue fluxgate at full scale
 constexpr double kSelfCalibration_s = 1.5;
 constexpr std::size_t kMaxLine = 64;
+constexpr double kBoot_s = 1;
+constexpr const char* kFactorySetup = "0333";  ///< +-5 V
 constexpr const char* kRefused = "?01";
 
 /// Two's complement hex of so many digits.
@@ -54,14 +56,34 @@ ObsdaqInstrument::ObsdaqInstrument(World& world, int slot, double utc_s)
 double ObsdaqInstrument::period_s() const { return ticks_ * kTick_s * oscillator_; }
 
 void ObsdaqInstrument::autostart(double now_s) {
-  ticks_ = static_cast<unsigned>(std::lround(1 / (kTick_s * world_.scenario().rate_hz)));
+  ticks_ = ticks_of(world_.scenario().rate_hz);
   forwarding_ = true;
   start_acquisition(now_s);
   put(sample_line(now_s).substr(9) + "\r", now_s);
 }
 
+unsigned ObsdaqInstrument::ticks_of(double rate_hz) const {
+  return static_cast<unsigned>(std::lround(1 / (kTick_s * rate_hz)));
+}
+
+void ObsdaqInstrument::switched_off(double /*now_s*/) {
+  acquiring_ = forwarding_ = transparent_ = escape_ = false;
+  line_.clear();
+  channels_ = {};
+  ticks_ = 0;
+}
+
+/// One that starts by itself does so with what the maker thought of: another range and half the rate.
+void ObsdaqInstrument::switched_on(double now_s) {
+  if (!world_.scenario().autostart) return;
+  for (Channel& channel : channels_) channel.setup = kFactorySetup;
+  ticks_ = ticks_of(world_.scenario().rate_hz / 2);
+  forwarding_ = true;
+  start_acquisition(now_s + kBoot_s);
+}
+
 void ObsdaqInstrument::receive(std::string_view bytes, double now_s) {
-  if (silent_) return;
+  if (!hears()) return;
   advance(now_s);
   for (const char c : bytes) byte(c, now_s);
 }

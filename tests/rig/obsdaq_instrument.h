@@ -27,9 +27,14 @@ class ObsdaqInstrument final : public Instrument {
   [[nodiscard]] double next_s() const override { return acquiring_ ? next_sample_s_ : 1e300; }
   [[nodiscard]] int baud() const override { return palmacq_ ? 57600 : 19200; }
   void step_clock(double by_s) override { utc_s_ += by_s; }
+  void halve_rate() override { ticks_ *= 2; }
   /// Acquiring and forwarding before anybody asked (autostart in its EEPROM). The first the host sees is the
   /// end of a line.
   void autostart(double now_s);
+
+ protected:
+  void switched_off(double now_s) override;
+  void switched_on(double now_s) override;
 
  private:
   struct Channel {
@@ -49,6 +54,7 @@ class ObsdaqInstrument final : public Instrument {
   [[nodiscard]] std::string supplement(double t_s) const;
   [[nodiscard]] std::string time_prefix(double t_s) const;
   [[nodiscard]] double period_s() const;
+  [[nodiscard]] unsigned ticks_of(double rate_hz) const;
 
   World& world_;
   int slot_;

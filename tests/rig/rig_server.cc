@@ -72,6 +72,7 @@ class Server {
   BenchRig rig_;
   std::vector<std::unique_ptr<Pty>> ports_;
   std::vector<std::string> backlog_;
+  std::vector<std::uint64_t> unplugged_;  ///< times
   asio::steady_timer timer_;
   local::acceptor acceptor_;
   asio::signal_set signals_;
@@ -87,6 +88,7 @@ std::string Server::open_ports() {
     if (!ports_.back()->is_open()) return ports_.back()->why();
   }
   backlog_.resize(ports_.size());
+  unplugged_.resize(ports_.size());
   return {};
 }
 
@@ -138,8 +140,9 @@ void Server::tick() {
 void Server::serve_port(std::size_t i, double now) {
   Pty& pty = *ports_[i];
   std::string& waiting = backlog_[i];
+  const bool replugged = std::exchange(unplugged_[i], rig_.unplugged(i)) != rig_.unplugged(i);
+  if (pty.is_open() && (!rig_.plugged(i) || replugged)) pty.close();
   if (rig_.plugged(i) && !pty.is_open()) pty.open();
-  if (!rig_.plugged(i) && pty.is_open()) pty.close();
   rig_.write(i, pty.read(), now);
   if (!pty.listened()) {
     waiting.clear();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace mgtd::rig {
 namespace {
@@ -15,6 +16,22 @@ constexpr double kRounding = 1e-6;
 }  // namespace
 
 void Wire::push(Utterance said) {
+  if (half_ && ++pushed_ % 2 == 0) said.bytes.resize(said.bytes.size() / 2);
+  if (swapped_ && held_.empty()) {
+    held_ = std::move(said.bytes);
+    return;
+  }
+  said.bytes += std::exchange(held_, {});
+  if (twice_) carry(said);
+  carry(std::move(said));
+}
+
+void Wire::set_swapped(bool swapped) {
+  swapped_ = swapped;
+  if (!swapped && !held_.empty()) carry({free_s_, std::exchange(held_, {})});
+}
+
+void Wire::carry(Utterance said) {
   const double begin_s = std::max(free_s_, said.at_s);
   free_s_ = begin_s + static_cast<double>(said.bytes.size()) * byte_s_;
   if (torn_) std::erase_if(said.bytes, [&](char) { return random_() % kTornOneIn == 0; });
@@ -47,6 +64,7 @@ void Wire::garbage(double now_s) {
 
 void Wire::clear() {
   bursts_.clear();
+  held_.clear();
   free_s_ = 0;
 }
 

@@ -22,6 +22,12 @@ class Wire {
   void garbage(double now_s);
   /// One byte in a hundred gets lost.
   void set_torn(bool torn) { torn_ = torn; }
+  /// Every other line loses its second half.
+  void set_half(bool half) { half_ = half; }
+  /// Every line comes twice.
+  void set_twice(bool twice) { twice_ = twice; }
+  /// A line and the next change places.
+  void set_swapped(bool swapped);
   /// Nobody is at the other end: what is on the line is lost.
   void clear();
 
@@ -31,11 +37,15 @@ class Wire {
     std::string bytes;
   };
 
+  void carry(Utterance said);
+
   double byte_s_;
   std::mt19937_64 random_;
   std::deque<Burst> bursts_;
   double free_s_{0};  ///< when the line has carried all that was pushed
-  bool torn_{false};
+  bool torn_{false}, half_{false}, twice_{false}, swapped_{false};
+  std::uint64_t pushed_{0};
+  std::string held_;  ///< waits for the line that goes before it
 };
 
 }  // namespace mgtd::rig

@@ -79,6 +79,16 @@ void World::set_jammed(bool jammed, double now_s) {
   moved();
 }
 
+void World::set_runaway(bool runaway, double now_s) {
+  follow_all(now_s);
+  if (runaway) {
+    axes_[azimuth].run_away(now_s);
+  } else {
+    axes_[azimuth].catch_up(now_s);
+  }
+  moved();
+}
+
 bool World::moving(double t_s) const {
   return std::any_of(axes_.begin(), axes_.end(), [&](const AxisMotion& axis) { return axis.moving(t_s); });
 }

@@ -33,6 +33,8 @@ class World {
   void move(TableAxis which, double target_deg, double now_s);
   void halt(TableAxis which, double now_s);
   void set_jammed(bool jammed, double now_s);
+  /// The azimuth turns by itself.
+  void set_runaway(bool runaway, double now_s);
   [[nodiscard]] bool moving(double t_s) const;
   /// When the last of the axes stands.
   [[nodiscard]] double arrival_s() const;

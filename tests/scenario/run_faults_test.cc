@@ -61,7 +61,8 @@ TEST_P(TroubleThatPasses, CostsTimeButNeitherThePlanNorTheData) {
     if (fault.starts_with("unplug")) {
       EXPECT_THAT(daemon.notes, testing::Not(testing::IsEmpty()));
     }
-    if (fault.find("fluxgate") != std::string::npos) {
+    // One that repeats itself before the dwell begins is waited for.
+    if (fault.find("fluxgate") != std::string::npos && !fault.starts_with("freeze")) {
       EXPECT_GT(daemon.gaps + static_cast<unsigned>(daemon.status->retries), 1u);
     }
     ASSERT_TRUE(daemon.finished) << daemon.status->message;

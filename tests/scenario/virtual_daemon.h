@@ -14,6 +14,7 @@
 #include "daemon/config.h"
 #include "daemon/run_fsm.h"
 #include "daemon/sampler.h"
+#include "drivers/link_life.h"
 #include "tests/rig/bench_rig.h"
 #include "tests/rig/config_text.h"
 
@@ -26,7 +27,6 @@ using namespace mgtd::daemon;
 
 inline constexpr double kStep_s = 0.005;
 inline constexpr double kTick_s = 0.02;
-inline constexpr double kReopen_s = 0.5;
 inline constexpr double kSwitchedOn_utc_s = 1'795'255'200;  // 2026-11-21T10:00:00Z
 
 inline rig::Scenario scenario_of(const std::string& text) {
@@ -55,15 +55,20 @@ class VirtualDaemon {
   std::function<void()> on_step = [] {};
   std::uint64_t epochs{0}, gaps{0};
   double t_s{0};
+  double wall_step_s{0};  ///< by which the host's clock was set since the beginning
 
   [[nodiscard]] Stamp now() const {
-    return {
-        Instant{from_seconds(1000 + t_s)},
-        WallTime{static_cast<std::int64_t>(kSwitchedOn_utc_s) * 1'000'000'000 + from_seconds(t_s).count()}};
+    return {Instant{from_seconds(1000 + t_s)},
+            WallTime{static_cast<std::int64_t>(kSwitchedOn_utc_s) * 1'000'000'000 +
+                     from_seconds(t_s + wall_step_s).count()}};
   }
   [[nodiscard]] WallTime started_utc() const { return started_utc_; }
   [[nodiscard]] drivers::Turntable& table() { return dynamic_cast<drivers::Turntable&>(*ports_[4].device); }
   [[nodiscard]] const LinkHealth& health(std::size_t port) const { return ports_.at(port).device->health(); }
+  /// What an operator sees of it.
+  [[nodiscard]] LinkHealth shown(std::size_t port) const {
+    return ports_.at(port).life.shown(ports_.at(port).device->health());
+  }
   [[nodiscard]] bool all_live() const {
     for (const Port& port : ports_) {
       if (port.device->health().state != LinkState::live) return false;
@@ -93,6 +98,16 @@ class VirtualDaemon {
     for (const Action& action : fsm_->step(event, now())) {
       std::visit([this](const auto& a) { carry_out(a); }, action);
     }
+  }
+  /// The program ends in good order: the instruments hear its last words, the run is left as it is.
+  void terminate() {
+    if (fsm_ != nullptr) table().stop();
+    for (std::size_t i = 0; i < ports_.size(); ++i) {
+      if (!ports_[i].open) continue;
+      ports_[i].device->on_shutdown(now());
+      rig.write(i, ports_[i].device->take_output(), t_s);
+    }
+    restart();
   }
   /// The program dies without a word and is started again; the instruments go on as they were.
   void restart() {
@@ -141,8 +156,10 @@ class VirtualDaemon {
   struct Port {
     std::string name;
     std::shared_ptr<drivers::Device> device;
+    drivers::LinkLife life{};
     bool open{false}, was_live{false};
     double reopen_at_s{0};
+    std::uint64_t unplugged{0}, delivered{0};
   };
 
   static Config read_config(const rig::Scenario& scenario) {
@@ -169,28 +186,43 @@ class VirtualDaemon {
 
   void exchange(std::size_t i) {
     Port& port = ports_[i];
-    if (port.open && (!rig.plugged(i) || port.device->wants_reopen())) {
-      port.open = false;
-      port.reopen_at_s = t_s + kReopen_s;
-      port.device->on_close(now());
-      take_events(i);
-    }
-    if (!port.open && rig.plugged(i) && t_s >= port.reopen_at_s) {
-      port.open = true;
-      if (i < kSensors) sampler_.reopened(static_cast<int>(i));
-      port.device->on_open(now());
-    }
+    const bool gone = !rig.plugged(i) || rig.unplugged(i) != port.unplugged;
+    if (port.open && (gone || port.device->wants_reopen())) close(i);
+    if (!port.open && t_s >= port.reopen_at_s) try_open(i);
     if (!port.open) return;
     rig.write(i, port.device->take_output(), t_s);
     const std::string bytes = rig.read(i, t_s);
+    port.delivered += bytes.size();
     if (!bytes.empty()) port.device->on_bytes(std::as_bytes(std::span(bytes)), now());
     rig.write(i, port.device->take_output(), t_s);
     take_events(i);
+  }
+  void close(std::size_t i) {
+    Port& port = ports_[i];
+    port.open = false;
+    port.life.lost("the port is gone");
+    port.reopen_at_s = t_s + to_seconds(port.life.next_wait());
+    port.device->on_close(now());
+    static_cast<void>(port.device->take_output());
+    take_events(i);
+  }
+  void try_open(std::size_t i) {
+    Port& port = ports_[i];
+    port.unplugged = rig.unplugged(i);
+    if (!rig.plugged(i)) {
+      port.life.refused({ErrorCode::unreachable, "there is no such port", ""});
+      port.reopen_at_s = t_s + to_seconds(port.life.next_wait());
+      return;
+    }
+    port.open = true;
+    port.life.opened();
+    port.device->on_open(now());
   }
   void take_events(std::size_t i) {
     Port& port = ports_[i];
     watch_link(port);
     for (const DeviceEvent& event : port.device->take_events()) {
+      port.life.heard(event);
       std::visit([&](const auto& e) { on(port, e); }, event);
     }
     deliver();
@@ -227,10 +259,13 @@ class VirtualDaemon {
   void watch_link(Port& port) {
     const LinkHealth& health = port.device->health();
     EXPECT_TRUE(health.balanced()) << port.name;
+    EXPECT_EQ(health.bytes_in, port.delivered) << port.name;
     const bool live = port.open && health.state == LinkState::live;
+    if (live) port.life.live();
     if (live == port.was_live) return;
     port.was_live = live;
     if (live) {
+      if (port.name.size() == 2) sampler_.reopened(port.name[1] - '1');  // s1 .. s4
       tell(DeviceBack{port.name});
     } else {
       notes.push_back(port.name + " lost");

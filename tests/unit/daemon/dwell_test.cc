@@ -148,6 +148,33 @@ TEST(Dwell, RefusesWhatIsNoMeasurement) {
   EXPECT_FALSE(saturated.pose(place()));
 }
 
+/// A sensor that repeats one reading for a sixth of the dwell, in a field that has moved on since.
+TEST(Dwell, RepeatedReadingsAreNoMeasurement) {
+  DwellConfig config;
+  const auto dwell_with = [&](int stuck) {
+    Source source;
+    Dwell dwell(config, stamp_at(1).mono);
+    for (int i = 0; i < 320; ++i) {
+      Epoch e = source.next();
+      const bool frozen = i >= 60 && i < 60 + stuck;
+      if (frozen) {
+        e.y_nT[1] = {1, 2, 3};
+        if (i > 60) e.flags |= Flag::frozen;
+      }
+      dwell.add(EpochOrGap{e});
+    }
+    return dwell.pose(place());
+  };
+  const Pose clean = dwell_with(0).value(), pose = dwell_with(40).value();
+  EXPECT_EQ(*pose.n, *clean.n - 39);
+  // One of 211 readings is off by the distance to the field, the others are as they would have been.
+  const double off_nT = (pose.y_nT[1] - clean.y_nT[1]).norm();
+  EXPECT_LT(off_nT, 1.5 * (clean.y_nT[1] - Eigen::Vector3d(1, 2, 3)).norm() / *pose.n + 0.5);
+  const auto refused = dwell_with(100);
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(refused.error().message.starts_with("s2 gave exactly the same"));
+}
+
 TEST(Dwell, EndsByDataOrAtLastByTime) {
   Dwell dwell({}, stamp_at(1).mono);
   EXPECT_FALSE(dwell.complete(stamp_at(8.9).mono));

@@ -51,7 +51,7 @@ TEST(RepeatWatch, AResolutionCoarserThanTheNoiseIsNotAccused) {
   RepeatWatch watch;
   int accused = 0;
   for (int i = 0; i < 20'000; ++i) accused += watch.stands_still(sensor()) ? 1 : 0;
-  EXPECT_LT(accused, 60);  // one in a thousand, three times over
+  EXPECT_LT(accused, 80);  // one in a thousand, four times over
 }
 
 TEST(RepeatWatch, OneAxisThatRepeatsIsNoStandstill) {

@@ -14,6 +14,21 @@ TEST_F(Gcs2DriverTest, ARefusedMoveIsAFaultInWords) {
   EXPECT_EQ(controller.commands.back(), "stop");
 }
 
+/// Its power failed for so short a time that nobody noticed.
+TEST_F(Gcs2DriverTest, AControllerThatForgotItsReferenceIsAskedAgainWhatItKnows) {
+  home();
+  controller.axes["1"].referenced = false;
+  controller.commands.clear();
+  move(60);
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_THAT(faults()[0].what, HasSubstr("GCS error 5"));
+  ASSERT_TRUE(until([&] { return !last().referenced; }));
+  EXPECT_THAT(controller.commands, ::testing::Contains(HasSubstr("VEL 1 "))) << "forgotten too";
+  driver.home();
+  ASSERT_TRUE(until([&] { return last().referenced && !last().moving; }));
+  EXPECT_EQ(faults().size(), 1U);
+}
+
 TEST_F(Gcs2DriverTest, AStalledTableIsStoppedAfterItsDeadline) {
   home();
   controller.stalls = true;

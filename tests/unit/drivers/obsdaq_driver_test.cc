@@ -292,11 +292,34 @@ TEST_F(ObsdaqDriverTest, AStreamThatStopsIsStartedAgain) {
   bench.feed("*0259FEFFF1BFFFFCEDL\r");
   bench.forget_sent();
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::silent; }));
-  EXPECT_THAT(driver.health().detail, HasSubstr("nothing came for 2.0 s"));
+  EXPECT_THAT(driver.health().detail, HasSubstr("nothing came for 1.0 s"));
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
+  EXPECT_THAT(bench.sent(), HasSubstr("$012WS02010263")) << "its range may be gone";
   EXPECT_THAT(bench.sent(), HasSubstr("#01CS\r"));
   bench.feed("*0259FEFFF1BFFFFCEDL\r");
   EXPECT_EQ(bench.events<FieldReading>().back().seq, 0U) << "a new acquisition counts anew";
+}
+
+/// It was switched off and on, or somebody else spoke with it: what the configuration says counts.
+TEST_F(ObsdaqDriverTest, ADigitiserAtAnotherRateIsToldItsSettingsAgain) {
+  go_live();
+  bench.forget_sent();
+  const auto send_every = [&](int ticks, double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds * 50); ++i) {
+      bench.tick();
+      if (i % ticks == 0) bench.feed("*0259FEFFF1BFFFFCEDL\r");
+      if (driver.health().state != LinkState::live) return;
+    }
+  };
+  send_every(1, 60);
+  EXPECT_EQ(driver.health().state, LinkState::live);
+  send_every(2, 25);
+  EXPECT_EQ(driver.health().state, LinkState::silent);
+  EXPECT_THAT(driver.health().detail, HasSubstr("readings a second instead of 50"));
+  ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
+  EXPECT_THAT(bench.sent(), HasSubstr("$010WS02010263"));
+  EXPECT_THAT(bench.sent(), HasSubstr("#01PP0C00026E"));
+  EXPECT_TRUE(driver.health().balanced());
 }
 
 TEST_F(ObsdaqDriverTest, GarbageIsNoSign0fLife) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs among faults that strike at random: cables, instruments, the operator's hand, the death of the
+// program. Whatever happens, a run ends or waits for its operator, no stored pose is wrong or lost, every
+// sample of the stream that is wrong says so, and the books of every device balance.
+//
+//   MGTD_FAULTS=10000 build/bin/scenario_test --gtest_filter='FaultCampaign.*'
+#include <cstdlib>
+
+#include "tests/scenario/struck_run.h"
+
+namespace mgtd {
+namespace {
+
+constexpr int kFaultsInEveryTest = 300;
+
+int faults_wanted() {
+  const char* const text = std::getenv("MGTD_FAULTS");
+  return text != nullptr ? std::atoi(text) : kFaultsInEveryTest;
+}
+std::uint64_t first_seed() {
+  const char* const text = std::getenv("MGTD_SEED");
+  return text != nullptr ? static_cast<std::uint64_t>(std::atoll(text)) : 1;
+}
+
+TEST(FaultCampaign, NothingIsLostAndNothingWrongIsSilent) {
+  int faults = 0;
+  std::uint64_t judged = 0, flagged = 0, runs = 0;
+  for (std::uint64_t seed = first_seed(); faults < faults_wanted() && !HasFailure(); ++seed, ++runs) {
+    SCOPED_TRACE(fmt::format("run {}: MGTD_SEED={} repeats it", seed, seed));
+    test::StruckRun run(seed);
+    faults += run.play();
+    judged += run.stream().judged;
+    flagged += run.stream().flagged;
+  }
+  EXPECT_GT(judged, 5 * flagged);  // a judge that has nothing to say has not been there
+  fmt::print(
+      "{} faults in {} runs, {} epochs held against the truth, {} of them flagged saturated or frozen\n",
+      faults, runs, judged, flagged);
+}
+
+}  // namespace
+}  // namespace mgtd
