@@ -18,9 +18,10 @@ constexpr double kHopeless = 0.25;  ///< of the winner's fall of chi-square
 constexpr double kFarBehind = 30;
 /// Of the winner's fall: an alike one stays in sight at any size.
 constexpr double kInSight = 0.1;
-/// Values of one searched number: what lies further off is alike or worse.
-constexpr std::size_t kValues = 4;
-constexpr std::size_t kMost = 120;
+/// Values of one searched number. All that were tried take part: in another run another one of them would
+/// fit best, and with those near the winner alone a search would seem to win less easily than it does.
+constexpr std::size_t kValues = 30;
+constexpr std::size_t kMost = 200;
 constexpr double kJitter = 1e-9;
 constexpr double kNever = -1e9;
 

@@ -19,7 +19,9 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kEnoughShare = 0.8;  ///< of the excess, where there is an excess to speak of
+/// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
+/// run of a hundred, and below 0.8 in one of seven.
+constexpr double kEnoughShare = 0.5;
 constexpr double kHalf = 0.5;         ///< of the winner's d: a sketch of a memory fits so well at least
 constexpr double kOnePose = 0.5;      ///< of the evidence
 constexpr double kMaxNodes = 0.02;    ///< of the readings

@@ -11,6 +11,7 @@ namespace mgtd::calib {
 namespace {
 
 constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
+constexpr int kAsked = 3;          ///< the best questions of a rival stand for all of its
 constexpr double kShown = 0.999;   ///< pairs that are told apart better than this are no rivals
 constexpr double kNothing = 1e-3;  ///< of a chi-square
 /// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
@@ -25,8 +26,9 @@ double share_inside(const Eigen::VectorXd& v, double outside) {
   return 1 - outside / std::max(v.squaredNorm(), kNothing);
 }
 
+/// `drawn`: the chance that it fell behind is asked for.
 Rival compare(const Contenders& contenders, const std::vector<ScoredFamily>& families, const Contender& a,
-              const Contender& b) {
+              const Contender& b, bool drawn) {
   const ScoredFamily& family = families[b.family];
   const Hypothesis& h = family.suspect->hypotheses[b.score->hypothesis];
   const Eigen::VectorXd v_a = contenders.signature(a), v_b = contenders.signature(b);
@@ -38,7 +40,7 @@ Rival compare(const Contenders& contenders, const std::vector<ScoredFamily>& fam
   const Hypothesis& won = families[a.family].suspect->hypotheses[a.score->hypothesis];
   if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
   out.p_right = told_right(out.alike > kAlike ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
-  if (a.L - b.L < kGone) out.p_behind = contenders.behind(b);
+  if (drawn && a.L - b.L < kGone) out.p_behind = contenders.behind(b);
   out.possible = out.p_behind >= kLost || out.alike > kAlike;
   return out;
 }
@@ -65,9 +67,10 @@ std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::siz
   for (std::size_t b = 0; b < families.size(); ++b) {
     if (b == a) continue;
     std::optional<Rival> nearest;
+    int asked = 0;
     for (const Contender& c : all) {
       if (c.family != b) continue;
-      Rival rival = compare(contenders, families, *winner, c);
+      Rival rival = compare(contenders, families, *winner, c, asked++ < kAsked);
       if (!nearest || nearer(rival, *nearest)) nearest = std::move(rival);
     }
     if (nearest && (nearest->possible || nearest->p_right < kShown)) out.push_back(*std::move(nearest));
