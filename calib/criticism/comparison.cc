@@ -193,7 +193,8 @@ std::vector<ResidualChannel> channels_of(const JointFit& fit) {
 Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
   const auto fit = fit_joint(table, joint_options(options));
   if (!fit) return tl::unexpected(fit.error());
-  const Criticism c = criticise(*fit, Suspects{}, options.seed);
+  Criticism c = criticise(*fit, Suspects{}, options.seed);
+  look_at_maps(*fit, c);
   Comparison out{.noise = c.noise,
                  .noise_nT = fit->noise_nT(),
                  .residual_nT = fit->noise_nT() * std::sqrt(c.chi2 / std::max(c.dof, 1.0)),

@@ -45,6 +45,31 @@ bool in_model(const JointProblem& problem, const Suspect& suspect) {
 
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
 
+/// Rates hardly move from one model to the next: those of the one before decide where the best p-value is a
+/// factor of a hundred from its alarm.
+void rate(const Rates* before, std::uint64_t seed, Criticism& out) {
+  constexpr double kClear = 2;
+  if (before != nullptr && calibrate(out.families, *before)) {
+    double best = 0;
+    for (const ScoredFamily& family : out.families) best = std::min(best, family.calibrated);
+    out.rates = *before;
+    if (std::abs(best_of(best, before->best) - std::log10(kNamedAlarm)) > kClear) return;
+  }
+  out.rates = draw_rates(out.families, seed);
+  calibrate(out.families, out.rates);
+}
+
+/// Families that could still win with a better number.
+void refine_contenders(const JointFit& fit, Criticism& out) {
+  constexpr double kInReach = 0.6;  // of the largest score
+  double largest = 0;
+  for (const ScoredFamily& family : out.families) largest = std::max(largest, family.winner().S);
+  for (std::size_t f = 0; f < out.families.size(); ++f) {
+    if (out.families[f].winner().S < kInReach * largest || !out.rejects_named(f)) continue;
+    refine(fit.problem, fit.state, out.residual, out.noise.reference, out.families[f]);
+  }
+}
+
 }  // namespace
 
 std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
@@ -52,26 +77,28 @@ std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
   const Signature& s = f.signatures[f.winner().variant];
   const OneStep step = one_step(s, f.where());
   const Eigen::VectorXd fit = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
-  const Eigen::VectorXd product = fit.cwiseProduct(residual);
+  const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
   std::vector<double> out;
-  for (Eigen::Index k = 0; k < poses; ++k) out.push_back(product.segment<kChannels>(k * kChannels).sum());
+  for (Eigen::Index k = 0; k < residual.poses(); ++k)
+    out.push_back(product.segment<kChannels>(k * kChannels).sum());
   return out;
 }
 
 bool Criticism::rejects_named(std::size_t family) const {
-  return family < families.size() && below(best_of(families[family].calibrated, independent), kNamedAlarm);
+  return family < families.size() && below(best_of(families[family].calibrated, rates.best), kNamedAlarm);
 }
 bool Criticism::rejects_map() const {
   return !maps.empty() && below(best_of(maps.front().log10_p, static_cast<double>(maps.size())), kMapAlarm);
 }
 bool Criticism::rejects_omnibus() const { return below(omnibus_log10_p, kOmnibusAlarm); }
 
-Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed) {
-  Residual residual(fit.problem, fit.state, pose_correlation(fit.problem, fit.state));
-  Criticism out{.noise = noise_model(fit, residual), .chi2 = residual.chi2(), .dof = residual.dof()};
-  residual.measure_by(out.noise.reference.scale2);
+Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed, const Rates* before) {
+  Criticism out{.residual = Residual(fit.problem, fit.state, pose_correlation(fit.problem, fit.state))};
+  out.noise = noise_model(fit, out.residual);
+  out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
+  out.residual.measure_by(out.noise.reference.scale2);
   for (const Suspect& suspect : suspects.testable) {
-    ScoredFamily scored = score_family(fit.problem, fit.state, residual, out.noise.reference, suspect);
+    ScoredFamily scored = score_family(fit.problem, fit.state, out.residual, out.noise.reference, suspect);
     if (scored.testable()) {
       out.families.push_back(std::move(scored));
     } else if (!in_model(fit.problem, suspect)) {
@@ -79,17 +106,18 @@ Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t
           {suspect.name, "calibration, attitude and field of these poses absorb it whole"});
     }
   }
-  out.independent = calibrate(out.families, seed);
-  for (std::size_t f = 0; f < out.families.size(); ++f) {
-    if (out.rejects_named(f)) refine(fit.problem, fit.state, residual, out.noise.reference, out.families[f]);
-  }
+  rate(before, seed, out);
+  refine_contenders(fit, out);
   std::stable_sort(out.families.begin(), out.families.end(),
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
-  out.maps = score_maps(residual_maps(fit.problem, fit.state), residual, out.noise.reference);
   judge_size(out);
   judge_quiet(fit, out);
-  out.residual = residual.value(), out.poses = residual.poses();
   return out;
+}
+
+void look_at_maps(const JointFit& fit, Criticism& criticism) {
+  criticism.maps =
+      score_maps(residual_maps(fit.problem, fit.state), criticism.residual, criticism.noise.reference);
 }
 
 }  // namespace mgtd::calib

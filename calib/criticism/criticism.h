@@ -14,18 +14,17 @@ namespace mgtd::calib {
 inline constexpr double kNamedAlarm = 0.0065, kMapAlarm = 0.0025, kOmnibusAlarm = 0.0010;
 
 struct Criticism {
-  NoiseModel noise;
+  NoiseModel noise{};
   double chi2{0}, dof{0};
   std::vector<Untestable> untestable{};
   std::vector<ScoredFamily> families{};  ///< testable, best first
-  double independent{1};                 ///< families, by draws
+  Rates rates{};                         ///< of the families, by draws
   std::vector<MapScore> maps{};
   double omnibus_log10_p{0};  ///< residual larger than its noise; 0 where the noise is the residual's own
   /// The channel that scatters least for its noise, "s3.z", and the probability of so little, all counted.
   std::string quiet{};
   double quiet_log10_p{0}, quiet_ratio{1};
-  Eigen::VectorXd residual{};  ///< whitened, rows as Residual::value()
-  Eigen::Index poses{0};
+  Residual residual;  ///< in units of the noise
 
   /// Evidence for one of the families, pose by pose.
   [[nodiscard]] std::vector<double> evidence_by_pose(std::size_t family) const;
@@ -35,7 +34,11 @@ struct Criticism {
   [[nodiscard]] bool rejects() const { return rejects_named() || rejects_map() || rejects_omnibus(); }
 };
 
-/// `suspects` must outlive the result.
-[[nodiscard]] Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed);
+/// `suspects` must outlive the result. `before`: rates of a narrower model of the same run, which serve where
+/// no p-value is near to its alarm.
+[[nodiscard]] Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed,
+                                  const Rates* before = nullptr);
+/// The generic maps, which cost as much as everything else: asked where nothing with a name stands out.
+void look_at_maps(const JointFit& fit, Criticism& criticism);
 
 }  // namespace mgtd::calib

@@ -2,33 +2,26 @@
 #include "calib/criticism/explain.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
-#include "calib/criticism/criticism.h"
+#include "calib/criticism/conclusion.h"
 #include "calib/criticism/growth.h"
 #include "calib/criticism/next_measurement.h"
-#include "calib/criticism/rest.h"
-#include "calib/criticism/sentence.h"
+#include "calib/criticism/numbers.h"
 #include "calib/fit/joint_report.h"
 
 namespace mgtd::calib {
 namespace {
 
-/// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
-/// run of a hundred, and below 0.8 in one of seven.
-constexpr double kEnoughShare = 0.5;
-constexpr double kHalf = 0.5;         ///< of the winner's d: a sketch of a memory fits so well at least
-constexpr double kOnePose = 0.5;      ///< of the evidence
-constexpr double kMaxNodes = 0.02;    ///< of the readings
-const double kTable_rad = to_rad(2);  ///< of error of the table a pose
-constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
-constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
-constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
+constexpr double kHalf = 0.5;     ///< of the winner's d: a sketch of a memory fits so well at least
+constexpr double kOnePose = 0.5;  ///< of the evidence
+constexpr double kNotTold = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<EffectCoefficient> coefficients_of(const ScoredFamily& family) {
   const Signature& s = family.signatures[family.winner().variant];
@@ -57,7 +50,9 @@ Candidate candidate_of(const ScoredFamily& family, const Criticism& c, double wo
                 .fall = score.S * c.noise.reference.scale2 * worse * worse,
                 .coefficients = coefficients_of(family)};
   const double excess = c.noise.reference.chi2 - c.dof;
-  out.share = excess > 0 ? std::clamp((score.S - score.k) / excess, 0.0, 1.0) : 0;
+  out.share = !c.noise.reference.known ? kNotTold
+              : excess > 0             ? std::clamp((score.S - score.k) / excess, 0.0, 1.0)
+                                       : 0;
   if (family.suspect->bound > 0) {
     out.plausible = std::all_of(out.coefficients.begin(), out.coefficients.end(), [&](const auto& x) {
       return std::abs(x.value) < family.suspect->bound + 3 * x.sd;
@@ -81,25 +76,18 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
   }
 }
 
-double rms_nT(const JointFit& fit) { return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0)); }
-
 /// In units of the noise that the table tells.
 double chi2_of(const JointFit& fit, const Criticism& c) { return c.chi2 * fit.worse * fit.worse; }
-
-double share_of_nodes(const JointFit& fit) {
-  return static_cast<double>(fit.outliers.size()) /
-         static_cast<double>(fit.problem.poses.size() * static_cast<std::size_t>(kChannels));
-}
 
 /// Fills what describes the model that was asked about.
 void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   out.noise = c.noise;
   out.noise_nT = fit.noise_nT();
   out.noise_told = fit.sample_noise_nT.has_value();
-  out.residual_nT = rms_nT(fit);
+  out.residual_nT = residual_rms_nT(fit);
   out.chi2 = chi2_of(fit, c), out.dof = c.dof;
   out.omnibus_log10_p = c.omnibus_log10_p;
-  out.families = c.independent;
+  out.families = c.rates.best;
   out.maps = c.maps;
   out.outliers = fit.outliers;
   out.untestable.insert(out.untestable.end(), c.untestable.begin(), c.untestable.end());
@@ -111,116 +99,12 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   }
 }
 
-/// Why a single name that accounts for the data is not yet an explanation; empty when it is.
-std::string doubt(const Round& round, const Criticism& before) {
-  const Candidate& a = round.added;
-  if (!a.plausible) return fmt::format("the size that {} would need is beyond what occurs", a.effect);
-  const double spread = 4 * std::sqrt(2 * before.dof);
-  if (before.noise.reference.known && before.noise.reference.chi2 - before.dof > spread &&
-      a.share < kEnoughShare)
-    return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
-  const double realised = round.chi2_before - round.chi2_after;
-  if (before.noise.reference.known &&
-      std::abs(realised - a.fall) > kRefit * a.fall + 3 * std::sqrt(2 * a.fall))
-    return fmt::format("chi-square fell by {:.0f} where {:.0f} was predicted", realised, a.fall);
-  return {};
-}
-
-/// The first of the named laws that leaves something on its own axes; empty when none does.
-std::string leaves_something(const ExplainReport& report, const Criticism& last) {
-  for (const Round& round : report.rounds) {
-    const double log10_p = rest_log10_p(last, round.added.where);
-    if (log10_p < std::log10(kRestAlarm))
-      return fmt::format("{} is not all of it: with it {} still differs from noise, p {}", round.added.effect,
-                         round.added.where, p_text(log10_p));
-  }
-  return {};
-}
-
-bool overlap(const Where& a, const Where& b) {
-  for (int s = 0; s < kSensors; ++s) {
-    for (int x = 0; x < 3; ++x)
-      if (a.covers(s, x) && b.covers(s, x)) return true;
-  }
-  return false;
-}
-
-/// One name in all rounds, found axis by axis. Two searched numbers on one axis are no one law: a staircase
-/// follows any curve.
-bool one_law(const std::vector<Round>& rounds) {
-  std::vector<EffectSpec> seen;
-  for (const Round& round : rounds) {
-    if (round.added.effect != rounds.front().added.effect) return false;
-    const auto spec = EffectSpec::parse(round.added.spec);
-    if (!spec) return false;
-    for (const EffectSpec& other : seen) {
-      const bool together = !spec->where || !other.where || overlap(*spec->where, *other.where);
-      if (together && spec->parameters != other.parameters) return false;
-    }
-    seen.push_back(*spec);
-  }
-  return true;
-}
-
-Finding conclude(const ExplainReport& report, const Criticism& first, const Criticism& last,
-                 std::vector<std::string>& notes) {
-  if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
-  const Round& round = report.rounds.front();
-  if (last.rejects()) return Finding::partial;
-  if (std::string rest = leaves_something(report, last); !rest.empty()) {
-    notes.push_back(std::move(rest));
-    return Finding::partial;
-  }
-  if (!one_law(report.rounds)) return Finding::partial;
-  if (!round.possible.empty()) return Finding::ambiguous;
-  std::string why = doubt(round, first);
-  if (why.empty()) return Finding::explained;
-  notes.push_back(std::move(why));
-  return Finding::partial;
-}
-
-/// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
-std::string wrong_wiring(const JointFit& fit) {
-  for (std::size_t i = 0; i < fit.state.sensors.size(); ++i) {
-    if (fit.state.sensors[i].mounting.determinant() > 0) continue;
-    return fmt::format(
-        "sensor {} is mirrored: its axes form a left-handed triad, two leads are swapped or one is inverted",
-        i + 1);
-  }
-  if (fit.table_sd_rad > kTable_rad)
-    return fmt::format(
-        "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
-        "or order of the angles, or a mounting written down wrongly",
-        to_deg(fit.table_sd_rad), to_deg(kTable_rad));
-  return {};
-}
-
-bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>& notes) {
-  if (std::string why = wrong_wiring(fit); !why.empty()) {
-    notes.push_back(std::move(why));
-    return true;
-  }
-  const double nodes = share_of_nodes(fit);
-  if (nodes > kMaxNodes) {
-    notes.push_back(fmt::format("{:.1f} % of the readings contradict the rest; the limit is {:.0f} %",
-                                100 * nodes, 100 * kMaxNodes));
-    return true;
-  }
-  if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {
-    notes.push_back(
-        fmt::format("{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
-                    "wrong, or poses are copies",
-                    c.quiet, c.quiet_ratio));
-    return true;
-  }
-  return false;
-}
-
 struct Search {
   const PoseTable& table;
   JointOptions joint;
   Suspects suspects;
   std::uint64_t seed;
+  std::vector<EffectPtr> given{};  ///< the model that was asked about
   std::set<std::string> failed{};  ///< effects that no fit settled with
 };
 
@@ -237,6 +121,48 @@ void keep_memory_possible(const Search& search, const Criticism& c, Round& round
   }
 }
 
+/// How many of the effects that were given are still there; they stand first.
+std::size_t kept(const std::vector<EffectPtr>& given, const std::vector<EffectPtr>& model) {
+  std::size_t out = 0;
+  for (const EffectPtr& effect : model)
+    out += std::find(given.begin(), given.end(), effect) != given.end() ? 1U : 0U;
+  return out;
+}
+
+/// A start for a wider model: coefficients that it shares with the narrower one as they were, the others
+/// zero.
+JointState widened(const std::vector<EffectPtr>& narrow, const JointState& state,
+                   const std::vector<EffectPtr>& wide) {
+  const auto count = [](const EffectPtr& e) { return static_cast<Eigen::Index>(e->coefficients().size()); };
+  Eigen::Index size = 0, at = 0;
+  for (const EffectPtr& effect : wide) size += count(effect);
+  JointState out = state;
+  out.coefficients = Eigen::VectorXd::Zero(size);
+  for (const EffectPtr& effect : wide) {
+    Eigen::Index from = 0;
+    for (const EffectPtr& known : narrow) {
+      if (known == effect)
+        out.coefficients.segment(at, count(effect)) = state.coefficients.segment(from, count(effect));
+      from += count(known);
+    }
+    at += count(effect);
+  }
+  return out;
+}
+
+/// A winner that became several effects is called after them.
+void say_where(const Growth& growth, Candidate& added) {
+  if (growth.added.size() == 1 && added.where.find("each") == std::string::npos) return;
+  std::vector<std::string> specs, places;
+  for (const EffectPtr& effect : growth.added) {
+    specs.push_back(effect->spec());
+    const auto spec = EffectSpec::parse(specs.back());
+    if (spec && spec->where) places.push_back(spec->where->text());
+  }
+  added.spec = fmt::format("{}", fmt::join(specs, " + "));
+  if (!places.empty()) added.where = fmt::format("{}", fmt::join(places, ", "));
+}
+
 /// Adds family `f` and fits again. False when the fit with it fails.
 bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, ExplainReport& report) {
   const ScoredFamily& best = criticism.families[f];
@@ -246,28 +172,37 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   for (const Rival& rival : round.added.rivals)
     if (rival.possible) round.possible.push_back(rival.effect);
   keep_memory_possible(search, criticism, round);
-  auto model = grown(search.joint.effects, best);
-  if (!model) return false;
+  auto growth = grown(search.joint.effects, best, criticism.residual);
+  if (!growth) {
+    search.failed.insert(round.added.effect);
+    return false;
+  }
+  say_where(*growth, round.added);
+  round.effects = growth->added;
   JointOptions wider = search.joint;
-  wider.effects = *std::move(model);
+  wider.effects = std::move(growth->model);
   wider.worse = fit.worse;
-  auto refit = fit_joint_at_size(search.table, wider, &fit.state);
+  const JointState near = widened(search.joint.effects, fit.state, wider.effects);
+  auto refit = fit_joint_at_size(search.table, wider, &near);
   if (!refit) {
     report.notes.push_back(
         fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
     search.failed.insert(round.added.effect);
     return false;
   }
+  refine_numbers(search.table, kept(search.given, wider.effects), wider, *refit);
   if (report.rounds.empty()) {
     report.next = next_measurements(search.table, fit, search.joint, round.added);
     report.candidates[f].rivals = round.added.rivals;
   }
-  round.chi2_before = chi2_of(fit, criticism), round.rms_before_nT = rms_nT(fit);
+  round.chi2_before = chi2_of(fit, criticism), round.rms_before_nT = residual_rms_nT(fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;
   fit = std::move(*refit);
-  criticism = criticise(fit, search.suspects, search.seed);
-  round.chi2_after = chi2_of(fit, criticism), round.rms_after_nT = rms_nT(fit);
+  const Rates rates = std::move(criticism.rates);
+  criticism = criticise(fit, search.suspects, search.seed, &rates);
+  round.fit = std::make_shared<const JointFit>(fit);
+  round.chi2_after = chi2_of(fit, criticism), round.rms_after_nT = residual_rms_nT(fit);
   report.rounds.push_back(std::move(round));
   return true;
 }
@@ -321,13 +256,22 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   if (!fit) return tl::unexpected(fit.error());
   ExplainReport out;
   out.untestable = search.suspects.untestable;
+  out.untestable.push_back({"data.swapped-sensors",
+                            "two sensors whose cables are exchanged read the same uniform field through "
+                            "matrices that are free: pass a "
+                            "small magnet by each sensor in turn and see which one answers, or compare with "
+                            "an earlier calibration "
+                            "(mgt diff)"});
+  out.fit = std::make_shared<const JointFit>(*fit);
+  search.given = search.joint.effects;
   Criticism criticism = criticise(*fit, search.suspects, search.seed);
+  look_at_maps(*fit, criticism);
   describe(*fit, criticism, out);
   if (bad_data(*fit, criticism, out.notes)) {
     out.finding = Finding::bad_data;
     return out;
   }
-  const Criticism first = criticism;
+  const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
   for (int round = 0; round < options.rounds && criticism.rejects_named(); ++round) {
     Candidate weighed;
     weigh_poses(*fit, criticism.evidence_by_pose(0), weighed);
@@ -349,7 +293,11 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   if (remembers && table.path.empty())
     out.notes.emplace_back(
         "the way of the table between its poses is not in these data: a memory of the cores is followed from "
-        "dwell to dwell only, its size and its width are rough; a run file has the way");
+        "dwell to dwell only, its size and its width are rough, and another name may stand in its place. To "
+        "settle it: measure with the daemon, whose run file keeps the angles of the table on the way, or go "
+        "to a dozen of the poses from both sides");
+  if (!out.rounds.empty()) look_at_maps(*fit, criticism);
+  share_what_fell(out);
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;
   out.left = !criticism.rejects()        ? Finding::pass

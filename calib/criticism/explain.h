@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,7 +63,9 @@ struct Round {
   std::vector<std::string> possible{};  ///< other effects that could stand in its place
   double chi2_before{0}, chi2_after{0};
   double rms_before_nT{0}, rms_after_nT{0};
-  std::vector<EffectPtr> model{};  ///< after it
+  std::vector<EffectPtr> effects{};       ///< that were added: one, or one for each of a few axes
+  std::vector<EffectPtr> model{};         ///< after it
+  std::shared_ptr<const JointFit> fit{};  ///< of that model; points into the pose table
 };
 
 struct ExplainReport {
@@ -84,7 +87,8 @@ struct ExplainReport {
   std::vector<Untestable> untestable{};
   std::vector<NextMeasurement> next{};  ///< for the first name, best first
   std::vector<std::string> notes{};
-  std::vector<EffectPtr> model{};  ///< effects of the last fit
+  std::vector<EffectPtr> model{};         ///< effects of the last fit
+  std::shared_ptr<const JointFit> fit{};  ///< of the model that was asked about; points into the pose table
 };
 
 struct ExplainOptions {

@@ -33,7 +33,7 @@ json candidate_json(const Candidate& c) {
           {"p", std::pow(10.0, c.log10_p)},
           {"d", c.d},
           {"predicted_fall", c.fall},
-          {"share", c.share},
+          {"share", std::isfinite(c.share) ? json(c.share) : json()},
           {"coefficients", std::move(coefficients)},
           {"rivals", std::move(rivals)},
           {"plausible", c.plausible},
@@ -93,6 +93,9 @@ json to_json(const ExplainReport& r) {
       {"chi2", r.chi2},
       {"dof", r.dof},
       {"omnibus_p", std::pow(10.0, r.omnibus_log10_p)},
+      {"share_of", r.noise.reference.known ? "chi-square beyond the noise"
+                   : r.rounds.empty()      ? "nothing: no noise is told, and nothing was added"
+                                           : "chi-square beyond what is left after the last round"},
       {"lack_of_fit", std::move(lack)},
       {"detectable_above",
        array_of(r.detectable,

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "calib/criticism/sentence.h"
@@ -25,8 +26,9 @@ void candidates(const ExplainReport& r, std::string& out) {
   const std::size_t n = std::min(kShown, r.candidates.size());
   for (std::size_t i = 0; i < n; ++i) {
     const Candidate& c = r.candidates[i];
-    fmt::format_to(to, "{:<30} {:<11} {:>2} {:>7.1f} {:>9} {:>6.2f}  {:<32} {}\n", c.effect, c.where, c.k,
-                   c.d, p_text(c.log10_p), c.share, size_text(c), bar(c.d));
+    fmt::format_to(to, "{:<30} {:<11} {:>2} {:>7.1f} {:>9} {:>6}  {:<32} {}\n", c.effect, c.where, c.k, c.d,
+                   p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
+                   size_text(c), bar(c.d));
   }
 }
 

@@ -3,42 +3,28 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <memory>
 
-#include "calib/criticism/polish.h"
 #include "calib/criticism/model_stage.h"
-#include "calib/fit/joint_errors.h"
+#include "calib/criticism/polish.h"
 #include "calib/fit/joint_report.h"
+#include "calib/fit/left_out.h"
 
 namespace mgtd::calib {
 namespace {
 
 constexpr std::size_t kRounds = 24;
 
-struct Stage {
-  JointFit fit;
-  std::optional<double> held_out_nT;
-};
-
-Result<Stage> stage_of(const PoseTable& table, const JointOptions& options) {
-  auto fit = fit_joint_at_size(table, options);
-  if (!fit) return tl::unexpected(fit.error());
-  Stage out{.fit = std::move(*fit), .held_out_nT = {}};
-  if (const auto errors = held_out_errors(out.fit)) out.held_out_nT = errors->residual_rms_nT;
-  return out;
-}
-
 /// The model tidied up, where the error on poses left out does not rise.
-void polish(const PoseTable& table, const FitOptions& options, const JointOptions& joint, const Stage& before,
-            FitOptions& best) {
+void polish(const PoseTable& table, const FitOptions& options, const JointOptions& joint,
+            const JointFit& last, FitOptions& best) {
   JointOptions tidy = joint;
   tidy.effects = best.effects;
-  auto effects = polished(table, tidy, options.effects.size());
-  if (!effects) return;
-  tidy.effects = *std::move(effects);
-  const auto after = stage_of(table, tidy);
-  if (!after) return;
-  if (before.held_out_nT && after->held_out_nT && *after->held_out_nT > kHeldOutVeto * *before.held_out_nT) return;
+  tidy.worse = last.worse;
+  JointFit fit = last;
+  polished(table, options.effects.size(), tidy, fit);
+  const auto before = left_out_rms_nT(last), after = left_out_rms_nT(fit);
+  if (before && (!after || *after > kHeldOutVeto * *before)) return;
   best.effects = std::move(tidy.effects);
 }
 
@@ -64,19 +50,16 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
       explain(table, {.fit = options, .rounds = static_cast<int>(kRounds), .suspects = {}});
   if (!explained) return tl::unexpected(explained.error());
   ImproveReport out{.finding = explained->left, .stopped = stop_text(*explained), .fit = {}};
-  JointOptions joint = joint_options(options);
-  auto before = stage_of(table, joint);
-  if (!before) return tl::unexpected(before.error());
+  const JointOptions joint = joint_options(options);
+  std::shared_ptr<const JointFit> last = explained->fit;
+  std::optional<double> held_out = left_out_rms_nT(*last);
   FitOptions best = options;
-  for (std::size_t i = 0; i < explained->rounds.size(); ++i) {
-    const Round& round = explained->rounds[i];
-    joint.effects = round.model;
-    auto after = stage_of(table, joint);
-    if (!after) return tl::unexpected(after.error());
-    if (before->held_out_nT && after->held_out_nT && *after->held_out_nT > kHeldOutVeto * *before->held_out_nT) {
+  for (const Round& round : explained->rounds) {
+    const auto after = left_out_rms_nT(*round.fit);
+    if (held_out && after && *after > kHeldOutVeto * *held_out) {
       out.stopped =
           fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
-                      round.added.spec, *before->held_out_nT, *after->held_out_nT);
+                      round.added.spec, *held_out, *after);
       out.finding = Finding::partial;
       break;
     }
@@ -84,16 +67,19 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
                           .possible = round.possible,
                           .rms_before_nT = round.rms_before_nT,
                           .rms_after_nT = round.rms_after_nT,
-                          .held_out_before_nT = before->held_out_nT,
-                          .held_out_after_nT = after->held_out_nT,
+                          .held_out_before_nT = held_out,
+                          .held_out_after_nT = after,
                           .predicted_fall = round.added.fall,
                           .realised_fall = round.chi2_before - round.chi2_after,
-                          .price = variance_price(before->fit, after->fit)});
-    best.effects = joint.effects;
-    before = std::move(after);
+                          .price = variance_price(*last, *round.fit)});
+    best.effects = round.model;
+    held_out = after;
+    last = round.fit;
   }
-  if (!out.rounds.empty()) polish(table, options, joint, *before, best);
+  const FitOptions found = best;
+  if (!out.rounds.empty()) polish(table, options, joint, *last, best);
   auto fitted = fit(table, best);
+  if (!fitted) fitted = fit(table, found);
   if (!fitted) return tl::unexpected(fitted.error());
   out.fit = std::move(*fitted);
   return out;

@@ -17,7 +17,7 @@ struct ImproveRound {
   double rms_before_nT{0}, rms_after_nT{0};
   std::optional<double> held_out_before_nT{}, held_out_after_nT{};
   double predicted_fall{0}, realised_fall{0};  ///< of chi-square
-  VariancePrice price{};  ///< what the parameters of the sensors lose
+  VariancePrice price{};                       ///< what the parameters of the sensors lose
 };
 
 struct ImproveReport {

@@ -137,24 +137,42 @@ double best_of(double log10_p, double m) {
   return std::log10(-std::expm1(m * std::log1p(-std::pow(10.0, std::min(log10_p, -1e-12)))));
 }
 
-double calibrate(std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
-  if (families.empty()) return 1;
+Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
+  Rates out;
+  if (families.empty()) return out;
   const Draws together = draw(families, kTogether, seed, draws);
   std::map<int, Tail> tails;
   std::vector<double> best(static_cast<std::size_t>(draws), 0.0);
   for (std::size_t f = 0; f < families.size(); ++f) {
-    ScoredFamily& family = families[f];
+    const ScoredFamily& family = families[f];
     const std::vector<double> own = smallest(family, together, f, tails);
     const double m = rate_of(own);
     for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
-    family.asked = m;
+    double& asked = out.family[family.suspect->name] = m;
     if (family.signatures.size() > kTogether) {
       const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1, draws);
-      family.asked = rate_of(smallest(family, alone, 0, tails));
+      asked = rate_of(smallest(family, alone, 0, tails));
     }
+  }
+  out.best = std::max(1.0, rate_of(std::move(best)));
+  return out;
+}
+
+bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates) {
+  bool all = true;
+  for (ScoredFamily& family : families) {
+    const auto rate = rates.family.find(family.suspect->name);
+    all = all && rate != rates.family.end();
+    family.asked = rate == rates.family.end() ? 1 : rate->second;
     family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
   }
-  return std::max(1.0, rate_of(std::move(best)));
+  return all;
+}
+
+double calibrate(std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
+  const Rates rates = draw_rates(families, seed, draws);
+  calibrate(families, rates);
+  return rates.best;
 }
 
 }  // namespace mgtd::calib

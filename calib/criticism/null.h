@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "calib/criticism/score.h"
@@ -16,8 +18,21 @@ namespace mgtd::calib {
 
 inline constexpr int kDraws = 1000;
 
-/// Sets `calibrated` of each family and returns the number of independent families, m, for the best of all.
+/// Rates by the name of a family, and that of the best of all.
+struct Rates {
+  std::map<std::string, double> family{};
+  double best{1};
+};
+
+/// By draws.
+[[nodiscard]] Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed,
+                               int draws = kDraws);
+
+/// Both, and the rate of the best of all.
 double calibrate(std::vector<ScoredFamily>& families, std::uint64_t seed, int draws = kDraws);
+
+/// Sets `asked` and `calibrated` of each family. False where a family has no rate.
+bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates);
 
 /// 1 - (1 - p)^m of logarithms.
 [[nodiscard]] double best_of(double log10_p, double m);

@@ -5,36 +5,14 @@
 #include <cmath>
 #include <set>
 
-#include "calib/effects/effect_family.h"
-#include "calib/fit/tune.h"
+#include "calib/criticism/numbers.h"
+#include "calib/effects/effect_spec.h"
 
 namespace mgtd::calib {
 namespace {
 
 constexpr double kTold = 3.5;    ///< standard deviations from zero: one of 2000 that are zero
 constexpr std::size_t kFew = 4;  ///< axes that are listed one by one
-
-/// The effect with its smooth number left open; null where it has none.
-EffectPtr opened(const Effect& effect) {
-  const EffectFamily* family = find_family(effect.name());
-  if (family == nullptr || !family->scan || family->scan->optional) return nullptr;
-  if (family->scan->range != Scan::Range::linear && family->scan->range != Scan::Range::logarithmic)
-    return nullptr;
-  auto spec = EffectSpec::parse(effect.spec());
-  if (!spec || spec->parameters.empty()) return nullptr;
-  spec->parameters.clear();
-  auto made = make_effect(*spec);
-  return made ? *std::move(made) : nullptr;
-}
-
-/// With the numbers of `effects` searched, those of the others as they stand.
-Result<std::vector<EffectPtr>> searched(const PoseTable& table, const JointOptions& options,
-                                        std::size_t given) {
-  JointOptions open = options;
-  for (std::size_t i = given; i < open.effects.size(); ++i)
-    if (EffectPtr effect = opened(*open.effects[i])) open.effects[i] = std::move(effect);
-  return tune(table, open);
-}
 
 /// Axes of an effect whose coefficients are told from zero. `first`: its slot in the fit.
 std::set<std::string> told_axes(const JointFit& fit, const Effect& effect, Eigen::Index first) {
@@ -70,29 +48,26 @@ std::vector<EffectPtr> on_told_axes(const JointFit& fit, const EffectPtr& effect
 
 }  // namespace
 
-Result<std::vector<EffectPtr>> polished(const PoseTable& table, const JointOptions& options,
-                                        std::size_t given) {
-  JointOptions model = options;
-  auto effects = searched(table, model, given);
-  if (!effects) return effects;
-  model.effects = *std::move(effects);
-  const auto fit = fit_joint_at_size(table, model);
-  if (!fit) return tl::unexpected(fit.error());
-  std::vector<EffectPtr> few;
+void polished(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
+  JointOptions few = options;
+  few.effects.clear();
   Eigen::Index slot = 0;
-  for (std::size_t i = 0; i < model.effects.size(); ++i) {
-    const EffectPtr& effect = model.effects[i];
+  for (std::size_t i = 0; i < options.effects.size(); ++i) {
+    const EffectPtr& effect = options.effects[i];
     if (i < given) {
-      few.push_back(effect);
+      few.effects.push_back(effect);
     } else {
-      for (EffectPtr& part : on_told_axes(*fit, effect, slot)) few.push_back(std::move(part));
+      for (EffectPtr& part : on_told_axes(fit, effect, slot)) few.effects.push_back(std::move(part));
     }
     slot += static_cast<Eigen::Index>(effect->coefficients().size());
   }
-  if (few.size() == model.effects.size() && std::equal(few.begin(), few.end(), model.effects.begin()))
-    return model.effects;
-  model.effects = std::move(few);
-  return searched(table, model, given);
+  if (few.effects != options.effects) {
+    auto narrow = fit_joint_at_size(table, few, &fit.state);
+    if (!narrow) return;
+    options = std::move(few);
+    fit = *std::move(narrow);
+  }
+  refine_numbers(table, given, options, fit);
 }
 
 }  // namespace mgtd::calib

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <vector>
+#include <cstddef>
 
 #include "calib/fit/joint_fit.h"
 
@@ -8,11 +8,9 @@
 /// coarse grid and, while much else is still wrong, on more axes than need them.
 namespace mgtd::calib {
 
-/// Numbers that were tried on a grid (the width of a hysteresis, the threshold of a gain) are searched anew
-/// with everything in the model; of an effect on each axis only those axes stay, if they are few, whose
-/// coefficient is told from zero. The first `given` effects of the model are not touched. Refuses what a fit
-/// refuses.
-[[nodiscard]] Result<std::vector<EffectPtr>> polished(const PoseTable& table, const JointOptions& options,
-                                                      std::size_t given);
+/// Of an effect on each axis only those axes stay, if they are few, whose coefficient is told from zero; then
+/// the numbers that were tried on a grid are refined (numbers.h). The first `given` effects of the model are
+/// not touched. `options` and `fit` go along; where a fit fails both stay as they were.
+void polished(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit);
 
 }  // namespace mgtd::calib

@@ -6,6 +6,19 @@ namespace {
 
 constexpr double kKnown = 0.04;  // of w between lowest and highest: 2 % of the coefficient
 
+/// The extreme that a field passes between three points of the way: that of the parabola through them. A play
+/// turns there, and points a quarter of a second apart miss it by some 0.1 % of the field.
+double turning_point(const RememberedPose& pose, std::size_t k, std::size_t i, int a) {
+  const double y = pose.on_the_way[k][i][a];
+  if (k == 0 || k + 1 >= pose.on_the_way.size()) return y;
+  const double before_s = pose.way_s[k] - pose.way_s[k - 1], after_s = pose.way_s[k + 1] - pose.way_s[k];
+  const double fall = y - pose.on_the_way[k - 1][i][a], rise = pose.on_the_way[k + 1][i][a] - y;
+  if (!(fall * rise < 0) || !(before_s > 0) || !(after_s > 0)) return y;
+  const double curve = (rise / after_s - fall / before_s) / (before_s + after_s);
+  const double slope = fall / before_s + curve * before_s;
+  return y - slope * slope / (4 * curve);
+}
+
 }  // namespace
 
 std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>& run, double w) {
@@ -18,7 +31,13 @@ std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>
     }
   };
   for (const RememberedPose& pose : run) {
-    for (const SensorReadings& v_nT : pose.on_the_way) move(v_nT);
+    for (std::size_t k = 0; k < pose.on_the_way.size(); ++k) {
+      SensorReadings v_nT;
+      for (std::size_t i = 0; i < kSensors; ++i) {
+        for (int a = 0; a < 3; ++a) v_nT[i][a] = turning_point(pose, k, i, a);
+      }
+      move(v_nT);
+    }
     out[pose.pose] = p;
     move(pose.v_nT);
   }

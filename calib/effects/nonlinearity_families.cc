@@ -19,6 +19,8 @@ constexpr std::array kOrthogonalityConfusions{
     Confusion{"platform.thermal-bending",
               "the angles between the axes of one sensor do not change when it turns as a whole"},
     Confusion{"axis.gain.temperature", "directions of the field across the axis as well as along it"}};
+constexpr std::array kOrthogonality2Confusions{
+    Confusion{"axis.orthogonality.temperature", "temperatures on both sides of 20 degC"}};
 constexpr std::array kQuadraticConfusions{Confusion{"axis.transverse",
                                                     "another field strength (a coil, -20 %): at one strength "
                                                     "y^2 + z^2 = F^2 - x^2 and nothing tells them apart"}};
@@ -56,6 +58,23 @@ constexpr std::array kFamilies{
                  .untestable = {},
                  .experiment = {},
                  .from_spec = &plain_axis<OrthogonalityTemperature>},
+    EffectFamily{.name = "axis.orthogonality.temperature2",
+                 .level = Level::axis,
+                 .title = "the angles between the axes bend with temperature",
+                 .cause = "core holders and windings do not move in proportion to temperature",
+                 .equation = "y_a += sum over b != a of chi2_ab (T - 20 degC)^2 v_b",
+                 .coefficients = "chi2, arcsec/degC^2, six a sensor (s3.zx: axis z answers to x)",
+                 .typical = 0.2,
+                 .bound = 10,
+                 .source = "0.02 to 0.7 arcsec/degC^2 measured on four fluxgates between 15 and 20 degC",
+                 .scales = kAxisScales,
+                 .scan = {},
+                 .needs = "T_degC",
+                 .signature = "a parabola against temperature, with the sign of the field across the axis",
+                 .confusions = kOrthogonality2Confusions,
+                 .untestable = {},
+                 .experiment = {},
+                 .from_spec = &plain_axis<OrthogonalityTemperature2>},
     EffectFamily{.name = "axis.quadratic",
                  .level = Level::axis,
                  .title = "even nonlinearity of an axis",

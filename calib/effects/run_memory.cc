@@ -72,13 +72,15 @@ Result<std::vector<RememberedPose>> run_memory(const EffectContext& context) {
   std::vector<RememberedPose> out;
   auto point = table.path.begin();
   for (const Pose& pose : table.poses) {
-    RememberedPose remembered{.pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}};
+    RememberedPose remembered{
+        .pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}, .way_s = {}};
     for (; by_angles && pose.t_s && point != table.path.end() && point->t_s < *pose.t_s; ++point) {
       const Eigen::RowVectorXd y = elements(point->angles) * *by_angles;
       SensorReadings readings;
       for (int i = 0; i < kSensors; ++i)
         readings[static_cast<std::size_t>(i)] = y.segment<3>(3 * i).transpose();
       remembered.on_the_way.push_back(less(readings, offset_nT));
+      remembered.way_s.push_back(point->t_s);
     }
     out.push_back(std::move(remembered));
   }

@@ -27,6 +27,7 @@ struct RememberedPose {
   int pose{0};                             ///< number
   SensorReadings v_nT;                     ///< at the dwell
   std::vector<SensorReadings> on_the_way;  ///< since the dwell before, in order
+  std::vector<double> way_s;               ///< their times
 };
 
 /// In the order of the run. Refuses a context without poses.

@@ -2,6 +2,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "calib/fit/joint_solver.h"
 
@@ -52,25 +53,51 @@ void scalar_row(const JointProblem& problem, const JointState& state, const Join
   if (problem.common_field) row.global[kFieldSlot - kSensorBlock] -= w;
 }
 
-/// Adds J' J and J' r of the fixed block, reading rows then scalar row, using that a reading sees one sensor
-/// only.
-void add_fixed(const PoseBlocks& b, const JointPose& pose, Reduced& out) {
-  const Eigen::Index globals = b.linear.d_global.cols();
-  auto corner = out.S.bottomRightCorner(globals, globals);
+/// Those columns of a few rows of the globals that are not zero, each row times its weight: an effect of an
+/// axis is felt by its own sensor only, and a model has a hundred of them.
+struct Felt {
+  std::vector<Eigen::Index> slots;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> rows;
+
+  void take(const PoseLinear& linear, const Channels& weight, int sensor) {
+    slots.clear();
+    rows.resize(3, linear.d_global.cols());
+    for (Eigen::Index j = 0; j < linear.d_global.cols(); ++j) {
+      const Eigen::Vector3d column = linear.d_global.col(j).segment<3>(3 * sensor);
+      if (column.isZero(0)) continue;
+      rows.col(static_cast<Eigen::Index>(slots.size())) = weight.segment<3>(3 * sensor).cwiseProduct(column);
+      slots.push_back(kSensorBlock + j);
+    }
+  }
+};
+
+/// Adds J' J and J' r of the fixed block, lower triangle, reading rows then scalar row.
+void add_fixed(const PoseBlocks& b, const JointPose& pose, Felt& felt, Reduced& out) {
   for (int i = 0; i < kSensors; ++i) {
     const auto w = pose.weight.segment<3>(3 * i).asDiagonal();
     const Eigen::Matrix<double, 3, kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> G = w * b.linear.d_global.middleRows<3>(3 * i);
+    const Eigen::Vector3d r = b.residual.segment<3>(3 * i);
     const int at = kSensorParameters * i;
     // lazyProduct: these are too small for blocking to pay.
     out.S.block<kSensorParameters, kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
-    out.S.bottomRows(globals).middleCols<kSensorParameters>(at) += G.transpose().lazyProduct(A);
-    corner += G.transpose().lazyProduct(G);
-    out.g.segment<kSensorParameters>(at) += A.transpose().lazyProduct(b.residual.segment<3>(3 * i));
-    out.g.tail(globals) += G.transpose().lazyProduct(b.residual.segment<3>(3 * i));
+    out.g.segment<kSensorParameters>(at) += A.transpose().lazyProduct(r);
+    felt.take(b.linear, pose.weight, i);
+    for (std::size_t j = 0; j < felt.slots.size(); ++j) {
+      const Eigen::Vector3d column = felt.rows.col(static_cast<Eigen::Index>(j));
+      const Eigen::Index slot = felt.slots[j];
+      out.S.row(slot).segment<kSensorParameters>(at) += column.transpose().lazyProduct(A);
+      for (std::size_t k = j; k < felt.slots.size(); ++k)
+        out.S(felt.slots[k], slot) += column.dot(felt.rows.col(static_cast<Eigen::Index>(k)));
+      out.g[slot] += column.dot(r);
+    }
   }
-  corner += b.scalar.global.transpose().lazyProduct(b.scalar.global);
-  out.g.tail(globals) += b.scalar.residual * b.scalar.global.transpose();
+  for (Eigen::Index j = 0; j < b.scalar.global.size(); ++j) {
+    const double x = b.scalar.global[j];
+    if (x == 0) continue;
+    out.S.col(kSensorBlock + j).segment(kSensorBlock + j, b.scalar.global.size() - j) +=
+        x * b.scalar.global.tail(b.scalar.global.size() - j).transpose();
+    out.g[kSensorBlock + j] += b.scalar.residual * x;
+  }
 }
 
 }  // namespace
@@ -114,6 +141,7 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   Reduced out{.S = Eigen::MatrixXd::Zero(p, p), .g = Eigen::VectorXd::Zero(p), .cost = {}};
   const PoseModel model(problem, state);
   PoseBlocks b;
+  Felt felt;
   Eigen::MatrixXd batch(p, kBatch * kNuisances);
   int filled = 0;
   const auto flush = [&] {
@@ -123,7 +151,7 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   };
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, true, b);
-    add_fixed(b, problem.poses[k], out);
+    add_fixed(b, problem.poses[k], felt, out);
     out.cost.readings += b.cost.readings;
     out.cost.scalar += b.cost.scalar;
     out.cost.attitude += b.cost.attitude;

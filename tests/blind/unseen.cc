@@ -94,6 +94,7 @@ std::vector<std::string> paper_effects() {
           "axis.gain.temperature",
           "axis.gain.temperature2",
           "axis.orthogonality.temperature",
+          "axis.orthogonality.temperature2",
           "axis.hysteresis@s2.y,w=0.1",
           "axis.hysteresis@s4.x,w=0.2",
           "axis.cubic@s1.z",

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/conclusion.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/criticism/rest.h"
+#include "calib/criticism/sentence.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
+/// run of a hundred, and below 0.8 in one of seven.
+constexpr double kEnoughShare = 0.5;
+constexpr double kMaxNodes = 0.02;    ///< of the readings
+const double kTable_rad = to_rad(2);  ///< of error of the table a pose
+constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
+constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
+constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
+
+double share_of_nodes(const JointFit& fit) {
+  return static_cast<double>(fit.outliers.size()) /
+         static_cast<double>(fit.problem.poses.size() * static_cast<std::size_t>(kChannels));
+}
+
+/// Why a single name that accounts for the data is not yet an explanation; empty when it is.
+std::string doubt(const Round& round, const Asked& before) {
+  const Candidate& a = round.added;
+  if (!a.plausible) return fmt::format("the size that {} would need is beyond what occurs", a.effect);
+  const double spread = 4 * std::sqrt(2 * before.dof);
+  if (before.reference.known && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
+    return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
+  const double realised = round.chi2_before - round.chi2_after;
+  if (before.reference.known && std::abs(realised - a.fall) > kRefit * a.fall + 3 * std::sqrt(2 * a.fall))
+    return fmt::format("chi-square fell by {:.0f} where {:.0f} was predicted", realised, a.fall);
+  return {};
+}
+
+/// The first of the named laws that leaves something on its own axes; empty when none does.
+std::string leaves_something(const ExplainReport& report, const Criticism& last) {
+  for (const Round& round : report.rounds) {
+    for (const EffectPtr& effect : round.effects) {
+      const auto spec = EffectSpec::parse(effect->spec());
+      const std::string where = spec && spec->where ? spec->where->text() : round.added.where;
+      const double log10_p = rest_log10_p(last, where);
+      if (log10_p < std::log10(kRestAlarm))
+        return fmt::format("{} is not all of it: with it {} still differs from noise, p {}",
+                           round.added.effect, where, p_text(log10_p));
+    }
+  }
+  return {};
+}
+
+bool overlap(const Where& a, const Where& b) {
+  for (int s = 0; s < kSensors; ++s) {
+    for (int x = 0; x < 3; ++x)
+      if (a.covers(s, x) && b.covers(s, x)) return true;
+  }
+  return false;
+}
+
+/// One name in all rounds, found axis by axis. Two searched numbers on one axis are no one law: a staircase
+/// follows any curve.
+bool one_law(const std::vector<Round>& rounds) {
+  std::vector<EffectSpec> seen;
+  for (const Round& round : rounds) {
+    if (round.added.effect != rounds.front().added.effect) return false;
+    for (const EffectPtr& effect : round.effects) {
+      const auto spec = EffectSpec::parse(effect->spec());
+      if (!spec) return false;
+      for (const EffectSpec& other : seen) {
+        const bool together = !spec->where || !other.where || overlap(*spec->where, *other.where);
+        if (together && spec->parameters != other.parameters) return false;
+      }
+      seen.push_back(*spec);
+    }
+  }
+  return true;
+}
+
+/// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
+std::string wrong_wiring(const JointFit& fit) {
+  for (std::size_t i = 0; i < fit.state.sensors.size(); ++i) {
+    if (fit.state.sensors[i].mounting.determinant() > 0) continue;
+    return fmt::format(
+        "sensor {} is mirrored: its axes form a left-handed triad, two leads are swapped or one is inverted",
+        i + 1);
+  }
+  if (fit.table_sd_rad > kTable_rad)
+    return fmt::format(
+        "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
+        "or order of the angles, or a mounting written down wrongly",
+        to_deg(fit.table_sd_rad), to_deg(kTable_rad));
+  return {};
+}
+
+}  // namespace
+
+Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
+                 std::vector<std::string>& notes) {
+  if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
+  const Round& round = report.rounds.front();
+  if (last.rejects()) return Finding::partial;
+  if (std::string rest = leaves_something(report, last); !rest.empty()) {
+    notes.push_back(std::move(rest));
+    return Finding::partial;
+  }
+  if (!one_law(report.rounds)) return Finding::partial;
+  if (!round.possible.empty()) return Finding::ambiguous;
+  std::string why = doubt(round, first);
+  if (why.empty()) return Finding::explained;
+  notes.push_back(std::move(why));
+  return Finding::partial;
+}
+
+bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>& notes) {
+  if (std::string why = wrong_wiring(fit); !why.empty()) {
+    notes.push_back(std::move(why));
+    return true;
+  }
+  const double nodes = share_of_nodes(fit);
+  if (nodes > kMaxNodes) {
+    notes.push_back(fmt::format("{:.1f} % of the readings contradict the rest; the limit is {:.0f} %",
+                                100 * nodes, 100 * kMaxNodes));
+    return true;
+  }
+  if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {
+    notes.push_back(
+        fmt::format("{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
+                    "wrong, or poses are copies",
+                    c.quiet, c.quiet_ratio));
+    return true;
+  }
+  return false;
+}
+
+void share_what_fell(ExplainReport& report) {
+  if (report.rounds.empty() || report.noise.reference.known) return;
+  const double left = std::pow(report.rounds.back().rms_after_nT / report.rounds.front().rms_before_nT, 2);
+  const double unit = report.chi2 / report.dof, excess = report.chi2 * (1 - left);
+  const auto share = [&](Candidate& c) {
+    c.share = excess > 0 ? std::clamp((c.fall - c.k * unit * left) / excess, 0.0, 1.0) : 0;
+  };
+  for (Candidate& c : report.candidates) share(c);
+  share(report.rounds.front().added);
+}
+
+}  // namespace mgtd::calib

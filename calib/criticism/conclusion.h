@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/criticism/criticism.h"
+
+/// From what a search found to one of the verdicts of explain.h.
+namespace mgtd::calib {
+
+/// The residual that was asked about, and its noise.
+struct Asked {
+  double dof;
+  NoiseReference reference;
+};
+
+[[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
+                               std::vector<std::string>& notes);
+
+/// Data that no effect stands for: wiring, poses that contradict the rest, noise that is told wrongly. Says
+/// which in `notes`.
+[[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, std::vector<std::string>& notes);
+
+/// Where no noise is told, the excess that the candidates share is what the rounds took away: the residual at
+/// their end stands for the noise. Nothing to share where nothing was added.
+void share_what_fell(ExplainReport& report);
+
+}  // namespace mgtd::calib
