@@ -12,6 +12,7 @@
 
 #include "daemon/rig.h"
 #include "daemon/service_notify.h"
+#include "daemon/store_lock.h"
 
 namespace {
 
@@ -29,6 +30,8 @@ int report(const Error& error) {
 int serve(Config config) {
   start_log(config.log_level);
   std::signal(SIGPIPE, SIG_IGN);
+  const auto lock = StoreLock::take(config.store_dir);
+  if (!lock) return report(lock.error());
   auto store = CalibrationStore::open(std::filesystem::path(config.store_dir) / "calibrations");
   if (!store) return report(store.error());
   boost::asio::io_context io(1);

@@ -123,6 +123,7 @@ TEST(Programs, AbortChangesNothingAndASecondDaemonIsTurnedAway) {
   bench.start_daemon();
   const Finished second = run_program({program("mgtd"), "--config", bench.config_path()}, bench.dir().path());
   EXPECT_NE(second.exit_code, 0);
+  EXPECT_NE(second.err.find("is in use by mgtd with pid"), std::string::npos) << second.err;
   std::vector<std::string> detached = kShortRun;
   detached.emplace_back("--detach");
   ASSERT_EQ(bench.mgt(detached).exit_code, 0);
