@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace mgtd::calib {
 namespace {
@@ -53,6 +54,16 @@ std::string left_text(const std::vector<MapScore>& maps) {
   return fmt::format("What is left shows most against {} ({}, p {}).", m.map, m.where, p_text(m.log10_p));
 }
 
+std::string outliers_text(const std::vector<OutlierNode>& outliers) {
+  if (outliers.empty()) return {};
+  std::set<int> poses;
+  for (const OutlierNode& o : outliers) poses.insert(o.pose);
+  return fmt::format(
+      "{} that the others contradict {} left out, in pose {} (listed at the end).",
+      outliers.size() == 1 ? "One observation" : fmt::format("{} observations", outliers.size()),
+      outliers.size() == 1 ? "is" : "are", fmt::join(poses, ", "));
+}
+
 }  // namespace
 
 std::string p_text(double log10_p) {
@@ -71,7 +82,7 @@ std::string size_text(const Candidate& c) {
 }
 
 std::string sentence(const ExplainReport& r) {
-  std::vector<std::string> parts{noise_text(r)};
+  std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers)};
   for (const Round& round : r.rounds) {
     parts.push_back(round_text(round));
     parts.push_back(rivals_text(round));
