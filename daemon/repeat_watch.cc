@@ -35,6 +35,4 @@ bool RepeatWatch::stands_still(const Eigen::Vector3d& y_nT) {
   return false;
 }
 
-bool RepeatWatch::repeats_are_rare() const { return share(rows_, readings_) < kStrange; }
-
 }  // namespace mgtd::daemon

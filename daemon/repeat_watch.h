@@ -18,8 +18,6 @@ class RepeatWatch {
  public:
   /// The next reading, nT: whether the sensor stands still, this reading included.
   [[nodiscard]] bool stands_still(const Eigen::Vector3d& y_nT);
-  /// One repeat says something already.
-  [[nodiscard]] bool repeats_are_rare() const;
 
  private:
   Eigen::Vector3d last_nT_{Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};

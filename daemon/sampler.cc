@@ -213,8 +213,7 @@ bool Sampler::comes_again(const Stream& s, const FieldReading& reading, double s
   }
   if (reading.y_nT != s.last->y_nT) return false;
   const double due = s.clock.index_of(sample_s) - static_cast<double>(s.last_k);
-  const double since = to_seconds(reading.arrival.mono - s.last->arrival.mono) / period_s_;
-  return due < kNotYet || (since < kNotYet && s.repeats.repeats_are_rare());
+  return due < kNotYet;
 }
 
 /// By how much the number rises: as the device's clock or count says, as long as the sample does not then
