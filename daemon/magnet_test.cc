@@ -16,6 +16,7 @@ void MagnetTest::enter(Phase phase, Instant now) {
   since_.reset();
   doubtful_ = false;
   first_.reset();
+  if (phase == Phase::waiting) ++asked_;
 }
 
 void MagnetTest::add(const Epoch& epoch) {
@@ -110,6 +111,7 @@ MagnetStatus MagnetTest::status() const {
   static constexpr std::array<const char*, 3> kPhases{"resting", "waiting", "leaving"};
   MagnetStatus out;
   out.end = ended_;
+  out.asked = asked_;
   for (std::size_t arm = 0; arm < kSensors; ++arm) {
     if (found_.at(arm)) out.sensor_on_arm.at(arm) = static_cast<int>(*found_.at(arm)) + 1;
   }
@@ -126,12 +128,28 @@ MagnetStatus MagnetTest::status() const {
   } else if (*ended_ == MagnetEnd::timed_out) {
     out.state = "timed out";
     out.text =
-        fmt::format("nothing clear was seen for arm {} within {:.0f} s: it stays open", arm_ + 1, answer_s_);
+        fmt::format("nothing clear was seen for arm {} within {:.0f} s: it stays open", arm_ + 1, kAnswer_s);
   } else {
     out.state = "stopped";
     out.text = fmt::format("stopped before arm {} was seen", arm_ + 1);
   }
+  if (ended_) out.text += "; put the magnet away";
   return out;
+}
+
+Result<void> ready_for_magnet(const std::vector<DeviceStatus>& devices) {
+  std::string dumb;
+  for (const DeviceStatus& device : devices) {
+    const bool sensor = device.name.size() == 2 && device.name.front() == 's';
+    if (!sensor || device.health.state == LinkState::live) continue;
+    const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(device.health.state));
+    const std::string& why = device.health.detail;
+    dumb += fmt::format("{}{} is {}{}", dumb.empty() ? "" : "; ", device.name, state,
+                        why.empty() ? "" : " (" + why + ")");
+  }
+  if (dumb.empty()) return {};
+  return fail(ErrorCode::state, "a magnet test needs all four sensors live: " + dumb,
+              "check its port, cable and supply; when mgt status shows it live, say it again");
 }
 
 }  // namespace mgtd::daemon

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "proto/epoch.h"
+#include "proto/error.h"
 #include "proto/magnet_status.h"
+#include "proto/status_report.h"
 #include "proto/time.h"
 
 /// Which sensor is on which arm? The operator holds a magnet to the end of one arm after the other; the
@@ -25,9 +27,11 @@ class MagnetTest {
  public:
   static constexpr double kMoved_nT = 300, kRatio = 3;
   static constexpr double kRest_s = 2, kHeld_s = 0.5;
-  static constexpr double kAnswer_s = 120;  ///< for each arm, and to come to rest
+  static constexpr double kAnswer_s = 120;  ///< for each arm, and to come to rest; real time
 
-  explicit MagnetTest(Instant begin, double answer_s = kAnswer_s) : answer_s_(answer_s), entered_(begin) {}
+  /// Hands keep their own time: with a clock `speed_up` times faster than real the limits are so much longer.
+  explicit MagnetTest(Instant begin, double speed_up = 1)
+      : answer_s_(kAnswer_s * speed_up), entered_(begin) {}
 
   void add(const Epoch& epoch);
   void advance(Instant now);
@@ -54,7 +58,8 @@ class MagnetTest {
   Phase phase_{Phase::resting};
   Instant entered_;
   std::optional<MagnetEnd> ended_;
-  std::size_t arm_{0};                                        ///< asked for
+  std::size_t arm_{0};                                        ///< whose turn it is
+  int asked_{0};                                              ///< arms the operator was asked for
   std::array<std::optional<std::size_t>, kSensors> found_{};  ///< sensor by arm
 
   Readings at_rest_{};          ///< mean
@@ -65,5 +70,8 @@ class MagnetTest {
   std::size_t moving_{0};
   bool doubtful_{false};  ///< something moves, but not one sensor alone
 };
+
+/// All four sensors speak; otherwise an arm would wait for one that cannot answer.
+[[nodiscard]] Result<void> ready_for_magnet(const std::vector<DeviceStatus>& devices);
 
 }  // namespace mgtd::daemon

@@ -65,6 +65,7 @@ class Rig {
   [[nodiscard]] Result<nlohmann::ordered_json> answer(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_run(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_magnet(const ControlRequest& request);
+  [[nodiscard]] Result<nlohmann::ordered_json> abort_magnet(Stamp now);
   [[nodiscard]] Result<nlohmann::ordered_json> answer_calibrations(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> import_calibration(const ControlRequest& request);
   [[nodiscard]] Result<nlohmann::ordered_json> dry_run(const RunRequest& request) const;

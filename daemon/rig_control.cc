@@ -64,7 +64,7 @@ Reply Rig::answer_run(const ControlRequest& request) {
     if (!wanted) return tl::unexpected(wanted.error());
     if (request.command == ControlCommand::run_dry_run) return dry_run(*wanted);
     if (magnet_ && !magnet_->ended())
-      return fail(ErrorCode::state, "a magnet test is going on", "wait for it, or end it where it runs");
+      return fail(ErrorCode::state, "a magnet test is going on", "wait for its end, or: mgt run abort");
     done = run_.start(*wanted, now);
   } else if (request.command == ControlCommand::run_pause) {
     done = run_.request(Request::pause, now);
@@ -79,6 +79,7 @@ Reply Rig::answer_run(const ControlRequest& request) {
     if (!scales) return tl::unexpected(scales.error());
     done = run_.enter(*scales, now);
   } else if (request.command == ControlCommand::run_abort) {
+    if (magnet_ && !magnet_->ended()) return abort_magnet(now);
     done = run_.request(Request::abort, now);
   }
   if (!done) return tl::unexpected(done.error());
@@ -90,17 +91,27 @@ Reply Rig::answer_magnet(const ControlRequest& request) {
   const bool under_way = magnet_ && !magnet_->ended();
   if (request.command == ControlCommand::magnet_start) {
     if (under_way)
-      return fail(ErrorCode::state, "a magnet test is going on", "end it first: Ctrl-C where it runs");
+      return fail(ErrorCode::state, "a magnet test is going on", "Ctrl-C where it runs, or: mgt run abort");
     if (run_.active())
       return fail(ErrorCode::state, "a run is going on: a magnet would spoil it",
                   "wait for it, or: mgt run abort");
+    if (auto ready = ready_for_magnet(instruments_.status()); !ready) return tl::unexpected(ready.error());
     spdlog::info("magnet test: begun");
-    magnet_.emplace(clock_.now().mono, MagnetTest::kAnswer_s * config_.speed_up);
+    magnet_.emplace(clock_.now().mono, config_.speed_up);
   } else if (request.command == ControlCommand::magnet_stop && under_way) {
     magnet_->stop();
   }
   if (!magnet_) return fail(ErrorCode::state, "there was no magnet test", "mgt run magnet-test begins one");
   return to_json(magnet_->status());
+}
+
+/// Whose client is gone, too.
+Reply Rig::abort_magnet(Stamp now) {
+  magnet_->stop();
+  spdlog::info("magnet test: {}", magnet_->status().text);
+  RunStatus run = run_.status(now.mono);
+  run.message = "the magnet test is ended: " + magnet_->status().text;
+  return to_json(run);
 }
 
 Reply Rig::dry_run(const RunRequest& request) const {

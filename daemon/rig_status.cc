@@ -52,6 +52,7 @@ StatusReport Rig::report() const {
   if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
     out.disk_free_bytes = space.available;
   out.run = run_.status(now.mono);
+  if (magnet_ && !magnet_->ended()) out.magnet = magnet_->status();
   return out;
 }
 

@@ -32,7 +32,8 @@ std::vector<std::string> findings(const MagnetStatus& status) {
     const int arm = static_cast<int>(i) + 1;
     const auto& sensor = status.sensor_on_arm[i];
     if (!sensor) {
-      out.push_back(fmt::format("arm {} was not answered for: what is on it is open", arm));
+      out.push_back(fmt::format("arm {} was not {} for: what is on it is open", arm,
+                                arm > status.asked ? "asked" : "answered"));
     } else if (arms_with(status, *sensor) > 1) {
       out.push_back(fmt::format(
           "the cable labelled s{} answered for arm {} and for another one: do the test again", *sensor, arm));

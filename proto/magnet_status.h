@@ -19,6 +19,7 @@ struct MagnetStatus {
   std::optional<int> arm;                             ///< asked for
   std::string text;                                   ///< what to do, or how it ended
   std::array<std::optional<int>, 4> sensor_on_arm{};  ///< both from 1
+  int asked{0};                                       ///< arms the operator was asked for, from the first
   std::optional<MagnetEnd> end;
 };
 

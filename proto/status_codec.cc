@@ -179,7 +179,8 @@ Json to_json(const StatusReport& report) {
           {"ring", to_json(report.ring)},
           {"oldest_seq", optional(report.oldest_seq)},
           {"disk_free_bytes", optional(report.disk_free_bytes)},
-          {"run", to_json(report.run)}};
+          {"run", to_json(report.run)},
+          {"magnet", report.magnet ? to_json(*report.magnet) : Json(nullptr)}};
 }
 
 Result<RunStatus> run_status_from_json(const nlohmann::json& object) {

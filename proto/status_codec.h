@@ -20,7 +20,8 @@
 ///          "sampler":{"epochs","gaps","rate_hz","skew_bound_s"},
 ///          "stream":{"clients","accepted","refused","dropped","dropped_for":{"behind":0,..},"last_drop","gaps"},
 ///          "control":{as stream but gaps, "holder": control_hold.h},
-///          "journal":{"state","bytes"},"disk_free_bytes","run":{RUN}}
+///          "journal":{"state","bytes"},"disk_free_bytes","run":{RUN},
+///          "magnet":{..} or null}
 /// The stream puts "class" before these keys. What is not known is null; NaN becomes null.
 namespace mgtd {
 

@@ -8,6 +8,7 @@
 #include "proto/client_counts.h"
 #include "proto/control_hold.h"
 #include "proto/health.h"
+#include "proto/magnet_status.h"
 #include "proto/run_status.h"
 #include "proto/time.h"
 
@@ -80,6 +81,7 @@ struct StatusReport {
   std::optional<std::uint64_t> oldest_seq;  ///< from where on a client gets them
   std::optional<std::uint64_t> disk_free_bytes;
   RunStatus run;
+  std::optional<MagnetStatus> magnet;  ///< while a magnet test is going on
 };
 
 }  // namespace mgtd

@@ -24,7 +24,7 @@ int print_end(const Session& session, const nlohmann::json& status) {
 int run_magnet_test(const Session& session) {
   auto client = daemon::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
   auto status = client->request(ControlCommand::magnet_start);
   std::string told;
   while (status && status->at("active") == true) {

@@ -189,7 +189,8 @@ void add_plan_options(CLI::App* command, Arguments& args) {
 
 void add_run(CLI::App& app, Session& session) {
   CLI::App* const group = app.add_subcommand(
-      "run", "a calibration run: start, dry-run, magnet-test, follow, enter, redo, pause, resume, finish, abort");
+      "run",
+      "a calibration run: start, dry-run, magnet-test, follow, enter, redo, pause, resume, finish, abort");
   group->require_subcommand(1);
   auto args = std::make_shared<Arguments>();
   CLI::App* const begin = add_command(
@@ -222,7 +223,7 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return simple(session, ControlCommand::run_redo, false); });
   add_command(*group, session, "finish", "measure no more, fit the poses so far",
               [&session] { return simple(session, ControlCommand::run_finish, true); });
-  add_command(*group, session, "abort", "end the run; the active calibration stays",
+  add_command(*group, session, "abort", "end the run or the magnet test; the active calibration stays",
               [&session] { return simple(session, ControlCommand::run_abort, false); });
 }
 

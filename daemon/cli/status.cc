@@ -146,6 +146,9 @@ int run_status(const Session& session, double patience_s) {
   print_devices(s.at("devices"));
   print_bytes(s.at("devices"));
   print_run(s.at("run"));
+  if (const auto magnet = s.find("magnet"); magnet != s.end() && !magnet->is_null())
+    fmt::print("\nmagnet    a test is going on: {}\n          mgt run abort ends it\n",
+               text_or(*magnet, "text", ""));
   return code;
 }
 

@@ -62,7 +62,7 @@ TEST(MagnetTestTest, RightCablesAreRight) {
   const MagnetStatus status = hands.test.status();
   EXPECT_EQ(all_right(status), true);
   EXPECT_THAT(findings(status), IsEmpty());
-  EXPECT_EQ(status.text, "every cable is on its arm");
+  EXPECT_EQ(status.text, "every cable is on its arm; put the magnet away");
 }
 
 TEST(MagnetTestTest, SwappedCablesAreNamed) {
@@ -115,7 +115,38 @@ TEST(MagnetTestTest, WithoutAnAnswerItEndsAndGuessesNothing) {
   EXPECT_EQ(status.state, "timed out");
   EXPECT_EQ(all_right(status), std::nullopt);
   EXPECT_THAT(findings(status),
-              ElementsAre(HasSubstr("arm 3 was not answered for"), HasSubstr("arm 4 was not")));
+              ElementsAre(HasSubstr("arm 3 was not answered for"), HasSubstr("arm 4 was not asked for")));
+}
+
+TEST(MagnetTestTest, TheLimitIsToldInRealTime) {
+  MagnetTest test(Instant{}, 30);
+  test.advance(Instant{} + from_seconds(29 * MagnetTest::kAnswer_s));
+  EXPECT_FALSE(test.ended());
+  test.advance(Instant{} + from_seconds(31 * MagnetTest::kAnswer_s));
+  EXPECT_THAT(test.status().text, HasSubstr("within 120 s"));
+}
+
+TEST(MagnetTestTest, StoppedItNamesTheArmsThatWereNotAskedForAndTheMagnet) {
+  Hands hands;
+  hands.hold(std::nullopt, 3);
+  hands.test.stop();
+  const MagnetStatus status = hands.test.status();
+  EXPECT_THAT(status.text, HasSubstr("put the magnet away"));
+  EXPECT_THAT(findings(status),
+              ElementsAre(HasSubstr("arm 1 was not answered for"), HasSubstr("arm 2 was not asked for"),
+                          HasSubstr("arm 3 was not asked for"), HasSubstr("arm 4 was not asked for")));
+}
+
+TEST(MagnetTestTest, ASensorThatIsNotLiveIsNamedWithItsState) {
+  std::vector<DeviceStatus> devices;
+  for (const char* name : {"s1", "s2", "s3", "s4", "table"}) devices.push_back({name, "", "", {}});
+  for (std::size_t i = 0; i < kSensors; ++i) devices[i].health.state = LinkState::live;
+  EXPECT_TRUE(ready_for_magnet(devices)) << "the table is not needed";
+  devices[2].health.state = LinkState::silent;
+  devices[2].health.detail = "no frame for 3 s";
+  const auto refused = ready_for_magnet(devices);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("s3 is silent (no frame for 3 s)"));
 }
 
 TEST(MagnetTestTest, OneSensorForTwoArmsIsOpen) {
