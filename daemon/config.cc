@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "calib/effects/library.h"
+#include "calib/pose_columns.h"
 #include "daemon/mount_plan.h"
+#include "daemon/tcp_address.h"
 #include "daemon/toml_settings.h"
 #include "drivers/registry.h"
 
@@ -22,7 +25,11 @@ using drivers::Settings;
 /// Collects the mistakes of every section.
 class Reader {
  public:
-  explicit Reader(Config& config) : config_(config) {}
+  explicit Reader(Config& config) : config_(config) {
+    taken_columns_ = {"pose", "set", "t_utc"};
+    for (const calib::PoseColumn& column : calib::pose_columns())
+      if (!column.name.ends_with("_T_degC")) taken_columns_.insert(column.name);
+  }
 
   void read(const toml::table& root);
   [[nodiscard]] std::vector<drivers::SettingError> take_errors();
@@ -38,6 +45,8 @@ class Reader {
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
   void read_auxiliary(const toml::table& root);
+  void read_channels(Settings& s);
+  void warn_without_field();
   DeviceConfig read_device(Settings settings, std::string name, Role role, int slot);
   void read_port(Settings& s, DeviceConfig& device);
   void read_mounts(Settings& s);
@@ -47,6 +56,7 @@ class Reader {
   Config& config_;
   std::vector<drivers::SettingError> errors_;
   std::map<std::string, int> port_lines_, serial_lines_;
+  std::set<std::string, std::less<>> taken_columns_;  ///< of the pose table, by something else than a channel
 };
 
 constexpr std::array<std::string_view, 12> kSections{"rig",       "sensor", "table",       "scalar",
@@ -119,9 +129,9 @@ void Reader::read_disturbance(Settings& s, RunDefaults& r) {
   r.field_step_nT = s.number("field_step_nT", r.field_step_nT);
   require(s, "field_step_nT", r.field_step_nT >= 0, "0 (not looked at) or more");
   r.calm_s = s.number("calm_s", r.calm_s);
+  require(s, "calm_s", r.calm_s >= 1, "1 s or more");
   r.calm_max_s = s.number("calm_max_s", r.calm_max_s);
-  require(s, "calm_max_s", r.calm_s >= 1 && r.calm_max_s > r.calm_s,
-          "longer than calm_s, which is 1 s or more");
+  require(s, "calm_max_s", r.calm_s < 1 || r.calm_max_s > r.calm_s, "longer than calm_s");
 }
 
 void Reader::read_run(const toml::table& root) {
@@ -171,6 +181,8 @@ void Reader::read_service(const toml::table& root) {
   close(store);
   Settings stream = section(root, "stream");
   config_.stream_tcp = stream.text("tcp", config_.stream_tcp);
+  if (const auto address = parse_tcp_address(config_.stream_tcp); !config_.stream_tcp.empty() && !address)
+    stream.object("tcp", address.error().text());
   config_.stream_unix = stream.text("unix", config_.stream_unix);
   close(stream);
   Settings control = section(root, "control");
@@ -261,8 +273,24 @@ void Reader::read_sensors(const toml::table& root) {
       complain(static_cast<int>(list->get(i)->source().begin.line), "a [[sensor]] must be a section");
       continue;
     }
-    config_.sensors.at(i) =
-        read_device(to_settings(*table, "[[sensor]] " + name), name, Role::sensor, static_cast<int>(i));
+    Settings s = to_settings(*table, "[[sensor]] " + name);
+    if (Settings look = s; look.text("temperature", "none") != "none")
+      taken_columns_.insert(name + "_T_degC");
+    config_.sensors.at(i) = read_device(std::move(s), name, Role::sensor, static_cast<int>(i));
+  }
+}
+
+/// A channel is a column of the pose table beside those that are there already.
+void Reader::read_channels(Settings& s) {
+  Settings look = s;  // the driver tells of mistakes in the list itself
+  for (const std::string& column : look.texts("channels")) {
+    if (!taken_columns_.contains(column)) continue;
+    s.object("channels",
+             column.ends_with("_T_degC")
+                 ? fmt::format("'{}' is measured by the 'temperature' input of that sensor; leave "
+                               "one of the two out",
+                               column)
+                 : fmt::format("'{}' is a column of the pose table itself; choose another name", column));
   }
 }
 
@@ -277,8 +305,9 @@ void Reader::read_auxiliary(const toml::table& root) {
   }
   for (const toml::node& module : *list) {
     const std::string name = fmt::format("aux{}", config_.auxiliary.size() + 1);
-    config_.auxiliary.push_back(
-        read_device(to_settings(*module.as_table(), "[[auxiliary]] " + name), name, Role::auxiliary, 0));
+    Settings s = to_settings(*module.as_table(), "[[auxiliary]] " + name);
+    read_channels(s);
+    config_.auxiliary.push_back(read_device(std::move(s), name, Role::auxiliary, 0));
   }
 }
 
@@ -308,6 +337,16 @@ void Reader::read(const toml::table& root) {
   read_calibration(root);
   read_run(root);
   read_service(root);
+  warn_without_field();
+}
+
+/// The size of the field fixes the scale of all sensors.
+void Reader::warn_without_field() {
+  if (config_.scalar || config_.field_nT) return;
+  config_.warnings.push_back(fmt::format(
+      "{}: warning: neither [scalar] nor field_nT in [site]: a run cannot be calibrated, the size "
+      "of the field is not known",
+      config_.file));
 }
 
 std::vector<drivers::SettingError> Reader::take_errors() {

@@ -81,6 +81,9 @@ struct Config {
   int control_mode{0660};
   std::string log_level{"info"};
   double speed_up{1};
+
+  /// What is no mistake and will be missed all the same, ready to print.
+  std::vector<std::string> warnings;
 };
 
 /// All mistakes of a configuration, in the order of their lines, ready to print: "mgtd.toml:12: ...".

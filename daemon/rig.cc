@@ -66,6 +66,7 @@ Result<void> Rig::start() {
   if (auto bound = stream_.start(); !bound) return bound;
   if (auto bound = control_.start(); !bound) return bound;
   instruments_.start();
+  for (const std::string& warning : config_.warnings) spdlog::warn("{}", warning);
   if (const auto period = watchdog_period()) watchdog_.emplace(*period);
   tick();
   if (config_.speed_up != 1)

@@ -4,28 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+
+#include "proto/nearest_word.h"
 
 namespace mgtd::drivers {
-namespace {
-
-/// Levenshtein distance, for "did you mean".
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0U);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
-
 int Settings::line_of(std::string_view key) const {
   const auto found = entries_.find(key);
   return found == entries_.end() ? line_ : found->second.line;
@@ -40,7 +22,11 @@ Settings::Entry* Settings::find(std::string_view key) {
 }
 
 void Settings::wrong_type(std::string_view key, std::string_view expected) {
-  errors_.push_back({line_of(key), fmt::format("{}: '{}' must be {}", section_, key, expected)});
+  SettingError error{line_of(key), fmt::format("{}: '{}' must be {}", section_, key, expected)};
+  const bool told = std::any_of(errors_.begin(), errors_.end(), [&](const SettingError& before) {
+    return before.line == error.line && before.message == error.message;
+  });
+  if (!told) errors_.push_back(std::move(error));  // a key may be read by the driver and by its owner
 }
 
 void Settings::missing(std::string_view key) {
@@ -119,10 +105,7 @@ void Settings::refuse_unknown() {
   for (const auto& [key, entry] : entries_) {
     if (entry.used) continue;
     std::string message = fmt::format("{}: unknown key '{}'", section_, key);
-    const auto nearest = std::min_element(
-        asked_.begin(), asked_.end(),
-        [&wrong = key](const auto& a, const auto& b) { return distance(a, wrong) < distance(b, wrong); });
-    if (nearest != asked_.end() && distance(*nearest, key) <= 3)
+    if (const auto nearest = nearest_word(key, asked_))
       message += fmt::format(", did you mean '{}'?", *nearest);
     errors_.push_back({entry.line, std::move(message)});
   }

@@ -14,8 +14,12 @@ void add_check_config(CLI::App& app, Session& session) {
       app, session, "check-config", "read a configuration and list every mistake in it", [file, &session] {
         const auto config = daemon::load_config(*file);
         if (config) {
+          for (const std::string& warning : config->warnings) fmt::print(stderr, "{}\n", warning);
           if (session.json) {
-            print_json({{"schema", "mgt.check-config/1"}, {"ok", true}, {"errors", nlohmann::json::array()}});
+            print_json({{"schema", "mgt.check-config/1"},
+                        {"ok", true},
+                        {"errors", nlohmann::json::array()},
+                        {"warnings", config->warnings}});
           } else {
             fmt::print("{}: good\n", *file);
           }

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 namespace mgtd::daemon {
 namespace {
 
@@ -53,6 +55,47 @@ TEST(Config, OneSerialNumberIsOneDevice) {
   ASSERT_FALSE(config);
   EXPECT_THAT(config.error().lines, Contains(HasSubstr("rig.toml:10: [[sensor]] s2: 'serial': '1001' is "
                                                        "already used in line 5")));
+}
+
+TEST(Config, AnAddressWithoutAPossiblePortIsRefused) {
+  for (const char* tcp : {"127.0.0.1:99999", "127.0.0.1:-1", "127.0.0.1", "127.0.0.1:http"}) {
+    const auto config = parse_config(std::string("[stream]\ntcp = \"") + tcp + "\"\n", "rig.toml");
+    ASSERT_FALSE(config);
+    EXPECT_THAT(config.error().lines, Contains(StartsWith("rig.toml:2: [stream]: 'tcp'"))) << tcp;
+  }
+  const auto good = parse_config("[stream]\ntcp = \"127.0.0.1:0\"\n", "rig.toml");
+  EXPECT_THAT(good.error().lines, testing::Not(Contains(HasSubstr("'tcp'"))));
+}
+
+TEST(Config, AChannelIsNoColumnThatIsThereAlready) {
+  const auto config = parse_config(
+      "[[sensor]]\ndriver = \"obsdaq\"\nport = \"/dev/a\"\nprofile = \"mag-13-100\"\ntemperature = \"p\"\n"
+      "degC_per_V = 10.0\n"
+      "[[auxiliary]]\ndriver = \"dcon\"\nport = \"/dev/d\"\n"
+      "channels = [\"f_nT\", \"s1_T_degC\", \"s2_T_degC\", \"motor_A\", \"s3_sd_x_nT\", \"azimuth_deg\"]\n",
+      "rig.toml");
+  ASSERT_FALSE(config);
+  const auto& lines = config.error().lines;
+  EXPECT_THAT(lines, Contains(HasSubstr("rig.toml:10: [[auxiliary]] aux1: 'channels': 'f_nT' is a column")));
+  EXPECT_THAT(lines, Contains(HasSubstr("'s1_T_degC' is measured by the 'temperature' input")));
+  EXPECT_THAT(lines, Contains(HasSubstr("'s3_sd_x_nT' is a column")));
+  EXPECT_THAT(lines, Contains(HasSubstr("'azimuth_deg' is a column")));
+  EXPECT_THAT(lines, testing::Not(Contains(HasSubstr("'s2_T_degC'"))));
+  EXPECT_THAT(lines, testing::Not(Contains(HasSubstr("motor_A"))));
+}
+
+TEST(Config, AWrongTypeIsToldOnceAndACalmTooShortAtItsOwnLine) {
+  const auto config = parse_config(
+      "[[sensor]]\ndriver = \"obsdaq\"\nport = \"/dev/a\"\nprofile = \"mag-13-100\"\nserial = 1001\n"
+      "[run]\ncalm_s = -1\ncalm_max_s = 60\n",
+      "rig.toml");
+  ASSERT_FALSE(config);
+  const auto& lines = config.error().lines;
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const std::string& l) { return l.find("'serial'") != std::string::npos; }),
+            1);
+  EXPECT_THAT(lines, Contains(StartsWith("rig.toml:7: [run]: 'calm_s'")));
+  EXPECT_THAT(lines, testing::Not(Contains(HasSubstr("'calm_max_s'"))));
 }
 
 TEST(Config, AnUnknownDriverIsRefused) {
