@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "daemon/cli/command.h"
+#include "proto/nearest_word.h"
 
 namespace {
+
+/// The words where a command was expected and none of them was one. False: it was another mistake.
+bool name_unknown_command(const CLI::App& app) {
+  const CLI::App* group = &app;
+  while (!group->get_subcommands().empty()) group = group->get_subcommands().front();
+  const std::vector<std::string> left = app.remaining(true);
+  std::vector<std::string> commands;
+  for (const CLI::App* command : group->get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (commands.empty() || left.empty() || left.front().starts_with('-')) return false;
+  const auto meant = mgtd::nearest_word(left.front(), commands);
+  fmt::print(stderr, "mgt: unknown command '{}'{}\n     there are: {}\n", left.front(),
+             meant ? fmt::format(", did you mean '{}'?", *meant) : "", fmt::join(commands, ", "));
+  return true;
+}
 
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations, control\n"
     "Offline (files):          plan, fit, apply, check, diff, import, export, replay, check-config, ports\n"
-    "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, report\n\n"
+    "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, "
+    "report\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
     "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
@@ -54,6 +73,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0 && name_unknown_command(app)) return 2;
     const int code = app.exit(error);
     return code == 0 ? 0 : 2;
   }

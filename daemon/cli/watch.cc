@@ -100,7 +100,9 @@ void add_watch(CLI::App& app, Session& session) {
   args->rate_hz = 2;
   CLI::App* const command = add_command(app, session, "watch", "the live stream",
                                         [args, &session] { return run_watch(session, *args); });
-  command->add_option("--rate", args->rate_hz, "samples a second")->capture_default_str();
+  command->add_option("--rate", args->rate_hz, "samples a second")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--count", args->count, "end after so many samples (0: never)")->capture_default_str();
   command->add_option("--stream", args->stream, "Unix socket or host:port; asked of the daemon when absent");
   command->add_flag("--raw", args->raw, "the objects as they come, one per line");
