@@ -179,8 +179,8 @@ Reply Rig::import_calibration(const ControlRequest& request) {
     if (auto done = store_.accept(calibration->id, now, wanted->force); !done)
       return tl::unexpected(done.error());
     use_active_calibration();
-    reply["active"] = calibration->id;
   }
+  if (store_.active_id() == calibration->id) reply["active"] = calibration->id;
   return reply;
 }
 
