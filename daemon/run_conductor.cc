@@ -134,6 +134,9 @@ RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& 
 }
 
 Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
+  if (const RunStatus run = status(now.mono); run.state == RunState::paused && !run.goes_on)
+    return fail(ErrorCode::state, fmt::format("run {} is paused: {}", run.run_id, run.message),
+                "mgt run resume goes on with it, mgt run abort ends it");
   if (active())
     return fail(ErrorCode::state, fmt::format("run {} is going on", status(now.mono).run_id),
                 "wait for it, or: mgt run abort");
@@ -169,6 +172,7 @@ Result<void> RunConductor::start(const RunRequest& request, Stamp now) {
 void RunConductor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
                          const std::optional<EarlierLife>& earlier) {
   file_ = std::move(file);
+  given_up_.reset();
   config.until_tensor_sd_nT_per_m = file_->header().options.until_tensor_sd_nT_per_m;
   auto stored = file_->poses();
   poses_ = std::make_shared<PoseTable>(stored ? *std::move(stored) : PoseTable{});
@@ -216,7 +220,13 @@ Result<void> RunConductor::drop_interrupted() {
   if (!file) return tl::unexpected(file.error());
   if (auto set = file->set_state(RunState::aborted, "interrupted, then given up by the operator"); !set)
     return set;
+  given_up_ = status_of(
+      *interrupted_, RunState::aborted,
+      fmt::format("given up; its {0} of {1} poses are kept in {2}: mgt fit {2} -o CAL.json fits them",
+                  interrupted_->stored, interrupted_->planned, interrupted_->file.string()));
+  spdlog::info("run {}: {}", given_up_->run_id, given_up_->message);
   interrupted_.reset();
+  fsm_.reset();
   return {};
 }
 
@@ -366,23 +376,14 @@ void RunConductor::act(const Finish& action, Stamp) {
 
 RunStatus RunConductor::status(Instant now) const {
   if (fsm_ != nullptr) return fsm_->status(now);
-  RunStatus out;
-  if (failed_) {
-    out.run_id = failed_->run_id;
-    out.state = RunState::failed;
-    out.pose = failed_->stored;
-    out.poses = failed_->planned;
-    out.message = "the last run failed: mgt run resume goes on with it, mgt run start begins another";
-  }
-  if (interrupted_) {
-    out.run_id = interrupted_->run_id;
-    out.state = RunState::interrupted;
-    out.pose = interrupted_->stored;
-    out.poses = interrupted_->planned;
-    out.message =
-        "the daemon ended during this run: mgt run resume goes on with it, mgt run abort gives it up";
-  }
-  return out;
+  if (interrupted_)
+    return status_of(
+        *interrupted_, RunState::interrupted,
+        "the daemon ended during this run: mgt run resume goes on with it, mgt run abort gives it up");
+  if (failed_)
+    return status_of(*failed_, RunState::failed,
+                     "the last run failed: mgt run resume goes on with it, mgt run start begins another");
+  return given_up_.value_or(RunStatus{});
 }
 
 void RunConductor::abandon() {

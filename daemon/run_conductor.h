@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "calib/fit/accuracy_so_far.h"
 #include "daemon/calibration_store.h"
@@ -66,6 +67,15 @@ class RunConductor {
   [[nodiscard]] Result<void> table_is_there() const;
   [[nodiscard]] Result<void> resume_interrupted(Stamp now);
   [[nodiscard]] Result<void> drop_interrupted();
+  [[nodiscard]] static RunStatus status_of(const Interrupted& run, RunState state, std::string message) {
+    RunStatus out;
+    out.run_id = run.run_id;
+    out.state = state;
+    out.pose = run.stored;
+    out.poses = run.planned;
+    out.message = std::move(message);
+    return out;
+  }
   void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
   void carry_out(const std::vector<Action>& actions, Stamp now);
@@ -97,6 +107,7 @@ class RunConductor {
   bool learning_{false};                           ///< the worker is at such a fit
   std::optional<calib::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
+  std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins
   std::optional<Interrupted>
       failed_;                  ///< the last run, when it failed with poses on disk: resume takes it up
   std::vector<Event> answers_;  ///< of actions carried out at once, fed after them

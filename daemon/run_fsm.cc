@@ -269,6 +269,7 @@ RunStatus RunFsm::status(Instant now) const {
   s.elapsed_s = to_seconds(now - run_start_.mono);
   s.remaining_s = phase_ == Phase::ended ? 0 : progress_.remaining_s(now);
   s.message = message_;
+  s.goes_on = phase_ == Phase::waiting;
   s.proposed = final_ == RunState::done ? proposed_ : "";
   s.checks = checks_;
   s.tensor_sd_nT_per_m = tensor_sd_nT_per_m_;

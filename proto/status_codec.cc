@@ -141,6 +141,7 @@ Json to_json(const RunStatus& run) {
           {"elapsed_s", number(run.elapsed_s)},
           {"remaining_s", number(run.remaining_s)},
           {"message", run.message},
+          {"goes_on", run.goes_on},
           {"prompt", run.prompt ? to_json(*run.prompt) : Json(nullptr)},
           {"tensor_sd_nT_per_m", optional(run.tensor_sd_nT_per_m)},
           {"wanted_tensor_sd_nT_per_m", optional(run.wanted_tensor_sd_nT_per_m)},
@@ -201,6 +202,7 @@ Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
   reader.read("tensor_sd_nT_per_m", run.tensor_sd_nT_per_m);
   reader.read("wanted_tensor_sd_nT_per_m", run.wanted_tensor_sd_nT_per_m);
   reader.read("message", run.message);
+  if (object.contains("goes_on")) reader.read("goes_on", run.goes_on);
   if (object.contains("proposed") && !object["proposed"].is_null()) reader.read("proposed", run.proposed);
   if (object.contains("prompt") && !object["prompt"].is_null()) {
     auto prompt = prompt_from_json(object["prompt"]);

@@ -92,7 +92,7 @@ int follow(const Session& session) {
       if (!answer(session, *client, *run->prompt)) return print_end(session, *run);
       continue;
     }
-    if (!is_active(run->state) || run->state == RunState::paused) {
+    if (!is_active(run->state) || (run->state == RunState::paused && !run->goes_on)) {
       if (terminal) fmt::print(stderr, "\n");
       return print_end(session, *run);
     }
