@@ -6,13 +6,16 @@
 
 #include <algorithm>
 
+#include "daemon/cli/in_range.h"
 #include "daemon/solver.h"
 
 namespace mgtd::cli {
 
 void add_field_flags(CLI::App* command, FitFlags& flags) {
-  command->add_option("--field", flags.field_nT, "total field in nT, for poses without f_nT");
-  command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT");
+  command->add_option("--field", flags.field_nT, "total field in nT, for poses without f_nT")
+      ->check(in_range(1'000, 200'000, "nT"));
+  command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT")
+      ->check(above_zero(10'000, "nT"));
 }
 
 namespace {
@@ -27,11 +30,16 @@ void add_with(CLI::App* command, FitFlags& f) {
 
 void add_site_flags(CLI::App* command, FitFlags& f) {
   add_field_flags(command, f);
-  command->add_option("--baseline", f.baseline_m, "distance of opposite sensors in m (0.4)");
-  command->add_option("--inclination", f.inclination_deg,
-                      "of the field in the platform frame at zero table angles, deg, positive towards +Z");
-  command->add_option("--declination", f.declination_deg, "the same, from X towards Y, deg");
-  command->add_option("--table-sd", f.table_sd_deg, "standard deviation of a table angle in deg (0.1)");
+  command->add_option("--baseline", f.baseline_m, "distance of opposite sensors in m (0.4)")
+      ->check(in_range(0.05, 10, "m"));
+  command
+      ->add_option("--inclination", f.inclination_deg,
+                   "of the field in the platform frame at zero table angles, deg, positive towards +Z")
+      ->check(in_range(-90, 90, "deg"));
+  command->add_option("--declination", f.declination_deg, "the same, from X towards Y, deg")
+      ->check(in_range(-360, 360, "deg"));
+  command->add_option("--table-sd", f.table_sd_deg, "standard deviation of a table angle in deg (0.1)")
+      ->check(above_zero(10, "deg"));
   command->add_option("--seed", f.seed, "of everything random");
 }
 

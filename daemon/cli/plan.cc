@@ -7,6 +7,7 @@
 #include "calib/pose_table.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/in_range.h"
 #include "daemon/planned_poses.h"
 
 namespace mgtd::cli {
@@ -135,23 +136,31 @@ void add_plan(CLI::App& app, Session& session) {
   command->add_option("--with", args->with, "effect to plan for, by name; may be given again")
       ->allow_extra_args(false);
   command->add_option("--noise", args->noise_nT, "noise of a pose mean in nT, each axis")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero(100'000, "nT"))
       ->capture_default_str();
   command->add_option("--scalar-sd", args->scalar_sd_nT, "standard uncertainty of the scalar reference in nT")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero(100'000, "nT"))
       ->capture_default_str();
   command
       ->add_option("--warming", args->warming_degC,
                    "warming of the heads during the run in degC, where the poses tell no temperature")
+      ->check(in_range(-100, 100, "degC"))
       ->capture_default_str();
   command->add_flag("--no-scalar", args->no_scalar, "there is no scalar reference");
-  command->add_option("--field", args->field_nT,
-                      "total field in nT (50000); without a scalar reference: it is known");
-  command->add_option("--field-sd", args->field_sd_nT, "its standard uncertainty in nT");
-  command->add_option("--baseline", args->baseline_m, "distance of opposite sensors in m (0.4)");
-  command->add_option("--inclination", args->inclination_deg, "of the field at zero table angles, deg (60)");
-  command->add_option("--declination", args->declination_deg, "the same, from X towards Y, deg (0)");
-  command->add_option("--table-sd", args->table_sd_deg, "standard deviation of a table angle in deg (0.1)");
+  command
+      ->add_option("--field", args->field_nT,
+                   "total field in nT (50000); without a scalar reference: it is known")
+      ->check(in_range(1'000, 200'000, "nT"));
+  command->add_option("--field-sd", args->field_sd_nT, "its standard uncertainty in nT")
+      ->check(above_zero(10'000, "nT"));
+  command->add_option("--baseline", args->baseline_m, "distance of opposite sensors in m (0.4)")
+      ->check(in_range(0.05, 10, "m"));
+  command->add_option("--inclination", args->inclination_deg, "of the field at zero table angles, deg (60)")
+      ->check(in_range(-90, 90, "deg"));
+  command->add_option("--declination", args->declination_deg, "the same, from X towards Y, deg (0)")
+      ->check(in_range(-360, 360, "deg"));
+  command->add_option("--table-sd", args->table_sd_deg, "standard deviation of a table angle in deg (0.1)")
+      ->check(above_zero(10, "deg"));
 }
 
 }  // namespace mgtd::cli

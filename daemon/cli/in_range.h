@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+/// Numbers of the command line that have a physical range. The complaint names the number that was given,
+/// the range and its unit; nan and inf are outside of every range.
+namespace mgtd::cli {
+
+/// From `low` to `high`, both included.
+[[nodiscard]] CLI::Validator in_range(double low, double high, const std::string& unit);
+
+/// Above zero, up to `high`.
+[[nodiscard]] CLI::Validator above_zero(double high, const std::string& unit);
+
+}  // namespace mgtd::cli
