@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,14 @@ struct PoseColumn {
   std::function<void(Pose&, double)> set;
   std::function<std::optional<double>(const Pose&)> get;
   bool whole{false};  ///< only whole numbers within +-1e9
+  /// Of the number as it stands in the file.
+  struct Limits {
+    double low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};
+    bool without_low{false};  ///< low itself is outside
+    bool only_ends{false};    ///< low and high, nothing between
+    [[nodiscard]] bool hold(double value) const;
+    [[nodiscard]] std::string words() const;
+  } limits{};
 };
 
 /// In the order they are written. `pose`, `set` and `t_utc` are not numbers of this kind and stand before

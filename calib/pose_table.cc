@@ -172,6 +172,14 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
                       fmt::format("{} in column {} is not a whole number", cells[i].text, name),
                       "write it without decimals, or leave the cell empty");
     }
+    if (known_[i] != nullptr && !known_[i]->limits.hold(*value)) {
+      return complain(cells[i].column,
+                      fmt::format("{} in column {} is not possible: it must be {}", cells[i].text, name,
+                                  known_[i]->limits.words()),
+                      known_[i]->required
+                          ? "check unit and column; leave the whole pose out when it is wrong"
+                          : "check unit and column; leave the cell empty when it was not measured");
+    }
     if (known_[i] != nullptr) {
       known_[i]->set(pose, *value);
     } else {

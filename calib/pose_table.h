@@ -13,8 +13,8 @@ namespace mgtd::calib {
 
 /// Tolerates CRLF, a byte order mark, blank lines, '#' comments and spaces around cells. Refuses, with
 /// file:line:column and what to do: a missing column, a column named twice, a row of another length, text
-/// where a number belongs, nan, inf, an unreadable time, a pose number twice, a table without a row. `file`
-/// is for the messages.
+/// where a number belongs, nan, inf, a number that cannot be (PoseColumn::limits), an unreadable time, a pose
+/// number twice, a table without a row. `file` is for the messages.
 [[nodiscard]] Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file);
 
 /// The same of poses that are still to be measured: the three angles are required, readings are not looked

@@ -126,13 +126,48 @@ TEST(PoseTable, WholeNumbersStayWhole) {
   EXPECT_THAT(error_of(small(",mount", ",1e30")).message, HasSubstr("mount"));
 }
 
+/// What cannot be is refused where it stands; the ends of the range are not.
+TEST(PoseTable, ImpossibleValuesAreRefused) {
+  struct Case {
+    const char *column, *value, *limit;
+  };
+  for (const Case& c : std::initializer_list<Case>{{"f_sd_nT", "0", "above 0"},
+                                                   {"f_sd_nT", "-0.05", "above 0"},
+                                                   {"s2_sd_y_nT", "-1", "at least 0"},
+                                                   {"n", "0", "at least 1"},
+                                                   {"n_eff", "0", "above 0"},
+                                                   {"sense", "0", "-1 or +1"},
+                                                   {"sense", "2", "-1 or +1"},
+                                                   {"dwell_s", "0", "above 0"},
+                                                   {"s1_T_degC", "-273", "from -100 to 150"},
+                                                   {"s4_T_degC", "150.1", "from -100 to 150"},
+                                                   {"f_nT", "50.012", "from 1000 to 200000"},
+                                                   {"f_nT", "200001", "from 1000 to 200000"}}) {
+    const Error error = error_of(small("," + std::string(c.column), "," + std::string(c.value)));
+    EXPECT_THAT(error.message,
+                HasSubstr("poses.csv:2:39: " + std::string(c.value) + " in column " + c.column));
+    EXPECT_THAT(error.message, HasSubstr(c.limit));
+  }
+  std::string reading = small();
+  reading.replace(reading.find(",1,2,3"), 2, ",1.1e7");
+  EXPECT_THAT(error_of(reading).message, HasSubstr("poses.csv:2:12: 1.1e7 in column s1_x_nT"));
+}
+
+TEST(PoseTable, WhatAnInstrumentCanGiveIsNotRefused) {
+  const auto table = parse_pose_table(
+      small(",f_nT,f_sd_nT,s1_sd_x_nT,n,n_eff,sense,dwell_s,s1_T_degC", ",200000,1e-3,0,1,0.5,1,0.1,-100"),
+      "x");
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(table->poses[0].sense, 1);
+}
+
 TEST(PoseTable, AnEmptyFileAndAHeaderAloneAreRefused) {
   EXPECT_THAT(error_of("").message, HasSubstr("empty"));
   EXPECT_THAT(error_of("# only words\n\n").message, HasSubstr("empty"));
   EXPECT_THAT(error_of(header() + "\n").message, HasSubstr("no pose"));
 }
 
-/// Any finite double in any column survives: written, read, written again it is the same text.
+/// Any double that a column takes survives: written, read, written again it is the same text.
 TEST(PoseTable, WritingAndReadingGivesTheSameBits) {
   std::mt19937_64 random(20261121);
   const auto any_double = [&] {
@@ -141,17 +176,21 @@ TEST(PoseTable, WritingAndReadingGivesTheSameBits) {
       if (std::isfinite(value)) return value;
     }
   };
+  const auto any_between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
   for (int trial = 0; trial < 300; ++trial) {
     PoseTable table;
     for (int k = 0; k < 3; ++k) {
       Pose pose;
       pose.number = 10 * trial + k;
       pose.set = k == 0 ? "standard" : "random";
-      for (auto& y : pose.y_nT) y = Eigen::Vector3d{any_double(), any_double(), any_double()};
+      for (auto& y : pose.y_nT)
+        y = Eigen::Vector3d{any_between(-1e7, 1e7), any_between(-1, 1), any_between(-1e5, 1e5)};
       if (random() % 2 != 0) pose.t_s = any_double();
-      if (random() % 2 != 0) pose.f_nT = any_double();
-      if (random() % 2 != 0) pose.sd_nT[2][1] = any_double();
-      if (random() % 2 != 0) pose.T_degC[3] = any_double();
+      if (random() % 2 != 0) pose.f_nT = any_between(1e3, 2e5);
+      if (random() % 2 != 0) pose.sd_nT[2][1] = std::abs(any_double());
+      if (random() % 2 != 0) pose.T_degC[3] = any_between(-100, 150);
       if (random() % 2 != 0) pose.sense = random() % 2 != 0 ? 1 : -1;
       if (random() % 2 != 0)
         pose.t_utc = WallTime{static_cast<std::int64_t>(random() % 4'000'000'000'000) * 1000};
