@@ -74,8 +74,13 @@ void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
 
 }  // namespace
 
-bool ModelChange::vetoed() const {
-  return held_out_before_nT && held_out_after_nT && *held_out_after_nT > kHeldOutVeto * *held_out_before_nT;
+std::vector<Veto> ModelChange::vetoes() const {
+  std::vector<Veto> out;
+  if (held_out_before_nT && held_out_after_nT && *held_out_after_nT > kHeldOutVeto * *held_out_before_nT)
+    out.push_back(Veto::held_out);
+  if (adding && log10_p > std::log10(kVetoChance)) out.push_back(Veto::not_shown);
+  if (adding && price.growth > kVetoPrice) out.push_back(Veto::price);
+  return out;
 }
 
 Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options, const EffectPtr& effect) {

@@ -17,6 +17,14 @@
 /// what it looked like.
 namespace mgtd::calib {
 
+/// The tests that a change failed: not to be made unattended.
+enum class Veto {
+  held_out,   ///< the error on poses left out rises
+  not_shown,  ///< chance alone brings such a fall in more than one run of twenty; adding only
+  price,      ///< a standard deviation of the calibration grows more than a hundredfold; adding only
+};
+inline constexpr double kVetoChance = 0.05, kVetoPrice = 100;
+
 struct ModelChange {
   bool adding{true};
   std::string effect{};                           ///< of the family, or a user's name
@@ -32,8 +40,8 @@ struct ModelChange {
   std::optional<double> held_out_before_nT{}, held_out_after_nT{};
   VariancePrice price{};  ///< of the wider model
 
-  /// The error on poses left out rises: the change is not to be made unattended.
-  [[nodiscard]] bool vetoed() const;
+  [[nodiscard]] std::vector<Veto> vetoes() const;
+  [[nodiscard]] bool vetoed() const { return !vetoes().empty(); }
 };
 
 /// `options`: the model as it is. Refuses what a fit refuses, and an effect that the model holds already.
@@ -46,5 +54,7 @@ struct ModelChange {
 /// Schema "mgt.model-change/1".
 [[nodiscard]] nlohmann::json to_json(const ModelChange& change);
 [[nodiscard]] std::string to_text(const ModelChange& change);
+/// What was measured, against which limit.
+[[nodiscard]] std::string to_text(const ModelChange& change, Veto veto);
 
 }  // namespace mgtd::calib

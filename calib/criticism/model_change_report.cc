@@ -23,12 +23,26 @@ std::string line(const char* what, double before, double after, const char* unit
                      bar(before, top), "", after, unit, bar(after, top));
 }
 
+const char* name_of(Veto veto) {
+  switch (veto) {
+    case Veto::held_out:
+      return "poses left out get worse";
+    case Veto::not_shown:
+      return "not shown to be there";
+    case Veto::price:
+      return "price";
+  }
+  return "";
+}
+
 }  // namespace
 
 json to_json(const ModelChange& c) {
   json coefficients = json::array();
   for (const EffectCoefficient& x : c.coefficients)
     coefficients.push_back({{"name", x.name}, {"value", x.value}, {"sd", x.sd}, {"unit", x.unit}});
+  json vetoes = json::array();
+  for (const Veto veto : c.vetoes()) vetoes.push_back(name_of(veto));
   return {{"schema", "mgt.model-change/1"},
           {"action", c.adding ? "add" : "drop"},
           {"effect", c.effect},
@@ -51,6 +65,7 @@ json to_json(const ModelChange& c) {
           {"held_out_before_nT", maybe(c.held_out_before_nT)},
           {"held_out_after_nT", maybe(c.held_out_after_nT)},
           {"variance_price", {{"growth_of_sd", c.price.growth}, {"parameter", c.price.parameter}}},
+          {"vetoes", std::move(vetoes)},
           {"vetoed", c.vetoed()}};
 }
 
@@ -75,6 +90,23 @@ std::string to_text(const ModelChange& c) {
   if (c.adding && c.log10_p > -2)
     out += "chance alone brings such a fall in more than one run of a hundred: it is not shown to be there\n";
   return out;
+}
+
+std::string to_text(const ModelChange& c, Veto veto) {
+  switch (veto) {
+    case Veto::held_out:
+      return fmt::format("on poses left out the error rises from {:.4g} to {:.4g} nT",
+                         c.held_out_before_nT.value_or(0), c.held_out_after_nT.value_or(0));
+    case Veto::not_shown:
+      return fmt::format("it is not shown to be there: by chance p {}, and the limit is {}",
+                         p_text(c.log10_p), kVetoChance);
+    case Veto::price:
+      return fmt::format(
+          "the standard deviation of {} would be {:.0f} times what it is without, and the "
+          "limit is {:.0f}",
+          c.price.parameter, c.price.growth, kVetoPrice);
+  }
+  return {};
 }
 
 }  // namespace mgtd::calib

@@ -19,7 +19,9 @@ using nlohmann::json;
 constexpr const char* kAddHelp =
     "Fits everything again with the effect, says what it bought and what it costs, and keeps it in the run\n"
     "file: fit, compare, explain, improve and apply of that file use the kept model from then on\n"
-    "(--with none leaves it). An effect that makes poses left out worse is not kept, unless --force.\n\n"
+    "(--with none leaves it). An effect is not kept, unless --force, that makes poses left out worse by\n"
+    "more than 1 %, that chance alone would bring in more than one run of twenty, or that makes a standard\n"
+    "deviation of the calibration more than 100 times larger.\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt add axis.offset.temperature@s3.z run.mgtrun\n"
     "  mgt undo run.mgtrun\n\n"
@@ -62,10 +64,9 @@ int conclude(const Session& session, const Arguments& args, KeptRun& run, const 
     if (keep) fmt::print("\nkept in {}; mgt undo takes it back\n", args.run);
   }
   if (!keep) {
-    fmt::print(stderr,
-               "mgt: not kept: on poses left out the error rises from {:.4g} to {:.4g} nT\n"
-               "     this change is not what these poses ask for; --force keeps it all the same\n",
-               change.held_out_before_nT.value_or(0), change.held_out_after_nT.value_or(0));
+    for (const calib::Veto veto : change.vetoes())
+      fmt::print(stderr, "mgt: not kept: {}\n", to_text(change, veto));
+    fmt::print(stderr, "     this change is not what these poses ask for; --force keeps it all the same\n");
   }
   return keep ? 0 : 1;
 }
@@ -176,7 +177,7 @@ void add_add(CLI::App& app, Session& session) {
   command->footer(kAddHelp);
   command->add_option("EFFECT", args->effect, "NAME[@WHERE][,PARAM=VALUE]: see mgt effects")->required();
   add_run_argument(command, *args);
-  command->add_flag("--force", args->force, "keep it though poses left out get worse");
+  command->add_flag("--force", args->force, "keep it whatever speaks against it");
   args->flags = add_kept_model_flags(command);
 }
 

@@ -77,6 +77,27 @@ TEST(ModelChange, DroppingWhatIsNeededIsVetoedByPosesLeftOut) {
   EXPECT_TRUE(dropped->vetoed());
 }
 
+/// Of figures alone, no fit.
+TEST(ModelChange, ChanceAndPriceForbidAnAdditionAndNoRemoval) {
+  ModelChange change;
+  change.log10_p = -1.2;
+  change.price = {.growth = 1540, .parameter = "s2.scale.z"};
+  change.held_out_before_nT = 1, change.held_out_after_nT = 1.005;
+  EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::not_shown, Veto::price));
+  EXPECT_THAT(to_text(change, Veto::price), ::testing::HasSubstr("s2.scale.z would be 1540 times"));
+  EXPECT_THAT(to_text(change, Veto::not_shown), ::testing::HasSubstr("not shown to be there"));
+  EXPECT_EQ(to_json(change)["vetoes"].size(), 2U);
+  change.log10_p = -1.4;
+  change.price.growth = 99;
+  EXPECT_FALSE(change.vetoed());
+  change.held_out_after_nT = 1.02;
+  EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::held_out));
+  change.adding = false;
+  change.log10_p = 0;
+  change.price.growth = 1540;
+  EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::held_out));
+}
+
 TEST(ModelChange, AnEffectCannotBeInTwice) {
   const PoseTable table = hidden_run({}, 5);
   FitOptions with;
