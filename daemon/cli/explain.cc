@@ -19,6 +19,10 @@ constexpr const char* kHelp =
     "Verdicts: PASS nothing stands out; EXPLAINED one effect accounts for it; AMBIGUOUS several could;\n"
     "PARTIAL effects were found and more is there; UNKNOWN something that is in no library; BAD-DATA.\n"
     "One clean run in a hundred is called something other than PASS.\n\n"
+    "Columns: k coefficients; d and p how far beyond chance; share the part of the excess of chi-square "
+    "that\n"
+    "the effect would take away (1: all of it; -: these poses do not tell their noise, and nothing was "
+    "found).\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";
