@@ -41,6 +41,16 @@ Result<void> publish(const std::filesystem::path& draft, const std::filesystem::
   return sync_directory(path.parent_path());
 }
 
+/// An empty file that owner and group can read, and nobody else; SQLite gives its companions the same mode.
+Result<void> create_private(const std::filesystem::path& path) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0640);
+  if (fd < 0)
+    return fail(ErrorCode::io, fmt::format("cannot create {}: {}", path.string(), std::strerror(errno)),
+                "check path and permissions");
+  ::close(fd);
+  return {};
+}
+
 Result<void> insert_pose(Database& db, const Pose& pose) {
   std::string names, marks;
   for (const PoseColumn& c : pose_columns()) {
@@ -81,6 +91,7 @@ Result<RunFile> RunFile::create(const std::filesystem::path& path, const RunHead
   if (std::filesystem::exists(path)) return tl::unexpected(already_there(path));
   const std::filesystem::path draft = path.string() + fmt::format(".new{}", ::getpid());
   Result<void> made = [&]() -> Result<void> {
+    if (auto ok = create_private(draft); !ok) return ok;
     auto db = Database::open(draft, Database::Mode::create);
     if (!db) return tl::unexpected(db.error());
     if (auto ok = create_run_schema(**db, header); !ok) return ok;

@@ -38,6 +38,15 @@ RunHeader header() {
   return h;
 }
 
+TEST(RunFile, IsNotReadableByEverybody) {
+  TempDir dir;
+  const auto file = RunFile::create(dir / "a.mgtrun", header()).value();
+  for (const char* suffix : {"", "-wal", "-shm"}) {
+    const auto mode = std::filesystem::status(std::filesystem::path(dir / "a.mgtrun") += suffix).permissions();
+    EXPECT_EQ(mode & std::filesystem::perms::others_all, std::filesystem::perms::none) << suffix;
+  }
+}
+
 TEST(RunFile, KeepsEverythingBitForBit) {
   TempDir dir;
   {
