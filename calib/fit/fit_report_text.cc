@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include "calib/fit/fit_report_json.h"
 #include "proto/units.h"
@@ -30,18 +33,34 @@ std::string with_sd(double value, double sd) {
   return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, sd, decimals);
 }
 
+/// Characters as they are seen: of UTF-8, all but the bytes that continue one.
+std::size_t seen_width(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// A number whose standard deviation is tiny is long: the columns are as wide as the longest of them.
 std::string parameter_table(const Calibration& c) {
-  std::string out = fmt::format("{:<12}", "parameter");
-  for (std::size_t i = 0; i < kCount; ++i) out += fmt::format("{:>24}", fmt::format("s{}", i + 1));
-  out += "\n";
+  constexpr std::size_t kUsual = 24, kSpace = 2;
+  std::vector<std::array<std::string, kCount>> cells;
+  std::size_t width = kUsual;
   for (int k = 0; k < kSensorParameters; ++k) {
     const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(k)];
-    out += fmt::format("{:<12}", fmt::format("{} {}", shown.name, shown.unit));
+    std::array<std::string, kCount>& row = cells.emplace_back();
     for (std::size_t i = 0; i < kCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i) * kSensorParameters + k;
       const double sd = std::sqrt(std::max(0.0, c.covariance(at, at)));
-      out += fmt::format("{:>24}", with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor));
+      row.at(i) = with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor);
+      width = std::max(width, seen_width(row.at(i)) + kSpace);
     }
+  }
+  std::string out = fmt::format("{:<12}", "parameter");
+  for (std::size_t i = 0; i < kCount; ++i) out += fmt::format("{:>{}}", fmt::format("s{}", i + 1), width);
+  out += "\n";
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const ShownParameter& shown = shown_parameters()[k];
+    out += fmt::format("{:<12}", fmt::format("{} {}", shown.name, shown.unit));
+    for (const std::string& cell : cells[k]) out += fmt::format("{:>{}}", cell, width);
     out += "\n";
   }
   return out;
