@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <compare>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -17,6 +19,9 @@ struct Arguments {
   std::vector<std::string> journals;
   std::string calibration, output;
 };
+
+/// More than any header: its text has at most 65 535 bytes.
+constexpr std::size_t kHeaderMost = 66'000;
 
 /// Where the lines go.
 struct Output {
@@ -36,6 +41,53 @@ std::pair<std::string, std::uint64_t> life_and_number(const std::string& name) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string::npos) return {name, 0};
   return {name.substr(0, dot), std::strtoull(name.c_str() + dot + 1, nullptr, 10)};
+}
+
+/// A journal file and what it says of its place among the others.
+struct JournalFile {
+  std::string life;
+  std::uint64_t number{0};
+  std::string path;
+  auto operator<=>(const JournalFile&) const = default;
+};
+
+/// Empty: the crash that ended it came before its header was whole.
+Result<std::optional<JournalFile>> header_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return fail(ErrorCode::bad_input, path + ": cannot be read", "check path and permissions");
+  std::string piece(kHeaderMost, '\0');
+  in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+  RawLogDecoder decoder;
+  decoder.feed(
+      std::string_view(piece).substr(0, static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount()))));
+  static_cast<void>(decoder.next());
+  if (decoder.good_bytes() > 0) {
+    auto [life, number] = life_and_number(decoder.header().run_id);
+    return JournalFile{std::move(life), number, path};
+  }
+  if (decoder.state() == RawLogDecoder::State::header && in.gcount() > 0) return std::nullopt;
+  return fail(ErrorCode::bad_input, path + ": no journal of mgtd: it does not begin with a journal's header",
+              "name the raw-*.raw files of the daemon's runs folder");
+}
+
+/// In the order they were written.
+Result<std::vector<JournalFile>> in_order(const std::vector<std::string>& paths) {
+  std::vector<JournalFile> out;
+  for (const std::string& path : paths) {
+    auto file = header_of(path);
+    if (!file) return tl::unexpected(file.error());
+    if (*file) {
+      out.push_back(**std::move(file));
+    } else {
+      fmt::print(stderr, "{}: ends within its header; nothing to play\n", path);
+    }
+  }
+  if (out.empty()) {
+    return fail(ErrorCode::bad_input, "none of the files holds anything to play",
+                "name the raw-*.raw files of the daemon's runs folder");
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 /// Plays one file after another and sees that none between is missing.
@@ -76,7 +128,7 @@ class Player {
       return fail(ErrorCode::bad_input,
                   fmt::format("{}: file {} of its journal, and {} is not named before it", path, number,
                               life == life_ ? fmt::format("file {}", number_ + 1) : "its first file, 0,"),
-                  "name every file of the journal from its first one on, in order (raw-*.raw sorts so)");
+                  "name every file of the journal once, from its first one on");
     }
     life_ = life;
     number_ = number;
@@ -113,6 +165,8 @@ void print_summary(const daemon::ReplayCounts& counts) {
 }
 
 int run_replay(const Session& session, const Arguments& args) {
+  const auto journals = in_order(args.journals);
+  if (!journals) return report(session, journals.error());
   std::shared_ptr<const calib::Calibration> instead;
   if (!args.calibration.empty()) {
     auto calibration = read_calibration(args.calibration);
@@ -130,8 +184,8 @@ int run_replay(const Session& session, const Arguments& args) {
   }
   daemon::Replay replay([&output](std::string_view line) { output.write(line); }, instead);
   Player player(replay);
-  for (const std::string& journal : args.journals) {
-    if (auto played = player.play(journal); !played) return report(session, played.error());
+  for (const JournalFile& journal : *journals) {
+    if (auto played = player.play(journal.path); !played) return report(session, played.error());
   }
   if (output.file != nullptr && (std::fflush(output.file) != 0 || output.failed > 0))
     return report(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
