@@ -44,6 +44,8 @@ int main(int argc, char** argv) {
   app.add_option("--socket", session.control_socket, "control socket of the daemon")
       ->envname("MGTD_CONTROL")
       ->capture_default_str();
+  app.add_flag("--json", session.json,
+               "one JSON object on stdout, messages on stderr; also after the command");
   add_status(app, session);
   add_watch(app, session);
   add_run(app, session);

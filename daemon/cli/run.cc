@@ -212,7 +212,8 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return simple(session, ControlCommand::run_pause, false); });
   add_command(*group, session, "resume",
               "go on after a pause, or with a run that failed or that a dead daemon left",
-              [&session] { return simple(session, ControlCommand::run_resume, true); });
+              [args, &session] { return simple(session, ControlCommand::run_resume, !args->detach); })
+      ->add_flag("--detach", args->detach, "do not wait for the end");
   CLI::App* const entered = add_command(*group, session, "enter", "what the scales say that the run asks for",
                                         [args, &session] { return enter(session, *args); });
   entered->add_option("ANGLES", args->scales_deg, "azimuth, pitch and roll in degrees")

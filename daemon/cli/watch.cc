@@ -17,22 +17,23 @@ struct Arguments {
   bool raw{false};
 };
 
-double number(const nlohmann::json& object, const char* key) {
+/// Right-aligned; "--" where the stream has no number.
+std::string number(const nlohmann::json& object, const char* key, int width) {
   const auto& value = object.at(key);
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+  return value.is_null() ? fmt::format("{:>{}}", "--", width)
+                         : fmt::format("{:{}.2f}", value.get<double>(), width);
 }
 
 void print_sample(const nlohmann::json& s) {
   const auto& g = s.at("g_nT_per_m");
-  const auto& sd = s.at("g_sd_nT_per_m");
+  const auto& sd = s.at("g_sd_nT_per_m").at("xx");
   std::string flags;
   for (const auto& flag : s.at("flags")) flags += " " + flag.get<std::string>();
-  fmt::print(
-      "{}  F {:10.2f} nT  G xx {:8.2f} yy {:8.2f} zz {:8.2f} xy {:8.2f} xz {:8.2f} yz {:8.2f} +-{:6.2f} nT/m "
-      " cal {}{}\n",
-      s.at("t").get<std::string>().substr(11, 12), number(s, "f_nT"), number(g, "xx"), number(g, "yy"),
-      number(g, "zz"), number(g, "xy"), number(g, "xz"), number(g, "yz"), number(sd, "xx"),
-      s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
+  fmt::print("{}  F {} nT  G xx {} yy {} zz {} xy {} xz {} yz {}{} nT/m  cal {}{}\n",
+             s.at("t").get<std::string>().substr(11, 12), number(s, "f_nT", 10), number(g, "xx", 8),
+             number(g, "yy", 8), number(g, "zz", 8), number(g, "xy", 8), number(g, "xz", 8),
+             number(g, "yz", 8), sd.is_null() ? "" : fmt::format(" +-{:6.2f}", sd.get<double>()),
+             s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
   std::fflush(stdout);
 }
 
