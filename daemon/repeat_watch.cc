@@ -21,7 +21,7 @@ bool RepeatWatch::stands_still(const Eigen::Vector3d& y_nT) {
   last_nT_ = y_nT;
   if (repeated) {
     ++row_;
-    if (readings_ <= 1) return true;  // it has said one thing so far
+    if (rows_ == 0) return true;  // it was never seen to repeat itself and go on
     const double first = share(rows_, readings_), next = share(continued_, rows_ + continued_);
     return first * std::pow(next, static_cast<double>(row_ - 1)) < kStrange;
   }

@@ -9,9 +9,9 @@
 /// Noise makes readings differ: that all three axes repeat to the last bit is rare, how rare depends on
 /// resolution against noise and is learnt from the stream itself. With p the share of readings that begin a
 /// row of repeats and q that of repeats that are followed by another, r repeats in a row are taken for a
-/// standstill when p q^(r-1) < 1e-3. A fine digitiser is caught at the first repeat, once some hundred
-/// readings are known; one coarser than its noise needs more and is not accused wrongly. What has only ever
-/// said one thing is not known to measure. Pure.
+/// standstill when p q^(r-1) < 1e-3, and the first row of all. A fine digitiser is caught at the first
+/// repeat; one coarser than its noise needs more and is not accused wrongly. What has only ever said one
+/// thing is not known to measure. Pure.
 namespace mgtd::daemon {
 
 class RepeatWatch {

