@@ -54,7 +54,8 @@ Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
   Suspect out{.name = std::string(family.name),
               .level = family.level,
               .typical = family.typical,
-              .bound = family.bound};
+              .bound = family.bound,
+              .reads = std::string(family.needs)};
   const auto values = variants(family, context);
   for (const auto& value : values) {
     auto effect = make(family, std::nullopt, value, context);

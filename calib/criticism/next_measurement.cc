@@ -72,7 +72,7 @@ double p_right(const PoseTable& table, const JointFit& fit, const JointOptions& 
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
     qr.setThreshold(1e-6);
     const double told = (v - B * qr.solve(v)).squaredNorm();
-    lambda = std::min(lambda, rival->alike > kAlike ? beyond_form(told, v.squaredNorm()) : told);
+    lambda = std::min(lambda, rival->form_only ? beyond_form(told, v.squaredNorm()) : told);
   }
   return told_right(lambda);
 }

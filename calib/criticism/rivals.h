@@ -20,10 +20,12 @@
 /// the difference of the two falls of chi-square is normal (lambda, 4 lambda), and the right one of the two
 /// wins with probability Phi(sqrt(lambda_ab) / 2).
 ///
-/// And b stays possible, however large the effect, where all but a twentieth of one signature (in squares)
-/// lies within the other's on the same axes: then only the exact form of two idealised laws would decide, not
-/// their physics, and what differs is not counted in p_right. An axis' own square against the squares of the
-/// transverse axes, in one field strength, is such a pair: of square axes the two would differ by a constant.
+/// And b stays possible, however large the effect, where both laws read the same (Suspect::reads) and all but
+/// a twentieth of one signature (in squares) lies within the other's on the same axes: then only the exact
+/// form of two idealised laws would decide, not their physics, and what differs is not counted in p_right. An
+/// axis' own square against the squares of the transverse axes, in one field strength, is such a pair: of
+/// square axes the two would differ by a constant. Laws that read different things differ by what was
+/// measured, and that decides: a gradient that was there from the first pose, against one that came after it.
 namespace mgtd::calib {
 
 /// Share of a signature, in squares, inside that of another effect from which the two count as one.
@@ -39,10 +41,11 @@ inline constexpr double kLost = 0.005;
 
 struct Rival {
   std::string effect{}, where{};
-  std::string spec{};  ///< as --with reads it
-  double p_behind{0};  ///< chance that it fell so far behind although it is the true one
-  double alike{0};     ///< share of its signature, in squares, that the winner's holds too, or the reverse
-  double p_right{1};   ///< that of these two the right one wins, at the size that was found
+  std::string spec{};     ///< as --with reads it
+  double p_behind{0};     ///< chance that it fell so far behind although it is the true one
+  double alike{0};        ///< share of its signature, in squares, that the winner's holds too, or the reverse
+  bool form_only{false};  ///< the exact form of two laws alone would tell them apart
+  double p_right{1};      ///< that of these two the right one wins, at the size that was found
   bool possible{false};
 };
 

@@ -31,6 +31,8 @@ struct Suspect {
   std::vector<std::optional<double>> values{};
   std::string parameter{};  ///< its name
   double typical{1}, bound{0};
+  /// What its law reads besides the field at the sensor: columns, in a fixed order ("T_degC", "t_s").
+  std::string reads{};
   std::vector<Hypothesis> hypotheses{};
   /// The effect of one hypothesis, for the model; null: at its finest scale.
   std::function<Result<EffectPtr>(const Hypothesis*, const std::optional<double>& value)> make{};

@@ -84,6 +84,15 @@ TEST(Rivals, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
   EXPECT_EQ(seen.in_set, kRuns);
 }
 
+TEST(Rivals, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
+  constexpr int kRuns = 20;
+  Laws laws(0.99);
+  for (std::size_t i = 1; i < laws.suspects.size(); ++i) laws.suspects[i]->reads = "t_s";
+  const Counts seen = ask(laws, 200, kRuns);
+  EXPECT_EQ(seen.first, kRuns);
+  EXPECT_EQ(seen.alone, kRuns);
+}
+
 TEST(Rivals, FormAloneTellsNothingApart) {
   EXPECT_EQ(beyond_form(40, 1600), 0);
   EXPECT_DOUBLE_EQ(beyond_form(400, 1600), 320);
