@@ -79,6 +79,12 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
 /// In units of the noise that the table tells.
 double chi2_of(const JointFit& fit, const Criticism& c) { return c.chi2 * fit.worse * fit.worse; }
 
+std::vector<Detectable> detectable(const Criticism& c) {
+  std::vector<Detectable> out;
+  for (const ScoredFamily& f : c.families) out.push_back(detectable_of(*f.suspect, f.signatures.front()));
+  return out;
+}
+
 /// Fills what describes the model that was asked about.
 void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   out.noise = c.noise;
@@ -95,8 +101,8 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
     Candidate candidate = candidate_of(c.families[i], c, fit.worse);
     if (i == 0) weigh_poses(fit, c.evidence_by_pose(0), candidate);
     out.candidates.push_back(std::move(candidate));
-    out.detectable.push_back(detectable_of(*c.families[i].suspect, c.families[i].signatures.front()));
   }
+  out.detectable = detectable(c);
 }
 
 struct Search {
@@ -296,7 +302,10 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
         "dwell to dwell only, its size and its width are rough, and another name may stand in its place. To "
         "settle it: measure with the daemon, whose run file keeps the angles of the table on the way, or go "
         "to a dozen of the poses from both sides");
-  if (!out.rounds.empty()) look_at_maps(*fit, criticism);
+  if (!out.rounds.empty()) {
+    look_at_maps(*fit, criticism);
+    out.detectable = detectable(criticism);
+  }
   share_what_fell(out);
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;

@@ -83,7 +83,7 @@ struct ExplainReport {
   double omnibus_log10_p{0};
   double families{1};  ///< independent ones, by draws
   std::vector<OutlierNode> outliers{};
-  std::vector<Detectable> detectable{};
+  std::vector<Detectable> detectable{};  ///< beside the model after the rounds
   std::vector<Untestable> untestable{};
   std::vector<NextMeasurement> next{};  ///< for the first name, best first
   std::vector<std::string> notes{};

@@ -51,7 +51,9 @@ std::string to_text(const ExplainReport& r) {
                  fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "), sentence(r));
   candidates(r, out);
   maps(r.maps, out);
-  if (!r.detectable.empty()) out += "\nsmallest size that would have been seen (d = 8):\n";
+  if (!r.detectable.empty())
+    fmt::format_to(to, "\nsmallest size that would have been seen{} (d = 8):\n",
+                   r.rounds.empty() ? "" : ", with what was added in the model");
   for (const Detectable& d : r.detectable)
     fmt::format_to(to, "  {:<30} {:.3g} {} ({})\n", d.effect, d.value, d.unit, d.where);
   if (!r.untestable.empty()) out += "\nthese poses cannot test:\n";
