@@ -138,7 +138,7 @@ std::vector<LookAlike> compare_all(const std::vector<Shape>& shapes, int& pairs)
 /// The best action for each pair: the one that names it right most often, of equals the shortest.
 void find_remedies(const PlanRequest& request, const PoseTable& table, const Action& action,
                    std::vector<LookAlike>& pairs) {
-  const PoseTable longer = extended(table, action);
+  const PoseTable longer = extended(table, action, request.sensors);
   const auto design = planned_design(request, longer);
   if (!design) return;
   const Suspects library = library_suspects(longer, request.effects);
@@ -199,7 +199,8 @@ Result<PlanPower> plan_power(const PlanRequest& request, const PoseTable& table)
     out.detectable.push_back(
         plausible(detectable_of(*shape.suspect, shape.signatures.front()), *shape.suspect));
   out.inseparable = compare_all(shapes, out.pairs);
-  for (const Action& action : actions()) find_remedies(request, table, action, out.inseparable);
+  for (const Action& action : actions())
+    if (!action.moved) find_remedies(request, table, action, out.inseparable);
   return out;
 }
 

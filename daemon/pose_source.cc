@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pose_source.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <string>
 
+#include "calib/joined_runs.h"
 #include "calib/pose_table.h"
 #include "daemon/durable_file.h"
 #include "daemon/run_file.h"
@@ -47,6 +50,25 @@ Result<PoseSource> read_run(const std::filesystem::path& path) {
   auto table = calib::parse_pose_table(*text, path.string());
   if (!table) return tl::unexpected(table.error());
   return PoseSource{std::move(*table), std::nullopt, {}, {}};
+}
+
+Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vector<std::string>& others) {
+  auto out = read_run(first);
+  for (const std::string& path : others) {
+    if (!out) return out;
+    const auto other = read_run(path);
+    if (!other) return tl::unexpected(other.error());
+    if (out->header && other->header && out->header->options.baseline_m != other->header->options.baseline_m)
+      return fail(ErrorCode::refused,
+                  fmt::format("the sensors of {} are {} m apart and those of {} {} m: this is another array",
+                              first.string(), out->header->options.baseline_m, path,
+                              other->header->options.baseline_m),
+                  "judge them one by one");
+    auto both = calib::joined(out->table, other->table);
+    if (!both) return tl::unexpected(both.error());
+    out->table = std::move(*both);
+  }
+  return out;
 }
 
 Result<PoseTable> read_poses(const std::filesystem::path& path) {

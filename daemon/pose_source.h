@@ -21,6 +21,10 @@ struct PoseSource {
 };
 
 [[nodiscard]] Result<PoseSource> read_run(const std::filesystem::path& path);
+/// The first run with the poses of the others (calib/joined_runs.h); its own header, model and formulas
+/// count. Refuses runs whose sensors stand at another distance.
+[[nodiscard]] Result<PoseSource> read_runs(const std::filesystem::path& first,
+                                           const std::vector<std::string>& others);
 [[nodiscard]] Result<PoseTable> read_poses(const std::filesystem::path& path);
 
 }  // namespace mgtd::daemon

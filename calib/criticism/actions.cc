@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "calib/fit/azimuth_origin.h"
+#include "proto/units.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -50,6 +53,18 @@ auto drifted(const PoseTable& table, double t_s) {
   return out;
 }
 
+/// The same field at another pitch.
+void tilt(Pose& pose, double by_rad, const std::array<SensorModel, kSensors>& sensors) {
+  const auto before = pose.angles();
+  if (!before) return;
+  *pose.pitch_rad += by_rad;
+  const Eigen::Matrix3d turn = table_rotation(*pose.angles()) * table_rotation(*before).transpose();
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    pose.y_nT[i] = sensors[i].predict(turn * sensors[i].correct(pose.y_nT[i]));
+}
+
+constexpr double kTilt_rad = to_rad(20);
+
 constexpr std::array kActions{
     Action{"24 more poses as before", 0, [](Pose&, std::size_t) {}},
     Action{"a heat pulse: warm the heads by 5 degC and let them cool again during 24 poses", 10, &warm},
@@ -57,6 +72,12 @@ constexpr std::array kActions{
     Action{"24 poses in mixed order with waits of 5, 20 and 60 s before the dwell", 8, &dwell},
     Action{"24 poses with the current switched from pose to pose", 2, &toggle},
     Action{"24 poses approached from alternating sides", 2, &reverse},
+    Action{"24 poses tilted 20 degrees further (by the table, or a wedge under the array)", 4,
+           [](Pose&, std::size_t) {}, kTilt_rad},
+    Action{
+        "24 poses with the whole rig at another place: what is the site's stays behind (judge them on their "
+        "own)",
+        30, [](Pose&, std::size_t) {}, 0, true},
 };
 
 }  // namespace
@@ -69,8 +90,8 @@ double minutes_per_pose(const PoseTable& table) {
   return (*last - *first) / 60 / static_cast<double>(table.poses.size() - 1);
 }
 
-/// The run with the poses of an action behind it; readings stand for the attitude only.
-PoseTable extended(const PoseTable& table, const Action& action) {
+PoseTable extended(const PoseTable& table, const Action& action,
+                   const std::array<SensorModel, kSensors>& sensors) {
   PoseTable out = table;
   const Pose& last = table.poses.back();
   const std::size_t n = table.poses.size();
@@ -83,6 +104,7 @@ PoseTable extended(const PoseTable& table, const Action& action) {
     pose.t_utc.reset();
     pose.T_degC = drifted(table, pose.t_s.value_or(0));
     action.change(pose, k);
+    if (action.tilt_rad != 0) tilt(pose, k % 2 == 0 ? action.tilt_rad : -action.tilt_rad, sensors);
     out.poses.push_back(std::move(pose));
   }
   return out;

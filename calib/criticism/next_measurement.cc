@@ -34,16 +34,40 @@ Result<Design> design_of(const PoseTable& table, const JointFit& fit, const Join
   return out;
 }
 
+/// Further poses of an action, beside the run they follow.
+struct Longer {
+  PoseTable table;
+  Eigen::Index rows_here{0};  ///< of the poses at the place of the run
+};
+
+Longer longer(const PoseTable& table, const Action& action, const JointFit& fit) {
+  Longer out{.table = extended(table, action, fit.state.sensors)};
+  out.rows_here = kPoseRows * static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
+  return out;
+}
+
+/// An effect of the site at two places: coefficients of the one, then of the other.
+Eigen::MatrixXd at_two_places(const Eigen::MatrixXd& rows, Eigen::Index here) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.rows(), 2 * rows.cols());
+  out.topLeftCorner(here, rows.cols()) = rows.topRows(here);
+  out.bottomRightCorner(rows.rows() - here, rows.cols()) = rows.bottomRows(rows.rows() - here);
+  return out;
+}
+
 /// Projected columns of an effect; empty when these poses cannot feed it.
 Eigen::MatrixXd columns_of(const Design& design, const Residual& residual, const std::string& spec,
-                           const PoseTable& table, std::vector<std::string>* names) {
+                           const Longer& run, std::vector<std::string>* names) {
+  const PoseTable& table = run.table;
   const auto parsed = EffectSpec::parse(spec);
   if (!parsed) return {};
   const auto effect = make_effect(*parsed, EffectContext{.table = &table, .offset_nT = {}});
   if (!effect || !(*effect)->check(table)) return {};
   if (names != nullptr)
     for (const Coefficient& c : (*effect)->coefficients()) names->push_back(c.name);
-  return residual.project(effect_rows(design.problem, design.state, *effect)).projected;
+  const Eigen::MatrixXd rows = effect_rows(design.problem, design.state, *effect);
+  if ((*effect)->level() != Level::site || run.rows_here >= rows.rows())
+    return residual.project(rows).projected;
+  return residual.project(at_two_places(rows, run.rows_here)).projected;
 }
 
 Eigen::VectorXd sizes_of(const Candidate& winner, const std::vector<std::string>& names) {
@@ -56,18 +80,20 @@ Eigen::VectorXd sizes_of(const Candidate& winner, const std::vector<std::string>
 }
 
 /// Smallest probability over the rivals that the winner's name is told right, were it true.
-double p_right(const PoseTable& table, const JointFit& fit, const JointOptions& options,
-               const Candidate& winner, const std::vector<const Rival*>& rivals) {
-  const auto design = design_of(table, fit, options);
+double p_right(const Longer& run, const JointFit& fit, const JointOptions& options, const Candidate& winner,
+               const std::vector<const Rival*>& rivals) {
+  const auto design = design_of(run.table, fit, options);
   if (!design) return 0;
   const Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;
-  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, table, &names);
+  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
   if (Z.cols() == 0) return 0;
-  const Eigen::VectorXd v = Z * sizes_of(winner, names);
+  const Eigen::VectorXd sizes = sizes_of(winner, names);
+  const Eigen::VectorXd v =
+      Z.leftCols(sizes.size()) * sizes;  // what the site made here is not at another place
   double lambda = v.squaredNorm();
   for (const Rival* rival : rivals) {
-    const Eigen::MatrixXd B = columns_of(*design, residual, rival->spec, table, nullptr);
+    const Eigen::MatrixXd B = columns_of(*design, residual, rival->spec, run, nullptr);
     if (B.cols() == 0) continue;
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
     qr.setThreshold(1e-6);
@@ -95,9 +121,10 @@ std::vector<NextMeasurement> next_measurements(const PoseTable& table, const Joi
   std::vector<NextMeasurement> out;
   const auto rivals = hardest(winner);
   if (rivals.empty()) return out;
-  const double before = p_right(table, fit, options, winner, rivals);
+  const auto rows = kPoseRows * static_cast<Eigen::Index>(table.poses.size());
+  const double before = p_right({table, rows}, fit, options, winner, rivals);
   for (const Action& action : actions()) {
-    const double after = p_right(extended(table, action), fit, options, winner, rivals);
+    const double after = p_right(longer(table, action, fit), fit, options, winner, rivals);
     if (after < before + kWorth) continue;
     out.push_back({.action = std::string(action.text),
                    .minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses),

@@ -52,7 +52,8 @@ bool by_the_rig(const std::vector<Pose>& poses, const std::vector<Pose>& same) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Pose &a = poses[k], &b = same[k];
     if (a.T_degC != b.T_degC || a.covariates != b.covariates || a.f_nT != b.f_nT ||
-        a.since_stop_s != b.since_stop_s || a.mount != b.mount || a.y_nT != b.y_nT)
+        a.since_stop_s != b.since_stop_s || a.mount != b.mount ||
+        (a.y_nT != b.y_nT && a.pitch_rad == b.pitch_rad))
       return false;
   }
   return true;
@@ -67,22 +68,23 @@ bool alike(const std::vector<Pose>& a, const std::vector<Pose>& b) {
          });
 }
 
-std::vector<Pose> added(const PoseTable& table, const Action& action) {
-  const PoseTable whole = extended(table, action);
+std::vector<Pose> added(const PoseTable& table, const Action& action, const JointFit& fit) {
+  const PoseTable whole = extended(table, action, fit.state.sensors);
   return {whole.poses.begin() + static_cast<std::ptrdiff_t>(table.poses.size()), whole.poses.end()};
 }
 
-std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<NextMeasurement>& found) {
+std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<NextMeasurement>& found,
+                               const JointFit& fit) {
   std::vector<NextStep> out;
-  const std::vector<Pose> same = added(table, actions().front());
+  const std::vector<Pose> same = added(table, actions().front(), fit);
   for (const NextMeasurement& m : found) {
     const auto action =
         std::find_if(actions().begin(), actions().end(), [&](const Action& a) { return a.text == m.action; });
     if (action == actions().end()) continue;
-    NextStep step{.measurement = m, .poses = added(table, *action)};
+    NextStep step{.measurement = m, .poses = added(table, *action, fit)};
     // What the run has no column for cannot be changed, and would be more of the same.
-    if (action != actions().begin() && alike(step.poses, same)) continue;
-    step.by_the_rig = by_the_rig(step.poses, same);
+    if (action != actions().begin() && !action->moved && alike(step.poses, same)) continue;
+    step.by_the_rig = !action->moved && by_the_rig(step.poses, same);
     out.push_back(std::move(step));
   }
   return out;
@@ -130,7 +132,7 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
   const auto fit = fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
   const auto found = next_measurements(table, *fit, joint, *asked);
-  out.steps = steps_of(table, found);
+  out.steps = steps_of(table, found, *fit);
   out.p_right_before = found.empty() ? hardest->p_right : found.front().p_right_before;
   if (found.empty())
     out.text = "none of the measurements that are known here would tell them apart better than this run does";

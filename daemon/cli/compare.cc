@@ -22,7 +22,7 @@ struct Arguments {
 };
 
 int run_compare(const Session& session, const Arguments& args) {
-  const auto source = daemon::read_run(args.run);
+  const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());

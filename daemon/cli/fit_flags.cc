@@ -28,6 +28,14 @@ void add_with(CLI::App* command, FitFlags& f) {
       ->allow_extra_args(false);
 }
 
+void add_further(CLI::App* command, FitFlags& f) {
+  command
+      ->add_option("--and", f.further,
+                   "a further run of the same rig at the same place, judged together with RUN; may be given "
+                   "again")
+      ->allow_extra_args(false);
+}
+
 void add_site_flags(CLI::App* command, FitFlags& f) {
   add_field_flags(command, f);
   command->add_option("--baseline", f.baseline_m, "distance of opposite sensors in m (0.4)")
@@ -51,6 +59,7 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
       ->check(CLI::IsMember({"simplified", "two-step", "joint"}))
       ->capture_default_str();
   add_with(command, *f);
+  add_further(command, *f);
   add_site_flags(command, *f);
   return f;
 }
@@ -58,6 +67,7 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
 std::shared_ptr<FitFlags> add_model_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   add_with(command, *f);
+  add_further(command, *f);
   add_site_flags(command, *f);
   return f;
 }
@@ -66,6 +76,10 @@ std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   add_site_flags(command, *f);
   return f;
+}
+
+Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
+  return daemon::read_runs(run, flags.further);
 }
 
 namespace {

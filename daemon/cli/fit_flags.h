@@ -15,7 +15,8 @@ namespace mgtd::cli {
 
 struct FitFlags {
   std::string method{"joint"};
-  std::vector<std::string> with;  ///< effects by name; "none" leaves the model that the run file keeps
+  std::vector<std::string> further;  ///< runs that are judged together with the first
+  std::vector<std::string> with;     ///< effects by name; "none" leaves the model that the run file keeps
   std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;
 };
@@ -27,6 +28,9 @@ std::shared_ptr<FitFlags> add_model_flags(CLI::App* command);
 std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command);
 /// Those about the field alone.
 void add_field_flags(CLI::App* command, FitFlags& flags);
+
+/// RUN, and the further runs behind it.
+[[nodiscard]] Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags);
 
 /// What the command line says goes before what the run file says, and that before the defaults. Effects come
 /// beside those of the model that the run file keeps; one of the same name stands in its place.

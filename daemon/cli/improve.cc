@@ -37,7 +37,7 @@ std::optional<calib::Waterfall> waterfall_of(const PoseTable& table, calib::FitO
 }
 
 int run_improve(const Session& session, const Arguments& args) {
-  const auto source = daemon::read_run(args.run);
+  const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());

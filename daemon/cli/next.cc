@@ -30,7 +30,7 @@ int run_next(const Session& session, const Arguments& args) {
   if (args.pair.size() == 1)
     return report(session,
                   {ErrorCode::usage, "one effect alone leaves nothing to settle", "name two, or none"});
-  const auto source = daemon::read_run(args.run);
+  const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());

@@ -34,7 +34,7 @@ Result<std::vector<daemon::ModelStep>> history_of(const std::string& path, const
 }
 
 Result<ReportContent> content_of(const Arguments& args) {
-  auto source = daemon::read_run(args.run);
+  auto source = read_source(args.run, *args.flags);
   if (!source) return tl::unexpected(source.error());
   auto options = fit_options(*args.flags, *source);
   if (!options) return tl::unexpected(options.error());
