@@ -12,7 +12,10 @@ namespace {
 
 double warm(const AxisContext& c) { return c.T_degC - kT0_degC; }
 double hours(const AxisContext& c) { return c.t_s / 3600; }
-constexpr double kArcsec = kDeg / 3600;
+/// What an axis sees when it leans towards the two others, in the order x, y, z, by so many arc seconds.
+double leaning_nT(const AxisContext& c, const Numbers& n) {
+  return kDeg / 3600 * kF0_nT * (n[0] * c.other(0) + n[1] * c.other(1));
+}
 
 constexpr std::array kKinds{
     EffectKind{.name = "axis.offset.temperature",
@@ -49,14 +52,15 @@ constexpr std::array kKinds{
                .keys = {{{"ppm", 1, 100}, {"above_nT", 1, 0, 15'000, 35'000}}},
                .axis = [](const AxisContext& c,
                           const Numbers& n) { return std::abs(c.v()) > n[1] ? 1e-6 * n[0] * c.v() : 0; }},
-    // x is tilted towards y and z, y towards x and z, z towards x and y.
     EffectKind{.name = "axis.orthogonality.temperature",
                .scope = Scope::axis,
                .keys = {{{"arcsec_per_degC", 2, 10}}},
-               .axis =
-                   [](const AxisContext& c, const Numbers& n) {
-                     return kArcsec * warm(c) * kF0_nT * (n[0] * c.other(0) + n[1] * c.other(1));
-                   }},
+               .axis = [](const AxisContext& c, const Numbers& n) { return warm(c) * leaning_nT(c, n); }},
+    EffectKind{
+        .name = "axis.orthogonality.temperature2",
+        .scope = Scope::axis,
+        .keys = {{{"arcsec_per_degC2", 2, 5}}},
+        .axis = [](const AxisContext& c, const Numbers& n) { return warm(c) * warm(c) * leaning_nT(c, n); }},
     EffectKind{.name = "axis.quadratic",
                .scope = Scope::axis,
                .keys = {{{"nT_at_F0", 1, 8}}},

@@ -54,6 +54,20 @@ TEST(EffectList, MistakesAreNamed) {
       std::string::npos);
 }
 
+/// By hand, 4 degC above T0: an arc second of 50 000 nT is 0.2424 nT.
+TEST(EffectList, AxesLeanWithTheSquareOfTheWarmth) {
+  const auto effect =
+      made("name = 'axis.orthogonality.temperature2'\nwhere = 's2.y'\narcsec_per_degC2 = [3, -2]");
+  const double arcsec_nT = 50'000 * M_PI / 180 / 3600;
+  const Eigen::Vector3d v_nT(25'000, 40'000, 12'500);  // y leans towards x and z
+  const auto at = [&](double T_degC) {
+    return effect->axis_nT({.sensor = 1, .axis = 1, .T_degC = T_degC, .v_nT = v_nT});
+  };
+  EXPECT_NEAR(at(24), 16 * arcsec_nT * (3 * 0.5 - 2 * 0.25), 1e-9);
+  EXPECT_NEAR(at(16), at(24), 1e-9);
+  EXPECT_EQ(effect->axis_nT({.sensor = 1, .axis = 2, .T_degC = 24, .v_nT = v_nT}), 0);
+}
+
 /// By hand: sensor 687, axis 1, offset 25.837 + 1.3642 T - 0.058418 T^2, scale 0.99397 + 0.00021563 T +
 /// 4.1443e-7 T^2, at 23 degC against 20 degC.
 TEST(TemperatureLaw, IsTheMeasuredOne) {

@@ -67,6 +67,10 @@ std::vector<Case> axis_cases() {
         return (T(p, 2) - kT0) * kArcsec * (3 * v[0] - 2 * v[1]);
       }),
       {3, -2});
+  add("axis.orthogonality.temperature2@s3.z", on_s3z([](const Pose& p, const Vector3d& v, const Vector3d*) {
+        return std::pow(T(p, 2) - kT0, 2) * kArcsec * (0.5 * v[0] - 0.3 * v[1]);
+      }),
+      {0.5, -0.3});
   out.push_back({"axis.offset.temperature",
                  {.axis = [](const Pose& p, int sensor, int axis, const Vector3d&,
                              const Vector3d*) { return 0.1 * (sensor - axis) * (T(p, sensor) - kT0); }},
