@@ -55,6 +55,7 @@ Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state
   JointProblem wider;
   wider.geometry = problem.geometry;
   wider.effects = problem.effects;
+  wider.common_field = problem.common_field;
   wider.effects.push_back(effect);
   const auto added = static_cast<Eigen::Index>(effect->coefficients().size());
   JointState at = state;
