@@ -76,8 +76,12 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
   }
 }
 
-/// In units of the noise that the table tells.
-double chi2_of(const JointFit& fit, const Criticism& c) { return c.chi2 * fit.worse * fit.worse; }
+/// Readings in units of the noise that the table tells, its angles in units of `table_sd_rad`: every fit
+/// estimates that anew, and what an effect of the table explains would be gone with it.
+double chi2_of(const JointFit& fit, const Criticism& c, double table_sd_rad) {
+  const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
+  return (c.chi2 - fit.chi2_table) * fit.worse * fit.worse + fit.chi2_table * angles;
+}
 
 std::vector<Detectable> detectable(const Criticism& c) {
   std::vector<Detectable> out;
@@ -91,7 +95,7 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   out.noise_nT = fit.noise_nT();
   out.noise_told = fit.sample_noise_nT.has_value();
   out.residual_nT = residual_rms_nT(fit);
-  out.chi2 = chi2_of(fit, c), out.dof = c.dof;
+  out.chi2 = chi2_of(fit, c, fit.table_sd_rad), out.dof = c.dof;
   out.omnibus_log10_p = c.omnibus_log10_p;
   out.families = c.rates.best;
   out.maps = c.maps;
@@ -201,14 +205,15 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
     report.next = next_measurements(search.table, fit, search.joint, round.added);
     report.candidates[f].rivals = round.added.rivals;
   }
-  round.chi2_before = chi2_of(fit, criticism), round.rms_before_nT = residual_rms_nT(fit);
+  const double table_sd_rad = fit.table_sd_rad;
+  round.chi2_before = chi2_of(fit, criticism, table_sd_rad), round.rms_before_nT = residual_rms_nT(fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;
   fit = std::move(*refit);
   const Rates rates = std::move(criticism.rates);
   criticism = criticise(fit, search.suspects, search.seed, &rates);
   round.fit = std::make_shared<const JointFit>(fit);
-  round.chi2_after = chi2_of(fit, criticism), round.rms_after_nT = residual_rms_nT(fit);
+  round.chi2_after = chi2_of(fit, criticism, table_sd_rad), round.rms_after_nT = residual_rms_nT(fit);
   report.rounds.push_back(std::move(round));
   return true;
 }
