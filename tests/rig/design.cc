@@ -15,6 +15,7 @@ std::size_t below(std::mt19937_64& random, std::size_t n) {
 
 void add_standard(Design& design) {
   for (int k = 0; k < 18; ++k) design.poses.push_back({.angles_deg = {20.0 * k, 0, 0}, .set = "standard"});
+  design.poses.front().sense = 1;  // the table stands there already, and has come from nowhere
   for (int k = 17; k >= 0; --k)
     design.poses.push_back({.angles_deg = {20.0 * k + 10, 0, 0}, .set = "standard"});
 }
