@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/blind/planted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "calib/criticism/residual.h"
+#include "calib/criticism/rows.h"
+#include "tests/rig/rotations.h"
+#include "tests/rig/scenario.h"
+
+namespace mgtd::calib::testing {
+namespace {
+
+const rig::EffectKind& kind_named(const std::string& name) {
+  const auto kinds = rig::all_kinds();
+  const auto found =
+      std::find_if(kinds.begin(), kinds.end(), [&](const rig::EffectKind* k) { return k->name == name; });
+  if (found == kinds.end()) throw std::runtime_error("the rig has no effect " + name);
+  return **found;
+}
+
+rig::Scenario scenario() {
+  rig::Scenario out;
+  out.truth = *rig::rig_named("table6", 1);
+  out.temperature = {.start_degC = 17.5,
+                     .ramp_degC_per_h = 2,
+                     .head_degC = {0.0, 0.5, -0.4, 0.3},
+                     .pulse_degC = 7,
+                     .pulse_at_s = 400,
+                     .pulse_tau_s = 350};
+  out.covariates = {
+      {.name = "motor_A", .mean = 1, .amplitude = 1, .pattern = 7},
+      {.name = "battery_V", .mean = 12.6, .amplitude = -0.9, .wave = rig::Wave::ramp, .every_s = 3600}};
+  return out;
+}
+
+/// By pose, what the effect adds to the readings and to the scalar reference, in standard deviations.
+Eigen::MatrixXd signature(const JointFit& fit, const PoseTable& with, const PoseTable& without) {
+  const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n * kPoseRows, 1);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto p = static_cast<std::size_t>(k);
+    const JointPose& pose = fit.problem.poses[p];
+    for (int c = 0; c < kChannels; ++c) {
+      const auto s = static_cast<std::size_t>(c / 3);
+      rows(k * kPoseRows + c, 0) = pose.weight[c] * (with.poses[p].y_nT[s] - without.poses[p].y_nT[s])[c % 3];
+    }
+    if (without.poses[p].f_nT)
+      rows(k * kPoseRows + kChannels, 0) = (*with.poses[p].f_nT - *without.poses[p].f_nT) * pose.f_weight;
+  }
+  return rows;
+}
+
+}  // namespace
+
+Stage full_stage(std::uint64_t seed) { return {scenario(), rig::run_of_157({.senses = true}, seed)}; }
+
+Stage remounted_stage(std::uint64_t seed) {
+  using rig::about_x, rig::about_y, rig::about_z;
+  const std::vector<Eigen::Matrix3d> mounts{Eigen::Matrix3d::Identity(), about_x(90), about_y(90),
+                                            about_x(35) * about_z(50), about_y(-40) * about_x(20)};
+  return {scenario(), rig::remounted_turns(mounts, 18, seed)};
+}
+
+Planted scaled(Planted effect, double factor) {
+  const rig::EffectKind& kind = kind_named(effect.kind);
+  std::size_t next = 0;
+  for (const rig::Key& key : kind.keys) {
+    if (key.name == nullptr) break;
+    const bool by_size = key.low == key.high && !(key.fallback > 0);  // zero or none
+    for (int i = 0; i < key.count; ++i, ++next)
+      if (by_size) effect.numbers.at(next) *= factor;
+  }
+  return effect;
+}
+
+PoseTable planted_run(const Stage& stage, const std::vector<Planted>& effects, std::uint64_t seed) {
+  rig::Scenario scenario = stage.scenario;
+  for (const Planted& e : effects)
+    scenario.effects.push_back(
+        rig::make_effect(kind_named(e.kind), rig::Where::parse(e.where).value(), {.value = e.numbers}, e.of));
+  return rig::simulated_table(std::move(scenario), stage.design, seed);
+}
+
+double sigmas_of(const Stage& stage, const Planted& effect, std::uint64_t seed) {
+  // So little of it that only what is linear is seen.
+  constexpr double kLittle = 1e-3;
+  // The same seed draws the same noise and the same errors of the table: what differs is the effect.
+  const PoseTable without = planted_run(stage, {}, seed);
+  const PoseTable with = planted_run(stage, {scaled(effect, kLittle)}, seed);
+  JointOptions options;
+  if (!stage.scenario.scalar) options.field_nT = stage.scenario.f_nT;
+  const auto fit = fit_joint(without, options);
+  if (!fit) throw std::runtime_error(fit.error().text());
+  const Residual residual(fit->problem, fit->state, 0);
+  return residual.project(signature(*fit, with, without)).projected.norm() / kLittle;
+}
+
+Sized sized(const Stage& stage, const Planted& effect, double sigmas, std::uint64_t seed) {
+  const double factor = sigmas / sigmas_of(stage, effect, seed);
+  return {scaled(effect, factor), factor};
+}
+
+}  // namespace mgtd::calib::testing
