@@ -4,8 +4,7 @@
 namespace mgtd::drivers {
 namespace {
 
-/// A silence or a pause blames nobody: fewer ticks will do.
-constexpr int kPauseTicks = 15;
+constexpr double kResend_s = 1.0;
 
 bool matches(std::string_view line, std::string_view expected) {
   if (!expected.ends_with('*')) return line == expected;
@@ -36,16 +35,16 @@ void Dialogue::enter(std::size_t at, Instant now) {
 void Dialogue::say(Instant now) {
   ++attempts_;
   to_send_ += step().send;
-  resend_.set(now, 1.0, kPauseTicks);
+  resend_.set(now, kResend_s, pace_.quiet_ticks);
   switch (step().kind) {
     case Step::Kind::tell:
       deadline_.set(now, step().seconds, 1);
       break;
     case Step::Kind::drain:
-      deadline_.set(now, step().seconds, kPauseTicks);
+      deadline_.set(now, step().seconds, pace_.quiet_ticks);
       break;
     case Step::Kind::ask:
-      deadline_.set(now, step().seconds);
+      deadline_.set(now, step().seconds, pace_.answer_ticks);
       break;
   }
 }
@@ -79,7 +78,7 @@ void Dialogue::on_tick(Instant now, std::uint64_t bytes_in) {
 
 void Dialogue::tick_ask(Instant now) {
   if (!deadline_.passed(now)) return;
-  if (attempts_ < kAttempts) {
+  if (attempts_ < pace_.attempts) {
     say(now);
   } else if (step().tolerant) {
     enter(at_ + 1, now);
@@ -92,12 +91,12 @@ void Dialogue::tick_drain(Instant now, std::uint64_t bytes_in) {
   const bool over = limit_.passed(now);
   const bool resend = resend_.passed(now);
   if (std::exchange(bytes_seen_, bytes_in) != bytes_in) {
-    deadline_.set(now, step().seconds, kPauseTicks);
+    deadline_.set(now, step().seconds, pace_.quiet_ticks);
     if (over) {
       outcome_ = Outcome::never_silent;
     } else if (resend) {
       to_send_ += step().send;
-      resend_.set(now, 1.0, kPauseTicks);
+      resend_.set(now, kResend_s, pace_.quiet_ticks);
     }
   } else if (deadline_.passed(now)) {
     enter(at_ + 1, now);

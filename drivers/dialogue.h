@@ -11,7 +11,7 @@
 ///
 ///   tell   send, then let `seconds` pass; what comes in is of no interest
 ///   drain  send, and again every second while bytes still come, until none came for `seconds`
-///   ask    send, and wait up to `seconds` for the reply; asked kAttempts times
+///   ask    send, and wait up to `seconds` for the reply; asked `attempts` times
 ///
 /// The owner feeds lines and ticks, sends what take_send() gives, and reads the outcome.
 namespace mgtd::drivers {
@@ -25,14 +25,20 @@ struct Step {
   std::string refusal{};  ///< ... or when a line is this
 };
 
+/// How long it waits beside the seconds of its steps.
+struct Pace {
+  int attempts{3};                         ///< of an ask
+  int answer_ticks{Deadline::kFairTicks};  ///< that an answer is waited for at least
+  int quiet_ticks{15};                     ///< without a byte that end a drain: silence blames nobody
+};
+
 class Dialogue {
  public:
-  static constexpr int kAttempts = 3;
   static constexpr double kDrainLimit_s = 10.0;
 
   enum class Outcome { running, done, no_answer, wrong_answer, never_silent };
 
-  explicit Dialogue(std::vector<Step> steps = {}) : steps_(std::move(steps)) {}
+  explicit Dialogue(std::vector<Step> steps = {}, Pace pace = {}) : steps_(std::move(steps)), pace_(pace) {}
 
   void start(Instant now);
   void on_line(std::string_view line, Instant now);
@@ -55,6 +61,7 @@ class Dialogue {
   void tick_drain(Instant now, std::uint64_t bytes_in);
 
   std::vector<Step> steps_;
+  Pace pace_;
   std::size_t at_{0};
   Outcome outcome_{Outcome::running};
   std::string to_send_, heard_, identity_;

@@ -12,12 +12,13 @@ namespace mgtd::drivers {
 void LinkLife::refused(const Error& why) {
   open_ = false;
   why_ = why.text();
-  const bool missing = why.code == ErrorCode::unreachable;
-  closed_state_ = !missing ? LinkState::opening : was_open_ ? LinkState::gone : LinkState::absent;
+  missing_ = why.code == ErrorCode::unreachable;
+  closed_state_ = !missing_ ? LinkState::opening : was_open_ ? LinkState::gone : LinkState::absent;
 }
 
 void LinkLife::opened() {
   open_ = was_open_ = true;
+  missing_ = false;
   last_.reset();
   same_ = 0;
   ranged_ = frozen_ = saturated_ = false;
@@ -55,6 +56,10 @@ void LinkLife::judge(const FieldReading& reading) {
 }
 
 Duration LinkLife::next_wait() {
+  if (missing_) {
+    wait_s_ = kFirstWait_s;  // what is plugged in next has not failed yet
+    return from_seconds(kMissingWait_s);
+  }
   return from_seconds(std::exchange(wait_s_, std::min(2 * wait_s_, kLongestWait_s)));
 }
 

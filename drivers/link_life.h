@@ -15,13 +15,15 @@
 ///     FROZEN   the device goes on sending one and the same reading
 ///     SATURATED  every reading is at the end of the range
 ///
-/// A closed port is tried again after 0.25 s, doubling to 2 s, from the start once a device was live: never
-/// a busy loop, and never long after a replug.
+/// A port that is not there is looked for every 0.25 s, for as long as it takes: that costs a look into a
+/// directory, and a replug is noticed at once. One that is there and cannot be kept open (in use, refused,
+/// lost again before its device was live) is tried again after 0.25 s, doubling to 2 s, from the start when
+/// its device is live or the port was away. Never a busy loop.
 namespace mgtd::drivers {
 
 class LinkLife {
  public:
-  static constexpr double kFirstWait_s = 0.25, kLongestWait_s = 2;
+  static constexpr double kMissingWait_s = 0.25, kFirstWait_s = 0.25, kLongestWait_s = 2;
   static constexpr double kFrozen_s = 2, kSaturated_s = 1;
   static constexpr int kFrozenReadings = 10;
 
@@ -43,7 +45,7 @@ class LinkLife {
  private:
   void judge(const FieldReading& reading);
 
-  bool open_{false}, was_open_{false};
+  bool open_{false}, was_open_{false}, missing_{false};
   LinkState closed_state_{LinkState::absent};
   std::string why_{"not opened yet"};
   double wait_s_{kFirstWait_s};

@@ -13,53 +13,10 @@ namespace mgtd::drivers::obsdaq {
 namespace {
 
 constexpr std::size_t kLongestLine = 128;
-constexpr double kSilence_s = 0.3;  ///< that ends a drain
-constexpr double kReply_s = 2.0;
-constexpr double kOptionalReply_s = 0.3;
+constexpr double kWait_s = 2.0;  ///< before a device that did not answer is asked again
 constexpr double kRetry_s = 10.0;
 constexpr double kSilent_s = 1.0;
 constexpr int kSilentTicks = 50;
-
-using Kind = Step::Kind;
-
-Step ask(const Exchange& exchange) { return {Kind::ask, exchange.command, exchange.reply, kReply_s}; }
-
-/// Leaves whatever mode a PalmAcq was left in and connects through to the ObsDAQ.
-void enter_transparent(std::vector<Step>& steps) {
-  steps.push_back({Kind::tell, std::string("\x00\x1B", 2), "", 0.2});
-  steps.push_back({Kind::tell, "SM:CMD\r", "", 0.3});
-  steps.push_back({Kind::drain, "SF:-\r", "", kSilence_s});
-  steps.push_back({Kind::tell, "SP:R:19200,8,n,1,1\r", "", 0.3});
-  steps.push_back({Kind::tell, "ST:R\r", "", 0.3});
-  steps.push_back({Kind::ask, "SM:TRP\r", "AM:TRP,001B", kReply_s, true});
-}
-
-void enter_forwarding(std::vector<Step>& steps) {
-  steps.push_back({Kind::tell, std::string("\x00\x1B", 2), "", 0.2});
-  steps.push_back({Kind::tell, "SM:CMD\r", "", 0.3});
-  steps.push_back({Kind::tell, "SF:R\r", "", 0.2});
-}
-
-std::vector<Step> start_up(const ObsdaqSettings& s) {
-  std::vector<Step> steps;
-  if (s.palmacq) enter_transparent(steps);
-  steps.push_back({Kind::drain, quick_stop(), "", kSilence_s});
-  steps.push_back({Kind::tell, stop(s.address), "", 0.2});
-  steps.push_back({Kind::ask, identify(s.address), fmt::format("!{}*", s.address), kReply_s});
-  Step serial{Kind::ask, serial_number(s.address), fmt::format("!{}*", s.address),
-              s.serial.empty() ? kOptionalReply_s : kReply_s};
-  serial.tolerant = s.serial.empty();  // an old firmware that does not know the question
-  serial.refusal = fmt::format("?{}", s.address);
-  steps.push_back(std::move(serial));
-  steps.push_back(ask(trigger(s.address, 0, 0)));
-  steps.push_back({Kind::tell, "", "", 1.0});
-  for (int channel = 0; channel < 3; ++channel)
-    steps.push_back(ask(configure(s.address, channel, s.range.code, s.timing.rate_code)));
-  steps.push_back(ask(trigger(s.address, s.timing.period, s.timing.low)));
-  steps.push_back(ask(start(s.address)));
-  if (s.palmacq) enter_forwarding(steps);
-  return steps;
-}
 
 std::string without_cr(std::string text) {
   std::erase(text, '\r');
@@ -81,10 +38,7 @@ bool is_obsdaq(std::string identity) {
 }  // namespace
 
 ObsdaqDriver::ObsdaqDriver(int slot, ObsdaqSettings settings)
-    : LineDevice({Ending::cr, kLongestLine, settings.baud}),
-      slot_(slot),
-      settings_(std::move(settings)),
-      dialogue_(start_up(settings_)) {}
+    : LineDevice({Ending::cr, kLongestLine, settings.baud}), slot_(slot), settings_(std::move(settings)) {}
 
 std::unique_ptr<Device> ObsdaqDriver::make(int slot, Settings& settings) {
   return std::make_unique<ObsdaqDriver>(slot, read_obsdaq_settings(settings));
@@ -92,7 +46,7 @@ std::unique_ptr<Device> ObsdaqDriver::make(int slot, Settings& settings) {
 
 void ObsdaqDriver::on_open(Stamp now) {
   LineDevice::on_open(now);
-  start(now);
+  start(Patience::brisk, now);
 }
 
 void ObsdaqDriver::on_close(Stamp now) {
@@ -104,9 +58,11 @@ void ObsdaqDriver::on_shutdown(Stamp /*now*/) {
   if (phase_ == Phase::streaming && !settings_.palmacq) send(stop(settings_.address));
 }
 
-void ObsdaqDriver::start(Stamp now) {
+void ObsdaqDriver::start(Patience patience, Stamp now) {
   phase_ = Phase::starting;
+  patience_ = patience;
   told_.clear();
+  dialogue_ = start_up(settings_, patience);
   dialogue_.start(now.mono);
   send(dialogue_.take_send());
 }
@@ -120,7 +76,7 @@ void ObsdaqDriver::on_tick(Stamp now) {
     watch_silence(now);
     if (phase_ == Phase::streaming) watch_rate(now);
   } else if (phase_ == Phase::waiting && retry_.passed(now.mono)) {
-    start(now);
+    start(Patience::patient, now);
   }
 }
 
@@ -129,7 +85,11 @@ void ObsdaqDriver::pump(Stamp now) {
   if (dialogue_.identity() != told_ && !identified(now)) return;
   if (dialogue_.outcome() == Dialogue::Outcome::done) {
     go_live(now);
-  } else if (dialogue_.outcome() != Dialogue::Outcome::running) {
+  } else if (dialogue_.outcome() == Dialogue::Outcome::running) {
+    return;
+  } else if (patience_ == Patience::brisk && dialogue_.outcome() != Dialogue::Outcome::never_silent) {
+    start(Patience::patient, now);
+  } else {
     give_up(now);
   }
 }
@@ -180,11 +140,11 @@ void ObsdaqDriver::give_up(Stamp now) {
   switch (dialogue_.outcome()) {
     case Dialogue::Outcome::no_answer:
       phase_ = Phase::waiting;
-      retry_.set(now.mono, kReply_s);
+      retry_.set(now.mono, kWait_s);
       set_state(LinkState::silent,
                 fmt::format("no answer to '{}' in {} attempts at {} Bd; check power, cable, baud and address "
                             "{}{}",
-                            asked, Dialogue::kAttempts, settings_.baud, settings_.address,
+                            asked, Pace().attempts, settings_.baud, settings_.address,
                             settings_.palmacq ? "" : ", and palmacq = true if a PalmAcq stands between"));
       return;
     case Dialogue::Outcome::never_silent:
@@ -219,7 +179,7 @@ void ObsdaqDriver::watch_rate(Stamp now) {
             fmt::format("it sends {:.2f} readings a second instead of {:.2f}; telling it its settings again",
                         *found_hz, wanted_hz));
   emit(DeviceNote{now, health_.detail});
-  start(now);
+  start(Patience::patient, now);
 }
 
 void ObsdaqDriver::watch_silence(Stamp now) {
@@ -230,7 +190,7 @@ void ObsdaqDriver::watch_silence(Stamp now) {
                         mute ? "nothing came" : "bytes came but no valid line (check baud and cabling)",
                         silence_s()));
   emit(DeviceNote{now, health_.detail});
-  start(now);
+  start(any_good_line_ ? Patience::brisk : Patience::patient, now);
 }
 
 Verdict ObsdaqDriver::on_line(std::string_view line, Stamp arrival) {

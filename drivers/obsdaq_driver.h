@@ -9,16 +9,17 @@
 #include "drivers/dialogue.h"
 #include "drivers/line_device.h"
 #include "drivers/obsdaq_settings.h"
+#include "drivers/obsdaq_start.h"
 #include "drivers/rate_watch.h"
 
 /// One fluxgate behind an ObsDAQ: started, verified and kept streaming.
 ///
-///   probing    quick stop, silence, identity, serial number, trigger off, three channels, trigger, start;
-///   each echo checked live       FieldReading per line, TemperatureReading once a second silent     no
-///   answer, or no valid line for 2 s (10 periods when slower): started over; the port is opened
-///              again when nothing at all came for 10 s
-///   failed     the port answers with something else, or is another one than stated: DeviceFault, tried again
-///   every 10 s
+///   probing  as obsdaq_start.h: briskly, and patiently when that leads to nothing
+///   live     FieldReading per line, TemperatureReading once a second
+///   silent   no answer, or no valid line for 1 s (10 periods when slower): started over; the port is opened
+///            again when nothing at all came for 10 s
+///   failed   the port answers with something else, or is another one than stated: DeviceFault, tried again
+///            every 10 s
 ///
 /// y_nT = volts * scale_nT_per_V + offset_nT, per axis. seq counts from the start of the acquisition; a
 /// rejected line counts as many samples as it shows starts of ('*'), at least one unless it is a reply. Lines
@@ -45,7 +46,7 @@ class ObsdaqDriver final : public LineDevice {
  private:
   enum class Phase { closed, starting, streaming, waiting };
 
-  void start(Stamp now);
+  void start(Patience patience, Stamp now);
   void pump(Stamp now);
   [[nodiscard]] bool identified(Stamp now);
   void identify(Stamp now, std::string as);
@@ -61,6 +62,7 @@ class ObsdaqDriver final : public LineDevice {
   int slot_;
   ObsdaqSettings settings_;
   Phase phase_{Phase::closed};
+  Patience patience_{Patience::brisk};
   Dialogue dialogue_;
   Deadline silence_, retry_;
   std::string told_, model_;  ///< in the conversation under way

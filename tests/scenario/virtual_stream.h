@@ -142,7 +142,12 @@ class VirtualStream {
   void exchange(std::size_t i) {
     Port& port = ports_[i];
     if (port.open && (!rig.plugged(i) || port.device->wants_reopen())) close(i);
-    if (!port.open && rig.plugged(i) && t_s >= port.reopen_at_s) {
+    if (!port.open && t_s >= port.reopen_at_s) {
+      if (!rig.plugged(i)) {
+        port.life.refused({ErrorCode::unreachable, "there is no such port", ""});
+        port.reopen_at_s = t_s + to_seconds(port.life.next_wait());
+        return rig.drop(i, t_s);
+      }
       port.open = true;
       port.life.opened();
       raw(i, RawDirection::opened);

@@ -57,6 +57,43 @@ TEST(LinkLife, WaitsDoubleToTwoSecondsAndStartAgainAfterALiveDevice) {
   EXPECT_EQ(life.next_wait(), from_seconds(0.25));
 }
 
+TEST(LinkLife, APortThatIsNotThereIsLookedForFourTimesASecondForEver) {
+  LinkLife life;
+  const Error missing{ErrorCode::unreachable, "/dev/x: there is no such port", "plug it in"};
+  const Error in_use{ErrorCode::io, "/dev/x: the port is in use by another program", "stop it"};
+  for (int hour = 0; hour < 1000; ++hour) {
+    life.refused(missing);
+    ASSERT_EQ(life.next_wait(), from_seconds(0.25));
+  }
+  const double growing[] = {0.25, 0.5, 1, 2, 2};
+  for (const double s : growing) {
+    life.refused(in_use);
+    EXPECT_EQ(life.next_wait(), from_seconds(s));
+  }
+  life.refused(missing);  // pulled out: what is plugged in next is tried at once
+  EXPECT_EQ(life.next_wait(), from_seconds(0.25));
+  life.refused(in_use);
+  EXPECT_EQ(life.next_wait(), from_seconds(0.25));
+  life.refused(in_use);
+  EXPECT_EQ(life.next_wait(), from_seconds(0.5));
+}
+
+/// Whenever in the absence the plug goes in again, the port is tried within a quarter of a second of it.
+TEST(LinkLife, AReplugIsNoticedWithinAQuarterOfASecond) {
+  for (double away_s = 0.01; away_s < 30; away_s *= 1.3) {
+    LinkLife life;
+    life.opened();
+    life.live();
+    life.lost("/dev/x: the port is gone");
+    double t_s = to_seconds(life.next_wait());
+    while (t_s < away_s) {
+      life.refused({ErrorCode::unreachable, "/dev/x: there is no such port", "plug it in"});
+      t_s += to_seconds(life.next_wait());
+    }
+    EXPECT_LE(t_s - away_s, 0.25) << away_s;
+  }
+}
+
 TEST(LinkLife, OneAndTheSameReadingForTwoSecondsIsFrozenAndAnotherOneIsNot) {
   LinkLife life;
   life.opened();

@@ -381,6 +381,56 @@ TEST(ObsdaqPalmAcq, ConfiguresThroughTransparentModeAndForwards) {
   EXPECT_EQ(driver.health().rejected, LinkHealth().rejected);
 }
 
+/// What a replug costs beside the second that the trigger needs.
+TEST(ObsdaqPalmAcq, ADeviceThatFollowsIsStartedBriskly) {
+  for (const bool palmacq : {false, true}) {
+    Instrument instrument;
+    instrument.palmacq = palmacq;
+    ObsdaqDriver driver(0, settings(palmacq));
+    DeviceBench bench(driver, std::ref(instrument));
+    const double opened_s = bench.t_s();
+    bench.open();
+    ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
+    EXPECT_LT(bench.t_s() - opened_s, palmacq ? 1.7 : 1.3);
+  }
+}
+
+/// Deaf for a while after each command that it does not answer: what the long pauses are for.
+TEST(ObsdaqPalmAcq, OneThatNeedsItsPausesGetsThemInALaterConversation) {
+  Instrument instrument;
+  instrument.palmacq = true;
+  ObsdaqDriver driver(0, settings(true));
+  double now_s = 0, deaf_until_s = 0;
+  DeviceBench bench(driver, [&](std::string_view sent) {
+    if (now_s < deaf_until_s) return std::string();
+    std::string reply = instrument(sent);
+    if (reply.empty()) deaf_until_s = now_s + 0.15;
+    return reply;
+  });
+  bench.open();
+  ASSERT_TRUE(bench.pass_until([&] {
+    now_s = bench.t_s();
+    return driver.health().state == LinkState::live && instrument.forwarding && instrument.streaming;
+  }));
+  EXPECT_FALSE(instrument.transparent);
+  EXPECT_TRUE(bench.events<DeviceFault>().empty());
+  EXPECT_LT(bench.t_s() - 1000, 10) << "before the port would be opened again";
+}
+
+/// It says yes to everything and does not forward: the pauses were too short, or something else is wrong.
+TEST(ObsdaqPalmAcq, ABriskStartWithoutASampleIsFollowedByAPatientOne) {
+  Instrument instrument;
+  instrument.palmacq = true;
+  ObsdaqDriver driver(0, settings(true));
+  DeviceBench bench(driver, std::ref(instrument));
+  bench.open();
+  ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
+  ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::silent; }));
+  const double restarted_s = bench.t_s();
+  ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
+  EXPECT_GT(bench.t_s() - restarted_s, 3);
+}
+
 TEST(ObsdaqPalmAcq, AnUnstampedLineIsRejected) {
   Instrument instrument;
   instrument.palmacq = true;
