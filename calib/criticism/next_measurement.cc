@@ -11,7 +11,8 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kWorth = 0.01;  ///< gain of the probability that is worth telling
+constexpr double kWorth = 0.01;    ///< gain of the probability that is worth telling
+constexpr double kBetter = 0.005;  ///< than more of the same, for what takes more than that
 
 /// The fit's model on other poses, ready to project signatures.
 struct Design {
@@ -123,9 +124,11 @@ std::vector<NextMeasurement> next_measurements(const PoseTable& table, const Joi
   if (rivals.empty()) return out;
   const auto rows = kPoseRows * static_cast<Eigen::Index>(table.poses.size());
   const double before = p_right({table, rows}, fit, options, winner, rivals);
+  double worth = before + kWorth;
   for (const Action& action : actions()) {
     const double after = p_right(longer(table, action, fit), fit, options, winner, rivals);
-    if (after < before + kWorth) continue;
+    if (after < worth) continue;
+    if (&action == actions().data()) worth = after + kBetter;
     out.push_back({.action = std::string(action.text),
                    .minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses),
                    .p_right_before = before,

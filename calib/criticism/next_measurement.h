@@ -15,7 +15,8 @@
 namespace mgtd::calib {
 
 /// For the winner of a round against its possible rivals (or its nearest one), best first; actions that gain
-/// nothing are left out. `model`: the effects of the fit that the round started from.
+/// nothing, or no more than more of the same, are left out. `model`: the effects of the fit that the round
+/// started from.
 [[nodiscard]] std::vector<NextMeasurement> next_measurements(const PoseTable& table, const JointFit& fit,
                                                              const JointOptions& options,
                                                              const Candidate& winner);
