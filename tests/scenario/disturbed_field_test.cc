@@ -19,6 +19,10 @@ using testing::HasSubstr;
 
 constexpr const char* kRig = "[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n";
 
+/// What may be left of a slow one: at r = 30 m and v = 4 m/s the field falls by 3 v / r a second, and a
+/// change of 0.5 nT rms within a dwell of T = 4 s, the limit, is a mean of 0.5 nT sqrt(12) r / (3 v T).
+constexpr double kLeft_nT = 1.5;
+
 /// One every minute and a half, from far lanes to near ones, slow and fast.
 std::string traffic(double from_s, double to_s) {
   std::string out;
@@ -62,11 +66,10 @@ TEST(DisturbedField, VehiclesThatPassCostTimeAndNoPoseIsSpoiled) {
   ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
   EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
   EXPECT_EQ(daemon.poses.poses.size(), 48U);
-  EXPECT_GT(daemon.status->retries, 3);
+  EXPECT_GE(daemon.status->retries, 3);
   EXPECT_TRUE(mentions(daemon.records, "is suspended: the field changed by"));
   EXPECT_TRUE(mentions(daemon.records, "the field is calm after"));
-  // What may be left: a slow one far away that changed the field by the limit, 0.5 nT rms, within a dwell.
-  EXPECT_LT(worst_nT(daemon), 1.0);
+  EXPECT_LT(worst_nT(daemon), kLeft_nT);
 }
 
 TEST(DisturbedField, TheSameTrafficSpoilsPosesWhenNobodyLooks) {
@@ -78,14 +81,28 @@ TEST(DisturbedField, TheSameTrafficSpoilsPosesWhenNobodyLooks) {
   daemon.start(plan_for(daemon), config);
   ASSERT_TRUE(daemon.run(3600));
   // The scatter within a dwell still tells the quickest of them.
-  EXPECT_GT(worst_nT(daemon), 1.0) << "the test above would prove nothing";
+  EXPECT_GT(worst_nT(daemon), kLeft_nT) << "the test above would prove nothing";
+}
+
+/// Half-way of the move to the tenth pose of a quiet run, in the rig's time.
+double on_the_way_s() {
+  VirtualDaemon quiet(scenario_of(kRig));
+  if (!quiet.run(60, [&] { return quiet.all_live(); })) return 0;
+  quiet.start(plan_for(quiet));
+  if (!quiet.run(3600)) return 0;
+  const auto at_s = [&](std::size_t k, double dwells) {
+    const Pose& pose = quiet.poses.poses.at(k);
+    return static_cast<double>(pose.t_utc->ns) * 1e-9 - test::kSwitchedOn_utc_s + dwells * *pose.dwell_s;
+  };
+  return (at_s(8, 0.5) + at_s(9, -0.5)) / 2;
 }
 
 /// It comes while the table moves and is gone while it moves: the dwells between see nothing of it.
 TEST(DisturbedField, AVehicleThatStandsForAWhileIsWaitedFor) {
-  VirtualDaemon daemon(scenario_of(std::string(kRig) +
-                                   "[[vehicle]]\nat_s = 200\nnearest_m = 14\nspeed_m_per_s = 12\n"
-                                   "stands_s = 120\nmoment_Am2 = 600\n"));
+  VirtualDaemon daemon(scenario_of(
+      kRig + fmt::format("[[vehicle]]\nat_s = {:.2f}\nnearest_m = 14\nspeed_m_per_s = 40\nstands_s = 120\n"
+                         "moment_Am2 = 600\n",
+                         on_the_way_s())));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
   daemon.start(plan_for(daemon));
   ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
