@@ -98,6 +98,7 @@ Result<ControlReply> parse_reply(std::string_view text) {
     return fail(ErrorCode::protocol, fmt::format("'{}' is no answer of mgtd", excerpt(text)),
                 "is another program listening on this socket? use mgt and mgtd of the same version");
   };
+  if (nests_too_deeply(text)) return foreign();
   const Json object = Json::parse(text, nullptr, false);
   if (!object.is_object()) return foreign();
   const auto ok = object.find("ok");

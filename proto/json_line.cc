@@ -32,6 +32,24 @@ struct ErrorPosition : nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
+bool nests_too_deeply(std::string_view text) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && (c == '[' || c == '{')) {
+      if (++depth > kDeepestNesting) return true;
+    } else if (!quoted && (c == ']' || c == '}')) {
+      --depth;
+    }
+  }
+  return false;
+}
+
 std::string excerpt(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown(text.substr(0, kShown));
@@ -42,6 +60,11 @@ std::string excerpt(std::string_view text) {
 }
 
 Result<nlohmann::json> parse_json_object(std::string_view line, std::string_view example) {
+  if (nests_too_deeply(line))
+    return fail(
+        ErrorCode::bad_input,
+        fmt::format("'{}' nests more than {} brackets into each other", excerpt(line), kDeepestNesting),
+        fmt::format("send one object per line, like {}", example));
   nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
   if (object.is_discarded()) {
     ErrorPosition where;

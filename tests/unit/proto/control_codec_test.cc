@@ -77,6 +77,19 @@ TEST(ControlCodec, RepliesSurviveBothWays) {
   }
 }
 
+/// A line within the limit that would need a hundred megabytes of stack.
+TEST(ControlCodec, BracketsWithoutEndAreRefusedAndNotFollowed) {
+  const std::string open(400'000, '['), close(400'000, ']');
+  const auto deep = parse_control(R"({"cmd":"run.dry-run","id":7,"args":{"step_deg":)" + open + close + "}}");
+  ASSERT_FALSE(deep);
+  EXPECT_THAT(deep.error().error.message, testing::HasSubstr("nests more than 64 brackets"));
+  EXPECT_FALSE(parse_control(open));
+  EXPECT_FALSE(parse_reply(R"({"ok":true,"result":)" + open + close + "}"));
+  // Brackets in text are text.
+  EXPECT_TRUE(
+      parse_control(R"({"cmd":"control.take","args":{"why":"\"[[[[)" + std::string(100, '{') + R"("}})"));
+}
+
 TEST(ControlCodec, TextThatIsNotUtf8DoesNotEndTheConversation) {
   EXPECT_THAT(encode_reply(nullptr, fail(ErrorCode::protocol, "table said \xff\xfe", "")),
               HasSubstr("table said"));
