@@ -10,8 +10,8 @@
 
 #include "calib/geometry.h"
 #include "calib/sensor_model.h"
+#include "proto/check.h"
 #include "proto/error.h"
-#include "proto/run_status.h"
 
 /// The result of a run: an immutable value that is complete in itself. Its id is the hash of its content, so
 /// that two calibrations with one id are the same calibration; every streamed sample names the one it used.

@@ -244,8 +244,8 @@ RunStatus RunFsm::status(Instant now) const {
     case Phase::storing:
       s.state = RunState::dwelling;
       break;
-    case Phase::suspended:  // for an operator: not settled yet, and the message says why
-      s.state = RunState::settling;
+    case Phase::suspended:
+      s.state = RunState::suspended;
       break;
     case Phase::paused:
     case Phase::waiting:

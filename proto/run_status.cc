@@ -6,9 +6,9 @@
 namespace mgtd {
 
 std::string_view name(RunState state) {
-  static constexpr std::array<std::string_view, 15> kNames{
-      "idle",    "preflight", "homing", "asking", "moving",   "settling", "dwelling", "paused",
-      "solving", "aborting",  "done",   "rejected", "aborted",  "failed",   "interrupted"};
+  static constexpr std::array<std::string_view, 16> kNames{
+      "idle",   "preflight", "homing",   "asking", "moving",   "settling", "dwelling", "suspended",
+      "paused", "solving",   "aborting", "done",   "rejected", "aborted",  "failed",   "interrupted"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -20,6 +20,7 @@ bool is_active(RunState state) {
     case RunState::moving:
     case RunState::settling:
     case RunState::dwelling:
+    case RunState::suspended:
     case RunState::paused:
     case RunState::solving:
     case RunState::aborting:

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/check.h"
 #include "proto/operator_prompt.h"
 
 /// One object that answers "is a run going on, how far, how did it end": never three calls that race.
@@ -19,6 +20,7 @@ enum class RunState : std::uint8_t {
   moving,
   settling,
   dwelling,
+  suspended,  ///< the field is disturbed: the pose is measured again once it is calm, by itself
   paused,
   solving,
   aborting,
@@ -31,15 +33,6 @@ enum class RunState : std::uint8_t {
 [[nodiscard]] std::string_view name(RunState state);
 /// True while a run has the table.
 [[nodiscard]] bool is_active(RunState state);
-
-/// A named check with its measured value, its limit and what to do when it fails.
-struct Check {
-  std::string name;
-  bool passed{false};
-  std::string measured;
-  std::string limit;
-  std::string remedy;
-};
 
 struct RunStatus {
   std::string run_id;

@@ -63,6 +63,10 @@ TEST(DisturbedField, VehiclesThatPassCostTimeAndNoPoseIsSpoiled) {
   VirtualDaemon daemon(scenario_of(kRig + traffic(40, 2400)));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
   daemon.start(plan_for(daemon));
+  ASSERT_TRUE(daemon.run(3600, [&] { return daemon.status && daemon.status->state == RunState::suspended; }));
+  EXPECT_TRUE(is_active(daemon.status->state));
+  EXPECT_FALSE(daemon.status->goes_on) << "that is of a run that is paused";
+  EXPECT_NE(daemon.status->message.find("it is measured again when the field is calm"), std::string::npos);
   ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
   EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
   EXPECT_EQ(daemon.poses.poses.size(), 48U);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/stream.md is what a script is written from: it names every command and every state of a run.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "proto/control_codec.h"
+#include "proto/run_request.h"
+#include "proto/status_codec.h"
+
+namespace mgtd {
+namespace {
+
+std::string page() {
+  std::ifstream in(std::string(MGTD_SOURCE_DIR) + "/docs/stream.md");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(StreamPage, NamesEveryCommand) {
+  const std::string text = page();
+  for (const std::string_view command : kControlCommandNames)
+    EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", command)));
+}
+
+TEST(StreamPage, NamesEveryStateAndKeyOfARun) {
+  const std::string text = page();
+  for (int i = 0; i <= static_cast<int>(RunState::interrupted); ++i)
+    EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", name(static_cast<RunState>(i)))));
+  const auto run = to_json(RunStatus{});
+  for (const auto& [key, value] : run.items())
+    EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
+}
+
+TEST(StreamPage, NamesEveryArgumentOfARun) {
+  const std::string text = page();
+  const RunRequest all{
+      1,      1,
+      1,      1,
+      1,      1,
+      1,      1,
+      "list", {{.number = 1, .set = "random", .sense = 1, .dwell_s = 1, .since_stop_s = 1, .line = 1}}};
+  const nlohmann::json args = to_json(all);
+  for (const auto& [key, value] : args.items())
+    EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
+  for (const auto& [key, value] : args["poses"][0].items())
+    EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
+}
+
+}  // namespace
+}  // namespace mgtd
