@@ -38,6 +38,8 @@ int serve(Config config) {
   Rig rig(io, std::move(config), *std::move(store));
   if (auto started = rig.start(); !started) return report(started.error());
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  if (struct sigaction hangup{}; ::sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_DFL)
+    signals.add(SIGHUP);  // the terminal was closed; not under nohup
   signals.async_wait([&](auto ec, int number) {
     if (ec) return;
     spdlog::info("signal {}: stopping the table and closing", number);
@@ -72,6 +74,7 @@ int main(int argc, char** argv) {
     return kExitConfig;
   }
   if (check_only) {
+    for (const std::string& warning : config->warnings) fmt::print(stderr, "{}\n", warning);
     fmt::print("{}: good\n", config_file);
     return 0;
   }

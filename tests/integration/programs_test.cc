@@ -2,6 +2,7 @@
 // The real programs against each other: mgt-rig on ptys, mgtd on its ports, mgt as the operator.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -72,6 +73,35 @@ TEST(Programs, AKilledDaemonOffersTheRunAndGoesOnAtTheNextPose) {
   EXPECT_EQ(bench.mgt(kShortRun).exit_code, 1) << "a new run must not bury the old one";
   const Finished resumed = bench.mgt({"run", "resume"});
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err << bench.daemon().err();
+}
+
+/// The terminal in which it runs is closed: the table is stopped as for any other end.
+TEST(Programs, AClosedTerminalEndsItInOrder) {
+  Bench bench;
+  bench.start_daemon();
+  bench.daemon().signal(SIGHUP);
+  const auto ended = bench.daemon().wait();
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->exit_code, 0);
+  EXPECT_THAT(ended->err, HasSubstr("stopping the table and closing"));
+}
+
+/// What is no mistake and will be missed all the same is said by both programs.
+TEST(Programs, AConfigurationIsCheckedByTheDaemonAsByTheTool) {
+  Bench bench;
+  std::string config = slurp(bench.config_path());
+  const std::size_t scalar = config.find("[scalar]");
+  ASSERT_NE(scalar, std::string::npos);
+  config.erase(scalar, config.find("\n[", scalar) - scalar);
+  const std::string file = bench.dir() / "without-field.toml";
+  std::ofstream(file) << config;
+  const Finished tool = run_program({program("mgt"), "check-config", file}, bench.dir().path());
+  const Finished daemon =
+      run_program({program("mgtd"), "--config", file, "--check-config"}, bench.dir().path());
+  EXPECT_EQ(daemon.exit_code, 0);
+  EXPECT_THAT(daemon.err, HasSubstr("warning: neither [scalar] nor field_nT"));
+  EXPECT_EQ(daemon.err, tool.err);
+  EXPECT_EQ(daemon.out, tool.out);
 }
 
 /// The sockets are the service manager's: opened before the daemon, there after it.
