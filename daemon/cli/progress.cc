@@ -2,11 +2,17 @@
 #include "daemon/cli/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace mgtd::cli {
+
+int terminal_width(int fd) {
+  winsize size{};
+  return ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 100;
+}
 
 std::string duration_text(double seconds) {
   const auto total = std::llround(std::max(0.0, seconds));

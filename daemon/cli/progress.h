@@ -14,4 +14,7 @@ namespace mgtd::cli {
 /// "4 min 10 s", "12 s", "1 h 03 min".
 [[nodiscard]] std::string duration_text(double seconds);
 
+/// Columns of the terminal behind a descriptor; 100 where it does not say.
+[[nodiscard]] int terminal_width(int fd);
+
 }  // namespace mgtd::cli

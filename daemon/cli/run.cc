@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -28,11 +27,6 @@ struct Arguments {
   bool detach{false};
   std::vector<double> scales_deg;
 };
-
-int terminal_width() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 100;
-}
 
 int print_end(const Session& session, const RunStatus& run) {
   if (session.json) print_json(nlohmann::json(to_json(run)));
@@ -79,7 +73,7 @@ int follow(const Session& session) {
     if (!reply) return report(session, reply.error());
     const auto run = run_status_from_json(*reply);
     if (!run) return report(session, run.error());
-    const std::string line = progress_line(*run, terminal_width() - 1);
+    const std::string line = progress_line(*run, terminal_width(STDERR_FILENO) - 1);
     const int tenth = run->poses > 0 ? 10 * run->pose / run->poses : 0;
     if (terminal) {
       fmt::print(stderr, "\r\033[K{}", line);

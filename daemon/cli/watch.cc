@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 
 #include "daemon/cli/ask.h"
+#include "daemon/cli/gap_line.h"
+#include "daemon/cli/progress.h"
 #include "daemon/stream_reader.h"
 
 namespace mgtd::cli {
@@ -24,6 +30,38 @@ std::string number(const nlohmann::json& object, const char* key, int width) {
                          : fmt::format("{:{}.2f}", value.get<double>(), width);
 }
 
+/// Gaps that follow each other are one line: rewritten in place on a terminal; else told when samples come
+/// again, or after kHeld when none do.
+class Gaps {
+ public:
+  void add(const nlohmann::json& gap) {
+    if (line_.empty()) since_ = std::chrono::steady_clock::now();
+    line_.add(gap.at("from_seq").get<std::uint64_t>(), gap.at("to_seq").get<std::uint64_t>(),
+              gap.at("why").get<std::string>());
+    if (!terminal_) return;
+    const auto width = static_cast<std::size_t>(std::max(20, terminal_width(STDOUT_FILENO) - 1));
+    fmt::print("\r{}\x1b[K", indented().substr(0, width));
+    std::fflush(stdout);
+  }
+  void tell() {
+    if (line_.empty()) return;
+    fmt::print("{}\n", terminal_ ? std::string() : indented());
+    std::fflush(stdout);
+    line_.clear();
+  }
+  void tell_when_held_long() {
+    if (!terminal_ && std::chrono::steady_clock::now() - since_ > kHeld) tell();
+  }
+
+ private:
+  [[nodiscard]] std::string indented() const { return "              " + line_.text(); }
+
+  static constexpr std::chrono::seconds kHeld{10};
+  bool terminal_{isatty(STDOUT_FILENO) != 0};
+  GapLine line_;
+  std::chrono::steady_clock::time_point since_;
+};
+
 void print_sample(const nlohmann::json& s) {
   const auto& g = s.at("g_nT_per_m");
   const auto& sd = s.at("g_sd_nT_per_m").at("xx");
@@ -38,12 +76,13 @@ void print_sample(const nlohmann::json& s) {
 }
 
 /// A change of what the stream says of its calibration; told once.
-void print_criticism(const nlohmann::json& status, std::string& told) {
+void print_criticism(const nlohmann::json& status, std::string& told, Gaps& gaps) {
   const auto& criticism = status.at("criticism");
   const std::string state = criticism.at("state");
   if (state == told) return;
   told = state;
   if (state != "suspect" && state != "near source") return;
+  gaps.tell();
   fmt::print("              {}: {}\n              limit: {}; {}\n", state,
              criticism.at("measured").get<std::string>(), criticism.at("limit").get<std::string>(),
              criticism.at("remedy").get<std::string>());
@@ -58,38 +97,52 @@ Result<std::string> stream_of(const Session& session, const Arguments& args) {
   return unix_path.empty() ? version->at("stream_tcp").get<std::string>() : unix_path;
 }
 
-int run_watch(const Session& session, const Arguments& args) {
+/// One object of the stream, for a person.
+void show(const nlohmann::json& object, std::string& told, Gaps& gaps) {
+  const std::string kind = object.at("class");
+  if (kind == "TENSOR") {
+    gaps.tell();
+    print_sample(object);
+  } else if (kind == "STATUS") {
+    print_criticism(object, told, gaps);
+    gaps.tell_when_held_long();
+  } else if (kind == "GAP") {
+    gaps.add(object);
+  }
+}
+
+Result<daemon::StreamReader> open_stream(const Session& session, const Arguments& args) {
   const auto where = stream_of(session, args);
-  if (!where) return report(session, where.error());
+  if (!where) return tl::unexpected(where.error());
   WatchRequest request;
   request.classes = {};
   request.classes.add(StreamClass::tensor);
   request.classes.add(StreamClass::status);
   if (session.json || args.raw) request.classes = StreamClasses::all();
   request.rate_hz = args.rate_hz;
-  auto reader = daemon::StreamReader::open(*where, request);
+  return daemon::StreamReader::open(*where, request);
+}
+
+int run_watch(const Session& session, const Arguments& args) {
+  auto reader = open_stream(session, args);
   if (!reader) return report(session, reader.error());
   std::string told;
+  Gaps gaps;
   for (std::uint64_t seen = 0; args.count == 0 || seen < args.count;) {
     const auto object = reader->next(std::chrono::seconds(30));
-    if (!object) return report(session, object.error());
-    if (!*object)
-      return report(session,
-                    {ErrorCode::unreachable, "the stream is silent for 30 s", "mgt status tells why"});
-    const std::string kind = (*object)->at("class");
+    if (!object || !*object) {
+      gaps.tell();
+      return report(session, object ? Error{ErrorCode::unreachable, "the stream is silent for 30 s",
+                                            "mgt status tells why"}
+                                    : object.error());
+    }
     if (session.json || args.raw) {
       print_json(**object);
       std::fflush(stdout);
-    } else if (kind == "TENSOR") {
-      print_sample(**object);
-    } else if (kind == "STATUS") {
-      print_criticism(**object, told);
-    } else if (kind == "GAP") {
-      fmt::print("              gap: samples {} to {} were not measured: {}\n",
-                 (*object)->at("from_seq").get<std::uint64_t>(), (*object)->at("to_seq").get<std::uint64_t>(),
-                 (*object)->at("why").get<std::string>());
+    } else {
+      show(**object, told, gaps);
     }
-    if (kind == "TENSOR") ++seen;
+    if ((*object)->at("class") == "TENSOR") ++seen;
   }
   return 0;
 }
