@@ -220,10 +220,13 @@ Result<void> RunConductor::drop_interrupted() {
   if (!file) return tl::unexpected(file.error());
   if (auto set = file->set_state(RunState::aborted, "interrupted, then given up by the operator"); !set)
     return set;
-  given_up_ = status_of(
-      *interrupted_, RunState::aborted,
-      fmt::format("given up; its {0} of {1} poses are kept in {2}: mgt fit {2} -o CAL.json fits them",
-                  interrupted_->stored, interrupted_->planned, interrupted_->file.string()));
+  const std::string rest =
+      interrupted_->stored == 0
+          ? fmt::format("no pose was measured, {} holds nothing to fit; mgt run start begins another run",
+                        interrupted_->file.string())
+          : fmt::format("its {0} of {1} poses are kept in {2}: mgt fit {2} -o CAL.json fits them",
+                        interrupted_->stored, interrupted_->planned, interrupted_->file.string());
+  given_up_ = status_of(*interrupted_, RunState::aborted, "given up; " + rest);
   spdlog::info("run {}: {}", given_up_->run_id, given_up_->message);
   interrupted_.reset();
   fsm_.reset();
@@ -231,7 +234,12 @@ Result<void> RunConductor::drop_interrupted() {
 }
 
 Result<void> RunConductor::request(Request request, Stamp now) {
-  if (!active() && failed_ && request == Request::resume) interrupted_ = std::exchange(failed_, std::nullopt);
+  if (!active() && failed_ && request == Request::resume) {
+    interrupted_ = std::exchange(failed_, std::nullopt);
+    auto resumed = resume_interrupted(now);
+    if (!resumed) failed_ = std::exchange(interrupted_, std::nullopt);  // as it was
+    return resumed;
+  }
   if (interrupted_ && request == Request::resume) return resume_interrupted(now);
   if (interrupted_ && request == Request::abort) return drop_interrupted();
   if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");

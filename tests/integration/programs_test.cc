@@ -137,6 +137,17 @@ TEST(Programs, ARunThatFailedIsTakenUpWhereItStopped) {
   };
   fails(3);
   if (HasFatalFailure()) return;
+  // What cannot be taken up yet stays as it is.
+  ASSERT_EQ(bench.rig({"fault", bench.ports(), "unplug", "table"}).exit_code, 0);
+  ASSERT_TRUE(eventually([&] {
+    const json devices = bench.ask({"status"}).at("devices");
+    return std::any_of(devices.begin(), devices.end(),
+                       [](const json& d) { return d.at("name") == "table" && d.at("state") == "gone"; });
+  }));
+  EXPECT_EQ(bench.mgt({"run", "resume"}).exit_code, 1);
+  EXPECT_EQ(bench.ask({"run", "status"}).value("state", ""), "failed");
+  ASSERT_EQ(bench.rig({"fault", bench.ports(), "restore", "table"}).exit_code, 0);
+  ASSERT_TRUE(eventually([&] { return bench.mgt({"status", "--wait", "5"}).exit_code == 0; }));
   const ChildProcess taken_up({program("mgt"), "--socket", bench.dir() / "control.sock", "run", "resume"},
                               bench.dir().path(), "resume");
   fails(6);
