@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/log.h"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -8,6 +9,11 @@
 #include <memory>
 
 namespace mgtd::daemon {
+namespace {
+
+constexpr Duration kMinute = std::chrono::minutes(1);
+
+}  // namespace
 
 void start_log(std::string_view level) {
   auto logger = spdlog::stderr_color_mt("mgtd");
@@ -19,19 +25,49 @@ void start_log(std::string_view level) {
 }
 
 void QuietLog::warn(std::string_view topic, std::string_view message, Instant now) {
-  constexpr Duration kMinute = std::chrono::minutes(1);
-  const auto found = topics_.find(topic);
-  if (found != topics_.end() && found->second.message == message && now - found->second.written < kMinute) {
-    ++found->second.held_back;
-    return;
+  say(true, topic, message, now);
+}
+
+void QuietLog::info(std::string_view topic, std::string_view message, Instant now) {
+  say(false, topic, message, now);
+}
+
+void QuietLog::say(bool warning, std::string_view name, std::string_view message, Instant now) {
+  const auto [found, fresh] = topics_.try_emplace(std::string(name));
+  Topic& topic = found->second;
+  if (fresh || now - topic.minute >= kMinute) {
+    topic.minute = now;
+    topic.lines = 0;
   }
-  const std::uint64_t held_back = found == topics_.end() ? 0 : found->second.held_back;
-  if (held_back > 0) {
-    spdlog::warn("{}: {} ({} more since the last line)", topic, message, held_back);
-  } else {
-    spdlog::warn("{}: {}", topic, message);
+  const bool again = !fresh && topic.message == message && now - topic.written < kMinute;
+  if (!again && topic.lines < kLinesAMinute) return write(warning, name, topic, message, now);
+  ++topic.held_back;
+  topic.held = again ? std::string() : std::string(message);
+  topic.held_warning = warning;
+}
+
+void QuietLog::write(bool warning, std::string_view name, Topic& topic, std::string_view message,
+                     Instant now) {
+  const std::string more =
+      topic.held_back > 0 ? fmt::format(" ({} more since the last line)", topic.held_back) : std::string();
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}: {}{}", name, message, more);
+  topic.message = message;
+  topic.written = now;
+  ++topic.lines;
+  topic.held_back = 0;
+  topic.held.clear();
+}
+
+/// What was held back because others had used up the minute; what only repeated is told when it comes again.
+void QuietLog::tick(Instant now) {
+  for (auto& [name, topic] : topics_) {
+    if (topic.held.empty() || now - topic.minute < kMinute) continue;
+    topic.minute = now;
+    topic.lines = 0;
+    --topic.held_back;
+    const std::string held = std::move(topic.held);
+    write(topic.held_warning, name, topic, held, now);
   }
-  topics_[std::string(topic)] = Last{std::string(message), now, 0};
 }
 
 }  // namespace mgtd::daemon

@@ -137,7 +137,7 @@ void Rig::on_event(const std::string& device, const DeviceEvent& event) {
     pipeline_.push(*table);
     return run_.feed(*table, now);
   }
-  if (const auto* note = std::get_if<DeviceNote>(&event)) return spdlog::info("{}: {}", device, note->what);
+  if (const auto* note = std::get_if<DeviceNote>(&event)) return quiet_.info(device, note->what, now.mono);
   if (const auto* fault = std::get_if<DeviceFault>(&event)) {
     quiet_.warn(device, fault->remedy.empty() ? fault->what : fault->what + "; " + fault->remedy, now.mono);
     run_.feed(DeviceFaulted{device, *fault}, now);
@@ -152,14 +152,14 @@ void Rig::on_link(const std::string& device, const LinkHealth& health) {
   before = health.state;
   const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(health.state));
   if (answers(health.state) && !answered) {
-    spdlog::info("{}: live, {}", device, health.identity);
+    quiet_.info(device, health.identity.empty() ? "live" : "live, " + health.identity, now.mono);
     if (device.starts_with('s') && device.size() == 2) {
       note(ReopenedNote{device[1] - '1'}, now);
       pipeline_.reopened(device[1] - '1');
     }
     run_.feed(DeviceBack{device}, now);
   } else if (health.state == LinkState::live) {
-    spdlog::info("{}: live again", device);
+    quiet_.info(device, "live again", now.mono);
   }
   if (health.state == LinkState::live) return;
   quiet_.warn(device, fmt::format("{}: {}", state, health.detail), now.mono);
@@ -242,6 +242,7 @@ void Rig::every_second(Stamp now) {
   tell_left_out();
   const StatusReport status = report();
   tell_drops(status, now.mono);
+  quiet_.tick(now.mono);
   stream_.publish(status);
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),
                             name(run_.status(now.mono).state)));
