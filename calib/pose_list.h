@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace mgtd::calib {
 
 struct PoseList {
   PoseTable table;
-  std::vector<int> lines;  ///< beside table.poses, from 1
+  std::vector<int> lines;          ///< beside table.poses, from 1
+  std::vector<std::string> notes;  ///< beside table.poses: column `note`, what a hand has to do before each
 };
 
 /// As parse_pose_list (pose_table.h).

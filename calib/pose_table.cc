@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "calib/pose_columns.h"
 #include "calib/pose_list.h"
@@ -56,6 +57,8 @@ class Reader {
   [[nodiscard]] Result<PoseTable> read();
   /// Where each pose stands.
   [[nodiscard]] const std::vector<int>& lines() const { return lines_; }
+  /// Of a list: what a hand has to do before each pose.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   bool next_line();
@@ -72,6 +75,7 @@ class Reader {
     return found == names_.end() ? kNowhere : static_cast<std::size_t>(found - names_.begin());
   }
 
+  [[nodiscard]] bool is_note(std::string_view name) const { return rows_ == Rows::planned && name == "note"; }
   [[nodiscard]] bool required(const PoseColumn* column) const {
     if (column == nullptr) return false;
     return rows_ == Rows::measured ? column->required : is_angle(column->name);
@@ -81,6 +85,8 @@ class Reader {
   Rows rows_;
   std::size_t line_number_{0};
   std::vector<int> lines_;
+  std::vector<std::string> notes_;  ///< beside lines_
+  std::string note_;                ///< of the row under way
   std::vector<std::string> names_;
   std::vector<const PoseColumn*> known_;  ///< beside names_; null: not one of pose_columns()
 };
@@ -136,6 +142,7 @@ Result<void> Reader::read_names(Pose& pose, const std::vector<Cell>& cells) {
   }
   pose.number = static_cast<int>(*value);
   if (const std::size_t at = column_of("set"); at != kNowhere) pose.set = cells[at].text;
+  if (const std::size_t at = column_of("note"); at != kNowhere && is_note("note")) note_ = cells[at].text;
   if (const std::size_t at = column_of("t_utc"); at != kNowhere && !cells[at].text.empty()) {
     const auto t = parse_utc(cells[at].text);
     if (!t) return complain(cells[at].column, t.error().message, t.error().remedy);
@@ -154,7 +161,7 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
   if (auto read = read_names(pose, cells); !read) return tl::unexpected(read.error());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string& name = names_[i];
-    if (name == "pose" || name == "set" || name == "t_utc") continue;
+    if (name == "pose" || name == "set" || name == "t_utc" || is_note(name)) continue;
     if (cells[i].text.empty()) {
       if (!required(known_[i])) continue;
       return complain(cells[i].column, fmt::format("{} is empty", name),
@@ -203,6 +210,7 @@ Result<PoseTable> Reader::read() {
                       "give every pose a number of its own; equal angles may repeat");
     }
     table.poses.push_back(*std::move(pose));
+    notes_.push_back(std::exchange(note_, {}));
     lines_.push_back(static_cast<int>(line_number_));
   }
   if (table.poses.empty()) {
@@ -226,7 +234,7 @@ Result<PoseList> read_pose_list(std::string_view text, std::string_view file) {
   Reader reader(text, file, Rows::planned);
   auto table = reader.read();
   if (!table) return tl::unexpected(table.error());
-  return PoseList{*std::move(table), reader.lines()};
+  return PoseList{*std::move(table), reader.lines(), reader.notes()};
 }
 
 std::string format_pose_table(const PoseTable& table) {

@@ -49,6 +49,7 @@ Result<PlannedPose> planned(const RunRequest& request, const RequestedPose& wish
   pose.dwell_s = wish.dwell_s.value_or(options.dwell_short_s);
   pose.sense = options.by_hand ? 0 : wish.sense.value_or(0);
   pose.since_stop_s = wish.since_stop_s;
+  pose.note = wish.note;
   return pose;
 }
 
@@ -64,6 +65,7 @@ std::vector<RequestedPose> requested_poses(const calib::PoseList& list) {
                    .sense = p.sense,
                    .dwell_s = p.dwell_s,
                    .since_stop_s = p.since_stop_s,
+                   .note = i < list.notes.size() ? list.notes[i] : std::string(),
                    .line = list.lines[i]});
   }
   return out;

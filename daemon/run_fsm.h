@@ -28,6 +28,7 @@
 ///   the entry is what is stored. An entry that disagrees with the turn of the field is asked for again; the
 ///   same entry once more stands. No answer within answer_max_s pauses the run; nothing is assumed. Redo asks
 ///   for the last entry again and measures again what rests on it.
+/// - What a list wants done by hand before a pose is asked for too, and resume says that it is done.
 /// - A pose that cannot be used (not settled, disturbed, gaps, saturated, frozen) is measured again, up to
 ///   `retries` times; then the run pauses with what was measured, the limit and what to do.
 /// - A field that changes while the table stands (unrest.h), or that is at another level than at the pose
@@ -114,6 +115,10 @@ class RunFsm {
   // What is set by hand.
   [[nodiscard]] bool ask_hands();  ///< for the pose under way; false: nothing is to be asked
   void ask(OperatorPrompt::What what, std::string again);
+  void carried_out();
+  [[nodiscard]] bool asks_for_deed() const {
+    return phase_ == Phase::asking && prompt_->what == OperatorPrompt::What::note;
+  }
   void drop(const std::vector<std::size_t>& poses);
   [[nodiscard]] bool believed(const Pose& pose);  ///< false: asked again
   [[nodiscard]] bool by_hand() const;             ///< anything in this run
@@ -212,6 +217,7 @@ class RunFsm {
   TableAngles mounting_;                ///< ... and as it was entered
   std::optional<int> scales_of_;        ///< pose whose scales were entered ...
   TableAngles scales_;                  ///< ... and what they say
+  std::optional<int> noted_;            ///< pose whose note was carried out
   bool unproved_{false};                ///< the last entry was not yet held against the field
   bool doubtful_{false};                ///< the operator stands by it: others are not held against its poses
   std::optional<TableAngles> doubted_;  ///< the entry that disagreed with it

@@ -24,6 +24,7 @@ Result<void> RunFsm::possible(Request request) const {
       if (!measuring()) return refuse("all poses are measured and the table is at rest", "wait, or abort");
       return {};
     case Request::resume:
+      if (asks_for_deed()) return {};
       if (phase_ != Phase::paused) return refuse("the run is not paused", "");
       if (!lost_.empty())
         return refuse(fmt::format("{} is not connected", *lost_.begin()), "reconnect it, then resume");
@@ -56,6 +57,7 @@ void RunFsm::on(const Request& request) {
     case Request::pause:
       return pause();
     case Request::resume:
+      if (asks_for_deed()) return carried_out();
       attempt_ = 0;
       return go_on();
     case Request::retry:

@@ -29,6 +29,7 @@ std::string on_scales(const TableAngles& a) {
 }
 
 std::string request_text(What what, const PlannedPose& pose, std::size_t poses) {
+  if (what == What::note) return fmt::format("before pose {} of {}: {}", pose.number, poses, pose.note);
   if (what == What::mount)
     return fmt::format(
         "mounting {}: put the array on the table {} and enter its azimuth, pitch and roll on the "
@@ -49,6 +50,10 @@ TableAngles RunFsm::recorded(const TableAngles& table) const {
 }
 
 bool RunFsm::ask_hands() {
+  if (!planned().note.empty() && noted_ != planned().number) {
+    ask(What::note, {});
+    return true;
+  }
   if (planned().mount && mounted_ != planned().mount) {
     ask(What::mount, {});
     return true;
@@ -73,6 +78,9 @@ void RunFsm::ask(What what, std::string again) {
 }
 
 Result<void> RunFsm::possible(const ScaleEntered& entered) const {
+  if (asks_for_deed())
+    return fail(ErrorCode::state, "no scales are asked for now: " + prompt_->text,
+                "when it is done: mgt run resume");
   if (phase_ != Phase::asking)
     return fail(ErrorCode::state, "nothing is asked for now",
                 "mgt run status shows what is; mgt run redo asks for the last entry again");
@@ -97,6 +105,13 @@ void RunFsm::on(const ScaleEntered& entered) {
   }
   unproved_ = true;
   doubtful_ = false;
+  prompt_.reset();
+  go_on();
+}
+
+/// What the note of the pose wants is done.
+void RunFsm::carried_out() {
+  noted_ = planned().number;
   prompt_.reset();
   go_on();
 }

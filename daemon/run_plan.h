@@ -48,6 +48,7 @@ struct PlannedPose {
   std::optional<int> revisit_of{};  ///< number of the earlier pose
   /// From the stop to the middle of the dwell, at least; empty: as soon as it has settled.
   std::optional<double> since_stop_s{};
+  std::string note{};  ///< what a hand has to do before it
   bool operator==(const PlannedPose&) const = default;
 };
 

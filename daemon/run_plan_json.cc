@@ -30,7 +30,8 @@ json to_json(const PlannedPose& p) {
           {"mount", p.mount ? json(*p.mount) : json(nullptr)},
           {"mounting", p.mount ? scale_entry_json(p.mounting) : json(nullptr)},
           {"revisit_of", p.revisit_of ? json(*p.revisit_of) : json(nullptr)},
-          {"since_stop_s", p.since_stop_s ? json(*p.since_stop_s) : json(nullptr)}};
+          {"since_stop_s", p.since_stop_s ? json(*p.since_stop_s) : json(nullptr)},
+          {"note", p.note.empty() ? json(nullptr) : json(p.note)}};
 }
 
 TableAngles angles_from(const json& j) {
@@ -51,6 +52,7 @@ PlannedPose pose_from(const json& j) {
   }
   if (j.contains("since_stop_s") && !j["since_stop_s"].is_null())
     p.since_stop_s = j["since_stop_s"].get<double>();
+  if (j.contains("note") && j["note"].is_string()) p.note = j["note"].get<std::string>();
   if (!j.at("revisit_of").is_null()) p.revisit_of = j.at("revisit_of").get<int>();
   return p;
 }

@@ -10,7 +10,7 @@
 ///
 ///   { "schema":"mgtd.plan/1", "options":{...}, "notes":[...], "poses":[ { "number":1, "set":"standard",
 ///     "azimuth_deg":..., "pitch_deg":..., "roll_deg":..., "dwell_s":..., "sense":1, "mount":null,
-///     "mounting":null, "revisit_of":null }, ... ] }
+///     "mounting":null, "revisit_of":null, "since_stop_s":null, "note":null }, ... ] }
 namespace mgtd::daemon {
 
 [[nodiscard]] nlohmann::json to_json(const RunPlan& plan);

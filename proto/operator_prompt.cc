@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "proto/units.h"
@@ -17,6 +19,8 @@ using Axis = std::pair<const char*, double TableAngles::*>;
 constexpr std::array kAxes{Axis{"azimuth_deg", &TableAngles::azimuth_rad},
                            Axis{"pitch_deg", &TableAngles::pitch_rad},
                            Axis{"roll_deg", &TableAngles::roll_rad}};
+
+constexpr std::array<std::string_view, 3> kWhat{"mount", "table", "note"};  ///< beside OperatorPrompt::What
 
 double rounded_deg(double rad) { return std::round(to_deg(rad) * 1e6) / 1e6; }
 
@@ -48,7 +52,7 @@ Result<TableAngles> parse_scale_entry(const nlohmann::json& args) {
 
 nlohmann::ordered_json to_json(const OperatorPrompt& p) {
   using Json = nlohmann::ordered_json;
-  return {{"what", p.what == OperatorPrompt::What::mount ? "mount" : "table"},
+  return {{"what", kWhat.at(static_cast<std::size_t>(p.what))},
           {"pose", p.pose},
           {"mount", p.mount ? Json(*p.mount) : Json(nullptr)},
           {"target", scale_entry_json(p.target)},
@@ -67,11 +71,12 @@ Result<OperatorPrompt> prompt_from_json(const nlohmann::json& j) {
   const auto text = [&](const char* key) {
     return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
   };
-  OperatorPrompt out{
-      .what = text("what") == "mount" ? OperatorPrompt::What::mount : OperatorPrompt::What::table,
-      .target = *target,
-      .text = text("text"),
-      .again = text("again")};
+  const auto* const what = std::find(kWhat.begin(), kWhat.end(), text("what"));
+  if (what == kWhat.end()) return refuse();
+  OperatorPrompt out{.what = static_cast<OperatorPrompt::What>(what - kWhat.begin()),
+                     .target = *target,
+                     .text = text("text"),
+                     .again = text("again")};
   if (j.contains("pose") && j["pose"].is_number_integer()) out.pose = j["pose"].get<int>();
   if (j.contains("mount") && j["mount"].is_number_integer()) out.mount = j["mount"].get<int>();
   return out;

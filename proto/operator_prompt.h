@@ -13,12 +13,13 @@
 ///   "prompt": {"what":"mount","pose":37,"mount":2,"target":{"azimuth_deg":0,"pitch_deg":0,"roll_deg":90},
 ///              "text":"..","again":".."}
 ///
-/// `what`: "mount", the array on the table; "table", the scales of a table that is turned by hand. `again`
-/// says why an entry is asked for once more; null the first time.
+/// `what`: "mount", the array on the table; "table", the scales of a table that is turned by hand; "note",
+/// what `text` says is to be done before the pose, and answered with run.resume. `again` says why an entry is
+/// asked for once more; null the first time.
 namespace mgtd {
 
 struct OperatorPrompt {
-  enum class What { mount, table } what{What::table};
+  enum class What { mount, table, note } what{What::table};
   int pose{0};
   std::optional<int> mount{};
   TableAngles target{};

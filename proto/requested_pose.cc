@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "proto/json_line.h"
 #include "proto/units.h"
@@ -23,6 +25,17 @@ bool number_within(const Json& value, double low, double high) {
 bool whole_within(const Json& value, std::int64_t low, std::int64_t high) {
   return value.is_number_integer() &&
          number_within(value, static_cast<double>(low), static_cast<double>(high));
+}
+
+/// One line for an operator.
+bool note(std::string& out, std::string text) {
+  constexpr std::size_t kLongest = 200;
+  if (text.size() > kLongest) return false;
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  out = std::move(text);
+  return true;
 }
 
 /// False: not a key of a pose, or not a value for it.
@@ -52,7 +65,9 @@ bool take(RequestedPose& pose, const std::string& key, const Json& value) {
   if (key == "sense") return whole(pose.sense.emplace(), -1, 1);
   if (key == "dwell_s") return seconds(pose.dwell_s, 0.5);
   if (key == "since_stop_s") return seconds(pose.since_stop_s, 0);
-  if (key != "set" || !value.is_string()) return false;
+  if (!value.is_string()) return false;
+  if (key == "note") return note(pose.note, value.get<std::string>());
+  if (key != "set") return false;
   pose.set = excerpt(value.get<std::string>());
   return true;
 }
@@ -70,6 +85,7 @@ Json to_json(const RequestedPose& pose) {
   if (pose.sense) out["sense"] = *pose.sense;
   if (pose.dwell_s) out["dwell_s"] = *pose.dwell_s;
   if (pose.since_stop_s) out["since_stop_s"] = *pose.since_stop_s;
+  if (!pose.note.empty()) out["note"] = pose.note;
   if (pose.line > 0) out["line"] = pose.line;
   return out;
 }
@@ -88,7 +104,7 @@ Result<RequestedPose> requested_pose_from_json(const Json& object) {
       return fail(
           ErrorCode::usage,
           fmt::format("{}the list of poses: {} = {} is not possible", where, excerpt(key), excerpt(found)),
-          "angles within 720 deg, dwells of 0.5 to 3600 s, sense -1, 0 or 1");
+          "angles within 720 deg, dwells of 0.5 to 3600 s, sense -1, 0 or 1, a note of at most 200 bytes");
     }
   }
   return pose;

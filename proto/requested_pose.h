@@ -10,10 +10,11 @@
 /// One pose of a list that a run shall measure, as the client of the control socket asks for it:
 ///
 ///   {"pose":1,"azimuth_deg":..,"pitch_deg":..,"roll_deg":..,"set":"random","sense":1,"dwell_s":4,
-///    "since_stop_s":5,"line":2}
+///    "since_stop_s":5,"note":"..","line":2}
 ///
 /// `pose` and the three angles are needed. `since_stop_s`: from the stop of the table to the middle of the
-/// dwell, where the pose is to be measured later than it could be. `line`: where it stands in its file.
+/// dwell, where the pose is to be measured later than it could be. `note`: what a hand has to do before it;
+/// the run asks for that. `line`: where it stands in its file.
 namespace mgtd {
 
 struct RequestedPose {
@@ -22,6 +23,7 @@ struct RequestedPose {
   std::string set{"random"};
   std::optional<int> sense{};
   std::optional<double> dwell_s{}, since_stop_s{};
+  std::string note{};
   int line{0};
 };
 [[nodiscard]] bool operator==(const RequestedPose& a, const RequestedPose& b);

@@ -175,17 +175,22 @@ std::string to_text(const NextReport& r) {
   return out;
 }
 
-std::string pose_list(const std::vector<Pose>& poses) {
-  std::string out = "pose,set,azimuth_deg,pitch_deg,roll_deg,sense,dwell_s,since_stop_s\n";
+std::string pose_list(const NextStep& step) {
+  std::string note = step.by_the_rig ? "" : step.measurement.action;
+  std::replace(note.begin(), note.end(), ',', ';');  // a comma ends a cell
+  std::string out = "pose,set,azimuth_deg,pitch_deg,roll_deg,sense,dwell_s,since_stop_s";
+  out += note.empty() ? "\n" : ",note\n";
   const auto to = std::back_inserter(out);
   const auto degrees = [](const std::optional<double>& a) {
     return a ? fmt::format("{:.2f}", to_deg(*a)) : std::string();
   };
   const auto number = [](const auto& x) { return x ? fmt::format("{}", *x) : std::string(); };
   int k = 0;
-  for (const Pose& p : poses) {
-    fmt::format_to(to, "{},{},{},{},{},{},{},{}\n", ++k, p.set, degrees(p.azimuth_rad), degrees(p.pitch_rad),
+  for (const Pose& p : step.poses) {
+    fmt::format_to(to, "{},{},{},{},{},{},{},{}", ++k, p.set, degrees(p.azimuth_rad), degrees(p.pitch_rad),
                    degrees(p.roll_rad), number(p.sense), number(p.dwell_s), number(p.since_stop_s));
+    if (!note.empty()) out += "," + (k == 1 ? note : std::string());
+    out += "\n";
   }
   return out;
 }

@@ -35,7 +35,8 @@ struct NextReport {
 [[nodiscard]] nlohmann::json to_json(const NextReport& report);
 [[nodiscard]] std::string to_text(const NextReport& report);
 
-/// A list of poses as CSV: attitude, approach and dwell, in the columns of a pose table, without readings.
-[[nodiscard]] std::string pose_list(const std::vector<Pose>& poses);
+/// The poses of a step as CSV: attitude, approach and dwell, in the columns of a pose table, without
+/// readings. Where a hand is needed, `note` of the first says for what.
+[[nodiscard]] std::string pose_list(const NextStep& step);
 
 }  // namespace mgtd::calib

@@ -40,7 +40,7 @@ int run_next(const Session& session, const Arguments& args) {
   if (!next) return report(session, next.error());
   if (!args.output.empty() && !next->steps.empty()) {
     const calib::NextStep& best = next->steps.front();
-    if (auto written = write_file(args.output, calib::pose_list(best.poses)); !written)
+    if (auto written = write_file(args.output, calib::pose_list(best)); !written)
       return report(session, written.error());
     fmt::print(stderr, "{} poses written to {}: {}\n", best.poses.size(), args.output,
                best.measurement.action);

@@ -23,10 +23,12 @@ constexpr std::array kWords{Word{"redo", ControlCommand::run_redo}, Word{"pause"
 
 std::string question(const OperatorPrompt& prompt) {
   std::string out = prompt.again.empty() ? std::string() : prompt.again + "\n";
-  return out + prompt.text + "\n  azimuth pitch roll in deg, or redo, pause, abort: ";
+  const bool note = prompt.what == OperatorPrompt::What::note;
+  return out + prompt.text +
+         (note ? "\n  done, or pause, abort: " : "\n  azimuth pitch roll in deg, or redo, pause, abort: ");
 }
 
-Result<PromptAnswer> parse_answer(std::string_view line) {
+Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What what) {
   std::string text(line);
   std::replace(text.begin(), text.end(), ',', ' ');
   std::istringstream in(text);
@@ -36,8 +38,12 @@ Result<PromptAnswer> parse_answer(std::string_view line) {
     for (const Word& known : kWords)
       if (words[0] == known.word) return PromptAnswer{known.command};
   }
-  const auto refuse = [&](const std::string& what) {
-    return fail(ErrorCode::usage, what, "three numbers in degrees as the scales say: azimuth pitch roll");
+  if (what == OperatorPrompt::What::note) {
+    if (words.size() == 1 && words[0] == "done") return PromptAnswer{ControlCommand::run_resume};
+    return fail(ErrorCode::usage, "that is no answer", "type done when it is done, or pause, or abort");
+  }
+  const auto refuse = [](const std::string& found) {
+    return fail(ErrorCode::usage, found, "three numbers in degrees as the scales say: azimuth pitch roll");
   };
   if (words.size() != 3) return refuse(fmt::format("{} words where three numbers are needed", words.size()));
   PromptAnswer out;

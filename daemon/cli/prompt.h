@@ -16,11 +16,12 @@ struct PromptAnswer {
   nlohmann::json args = nlohmann::json::object();
 };
 
-/// "pose 3 of 36: turn the table to ... [azimuth pitch roll, redo, pause, abort] ".
+/// "pose 3 of 36: turn the table to ... [azimuth pitch roll, redo, pause, abort] "; for a note: "done".
 [[nodiscard]] std::string question(const OperatorPrompt& prompt);
 
-/// Three numbers in degrees: azimuth, pitch, roll, with or without commas; or redo, pause, abort. An empty
-/// line is no answer: the target is never taken for a reading.
-[[nodiscard]] Result<PromptAnswer> parse_answer(std::string_view line);
+/// Three numbers in degrees: azimuth, pitch, roll, with or without commas; or redo, pause, abort. Where a
+/// note is asked for, "done" instead of the numbers. An empty line is no answer: the target is never taken
+/// for a reading.
+[[nodiscard]] Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What what);
 
 }  // namespace mgtd::cli

@@ -48,10 +48,11 @@ bool answer(const Session& session, daemon::ControlClient& client, const Operato
     fmt::print(stderr, "{}", question(prompt));
     std::string line;
     if (session.json || !std::getline(std::cin, line)) {
-      fmt::print(stderr, "\nnobody is there to answer; from anywhere: mgt run enter AZIMUTH PITCH ROLL\n");
+      fmt::print(stderr, "\nnobody is there to answer; from anywhere: mgt run {}\n",
+                 prompt.what == OperatorPrompt::What::note ? "resume" : "enter AZIMUTH PITCH ROLL");
       return false;
     }
-    const auto said = parse_answer(line);
+    const auto said = parse_answer(line, prompt.what);
     const auto done = said ? client.request(said->command, said->args)
                            : Result<nlohmann::json>(tl::unexpected(said.error()));
     if (done) return true;

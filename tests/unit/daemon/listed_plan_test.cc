@@ -45,7 +45,8 @@ TEST(ListedPlan, WhatMgtNextWritesIsARun) {
   first.sense = -1;
   first.dwell_s = 6;
   first.since_stop_s = 30;
-  const auto plan = plan_of(calib::pose_list({first, second}));
+  const auto plan =
+      plan_of(calib::pose_list({.measurement = {}, .by_the_rig = true, .poses = {first, second}}));
   ASSERT_TRUE(plan) << plan.error().text();
   ASSERT_EQ(plan->poses.size(), 2U);
   EXPECT_EQ(plan->poses[0].number, 1);
@@ -59,6 +60,18 @@ TEST(ListedPlan, WhatMgtNextWritesIsARun) {
   ASSERT_TRUE(kept) << kept.error().text();
   EXPECT_EQ(*kept, *plan) << "a killed daemon goes on with the list";
   EXPECT_THAT(describe(*plan, Pace{}), HasSubstr("2 poses of poses.csv, in its order"));
+}
+
+TEST(ListedPlan, WhatAHandHasToDoComesWithThePose) {
+  const std::string action = "a heat pulse, slow: warm the heads by 5 degC and let them cool again";
+  const auto plan = plan_of(calib::pose_list(
+      {.measurement = {.action = action}, .by_the_rig = false, .poses = {pose(0, 0, 0), pose(10, 0, 0)}}));
+  ASSERT_TRUE(plan) << plan.error().text();
+  EXPECT_EQ(plan->poses[0].note, "a heat pulse; slow: warm the heads by 5 degC and let them cool again");
+  EXPECT_EQ(plan->poses[1].note, "");
+  const auto kept = plan_from_json(to_json(*plan).dump());
+  ASSERT_TRUE(kept) << kept.error().text();
+  EXPECT_EQ(*kept, *plan);
 }
 
 TEST(ListedPlan, WhatCannotBeMeasuredIsRefusedWithItsPlace) {

@@ -223,6 +223,52 @@ TEST(RunByHand, AfterARestartTheMountingIsAskedForAgain) {
   EXPECT_EQ(bench.status->prompt->mount, 1);
 }
 
+/// A heat pulse, a coil: what only a hand can do before a pose.
+TEST(RunByHand, WhatAListWantsDoneBeforeAPoseIsAskedForOnce) {
+  RunPlan plan = bench_plan(4);
+  plan.poses[1].note = "warm the heads";
+  RunBench bench(plan);
+  ASSERT_TRUE(to_prompt(bench));
+  EXPECT_EQ(bench.stored.size(), 1U);
+  ASSERT_TRUE(bench.status->prompt);
+  EXPECT_EQ(bench.status->prompt->what, OperatorPrompt::What::note);
+  EXPECT_EQ(bench.status->prompt->pose, 2);
+  EXPECT_EQ(bench.status->prompt->text, "before pose 2 of 4: warm the heads");
+  const auto scales = bench.fsm.possible(ScaleEntered{});
+  ASSERT_FALSE(scales);
+  EXPECT_THAT(scales.error().remedy, HasSubstr("mgt run resume"));
+  const std::size_t moves = bench.moves.size();
+  bench.run(60);
+  EXPECT_EQ(bench.moves.size(), moves) << "nobody said that it is done";
+  bench.send(Request::pause);  // not done yet: asked again
+  ASSERT_TRUE(bench.run_to(RunState::paused));
+  bench.send(Request::resume);
+  ASSERT_TRUE(to_prompt(bench));
+  ASSERT_TRUE(bench.fsm.possible(Request::resume));
+  bench.send(Request::resume);
+  ASSERT_TRUE(bench.run_to(RunState::dwelling));
+  bench.send(Request::pause);  // done: a pose that is measured again does not ask for it again
+  ASSERT_TRUE(bench.run_to(RunState::paused));
+  bench.send(Request::resume);
+  ASSERT_TRUE(bench.run(600));
+  ASSERT_TRUE(bench.finished);
+  EXPECT_EQ(bench.finished->state, RunState::done) << bench.finished->message;
+  EXPECT_EQ(bench.stored.size(), 4U);
+}
+
+/// On a table that is turned by hand the note comes first, then the scales.
+TEST(RunByHand, ANoteAndTheScalesAreAskedForOneAfterTheOther) {
+  RunPlan plan = hand_plan(12);
+  plan.poses[0].note = "switch the coil on";
+  RunBench bench(plan, hand_config());
+  ASSERT_TRUE(to_prompt(bench));
+  EXPECT_EQ(bench.status->prompt->what, OperatorPrompt::What::note);
+  bench.send(Request::resume);
+  ASSERT_TRUE(bench.run(
+      10, [&] { return bench.status->prompt && bench.status->prompt->what == OperatorPrompt::What::table; }));
+  EXPECT_EQ(bench.status->prompt->pose, 1);
+}
+
 TEST(RunByHand, WaysToMountAreReadAndSaid) {
   EXPECT_EQ(*parse_mounting("level"), TableAngles{});
   EXPECT_NEAR(parse_mounting("pitch 20 roll -90")->roll_rad, to_rad(-90), 1e-12);

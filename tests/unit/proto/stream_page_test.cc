@@ -37,12 +37,22 @@ TEST(StreamPage, NamesEveryStateAndKeyOfARun) {
 
 TEST(StreamPage, NamesEveryArgumentOfARun) {
   const std::string text = page();
-  const RunRequest all{
-      1,      1,
-      1,      1,
-      1,      1,
-      1,      1,
-      "list", {{.number = 1, .set = "random", .sense = 1, .dwell_s = 1, .since_stop_s = 1, .line = 1}}};
+  const RunRequest all{1,
+                       1,
+                       1,
+                       1,
+                       1,
+                       1,
+                       1,
+                       1,
+                       "list",
+                       {{.number = 1,
+                         .set = "random",
+                         .sense = 1,
+                         .dwell_s = 1,
+                         .since_stop_s = 1,
+                         .note = "warm it",
+                         .line = 1}}};
   const nlohmann::json args = to_json(all);
   for (const auto& [key, value] : args.items())
     EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
