@@ -28,6 +28,21 @@ std::string interface_of(const std::string& path) {
   return {};
 }
 
+/// Of the USB device that a port is part of; nothing where it is of none. A port hangs below one of the
+/// interfaces of its device.
+std::optional<std::string> usb_serial_of(const std::filesystem::path& device) {
+  constexpr int kLevels = 4;
+  std::error_code none;
+  auto at = std::filesystem::canonical(device, none);
+  for (int level = 0; level < kLevels && at.has_relative_path(); ++level, at = at.parent_path()) {
+    if (!std::filesystem::exists(at / "idVendor", none)) continue;
+    std::ifstream in(at / "serial");
+    if (std::string serial; std::getline(in, serial)) return serial;
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 /// Path to udev's link.
 std::map<std::string, std::string> sockets() {
   namespace fs = std::filesystem;
@@ -87,13 +102,19 @@ std::string udev_rule(const PortInfo& port, std::span<const PortInfo> all, std::
   return fmt::format("ENV{{ID_PATH}}==\"{}\", {}", socket, gives);
 }
 
-std::optional<std::string> port_path(const std::string& name) {
-  if (name.starts_with("usb:")) {
-    for (const PortInfo& port : list_ports()) {
-      if (port.name() == name) return port.path;
-    }
-    return std::nullopt;
+std::optional<std::string> port_of_usb_serial(const std::string& serial, const std::string& sysfs) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  std::vector<std::string> found;
+  for (const auto& tty : fs::directory_iterator(sysfs + "/class/tty", none)) {
+    if (usb_serial_of(tty.path() / "device") == serial) found.push_back(tty.path().filename());
   }
+  if (found.empty()) return std::nullopt;
+  return "/dev/" + *std::min_element(found.begin(), found.end());
+}
+
+std::optional<std::string> port_path(const std::string& name) {
+  if (name.starts_with("usb:")) return port_of_usb_serial(name.substr(4));
   std::array<char, PATH_MAX> real{};
   return ::realpath(name.c_str(), real.data()) == nullptr ? name : std::string(real.data());
 }

@@ -31,6 +31,11 @@ struct PortInfo {
 [[nodiscard]] std::string udev_rule(const PortInfo& port, std::span<const PortInfo> all,
                                     std::string_view name);
 
+/// The port of the USB converter with this serial number, the first of several. Looks into sysfs only: no
+/// port is opened, so that it may be asked often while one is missing and no other device notices.
+[[nodiscard]] std::optional<std::string> port_of_usb_serial(const std::string& serial,
+                                                            const std::string& sysfs = "/sys");
+
 /// The path behind a name: "usb:SERIAL" is looked up, links are followed. Empty when no such converter is
 /// plugged in.
 [[nodiscard]] std::optional<std::string> port_path(const std::string& name);

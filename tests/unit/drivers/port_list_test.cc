@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "tests/support/child_process.h"
@@ -38,6 +40,47 @@ TEST(PortList, WithoutSerialNumberTheSocketElseThePath) {
                                   usb("/dev/ttyS0", "", "")};
   EXPECT_EQ(lasting_name(all[0], all), "/dev/serial/by-path/x");
   EXPECT_EQ(lasting_name(all[1], all), "/dev/ttyS0");
+}
+
+/// As the kernel shows a converter, a modem-like device and a port on the board.
+class Sysfs {
+ public:
+  Sysfs() {
+    device("usb1/1-1", "1-1:1.0/ttyUSB0", "A1", "ttyUSB0");
+    device("usb1/1-2", "1-2:1.0", "M7 mark II", "ttyACM0");
+    device("usb1/1-4", "1-4:1.1/ttyUSB4", "Q4", "ttyUSB4");
+    device("usb1/1-4", "1-4:1.0/ttyUSB3", "Q4", "ttyUSB3");
+    port("platform/serial8250", "ttyS0");
+    std::filesystem::create_directories(root() + "/class/tty/console");
+  }
+  [[nodiscard]] std::string root() const { return scratch_ / "sys"; }
+  void unplug(const std::string& tty) { std::filesystem::remove_all(root() + "/class/tty/" + tty); }
+
+ private:
+  void device(const std::string& at, const std::string& below, const std::string& serial,
+              const std::string& tty) {
+    port(at + "/" + below, tty);
+    std::ofstream(root() + "/devices/" + at + "/idVendor") << "0403\n";
+    std::ofstream(root() + "/devices/" + at + "/serial") << serial << "\n";
+  }
+  void port(const std::string& at, const std::string& tty) {
+    std::filesystem::create_directories(root() + "/devices/" + at);
+    std::filesystem::create_directories(root() + "/class/tty/" + tty);
+    std::filesystem::create_symlink(root() + "/devices/" + at, root() + "/class/tty/" + tty + "/device");
+  }
+  mgtd::testing::TemporaryDirectory scratch_;
+};
+
+TEST(PortList, AConverterIsFoundByItsSerialNumberWithoutOpeningAnything) {
+  Sysfs sysfs;
+  EXPECT_EQ(port_of_usb_serial("A1", sysfs.root()), "/dev/ttyUSB0");
+  EXPECT_EQ(port_of_usb_serial("M7 mark II", sysfs.root()), "/dev/ttyACM0");
+  EXPECT_EQ(port_of_usb_serial("Q4", sysfs.root()), "/dev/ttyUSB3") << "the first of its ports";
+  EXPECT_EQ(port_of_usb_serial("A", sysfs.root()), std::nullopt);
+  EXPECT_EQ(port_of_usb_serial("", sysfs.root()), std::nullopt) << "a port without a number is nobody's";
+  sysfs.unplug("ttyUSB0");
+  EXPECT_EQ(port_of_usb_serial("A1", sysfs.root()), std::nullopt);
+  EXPECT_EQ(port_of_usb_serial("A1", sysfs.root() + "/nowhere"), std::nullopt);
 }
 
 TEST(PortList, UdevRulesTellIdenticalConvertersApart) {
