@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "calib/criticism/rest.h"
 #include "calib/criticism/sentence.h"
@@ -16,15 +18,26 @@ namespace {
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
 /// run of a hundred, and below 0.8 in one of seven.
 constexpr double kEnoughShare = 0.5;
-constexpr double kMaxNodes = 0.02;    ///< of the readings
+/// Of the poses. A fit leaves out as many readings as a tenth of them at the most (outliers.h); noise with
+/// heavy tails, Student's t with three degrees of freedom, makes two or three.
+constexpr double kMaxContradicted = 0.06;
 const double kTable_rad = to_rad(2);  ///< of error of the table a pose
 constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
 constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
 constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
 
-double share_of_nodes(const JointFit& fit) {
-  return static_cast<double>(fit.outliers.size()) /
-         static_cast<double>(fit.problem.poses.size() * static_cast<std::size_t>(kChannels));
+/// Poses with an observation that is left out, of all poses; none where most of these are of one axis, which
+/// speaks of its law.
+double contradicted(const JointFit& fit) {
+  std::map<std::string, std::size_t> by_axis;
+  std::set<int> poses;
+  for (const OutlierNode& node : fit.outliers) {
+    ++by_axis[node.where];
+    poses.insert(node.pose);
+  }
+  for (const auto& [where, count] : by_axis)
+    if (2 * count > fit.outliers.size()) return 0;
+  return static_cast<double>(poses.size()) / static_cast<double>(fit.problem.poses.size());
 }
 
 /// Why a single name that accounts for the data is not yet an explanation; empty when it is.
@@ -122,10 +135,10 @@ bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>&
     notes.push_back(std::move(why));
     return true;
   }
-  const double nodes = share_of_nodes(fit);
-  if (nodes > kMaxNodes) {
-    notes.push_back(fmt::format("{:.1f} % of the readings contradict the rest; the limit is {:.0f} %",
-                                100 * nodes, 100 * kMaxNodes));
+  if (const double share = contradicted(fit); share > kMaxContradicted) {
+    notes.push_back(
+        fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",
+                    100 * share, 100 * kMaxContradicted));
     return true;
   }
   if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {
