@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rig can do and no library has: forty Cramer-Rao sigmas of each, and none may pass or be explained
+// by a single name. No law of the library describes any of them.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "calib/criticism/explain.h"
+#include "calib/criticism/sentence.h"
+#include "tests/blind/planted.h"
+
+namespace mgtd::calib {
+namespace {
+
+using testing::Planted;
+
+constexpr double kSigmas = 40;
+constexpr std::uint64_t kSeed = 70;
+
+struct Row {
+  std::string title;
+  Planted planted;
+  bool reference{true};  ///< a scalar reference stands beside the table
+};
+
+void PrintTo(const Row& row, std::ostream* out) { *out << row.title; }
+
+std::vector<Row> rows() {
+  return {
+      {"azimuth_harmonic", {"hidden.azimuth-harmonic", "s2.x", {1, 3, 40}}},
+      {"lamp", {"hidden.lamp", "s3", {1, -2, 1, 45, 11}}},
+      {"battery_squared", {"hidden.battery-squared", "s1.z", {1, 12.6}, "battery_V"}},
+      {"offset_walk", {"hidden.offset-walk", "s4.y", {1}}},
+      {"site_oscillation",
+       {"hidden.site-oscillation", "all", {1, 2, -1, 500}},
+       false},  // with one its strength is no mystery
+      {"gradient_oscillation", {"hidden.gradient-oscillation", "all", {1, 500}}},
+      {"quartic", {"hidden.quartic", "s3.x", {1}}},
+      {"cross_cubic", {"hidden.cross-cubic", "s2.z", {-1}}},
+      {"soft_limit", {"hidden.soft-limit", "s4.z", {1, 0.6}}},
+      {"warm_up", {"hidden.warm-up", "s1.y", {1, 400}}},
+      {"thermometer_lag", {"hidden.thermometer-lag", "s2.y", {1, 600}}},
+      {"slip", {"hidden.slip", "s3", {5, -3, 8, 900}}},
+      {"gravity_offset", {"hidden.gravity-offset", "s4.x", {1, -1, 2}}},
+      {"cable_twist", {"hidden.cable-twist", "s1.x", {1}}},
+      {"passing_iron", {"hidden.passing-iron", "all", {1, -1, 2, 2, 1, 0.5, 0.03, 900}}},
+      {"beat", {"hidden.beat", "s2.x", {1, 37}}},
+  };
+}
+
+std::string title_of(const ::testing::TestParamInfo<Row>& info) { return info.param.title; }
+
+TEST(Unlisted, EveryOneThatTheRigCanHideIsHere) {
+  std::set<std::string> rig, here;
+  for (const rig::EffectKind& kind : rig::unnamed_kinds()) rig.insert(kind.name);
+  for (const Row& row : rows()) here.insert(row.planted.kind);
+  EXPECT_EQ(here, rig);
+}
+
+class NotListed : public ::testing::TestWithParam<Row> {};
+
+TEST_P(NotListed, IsNotGivenASingleName) {
+  const Row& row = GetParam();
+  testing::Stage stage = testing::full_stage(kSeed);
+  stage.scenario.scalar = row.reference;
+  const testing::Sized planted = testing::sized(stage, row.planted, kSigmas, kSeed);
+  ExplainOptions options;
+  if (!row.reference) options.fit.field_nT = stage.scenario.f_nT;
+  const PoseTable run = testing::planted_run(stage, {planted.effect}, kSeed);
+  const auto r = explain(run, options);
+  ASSERT_TRUE(r) << r.error().text();
+  EXPECT_NE(r->finding, Finding::pass);
+  EXPECT_NE(r->finding, Finding::bad_data) << sentence(*r);
+  EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
+}
+
+INSTANTIATE_TEST_SUITE_P(Unlisted, NotListed, ::testing::ValuesIn(rows()), title_of);
+
+}  // namespace
+}  // namespace mgtd::calib
