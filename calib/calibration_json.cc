@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "calib/effects/library.h"
+#include "proto/json_text.h"
 #include "proto/sha256.h"
 
 namespace mgtd::calib {
@@ -151,6 +152,84 @@ std::vector<Check> checks_from(const json& list) {
   return out;
 }
 
+/// Its values, whatever they are worth.
+Calibration calibration_of(const json& object) {
+  Calibration c;
+  c.id = object.at("id");
+  c.method = object.at("method");
+  for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
+  c.covariance = covariance_from(object.at("covariance"));
+  c.effects = effects_from(object.at("effects"));
+  const json& rows = object.at("effect_covariance");
+  c.effect_covariance = matrix_from(rows, kArrayParameters + rows.size());
+  c.geometry.baseline_m = object.at("baseline_m");
+  c.sample_noise_nT = noise_from(object.at("sample_noise_nT"));
+  c.pose_noise_nT = noise_from(object.at("pose_noise_nT"));
+  c.gauge = object.at("gauge");
+  c.reference = reference_from(object.at("reference"));
+  c.data_hash = object.at("data_hash");
+  c.poses = object.at("poses");
+  c.accepted_by_checks = object.at("accepted");
+  c.verdict = checks_from(object.at("verdict"));
+  c.software = object.at("software");
+  return c;
+}
+
+/// A calibration with one of everything, as to_json writes it.
+json example() {
+  Calibration c;
+  c.effects = {{.effect = "", .coefficients = {{}}}};
+  c.effect_covariance = Eigen::MatrixXd::Zero(1, 1);
+  c.verdict = {{}};
+  return to_json(c);
+}
+
+/// `text`: what the object was parsed from, where there is one.
+Result<Calibration> read(const json& object, std::optional<std::string_view> text) {
+  constexpr const char* kRemedy = "give a CAL.json written by mgt fit -o";
+  if (object.is_object() && object.value("schema", json()) != kSchema && object.contains("schema"))
+    return fail(ErrorCode::bad_input,
+                fmt::format("schema {} is not \"{}\"", object["schema"].dump(), kSchema),
+                "use the version of mgt that wrote it");
+  static const json kExample = example();
+  if (const auto wrong = misfit(kExample, object))
+    return fail(ErrorCode::bad_input, "not a calibration: " + (text ? wrong->text(*text) : wrong->what),
+                kRemedy);
+  // What the example cannot tell (a list that is too short, a temperature that is a text) is left to the
+  // library's way of refusing.
+  try {
+    return calibration_of(object);
+  } catch (const json::exception&) {
+    return fail(ErrorCode::bad_input,
+                "not a calibration: a list is too short, or holds a value of another kind", kRemedy);
+  }
+}
+
+/// An effect that cannot be made, a content that was changed, a key that means nothing here.
+Result<Calibration> checked(const json& object, std::optional<std::string_view> text) {
+  auto c = read(object, text);
+  if (!c) return c;
+  for (const CalibratedEffect& e : c->effects) {
+    if (make_effect(e.effect)) continue;
+    return fail(ErrorCode::bad_input,
+                fmt::format("it holds an effect that this version cannot remove: {}", e.effect),
+                "use the version of mgt that wrote it");
+  }
+  const std::string found = content_id(object);
+  if (c->id != found) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("the content was changed: it hashes to {}, the file says {}", found, c->id),
+                "a calibration is never edited; fit again instead");
+  }
+  if (const json more = json::diff(to_json(*c), object); !more.empty()) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("it holds what this version does not know: {}",
+                            more.front().at("path").get_ref<const std::string&>()),
+                "use the version of mgt that wrote it");
+  }
+  return c;
+}
+
 }  // namespace
 
 json to_json(const std::vector<Check>& checks) {
@@ -188,54 +267,7 @@ json to_json(const Calibration& c) {
           {"software", c.software}};
 }
 
-Result<Calibration> calibration_from_json(const json& object) {
-  Calibration c;
-  try {
-    if (const std::string schema = object.at("schema"); schema != kSchema) {
-      return fail(ErrorCode::bad_input, fmt::format("schema '{}' is not '{}'", schema, kSchema),
-                  "use the version of mgt that wrote it");
-    }
-    c.id = object.at("id");
-    c.method = object.at("method");
-    for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
-    c.covariance = covariance_from(object.at("covariance"));
-    c.effects = effects_from(object.at("effects"));
-    const json& rows = object.at("effect_covariance");
-    c.effect_covariance = matrix_from(rows, kArrayParameters + rows.size());
-    c.geometry.baseline_m = object.at("baseline_m");
-    c.sample_noise_nT = noise_from(object.at("sample_noise_nT"));
-    c.pose_noise_nT = noise_from(object.at("pose_noise_nT"));
-    c.gauge = object.at("gauge");
-    c.reference = reference_from(object.at("reference"));
-    c.data_hash = object.at("data_hash");
-    c.poses = object.at("poses");
-    c.accepted_by_checks = object.at("accepted");
-    c.verdict = checks_from(object.at("verdict"));
-    c.software = object.at("software");
-    for (const CalibratedEffect& e : c.effects) {
-      if (make_effect(e.effect)) continue;
-      return fail(ErrorCode::bad_input,
-                  fmt::format("it holds an effect that this version cannot remove: {}", e.effect),
-                  "use the version of mgt that wrote it");
-    }
-  } catch (const json::exception& error) {
-    return fail(ErrorCode::bad_input, fmt::format("not a calibration: {}", error.what()),
-                "give a CAL.json written by mgt fit -o");
-  }
-  const std::string found = content_id(object);
-  if (c.id != found) {
-    return fail(ErrorCode::bad_input,
-                fmt::format("the content was changed: it hashes to {}, the file says {}", found, c.id),
-                "a calibration is never edited; fit again instead");
-  }
-  if (const json more = json::diff(to_json(c), object); !more.empty()) {
-    return fail(ErrorCode::bad_input,
-                fmt::format("it holds what this version does not know: {}",
-                            more.front().at("path").get_ref<const std::string&>()),
-                "use the version of mgt that wrote it");
-  }
-  return c;
-}
+Result<Calibration> calibration_from_json(const json& object) { return checked(object, std::nullopt); }
 
 std::string content_id(json object) {
   object.erase("id");
@@ -245,11 +277,8 @@ std::string content_id(json object) {
 std::string to_json_text(const Calibration& calibration) { return to_json(calibration).dump(1) + "\n"; }
 
 Result<Calibration> calibration_from_json_text(std::string_view text) {
-  const json object = json::parse(text, nullptr, false);
-  if (object.is_discarded() || !object.is_object()) {
-    return fail(ErrorCode::bad_input, "not a JSON object", "give a CAL.json written by mgt fit -o");
-  }
-  return calibration_from_json(object);
+  const auto object = parse_json_text(text, "give a CAL.json written by mgt fit -o");
+  return object ? checked(*object, text) : tl::unexpected(object.error());
 }
 
 }  // namespace mgtd::calib

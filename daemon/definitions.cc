@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "proto/json_text.h"
+
 namespace mgtd::daemon {
 
 using nlohmann::json;
@@ -25,17 +27,23 @@ std::string to_text(const std::vector<Definition>& definitions) {
 
 Result<std::vector<Definition>> definitions_from_text(const std::string& text) {
   std::vector<Definition> out;
+  constexpr const char* kRemedy = "read it with the version of mgt that wrote it";
+  const auto list = parse_json_text(text, kRemedy);
+  if (!list)
+    return fail(ErrorCode::bad_input, "its formulas cannot be read: " + list.error().message, kRemedy);
+  static const json kExample = json::parse(to_text({Definition{"", "", "", {{}}, {}}}));
+  if (const auto wrong = misfit(kExample, *list))
+    return fail(ErrorCode::bad_input, "its formulas cannot be read: " + wrong->text(text), kRemedy);
   try {
-    for (const json& d : json::parse(text)) {
+    for (const json& d : *list) {
       Definition one{d.at("name"), d.at("spec"), d.at("found_on"), {}, {}};
       for (const json& c : d.at("found"))
         one.found.push_back({c.at("name"), c.at("value"), c.at("sd"), c.at("unit")});
       if (const json& p = d.at("confirmed_log10_p"); !p.is_null()) one.confirmed_log10_p = p.get<double>();
       out.push_back(std::move(one));
     }
-  } catch (const json::exception& error) {
-    return fail(ErrorCode::bad_input, std::string("its formulas cannot be read: ") + error.what(),
-                "read it with the version of mgt that wrote it");
+  } catch (const json::exception&) {
+    return fail(ErrorCode::bad_input, "its formulas cannot be read: a p-value is no number", kRemedy);
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "proto/json_text.h"
 #include "proto/operator_prompt.h"
 #include "proto/units.h"
 
@@ -80,6 +81,17 @@ RunPlan plan_from(const json& j) {
   return plan;
 }
 
+/// A plan with one pose; what may be left out is not in it.
+json example() {
+  RunPlan plan;
+  plan.notes = {""};
+  plan.poses = {{}};
+  json out = to_json(plan);
+  for (const char* optional : {"by_hand", "list", "mounts"}) out["options"].erase(optional);
+  for (const char* optional : {"mount", "mounting", "since_stop_s"}) out["poses"][0].erase(optional);
+  return out;
+}
+
 }  // namespace
 
 json to_json(const RunPlan& plan) {
@@ -107,12 +119,15 @@ Result<RunPlan> plan_from_json(std::string_view text) {
     return fail(ErrorCode::bad_input, fmt::format("the run's plan cannot be read: {}", why),
                 "the run file is damaged or of another version: its poses can still be fitted");
   };
+  const auto j = parse_json_text(text, "");
+  if (!j) return refuse(j.error().message);
+  if (!j->is_object() || j->value("schema", json()) != kSchema)
+    return refuse(fmt::format("its schema is not {}", kSchema));
+  if (const auto wrong = misfit(example(), *j)) return refuse(wrong->text(text));
   try {
-    const json j = json::parse(text);
-    if (j.value("schema", "") != kSchema) return refuse(fmt::format("its schema is not {}", kSchema));
-    return plan_from(j);
-  } catch (const json::exception& e) {
-    return refuse(e.what());
+    return plan_from(*j);
+  } catch (const json::exception&) {
+    return refuse("an entry that may be left out holds a value of another kind");
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "proto/json_line.h"
+#include "proto/json_text.h"
 
 namespace mgtd {
 namespace {

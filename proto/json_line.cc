@@ -3,53 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <string>
 
+#include "proto/json_text.h"
+
 namespace mgtd {
-namespace {
-
-/// Takes every value and remembers only where the text stops being JSON.
-struct ErrorPosition : nlohmann::json_sax<nlohmann::json> {
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool parse_error(std::size_t at, const std::string&, const nlohmann::detail::exception&) override {
-    position = at;
-    return false;
-  }
-  std::size_t position{0};
-};
-
-}  // namespace
-
-bool nests_too_deeply(std::string_view text) {
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted && c == '\\') {
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (!quoted && (c == '[' || c == '{')) {
-      if (++depth > kDeepestNesting) return true;
-    } else if (!quoted && (c == ']' || c == '}')) {
-      --depth;
-    }
-  }
-  return false;
-}
-
 std::string excerpt(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown(text.substr(0, kShown));
@@ -67,10 +25,9 @@ Result<nlohmann::json> parse_json_object(std::string_view line, std::string_view
         fmt::format("send one object per line, like {}", example));
   nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
   if (object.is_discarded()) {
-    ErrorPosition where;
-    nlohmann::json::sax_parse(line, &where);
     return fail(ErrorCode::bad_input,
-                fmt::format("'{}' is not JSON from character {} on", excerpt(line), where.position),
+                fmt::format("'{}' is not JSON from character {} on", excerpt(line),
+                            json_breaks_at(line).value_or(0) + 1),
                 fmt::format("send one object per line, like {}", example));
   }
   if (!object.is_object()) {

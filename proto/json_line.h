@@ -8,12 +8,6 @@
 /// One line of a peer that may be anything, read as a JSON object.
 namespace mgtd {
 
-/// Reading, copying and printing a value takes stack for every bracket inside another: a megabyte of them
-/// ends the program. Nothing of ours nests deeper than this.
-inline constexpr int kDeepestNesting = 64;
-/// To be asked of any text that a peer or a stranger's file holds before it is parsed, JSON or not.
-[[nodiscard]] bool nests_too_deeply(std::string_view text);
-
 /// Broken JSON is refused with the position; so is JSON that is no object, or nests too deeply. `example` is
 /// a line that would do.
 [[nodiscard]] Result<nlohmann::json> parse_json_object(std::string_view line, std::string_view example);
