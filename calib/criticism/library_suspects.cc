@@ -72,6 +72,13 @@ Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
   return out;
 }
 
+/// The list says whose reason it is.
+std::string without_name(std::string message, std::string_view name) {
+  if (!message.starts_with(name)) return message;
+  message.erase(0, name.size());
+  return message.substr(std::min(message.size(), message.find_first_not_of(": ")));
+}
+
 }  // namespace
 
 Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& left_out) {
@@ -87,13 +94,15 @@ Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& 
     }
     const auto values = variants(family, context);
     if (values.empty()) {  // a time within the run, and the poses tell none
-      out.untestable.push_back({std::string(family.name), fmt::format("{} needs t_s", family.name)});
+      out.untestable.push_back({std::string(family.name), "needs t_s"});
       continue;
     }
     const auto effect = make(family, std::nullopt, values.front(), context);
     const auto ok = effect ? (*effect)->check(table) : tl::unexpected(effect.error());
     if (!ok) {
-      out.untestable.push_back({std::string(family.name), ok.error().message});
+      Error why = ok.error();
+      why.message = without_name(std::move(why.message), family.name);
+      out.untestable.push_back({std::string(family.name), why.text()});
       continue;
     }
     out.testable.push_back(suspect_of(family, context));

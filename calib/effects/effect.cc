@@ -27,15 +27,32 @@ std::string_view missing_angle(const Pose& pose) {
   return pose.roll_rad ? "" : "roll_deg";
 }
 
-Result<void> Effect::check(const PoseTable& table) const {
+std::string Lack::text(std::string_view effect, const PoseTable& table) const {
+  const std::string who = poses == table.poses.size() ? std::string("no pose has")
+                          : poses == 1 ? fmt::format("pose {} of {} has not", first, table.poses.size())
+                                       : fmt::format("{} of {} poses have not (the first: pose {})", poses,
+                                                     table.poses.size(), first);
+  return fmt::format("{} needs {}, which {}", effect, column, who);
+}
+
+Lack Effect::lack_of(const PoseTable& table) const {
+  Lack out;
   for (const Pose& pose : table.poses) {
     const std::string_view column = missing(pose);
     if (column.empty()) continue;
-    return fail(ErrorCode::refused,
-                fmt::format("{} needs {}, which pose {} has not", name(), column, pose.number),
-                fmt::format("give {} of every pose, or fit without {}", column, name()));
+    if (out.poses == 0) out.column = column, out.first = pose.number;
+    if (column == out.column) ++out.poses;
   }
-  return {};
+  return out;
+}
+
+Result<void> Effect::check(const PoseTable& table) const {
+  const Lack lack = lack_of(table);
+  if (lack.poses == 0) return {};
+  return fail(
+      ErrorCode::refused, lack.text(name(), table),
+      fmt::format("give {0} of every pose, leave the poses without it out of the table, or fit without {1}",
+                  lack.column, name()));
 }
 
 }  // namespace mgtd::calib

@@ -67,6 +67,15 @@ using Jet = Dual<kJetSlots>;
 class Effect;
 class LiveMemory;
 
+/// What poses of a table lack for a term to be evaluated.
+struct Lack {
+  std::string column{};  ///< the first that one lacks
+  std::size_t poses{0};  ///< how many have none
+  int first{0};          ///< number of the first
+
+  [[nodiscard]] std::string text(std::string_view effect, const PoseTable& table) const;
+};
+
 /// An effect that reads the memory beside it, which the samples of a stream move on (live_memory.h).
 struct LiveEffect {
   std::shared_ptr<const Effect> effect;
@@ -100,6 +109,7 @@ class Effect {
   [[nodiscard]] virtual std::string_view missing(const Pose& pose) const = 0;
   /// What the term needs of the poses of a fit is there; refuses with what is missing.
   [[nodiscard]] virtual Result<void> check(const PoseTable& table) const;
+  [[nodiscard]] Lack lack_of(const PoseTable& table) const;
   virtual void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
                     std::span<double> out) const = 0;
   virtual void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,

@@ -62,7 +62,7 @@ constexpr std::array kFamilies{
                  .source = "0.01 to 0.1 deg without a preloaded gear (estimate)",
                  .scales = kOwnScale,
                  .scan = {},
-                 .needs = "sense",
+                 .needs = "sense, of nine poses in ten",
                  .signature = "no scalar residual; the attitude differs by the sense of approach",
                  .confusions = kBacklashConfusions,
                  .untestable = {},
