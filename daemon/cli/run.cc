@@ -135,8 +135,7 @@ int dry_run(const Session& session, const Arguments& args) {
     print_json(*reply);
     return 0;
   }
-  fmt::print("{}\nabout {:.0f} minutes; nothing was moved\n", reply->at("text").get<std::string>(),
-             reply->at("minutes").get<double>());
+  fmt::print("{}\nnothing was moved\n", reply->at("text").get<std::string>());
   return 0;
 }
 
