@@ -52,7 +52,9 @@ const std::string* EffectSpec::find(std::string_view parameter) const {
   return found == parameters.end() ? nullptr : &found->second;
 }
 
-void EffectSpec::set(std::string_view parameter, double value) { set(parameter, fmt::format("{}", value)); }
+void EffectSpec::set(std::string_view parameter, double value) {
+  set(parameter, fmt::format("{:.6g}", value));
+}
 
 void EffectSpec::set(std::string_view parameter, std::string value) {
   for (auto& [key, old] : parameters) {

@@ -24,7 +24,7 @@ struct EffectSpec {
   [[nodiscard]] std::string text() const;
 
   [[nodiscard]] const std::string* find(std::string_view parameter) const;
-  void set(std::string_view parameter, double value);  ///< in the shortest form that reads back
+  void set(std::string_view parameter, double value);  ///< to six digits
   void set(std::string_view parameter, std::string value);
   /// The number under `parameter`, `otherwise` when it is not given; refuses what is no number within
   /// [lowest, highest].
