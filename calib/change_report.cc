@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/probability.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -27,11 +29,6 @@ std::string amount(double value, const std::string& unit, bool sign) {
   return fmt::format("{}{:.3g} {}", sign && value > 0 ? "+" : "", shown, unit.empty() ? "ppm" : unit);
 }
 
-/// "= 0.32" or "< 1e-15".
-std::string probability(double log10_p) {
-  return log10_p < -15 ? std::string("< 1e-15") : fmt::format("= {:.2g}", std::pow(10.0, log10_p));
-}
-
 }  // namespace
 
 json to_json(const Change& c) {
@@ -51,7 +48,7 @@ json to_json(const Change& c) {
 }
 
 std::string figures_text(const Change& c) {
-  return fmt::format("p {}; chi-square {:.1f} for {:.0f} directions", probability(std::log10(c.p())), c.chi2,
+  return fmt::format("{}; chi-square {:.1f} for {:.0f} directions", p_phrase(std::log10(c.p())), c.chi2,
                      c.dof);
 }
 
@@ -67,7 +64,7 @@ std::string named_text(const Change& change) {
 std::string change_table(const Change& change, std::size_t rows) {
   std::string out = "probability that nothing changed but this sensor:";
   for (std::size_t i = 0; i < kSensors; ++i)
-    out += fmt::format("   s{} p {}", i + 1, probability(change.others_log10_p[i]));
+    out += fmt::format("   s{} {}", i + 1, p_phrase(change.others_log10_p[i]));
   out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "as if it alone changed", "by", "sd", "sigmas",
                      "smallest to be seen");
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {

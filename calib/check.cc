@@ -264,9 +264,9 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   const double noise = report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
   report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
-  const JointErrors errors = joint_errors(problem, state);
+  const JointErrors errors = joint_errors(problem, state, FixedBlock::frozen);
   report.errors = errors.summary;
-  report.residual_nT = errors.residual_rms_nT;
+  report.residual_nT = errors.residual_nT;
   explain(report);
   return report;
 }

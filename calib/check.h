@@ -18,7 +18,7 @@ struct ValidityReport {
   bool valid{false};              ///< no change (kChanged), and the poses follow the model
   Change change;                  ///< new less old, as far as these poses tell it
   ErrorSummary errors;            ///< of the frozen calibration on these poses
-  double residual_nT{0};          ///< rms of raw readings less prediction, calibration frozen
+  double residual_nT{0};          ///< as PoseResiduals tells it, calibration frozen
   double noise_nT{0};             ///< of a pose mean, as weighted
   double excess{1};               ///< scatter that no change of the calibration explains, over the noise
   bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "calib/chi_square.h"
 #include "calib/criticism/criticism.h"
 #include "calib/f_distribution.h"
 #include "calib/fit/joint_report.h"
@@ -101,9 +102,8 @@ struct Component {
   Eigen::VectorXd values;
 };
 
-ResidualChannel channel_of(std::string name, std::string unit, const std::vector<Component>& components,
+ResidualChannel channel_of(ResidualChannel out, const std::vector<Component>& components,
                            const std::vector<Covariate>& all) {
-  ResidualChannel out{.name = std::move(name), .unit = std::move(unit)};
   for (const Component& c : components)
     out.rms += c.values.squaredNorm() /
                static_cast<double>(c.values.size() * static_cast<Eigen::Index>(components.size()));
@@ -150,7 +150,7 @@ Fields fields_of(const JointFit& fit) {
     const JointPose& pose = fit.problem.poses[at];
     model.linearise(pose, fit.state.nuisances[at], linear);
     const Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
-    out.whitened.col(k) = pose.weight.cwiseProduct(e);
+    out.whitened.col(k) = fit.worse * pose.weight.cwiseProduct(e);
     const double field = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
     for (int i = 0; i < kSensors; ++i) {
       const SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
@@ -179,29 +179,46 @@ std::vector<ResidualChannel> channels_of(const JointFit& fit) {
   for (int i = 0; i < kSensors; ++i) scalar.push_back({fmt::format("s{}", i + 1), f.scalar_nT.row(i)});
   for (int a = 0; a < 3; ++a) attitude.push_back({std::string(1, "xyz"[a]), f.attitude_deg.row(a)});
   const std::array<std::string, 4> names{"curl", "center x", "center y", "center z"};
-  for (int i = 0; i < 4; ++i) closure.push_back({names[static_cast<std::size_t>(i)], closures.row(i)});
-  std::vector<ResidualChannel> out{channel_of("whitened", "", whitened, all),
-                                   channel_of("scalar", "nT", scalar, all)};
-  if (fit.problem.has_angles) out.push_back(channel_of("attitude", "deg", attitude, all));
-  out.push_back(channel_of("inter-sensor", "nT", between, all));
-  out.push_back(channel_of("closure", "nT", closure, all));
+  for (int i = 0; i < 4; ++i) {
+    const double to_nT = i == 0 ? fit.problem.geometry.baseline_m : 1;
+    closure.push_back({names[static_cast<std::size_t>(i)], to_nT * closures.row(i)});
+  }
+  std::vector<ResidualChannel> out;
+  const auto add = [&](ResidualChannel channel, const std::vector<Component>& components) {
+    out.push_back(channel_of(std::move(channel), components, all));
+  };
+  add({"whitened", "", "reading less prediction, in units of the noise of its pose mean"}, whitened);
+  add({"scalar", "nT", "|b| of each sensor less F: blind to every error of angles"}, scalar);
+  if (fit.problem.has_angles)
+    add({"attitude", "deg", "what the table angles had to be corrected by: blind to the sensors"}, attitude);
+  add({"inter-sensor", "nT", "b of each sensor less the mean of the four: blind to attitude and field"},
+      between);
+  add({"closure", "nT",
+       "curl over the baseline, and centre of 1 and 3 less that of 2 and 4: zero in any gradient"},
+      closure);
   return out;
 }
 
 }  // namespace
 
 Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
-  const auto fit = fit_joint(table, joint_options(options));
+  const auto fit = fit_joint_at_size(table, joint_options(options));
   if (!fit) return tl::unexpected(fit.error());
   Criticism c = criticise(*fit, Suspects{}, options.seed);
   look_at_maps(*fit, c);
+  const PoseResiduals residuals = pose_residuals(fit->problem, fit->state);
   Comparison out{.noise = c.noise,
                  .noise_nT = fit->noise_nT(),
-                 .residual_nT = fit->noise_nT() * std::sqrt(c.chi2 / std::max(c.dof, 1.0)),
+                 .residual_nT = residuals.residual_nT(),
                  .axis_noise_nT = fit->pose_noise_nT};
-  out.axis_residual_nT =
-      fit->pose_noise_nT.cwiseProduct(pose_residuals(fit->problem, fit->state).noise_ratio);
-  out.chi2 = c.chi2, out.dof = c.dof, out.log10_p = c.omnibus_log10_p;
+  out.axis_residual_nT = fit->pose_noise_nT.cwiseProduct(residuals.noise_ratio) * fit->worse;
+  out.chi2 = chi2_told(*fit, c, fit->table_sd_rad), out.dof = c.dof;
+  if (c.noise.reference.known) {
+    out.log10_p = c.omnibus_log10_p;
+  } else if (c.noise.told && !c.noise.correlated()) {
+    out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+  }
+
   out.table_sd_deg = to_deg(fit->table_sd_rad);
   out.channels = channels_of(*fit);
   out.maps = c.maps;

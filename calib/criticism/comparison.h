@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,20 +26,23 @@ struct Dependence {
 ///     scalar        |b_i| less the field of the pose, by sensor, nT: blind to every error of angles
 ///     attitude      what the table angles had to be corrected by, deg: blind to the sensors
 ///     inter-sensor  b_i less the mean of the four, nT: blind to attitude and to changes of the field
-///     closure       curl in nT/m and differences of the two centres in nT: zero for any gradient
+///     closure       curl over the baseline and differences of the two centres, nT: zero for any gradient
 struct ResidualChannel {
   std::string name{}, unit{};
+  std::string meaning{};  ///< for a person
   double rms{0};
   std::vector<Dependence> against{};  ///< strongest first
 };
 
 struct Comparison {
   NoiseModel noise;
-  double noise_nT{0}, residual_nT{0};
+  double noise_nT{0};                             ///< of a pose mean
+  double residual_nT{0};                          ///< as PoseResiduals tells it
   AxisNoise axis_noise_nT{AxisNoise::Zero()};     ///< of a pose mean as it was weighted
   AxisNoise axis_residual_nT{AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
-  double chi2{0}, dof{0};
-  double log10_p{0};  ///< that noise alone makes so large a residual; 0 where the noise is the residual's own
+  double chi2{0}, dof{0};                         ///< of readings, scalar reference and table angles together
+  std::optional<double>
+      log10_p{};  ///< that the noise makes so large a residual; empty where no noise is told
   double table_sd_deg{0};
   std::vector<ResidualChannel> channels{};
   std::vector<MapScore> maps{};

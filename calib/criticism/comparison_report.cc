@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/explain_json.h"
-#include "calib/criticism/sentence.h"
+#include "calib/criticism/noise_text.h"
+#include "calib/fit/residual_words.h"
+#include "calib/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -34,7 +36,11 @@ json channel_json(const ResidualChannel& c) {
                        {"from", d.from},
                        {"to", d.to}});
   }
-  return {{"channel", c.name}, {"unit", c.unit}, {"rms", c.rms}, {"against", std::move(against)}};
+  return {{"channel", c.name},
+          {"unit", c.unit},
+          {"meaning", c.meaning},
+          {"rms", c.rms},
+          {"against", std::move(against)}};
 }
 
 /// Means as a row of blocks, lowest to highest of the row.
@@ -51,23 +57,27 @@ std::string plot(const std::vector<double>& means) {
 }
 
 std::string noise_text(const Comparison& c) {
-  std::string out =
-      fmt::format("residual {:.3g} nT, noise of a pose mean {:.3g} nT ({})\n", c.residual_nT, c.noise_nT,
-                  c.noise.reference.known ? "from the dwells" : "from the residual itself");
-  out += fmt::format("chi-square {:.0f} with {:.0f} degrees of freedom{}\n", c.chi2, c.dof,
-                     c.noise.reference.known ? fmt::format(", p {}", p_text(c.log10_p)) : "");
+  std::string out = fmt::format("residual   {:.3g} nT: {}\n", c.residual_nT, kResidualIs);
+  out += fmt::format("noise      {:.3g} nT of a pose mean, {}\n", c.noise_nT, noise_source(c.noise.told));
+  if (const std::string tests = noise_of_tests(c.noise); !tests.empty())
+    out += fmt::format("           {}\n", tests);
+  out += fmt::format(
+      "chi-square {:.4g} with {:.0f} degrees of freedom, of readings, scalar reference and table angles{}\n",
+      c.chi2, c.dof, c.log10_p ? "; " + p_phrase(*c.log10_p) : "");
   if (c.noise.revisits) {
     const PureError& p = *c.noise.revisits;
     out += fmt::format(
-        "revisits: {} pairs, noise between them {:.2f} of the assumed; lack of fit F = {:.2f}, p {}: ",
-        p.pairs, std::sqrt(p.ratio), p.F, p_text(p.log10_p));
-    out += fmt::format("the model misses {:.2g} nT rms\n", p.model_nT);
+        "revisits   {} pairs of one attitude scatter {:.2f} times that noise; lack of fit F = {:.2f}, {}: ",
+        p.pairs, std::sqrt(p.ratio), p.F, p_phrase(p.log10_p));
+    out += fmt::format("the model misses {:.2g} nT rms beyond that scatter\n", p.model_nT);
   } else {
-    out += "no attitude was visited twice: no lack of fit without assumptions\n";
+    out +=
+        "revisits   none: without one, lack of fit cannot be told from an assumed noise that is too small\n";
   }
-  out += fmt::format("correlation from pose to pose {:.2f}; table angles to {:.3g} deg\n", c.noise.rho,
-                     c.table_sd_deg);
-  return out;
+  out += fmt::format("poses      correlated {:.2f} from one to the next", c.noise.rho);
+  if (c.table_sd_deg > 0)
+    out += fmt::format("; table angles good to {:.3g} deg each, estimated", c.table_sd_deg);
+  return out + "\n";
 }
 
 }  // namespace
@@ -91,7 +101,8 @@ json to_json(const Comparison& c) {
           {"axis_residual_nT", axes_json(c.axis_residual_nT)},
           {"chi2", c.chi2},
           {"dof", c.dof},
-          {"p", std::pow(10.0, c.log10_p)},
+          {"p", c.log10_p ? json(std::pow(10.0, *c.log10_p)) : json()},
+          {"log10_p", c.log10_p ? json(*c.log10_p) : json()},
           {"table_sd_deg", c.table_sd_deg},
           {"lack_of_fit", std::move(lack)},
           {"channels", std::move(channels)},
@@ -102,16 +113,19 @@ json to_json(const Comparison& c) {
 std::string to_text(const Comparison& c) {
   std::string out = noise_text(c);
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "\n{:<13} {:>12}   {:<12} {:<9} {:>8}  means over it\n", "channel", "rms", "against",
-                 "strongest", "p");
+  fmt::format_to(to, "\n{:<13} {:>12}   {:<12} {:<9} {:>8}  means over it, lowest to highest\n", "channel",
+                 "rms", "against", "strongest", "p");
   for (const ResidualChannel& channel : c.channels) {
-    std::string head = fmt::format("{:<13} {:>9.3g} {:<3}", channel.name, channel.rms, channel.unit);
+    std::string head = fmt::format("{:<13} {:>8.3g} {:<4}", channel.name, channel.rms, channel.unit);
     for (const Dependence& d : channel.against) {
       fmt::format_to(to, "{:<26}  {:<12} {:<9} {:>8}  {}\n", head, d.covariate, d.component,
                      p_text(d.log10_p), plot(d.means));
       head.clear();
     }
+    if (!head.empty()) fmt::format_to(to, "{:<26}  nothing recorded that it could depend on\n", head);
   }
+  for (const ResidualChannel& channel : c.channels)
+    fmt::format_to(to, "  {:<13} {}\n", channel.name, channel.meaning);
   fmt::format_to(to, "\n{:<26}  {:<12} {:>3} {:>8}\n", "map of the residual", "where", "k", "p");
   for (const MapScore& m : c.maps)
     fmt::format_to(to, "{:<26}  {:<12} {:>3} {:>8}\n", m.map, m.where, m.k, p_text(m.log10_p));

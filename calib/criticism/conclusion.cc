@@ -10,7 +10,7 @@
 #include <set>
 
 #include "calib/criticism/rest.h"
-#include "calib/criticism/sentence.h"
+#include "calib/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -61,8 +61,8 @@ std::string leaves_something(const ExplainReport& report, const Criticism& last)
       const std::string where = spec && spec->where ? spec->where->text() : round.added.where;
       const double log10_p = rest_log10_p(last, where);
       if (log10_p < std::log10(kRestAlarm))
-        return fmt::format("{} is not all of it: with it {} still differs from noise, p {}",
-                           round.added.effect, where, p_text(log10_p));
+        return fmt::format("{} is not all of it: with it {} still differs from noise, {}", round.added.effect,
+                           where, p_phrase(log10_p));
     }
   }
   return {};

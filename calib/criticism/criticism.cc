@@ -115,6 +115,11 @@ Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t
   return out;
 }
 
+double chi2_told(const JointFit& fit, const Criticism& c, double table_sd_rad) {
+  const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
+  return (c.chi2 - fit.chi2_table) * fit.worse * fit.worse + fit.chi2_table * angles;
+}
+
 void look_at_maps(const JointFit& fit, Criticism& criticism) {
   criticism.maps =
       score_maps(residual_maps(fit.problem, fit.state), criticism.residual, criticism.noise.reference);

@@ -38,6 +38,10 @@ struct Criticism {
 /// no p-value is near to its alarm.
 [[nodiscard]] Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed,
                                   const Rates* before = nullptr);
+/// Chi-square of readings, scalar reference and table angles: readings in units of the noise that the table
+/// tells, its angles in units of `table_sd_rad`. Every fit estimates that anew, and what an effect of the
+/// table explains would be gone with it.
+[[nodiscard]] double chi2_told(const JointFit& fit, const Criticism& c, double table_sd_rad);
 /// The generic maps, which cost as much as everything else: asked where nothing with a name stands out.
 void look_at_maps(const JointFit& fit, Criticism& criticism);
 

@@ -15,6 +15,7 @@
 #include "calib/criticism/next_measurement.h"
 #include "calib/criticism/numbers.h"
 #include "calib/fit/joint_report.h"
+#include "calib/fit/pose_residuals.h"
 
 namespace mgtd::calib {
 namespace {
@@ -76,26 +77,20 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
   }
 }
 
-/// Readings in units of the noise that the table tells, its angles in units of `table_sd_rad`: every fit
-/// estimates that anew, and what an effect of the table explains would be gone with it.
-double chi2_of(const JointFit& fit, const Criticism& c, double table_sd_rad) {
-  const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
-  return (c.chi2 - fit.chi2_table) * fit.worse * fit.worse + fit.chi2_table * angles;
-}
-
 std::vector<Detectable> detectable(const Criticism& c) {
   std::vector<Detectable> out;
   for (const ScoredFamily& f : c.families) out.push_back(detectable_of(*f.suspect, f.signatures.front()));
   return out;
 }
 
+double residual_of(const JointFit& fit) { return pose_residuals(fit.problem, fit.state).residual_nT(); }
+
 /// Fills what describes the model that was asked about.
 void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   out.noise = c.noise;
   out.noise_nT = fit.noise_nT();
-  out.noise_told = fit.sample_noise_nT.has_value();
-  out.residual_nT = residual_rms_nT(fit);
-  out.chi2 = chi2_of(fit, c, fit.table_sd_rad), out.dof = c.dof;
+  out.residual_nT = residual_of(fit);
+  out.chi2 = chi2_told(fit, c, fit.table_sd_rad), out.dof = c.dof;
   out.omnibus_log10_p = c.omnibus_log10_p;
   out.families = c.rates.best;
   out.maps = c.maps;
@@ -206,14 +201,14 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
     report.candidates[f].rivals = round.added.rivals;
   }
   const double table_sd_rad = fit.table_sd_rad;
-  round.chi2_before = chi2_of(fit, criticism, table_sd_rad), round.rms_before_nT = residual_rms_nT(fit);
+  round.chi2_before = chi2_told(fit, criticism, table_sd_rad), round.rms_before_nT = residual_of(fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;
   fit = std::move(*refit);
   const Rates rates = std::move(criticism.rates);
   criticism = criticise(fit, search.suspects, search.seed, &rates);
   round.fit = std::make_shared<const JointFit>(fit);
-  round.chi2_after = chi2_of(fit, criticism, table_sd_rad), round.rms_after_nT = residual_rms_nT(fit);
+  round.chi2_after = chi2_told(fit, criticism, table_sd_rad), round.rms_after_nT = residual_of(fit);
   report.rounds.push_back(std::move(round));
   return true;
 }

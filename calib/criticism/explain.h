@@ -78,7 +78,6 @@ struct ExplainReport {
   std::vector<MapScore> maps_left{};  ///< after the last round
   NoiseModel noise;
   double noise_nT{0}, residual_nT{0};
-  bool noise_told{true};  ///< by the spreads within the dwells
   double chi2{0}, dof{0};
   double omnibus_log10_p{0};
   double families{1};  ///< independent ones, by draws

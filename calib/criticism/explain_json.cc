@@ -65,6 +65,7 @@ json to_json(const NoiseModel& n) {
   json out{{"from", !n.reference.known           ? "residual"
                     : std::isinf(n.reference.nu) ? "dwells"
                                                  : "revisits"},
+           {"pose_mean_from", n.told ? "dwells" : "residual"},
            {"pose_correlation", n.rho},
            {"scale", std::sqrt(n.reference.scale2)}};
   out["between_revisits"] =

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "calib/criticism/sentence.h"
+#include "calib/probability.h"
 
 namespace mgtd::calib {
 namespace {

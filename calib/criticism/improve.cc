@@ -23,7 +23,7 @@ void polish(const PoseTable& table, const FitOptions& options, const JointOption
   tidy.worse = last.worse;
   JointFit fit = last;
   polished(table, options.effects.size(), tidy, fit);
-  const auto before = left_out_rms_nT(last), after = left_out_rms_nT(fit);
+  const auto before = left_out_nT(last), after = left_out_nT(fit);
   if (before && (!after || *after > kHeldOutVeto * *before)) return;
   best.effects = std::move(tidy.effects);
 }
@@ -38,8 +38,7 @@ std::string stop_text(const ExplainReport& explained) {
       return "nothing stands out any more";
     default:
       if (explained.rounds.size() >= kRounds) return "the number of rounds is reached";
-      return "something stands out, and nothing that stands for it could be added" +
-             (explained.notes.empty() ? std::string() : ": " + explained.notes.back());
+      return "something stands out, and nothing that stands for it could be added";
   }
 }
 
@@ -49,13 +48,14 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
   const auto explained =
       explain(table, {.fit = options, .rounds = static_cast<int>(kRounds), .suspects = {}});
   if (!explained) return tl::unexpected(explained.error());
-  ImproveReport out{.finding = explained->left, .stopped = stop_text(*explained), .fit = {}};
+  ImproveReport out{
+      .finding = explained->left, .stopped = stop_text(*explained), .notes = explained->notes, .fit = {}};
   const JointOptions joint = joint_options(options);
   std::shared_ptr<const JointFit> last = explained->fit;
-  std::optional<double> held_out = left_out_rms_nT(*last);
+  std::optional<double> held_out = left_out_nT(*last);
   FitOptions best = options;
   for (const Round& round : explained->rounds) {
-    const auto after = left_out_rms_nT(*round.fit);
+    const auto after = left_out_nT(*round.fit);
     if (held_out && after && *after > kHeldOutVeto * *held_out) {
       out.stopped =
           fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",

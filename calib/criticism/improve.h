@@ -13,8 +13,8 @@ namespace mgtd::calib {
 
 struct ImproveRound {
   Candidate added;
-  std::vector<std::string> possible{};  ///< others that could stand in its place
-  double rms_before_nT{0}, rms_after_nT{0};
+  std::vector<std::string> possible{};       ///< others that could stand in its place
+  double rms_before_nT{0}, rms_after_nT{0};  ///< residual, as PoseResiduals tells it
   std::optional<double> held_out_before_nT{}, held_out_after_nT{};
   double predicted_fall{0}, realised_fall{0};  ///< of chi-square
   VariancePrice price{};                       ///< what the parameters of the sensors lose
@@ -24,7 +24,8 @@ struct ImproveReport {
   std::vector<ImproveRound> rounds{};
   Finding finding{Finding::pass};  ///< of what is left at the end
   std::string stopped{};           ///< why no more was added
-  FitReport fit;                   ///< with everything that was added
+  std::vector<std::string> notes{};
+  FitReport fit;  ///< with everything that was added
 };
 
 [[nodiscard]] Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options);

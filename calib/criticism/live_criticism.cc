@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "calib/probability.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -26,10 +28,6 @@ constexpr std::array<const char*, 2> kPer{"degC", "h"};
 
 const char* unit_of(int component) { return component == 0 ? "nT/m" : "nT"; }
 
-std::string chance(double log10_p) {
-  return log10_p < -99 ? "p < 1e-99" : fmt::format("p = 1e{:.0f}", log10_p);
-}
-
 /// A turn is an event too, so that the attitude may explain as much as one.
 bool is_followed(const Following& f, Follows what) {
   const double least = f.event_share - (what == Follows::attitude ? kEventMargin : -kEventMargin);
@@ -41,8 +39,8 @@ std::string described(const Following& f, Follows what, double minutes) {
   const auto at = static_cast<std::size_t>(f.component);
   const char* const unit = unit_of(f.component);
   const std::string name(kFollowsNames.at(static_cast<std::size_t>(what)));
-  const std::string evidence =
-      fmt::format("{:.0f} % of what the closure does beyond its noise, {}", 100 * f.share, chance(f.log10_p));
+  const std::string evidence = fmt::format("{:.0f} % of what the closure does beyond its noise, {}",
+                                           100 * f.share, p_phrase(f.log10_p));
   if (what == Follows::attitude) {
     return fmt::format(
         "{} follows the attitude: it moves by {:.3g} {} over the turns of the last {:.0f} min ({})",
@@ -171,7 +169,7 @@ void LiveCriticism::judge_nearness(double log10_p) {
     near_ = fmt::format(
         "the closure is {:.3g} nT/m (curl) and {:.3g}, {:.3g}, {:.3g} nT (centre), mean of {:.0f} samples: "
         "{}; {}",
-        b.closure[0], b.closure[1], b.closure[2], b.closure[3], b.samples, chance(log10_p),
+        b.closure[0], b.closure[1], b.closure[2], b.closure[3], b.samples, p_phrase(log10_p),
         tested_.empty() ? "whether it follows temperature, time or attitude is not known yet"
                         : "it does not follow " + tested_);
     calm_blocks_ = 0;

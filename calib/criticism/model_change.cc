@@ -56,14 +56,14 @@ double chi2_of(const ModelStage& stage, const JointFit& fit) {
 }
 
 std::optional<double> residual_of(const std::optional<JointErrors>& errors) {
-  return errors ? std::optional(errors->residual_rms_nT) : std::nullopt;
+  return errors ? std::optional(errors->residual_nT) : std::nullopt;
 }
 
 void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
   for (const EffectPtr& effect : after.options.effects) out.model.push_back(effect->spec());
   out.chi2_before = before.fit.chi2, out.dof_before = before.fit.dof;
   out.chi2_after = after.fit.chi2, out.dof_after = after.fit.dof;
-  out.rms_before_nT = before.errors.residual_rms_nT, out.rms_after_nT = after.errors.residual_rms_nT;
+  out.rms_before_nT = before.errors.residual_nT, out.rms_after_nT = after.errors.residual_nT;
   out.noise_nT = (out.adding ? after : before).fit.noise_nT();
   out.tensor_before_nT_per_m = tensor_rms(before.errors.summary.tensor_rmse_nT_per_m);
   out.tensor_after_nT_per_m = tensor_rms(after.errors.summary.tensor_rmse_nT_per_m);

@@ -8,7 +8,8 @@
 
 #include "calib/criticism/bar.h"
 #include "calib/criticism/model_change.h"
-#include "calib/criticism/sentence.h"
+#include "calib/fit/residual_words.h"
+#include "calib/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -72,13 +73,13 @@ json to_json(const ModelChange& c) {
 std::string to_text(const ModelChange& c) {
   std::string out = fmt::format("{} {}\n", c.adding ? "with" : "without", c.spec);
   const auto to = std::back_inserter(out);
-  out += line("residual, rms", c.rms_before_nT, c.rms_after_nT, "nT");
+  out += line("residual", c.rms_before_nT, c.rms_after_nT, "nT");
   if (c.held_out_before_nT && c.held_out_after_nT)
-    out += line("on poses left out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
-  out += line("tensor, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
-  fmt::format_to(to, "{:<29} {:>9.3f} nT\n", "noise of a pose mean", c.noise_nT);
-  fmt::format_to(to, "chi-square {} by {:.1f} where {:.1f} was predicted; by chance p {}\n",
-                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_text(c.log10_p));
+    out += line("on poses held out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
+  out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
+  fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
+  fmt::format_to(to, "chi-square {} by {:.1f} where {:.1f} was predicted; chance alone: {}\n",
+                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_phrase(c.log10_p));
   if (c.price.parameter.empty()) {
     out += "price: no standard deviation of the calibration is larger for it\n";
   } else {
@@ -98,8 +99,8 @@ std::string to_text(const ModelChange& c, Veto veto) {
       return fmt::format("on poses left out the error rises from {:.4g} to {:.4g} nT",
                          c.held_out_before_nT.value_or(0), c.held_out_after_nT.value_or(0));
     case Veto::not_shown:
-      return fmt::format("it is not shown to be there: by chance p {}, and the limit is {}",
-                         p_text(c.log10_p), kVetoChance);
+      return fmt::format("it is not shown to be there: chance alone has {}, and the limit is {}",
+                         p_phrase(c.log10_p), kVetoChance);
     case Veto::price:
       return fmt::format(
           "the standard deviation of {} would be {:.0f} times what it is without, and the "

@@ -30,7 +30,7 @@ Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options
   auto fit = fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
   ModelStage out{.options = std::move(joint), .fit = std::move(*fit), .errors = {}};
-  out.errors = joint_errors(out.fit.problem, out.fit.state);
+  out.errors = joint_errors(out.fit.problem, out.fit.state, FixedBlock::fitted);
   out.held_out = held_out_errors(out.fit);
   return out;
 }

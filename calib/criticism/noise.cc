@@ -13,7 +13,7 @@ namespace mgtd::calib {
 namespace {
 
 using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
-constexpr double kMaxRho = 0.95, kCorrelated = 0.2;
+constexpr double kMaxRho = 0.95;
 /// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
 /// too large costs a little power. The median is so much worse than the mean.
 constexpr double kCautious = 1.5, kMedianOfMean = 1.25;
@@ -168,6 +168,20 @@ double pose_correlation(const JointProblem& problem, const JointState& state) {
   return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
 }
 
+namespace {
+
+/// Factors that bring the residuals of two visits, each in units of its own noise, to units in which the same
+/// misfit is the same number. Zero where one of them was left out; one where both weigh alike.
+std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels& v) {
+  const Channels length = (u.cwiseAbs2() + v.cwiseAbs2()).cwiseSqrt();
+  const auto both = (u.array() > 0) && (v.array() > 0);
+  const double root2 = std::sqrt(2.0);
+  return {both.select(root2 * v.array() / length.array(), 0.0).matrix(),
+          both.select(root2 * u.array() / length.array(), 0.0).matrix()};
+}
+
+}  // namespace
+
 std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
   const auto pairs = revisits(fit.problem);
   if (pairs.empty()) return std::nullopt;
@@ -175,17 +189,20 @@ std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof
   PureError out{.pairs = static_cast<int>(pairs.size())};
   double squares = 0, expected = 0;
   for (const auto& [u, v] : pairs) {
-    squares += (f.e.col(u) - f.e.col(v)).squaredNorm();
-    expected +=
-        f.M[static_cast<std::size_t>(u)].squaredNorm() + f.M[static_cast<std::size_t>(v)].squaredNorm();
+    const auto a = static_cast<std::size_t>(u), b = static_cast<std::size_t>(v);
+    const auto [by_u, by_v] = in_common_units(fit.problem.poses[a].weight, fit.problem.poses[b].weight);
+    squares += (by_u.cwiseProduct(f.e.col(u)) - by_v.cwiseProduct(f.e.col(v))).squaredNorm();
+    expected += (by_u.asDiagonal() * f.M[a]).squaredNorm() + (by_v.asDiagonal() * f.M[b]).squaredNorm();
   }
+  if (!(expected > 0)) return std::nullopt;
   out.nu = expected / 2;
-  out.ratio = squares / expected;
-  const double rest = std::max(0.0, chi2 - out.ratio * out.nu), rest_dof = dof - out.nu;
+  const double ratio = squares / expected, worse2 = fit.worse * fit.worse;
+  out.ratio = ratio * worse2;
+  const double rest = std::max(0.0, chi2 - ratio * out.nu), rest_dof = dof - out.nu;
   if (rest_dof > 0) {
-    out.F = rest / rest_dof / out.ratio;
+    out.F = rest / rest_dof / ratio;
     out.log10_p = f_log10_p(out.F, rest_dof, out.nu);
-    out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, rest / rest_dof - out.ratio));
+    out.model_nT = fit.noise_nT() * std::sqrt(worse2 * std::max(0.0, rest / rest_dof - ratio));
   }
   return out;
 }
@@ -194,12 +211,13 @@ NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
   NoiseModel out{.rho = residual.whitener().rho(),
                  .revisits = pure_error(fit, residual.chi2(), residual.dof()),
                  .reference = {.dof = residual.dof()}};
+  out.told = fit.sample_noise_nT.has_value();
   NoiseReference& n = out.reference;
   // What lasts from one pose to the next is not seen within a dwell, and what a model far off leaves is no
   // noise: its size is that of the residual.
-  const bool lasting = out.rho > kCorrelated || fit.worse > 1;
-  n.known = fit.sample_noise_nT.has_value() && !lasting;
-  n.by_channel = !fit.sample_noise_nT.has_value();
+  const bool lasting = out.correlated() || fit.worse > 1;
+  n.known = out.told && !lasting;
+  n.by_channel = !out.told;
   if (lasting) n.scale2 = residual.chi2() / residual.dof();
   if (n.known && out.revisits) {
     const PureError& p = *out.revisits;

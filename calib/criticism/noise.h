@@ -13,14 +13,18 @@
 ///                                     the fit took; the median over the twelve channels counts, so that an
 ///                                     effect on one axis is not taken for noise
 ///     pure error                      pairs of visits to one attitude: |e_u - e_v|^2 against tr M_u M_u' +
-///                                     tr M_v M_v': eight combinations a pair that neither attitude nor field
-///                                     strength moves
+///                                     tr M_v M_v', both in nT where the two weigh differently, so that what
+///                                     the model misses at that attitude drops out: eight combinations a pair
+///                                     that neither attitude nor field strength moves
 namespace mgtd::calib {
+
+/// Autocorrelation from pose to pose above which noise is not what a dwell shows of it.
+inline constexpr double kCorrelated = 0.2;
 
 struct PureError {
   int pairs{0};
   double nu{0};             ///< degrees of freedom
-  double ratio{1};          ///< variance between visits over the variance that the weights assume
+  double ratio{1};          ///< variance between visits over the variance that a pose mean is said to have
   double F{1}, log10_p{0};  ///< lack of fit: the rest of the residual against it
   double model_nT{0};       ///< rms that the model misses, beyond the noise
 };
@@ -29,6 +33,9 @@ struct NoiseModel {
   double rho{0};
   std::optional<PureError> revisits{};
   NoiseReference reference;
+  bool told{true};  ///< the noise of a pose mean, by the spreads within the dwells
+
+  [[nodiscard]] bool correlated() const { return rho > kCorrelated; }
 };
 
 /// With a margin for its own uncertainty where it counts.

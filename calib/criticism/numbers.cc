@@ -76,6 +76,9 @@ std::optional<Eigen::VectorXd> steps(const JointFit& fit, const std::vector<Numb
   return Eigen::VectorXd(qr.solve(residual.value()).cwiseMax(-kLongest).cwiseMin(kLongest));
 }
 
+/// What the fit makes small, comparable where the weights are estimated.
+double size_of(const JointFit& fit) { return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0)); }
+
 bool step_once(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
   const std::vector<Number> numbers = numbers_of(options.effects, given);
   const EffectContext context{.table = &table, .offset_nT = {}};
@@ -93,17 +96,13 @@ bool step_once(const PoseTable& table, std::size_t given, JointOptions& options,
   }
   next.worse = fit.worse;
   auto after = fit_joint_at_size(table, next, &fit.state);
-  if (!after || residual_rms_nT(*after) >= residual_rms_nT(fit)) return false;
+  if (!after || size_of(*after) >= size_of(fit)) return false;
   options.effects = std::move(next.effects);
   fit = *std::move(after);
   return true;
 }
 
 }  // namespace
-
-double residual_rms_nT(const JointFit& fit) {
-  return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0));
-}
 
 void refine_numbers(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
   for (int i = 0; i < kSteps && step_once(table, given, options, fit); ++i) {

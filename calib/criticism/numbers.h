@@ -16,7 +16,4 @@ namespace mgtd::calib {
 /// better.
 void refine_numbers(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit);
 
-/// Rms of the residual, nT.
-[[nodiscard]] double residual_rms_nT(const JointFit& fit);
-
 }  // namespace mgtd::calib

@@ -12,10 +12,10 @@
 
 #include "calib/criticism/noise.h"
 #include "calib/criticism/score.h"
-#include "calib/criticism/sentence.h"
 #include "calib/effects/derivative_check.h"
 #include "calib/effects/formula.h"
 #include "calib/fit/joint_report.h"
+#include "calib/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -173,7 +173,7 @@ std::string to_text(const FormulaExamination& x) {
                    r.correlation == x.alike.front().correlation ? "it is" : "     ", 100 * r.correlation,
                    r.effect, r.correlation > kTheSame ? ": no run like this can tell them apart" : "");
   }
-  fmt::format_to(to, "on this run, by the score test: d {:.1f}, p {}\n", x.d(), p_text(x.log10_p));
+  fmt::format_to(to, "on this run, by the score test: d {:.1f}, {}\n", x.d(), p_phrase(x.log10_p));
   for (const EffectCoefficient& c : x.coefficients)
     fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", c.name, c.value, c.sd, c.unit);
   return out;

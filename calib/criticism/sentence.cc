@@ -8,6 +8,10 @@
 #include <cmath>
 #include <set>
 
+#include "calib/criticism/noise_text.h"
+#include "calib/fit/residual_words.h"
+#include "calib/probability.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -19,21 +23,19 @@ std::string place(const Candidate& c) {
 }
 
 std::string noise_text(const ExplainReport& r) {
-  std::string out = fmt::format("The residual is {:.3g} nT where the noise of a pose mean is {:.3g} nT",
-                                r.residual_nT, r.noise_nT);
-  if (!r.noise_told) {
-    out =
-        fmt::format("The residual is {:.3g} nT; the table tells no noise to hold it against", r.residual_nT);
-  }
-  if (r.noise.rho > 0.2) out += fmt::format(", correlated {:.2f} from pose to pose", r.noise.rho);
+  std::string out = fmt::format("The residual is {:.3g} nT", r.residual_nT);
+  if (r.noise.told)
+    out += fmt::format(" where the noise of a pose mean is {:.3g} nT, {}", r.noise_nT,
+                       noise_source(r.noise.told));
+  if (const std::string tests = noise_of_tests(r.noise); !tests.empty()) out += "; " + tests;
   return out + ".";
 }
 
 std::string round_text(const Round& round) {
   const Candidate& a = round.added;
   return fmt::format(
-      "It behaves like {}{}: {}, {:.1f} sigma, p {}; with it the residual falls from {:.3g} to {:.3g} nT.",
-      a.effect, place(a), size_text(a), a.d, p_text(a.log10_p), round.rms_before_nT, round.rms_after_nT);
+      "It behaves like {}{}: {}, {:.1f} sigma, {}; with it the residual falls from {:.3g} to {:.3g} nT.",
+      a.effect, place(a), size_text(a), a.d, p_phrase(a.log10_p), round.rms_before_nT, round.rms_after_nT);
 }
 
 std::string rivals_text(const Round& round) {
@@ -51,7 +53,7 @@ std::string rivals_text(const Round& round) {
 std::string left_text(const std::vector<MapScore>& maps) {
   if (maps.empty()) return "";
   const MapScore& m = maps.front();
-  return fmt::format("What is left shows most against {} ({}, p {}).", m.map, m.where, p_text(m.log10_p));
+  return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where, p_phrase(m.log10_p));
 }
 
 std::string outliers_text(const std::vector<OutlierNode>& outliers) {
@@ -65,12 +67,6 @@ std::string outliers_text(const std::vector<OutlierNode>& outliers) {
 }
 
 }  // namespace
-
-std::string p_text(double log10_p) {
-  if (log10_p > -3) return fmt::format("{:.2g}", std::pow(10.0, log10_p));
-  const double exponent = std::floor(log10_p);
-  return fmt::format("{:.0f}e{:.0f}", std::pow(10.0, log10_p - exponent), exponent);
-}
 
 std::string size_text(const Candidate& c) {
   const auto sigmas = [](const EffectCoefficient& x) { return std::abs(x.value) / std::max(x.sd, 1e-300); };

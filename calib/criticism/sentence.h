@@ -9,9 +9,6 @@ namespace mgtd::calib {
 /// The verdict as one paragraph for a person, made of the report's figures and nothing else.
 [[nodiscard]] std::string sentence(const ExplainReport& report);
 
-/// "3e-12" of a logarithm that may be far below what a double holds.
-[[nodiscard]] std::string p_text(double log10_p);
-
 /// "+0.42 +- 0.03 nT/degC", for several coefficients the largest against its uncertainty.
 [[nodiscard]] std::string size_text(const Candidate& candidate);
 

@@ -21,7 +21,7 @@ struct ErrorLevel {
 };
 
 ErrorLevel level_of(const JointErrors& e) {
-  return {e.residual_rms_nT, tensor_rms(e.summary.tensor_rmse_nT_per_m)};
+  return {e.residual_nT, tensor_rms(e.summary.tensor_rmse_nT_per_m)};
 }
 
 double beyond(double without, double with) {
@@ -32,7 +32,7 @@ Result<ErrorLevel> level_with(const PoseTable& table, const ModelStage& whole,
                               const std::vector<EffectPtr>& effects) {
   const auto fit = fit_under_same_weights(table, whole, effects);
   if (!fit) return tl::unexpected(fit.error());
-  return level_of(joint_errors(fit->problem, fit->state));
+  return level_of(joint_errors(fit->problem, fit->state, FixedBlock::fitted));
 }
 
 /// Of the tensor when every corrected component has the noise of its pose means.
@@ -107,7 +107,7 @@ std::string to_text(const Waterfall& w) {
   const auto total = [&](const char* what, double nT, double nT_per_m) {
     fmt::format_to(to, "{:<40} {:>9.3f} {:>9.3f}  {}\n", what, nT, nT_per_m, bar(nT, top, kBar));
   };
-  fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "error in squares, rms", "nT", "nT/m");
+  fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
   total("without any effect", w.without_nT, w.without_nT_per_m);
   for (const WaterfallStep& s : w.steps) {
     fmt::format_to(to, "  {}\n", s.spec);
@@ -115,7 +115,8 @@ std::string to_text(const Waterfall& w) {
     total("    dropped last brings back", s.last_nT, s.last_nT_per_m);
   }
   total("with all of them", w.with_nT, w.with_nT_per_m);
-  total("noise floor", w.floor_nT, w.floor_nT_per_m);
+  total("noise", w.floor_nT, w.floor_nT_per_m);
+  out += "nT: the residual; nT/m: error of the tensor, rms of its six components; parts add up in squares\n";
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include "calib/fit/error_summary.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "calib/tensor.h"
@@ -30,16 +31,26 @@ FieldTable corrected_fields(const Readings& readings, const std::array<SensorMod
   return b;
 }
 
-ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, const Geometry& geometry) {
+ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, const Geometry& geometry,
+                       const Counted& counted) {
   ErrorSummary out;
-  const auto n = static_cast<double>(b_nT.cols());
+  const Eigen::Index n = b_nT.cols();
+  const bool all = counted.tensor.size() != n;
+  const auto mean = [](const Eigen::ArrayXd& squares, const Eigen::ArrayXd& weight) {
+    return std::sqrt((squares * weight).sum() / std::max(1.0, weight.sum()));
+  };
   for (std::size_t i = 0; i < kCount; ++i) {
-    const auto b = b_nT.middleRows<3>(3 * static_cast<Eigen::Index>(i));
-    out.total_field_rmse_nT[i] = std::sqrt((b.colwise().norm().transpose() - f_nT).squaredNorm() / n);
+    const auto at = static_cast<Eigen::Index>(i);
+    const Eigen::ArrayXd weight =
+        all ? Eigen::ArrayXd::Ones(n) : Eigen::ArrayXd(counted.field.row(at).transpose().cast<double>());
+    const Eigen::VectorXd strength = b_nT.middleRows<3>(3 * at).colwise().norm().transpose();
+    out.total_field_rmse_nT[i] = mean((strength - f_nT).array().square(), weight);
   }
-  const Eigen::Matrix<double, 6, 1> rms =
-      ((gradient_rows(geometry) * b_nT).rowwise().squaredNorm() / n).cwiseSqrt();
-  out.tensor_rmse_nT_per_m = {rms[0], rms[1], rms[2], rms[3], rms[4], rms[5]};
+  const Eigen::ArrayXd weight =
+      all ? Eigen::ArrayXd::Ones(n) : Eigen::ArrayXd(counted.tensor.transpose().cast<double>());
+  const Eigen::MatrixXd tensor = gradient_rows(geometry) * b_nT;
+  const auto rms = [&](Eigen::Index c) { return mean(tensor.row(c).transpose().array().square(), weight); };
+  out.tensor_rmse_nT_per_m = {rms(0), rms(1), rms(2), rms(3), rms(4), rms(5)};
   return out;
 }
 

@@ -14,8 +14,14 @@ using FieldTable = Eigen::Matrix<double, 3 * kSensors, Eigen::Dynamic>;
 [[nodiscard]] FieldTable corrected_fields(const Readings& readings,
                                           const std::array<SensorModel, kSensors>& sensors);
 
+/// What counts, pose by pose: the field of each sensor, and the tensor. Empty: everything.
+struct Counted {
+  Eigen::Array<bool, kSensors, Eigen::Dynamic> field;
+  Eigen::Array<bool, 1, Eigen::Dynamic> tensor;
+};
+
 [[nodiscard]] ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT,
-                                     const Geometry& geometry);
+                                     const Geometry& geometry, const Counted& counted = {});
 
 /// (|b| - F)/sd squared, summed over sensors and poses. sd: the pose-mean noise along the field, and that of
 /// F.

@@ -62,7 +62,8 @@ struct FitReport {
   Calibration calibration;
   double chi2{0};  ///< two-step: of |b| against F; joint: of all readings and the scalar reference
   double dof{0};
-  double noise_nT{0};  ///< of a pose mean, rms over the axes
+  double noise_nT{0};      ///< of a pose mean, rms over the axes
+  bool noise_told{false};  ///< by the spreads within the dwells; else the residual's own
   std::vector<std::string>
       reasons;  ///< sentences for the operator: what failed, what was recognised, what is left over
   SiteField site;
@@ -77,7 +78,7 @@ struct FitReport {
   // Of the joint fit:
   double chi2_table{0}, dof_table{0};          ///< of the table angles, kept apart from the model's
   double table_sd_rad{0};                      ///< estimated
-  double residual_nT{0};                       ///< rms of raw readings less prediction
+  double residual_nT{0};                       ///< as PoseResiduals tells it
   std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
   std::vector<OutlierNode> outliers;
   std::vector<std::string>

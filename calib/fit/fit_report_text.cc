@@ -2,6 +2,7 @@
 #include "calib/fit/fit_report_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "calib/fit/fit_report_json.h"
+#include "calib/fit/residual_words.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -111,17 +113,44 @@ std::string heading(const FitReport& report) {
                      with_sd(to_deg(report.site.inclination_rad), to_deg(report.site.inclination_sd_rad)),
                      with_sd(to_deg(report.site.declination_rad), to_deg(report.site.declination_sd_rad)));
   if (report.dof > 0) {
-    out += fmt::format("noise: {:.3f} nT of a pose mean; chi-square {:.1f} for {:.0f} degrees of freedom\n",
-                       report.noise_nT, report.chi2, report.dof);
+    out += fmt::format("noise: {:.3g} nT of a pose mean, {}\n", report.noise_nT,
+                       noise_source(report.noise_told));
+  }
+  if (report.residual_nT > 0) {
+    out += fmt::format("residual: {:.3g} nT", report.residual_nT);
+    if (report.held_out_residual_nT)
+      out += fmt::format(", on poses held out {:.3g} nT", *report.held_out_residual_nT);
+    out += fmt::format(" ({})\n", kResidualIs);
+  }
+  if (report.dof > 0) {
+    out += fmt::format("chi-square: {:.5g} for {:.0f} degrees of freedom, of {}\n", report.chi2, report.dof,
+                       report.residual_nT > 0 ? "readings and scalar reference" : "|b| less F");
   }
   if (report.table_sd_rad > 0) {
-    out += fmt::format("table: {:.4f} deg of angle error a pose; chi-square {:.1f} for {:.0f}\n",
+    out += fmt::format("table: each angle good to {:.4f} deg, estimated; chi-square {:.4g} for {:.0f}\n",
                        to_deg(report.table_sd_rad), report.chi2_table, report.dof_table);
   }
   return out;
 }
 
 }  // namespace
+
+std::string rows_text(const FitReport& report) {
+  std::string out =
+      "total field: |b| of each sensor less the F of its pose; tensor: what a uniform field leaves of it, "
+      "effects "
+      "of the "
+      "site that are in the model taken out";
+  std::vector<std::string> readings;
+  for (const OutlierNode& o : report.outliers)
+    if (o.where != "angles") readings.push_back(fmt::format("{} of pose {}", o.where, o.pose));
+  if (!readings.empty()) {
+    out += fmt::format("; no row counts {} that the fit left out: {}",
+                       readings.size() == 1 ? "the reading" : fmt::format("the {} readings", readings.size()),
+                       fmt::join(readings, ", "));
+  }
+  return out;
+}
 
 std::string error_table(const FitReport& report) {
   std::string out = fmt::format("{:<12}{:^36}  {:^60}\n", "rms error", "total field, nT", "tensor, nT/m");
@@ -138,7 +167,7 @@ std::string error_table(const FitReport& report) {
   }
   if (report.held_out) out += error_row("held out", *report.held_out);
   if (report.check_poses) out += error_row("check poses", *report.check_poses);
-  return out;
+  return out + rows_text(report) + "\n";
 }
 
 std::string to_text(const FitReport& report) {

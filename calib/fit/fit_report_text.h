@@ -13,5 +13,7 @@ namespace mgtd::calib {
 
 /// The table of errors alone: a row per stage (before, simplified, step 1, after, held out, check poses).
 [[nodiscard]] std::string error_table(const FitReport& report);
+/// What its rows are, and what none of them counts.
+[[nodiscard]] std::string rows_text(const FitReport& report);
 
 }  // namespace mgtd::calib

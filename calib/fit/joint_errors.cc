@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint_errors.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/array_model.h"
+#include "calib/fit/pose_residuals.h"
 #include "calib/sensor_equations.h"
 
 namespace mgtd::calib {
@@ -14,24 +16,26 @@ constexpr std::size_t kFolds = 10;
 struct Sums {
   Eigen::Vector4d field{Eigen::Vector4d::Zero()};
   Eigen::Matrix<double, 6, 1> tensor{Eigen::Matrix<double, 6, 1>::Zero()};
-  double residual{0}, readings{0}, fields{0}, poses{0};
+  PoseResiduals residuals;
+  Eigen::Vector4d fields{Eigen::Vector4d::Zero()};
+  double tensors{0};
 
-  [[nodiscard]] JointErrors errors() const {
+  [[nodiscard]] JointErrors errors(FixedBlock block) const {
     JointErrors out;
     for (int i = 0; i < kSensors; ++i)
-      out.summary.total_field_rmse_nT[static_cast<std::size_t>(i)] = std::sqrt(field[i] / fields);
-    const Eigen::Matrix<double, 6, 1> g = (tensor / poses).cwiseSqrt();
+      out.summary.total_field_rmse_nT[static_cast<std::size_t>(i)] =
+          std::sqrt(field[i] / std::max(1.0, fields[i]));
+    const Eigen::Matrix<double, 6, 1> g = (tensor / std::max(1.0, tensors)).cwiseSqrt();
     out.summary.tensor_rmse_nT_per_m = {g[0], g[1], g[2], g[3], g[4], g[5]};
-    out.residual_rms_nT = readings > 0 ? std::sqrt(residual / readings) : 0;
+    out.residual_nT = block == FixedBlock::fitted ? residuals.residual_nT() : residuals.unseen_nT();
     return out;
   }
 };
 
 void add(const JointProblem& problem, const JointState& state, Sums& sums) {
   const ArrayModel array(state.sensors, problem.geometry, problem.effects, state.coefficients);
-  const PoseModel model(problem, state);
   const auto rows = gradient_rows(problem.geometry);
-  PoseLinear linear;
+  const Counted counts = counted(problem);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const JointPose& pose = problem.poses[k];
     const Nuisance& x = state.nuisances[k];
@@ -40,20 +44,21 @@ void add(const JointProblem& problem, const JointState& state, Sums& sums) {
     if (pose.has_angles) R = turn_by<double>(x.head<3>()) * array.attitude(at);
     FieldVector b = array.correct(at, pose.y_nT, R);
     if (R) b -= array.site_field(at, *R);
-    if (pose.f_weight > 0) {
-      const double f = problem.common_field ? state.f_nT : pose.f_nT;
-      for (int i = 0; i < kSensors; ++i) sums.field[i] += std::pow(b.segment<3>(3 * i).norm() - f, 2);
-      ++sums.fields;
+    const double f = problem.common_field ? state.f_nT : pose.f_nT;
+    const auto at_pose = static_cast<Eigen::Index>(k);
+    for (int i = 0; i < kSensors; ++i) {
+      if (!counts.field(i, at_pose)) continue;
+      sums.field[i] += std::pow(b.segment<3>(3 * i).norm() - f, 2);
+      ++sums.fields[i];
     }
+    if (!counts.tensor[at_pose]) continue;
     sums.tensor += (rows * b).cwiseAbs2();
-    ++sums.poses;
-    model.linearise(pose, x, linear);
-    for (int c = 0; c < kChannels; ++c) {
-      if (!(pose.weight[c] > 0)) continue;
-      sums.residual += std::pow(pose.y_nT[c] - linear.y_nT[c], 2);
-      ++sums.readings;
-    }
+    ++sums.tensors;
   }
+  const PoseResiduals more = pose_residuals(problem, state);
+  sums.residuals.squares_nT2 += more.squares_nT2;
+  sums.residuals.freedom += more.freedom;
+  sums.residuals.fitted = more.fitted;
 }
 
 /// A problem and the nuisances of its poses: those from..to, or all the others.
@@ -75,10 +80,25 @@ Part part(const JointFit& fit, std::size_t from, std::size_t to, bool inside) {
 
 }  // namespace
 
-JointErrors joint_errors(const JointProblem& problem, const JointState& state) {
+Counted counted(const JointProblem& problem) {
+  const auto n = static_cast<Eigen::Index>(problem.poses.size());
+  Counted out{.field = decltype(Counted::field)(kSensors, n), .tensor = decltype(Counted::tensor)(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    out.tensor[k] = true;
+    for (int i = 0; i < kSensors; ++i) {
+      const bool there = pose.weight.segment<3>(3 * i).minCoeff() > 0;
+      out.field(i, k) = there && pose.f_weight > 0;
+      out.tensor[k] = out.tensor[k] && there;
+    }
+  }
+  return out;
+}
+
+JointErrors joint_errors(const JointProblem& problem, const JointState& state, FixedBlock block) {
   Sums sums;
   add(problem, state, sums);
-  return sums.errors();
+  return sums.errors(block);
 }
 
 std::optional<JointErrors> held_out_errors(const JointFit& fit) {
@@ -95,7 +115,7 @@ std::optional<JointErrors> held_out_errors(const JointFit& fit) {
     refit_nuisances(own.problem, fitted->state);
     add(own.problem, fitted->state, sums);
   }
-  return sums.errors();
+  return sums.errors(FixedBlock::frozen);
 }
 
 }  // namespace mgtd::calib

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "calib/fit/error_summary.h"
 #include "calib/fit/fit.h"
 #include "calib/fit/joint_fit.h"
 
@@ -9,14 +10,22 @@
 namespace mgtd::calib {
 
 struct JointErrors {
-  ErrorSummary
-      summary;  ///< |b| against each pose's own F, and the tensor; effects of the site taken out of both
-  double residual_rms_nT{0};  ///< raw readings against prediction, each pose with its own best field
+  /// |b| against each pose's own F, and the tensor; effects of the site taken out of both. A sensor one of
+  /// whose readings the fit left out does not count in that pose, nor does the tensor of it.
+  ErrorSummary summary;
+  double residual_nT{0};  ///< as PoseResiduals tells it
 };
+
+/// Fitted to these very poses, or frozen before they were looked at.
+enum class FixedBlock { fitted, frozen };
+
+/// By what the fit left out.
+[[nodiscard]] Counted counted(const JointProblem& problem);
 
 /// Errors of these poses with a fixed block as it stands. The nuisances in `state` are those of `problem`'s
 /// poses.
-[[nodiscard]] JointErrors joint_errors(const JointProblem& problem, const JointState& state);
+[[nodiscard]] JointErrors joint_errors(const JointProblem& problem, const JointState& state,
+                                       FixedBlock block);
 
 /// Folds contiguous in time. The calibration of each fold is fitted to the others and frozen; of a pose left
 /// out only its own field (and, where the table's angles are known, attitude) is refitted. Empty when a fold

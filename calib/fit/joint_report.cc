@@ -43,11 +43,13 @@ SiteField site_of(const JointFit& fit) {
   return out;
 }
 
-/// Errors of the other methods on the same poses, where those methods can answer.
+/// Errors of the other methods on the same readings, where those methods can answer.
 void compare_methods(const Readings& readings, const FitOptions& options, const JointFit& fit,
                      FitReport& report) {
-  const Geometry& geometry = report.calibration.geometry;
-  report.before = summarise(raw_fields(readings), readings.f_nT, geometry);
+  const auto errors = [&, counts = counted(fit.problem)](const FieldTable& b_nT) {
+    return summarise(b_nT, readings.f_nT, report.calibration.geometry, counts);
+  };
+  report.before = errors(raw_fields(readings));
   FieldTable b = raw_fields(readings);
   for (std::size_t i = 0; i < kSensors; ++i) {
     const auto step1 = scalar_calibration(readings.y_nT[i], readings.f_nT);
@@ -55,14 +57,14 @@ void compare_methods(const Readings& readings, const FitOptions& options, const 
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         fit.state.sensors[i].mounting * step1->correct(readings.y_nT[i]);
   }
-  report.after_step1 = summarise(b, readings.f_nT, geometry);
+  report.after_step1 = errors(b);
   FitOptions other = options;
   for (const Method method : {Method::two_step, Method::simplified}) {
     other.method = method;
     const auto fitted = two_step(readings, other);
     if (!fitted) continue;
     auto& row = method == Method::two_step ? report.two_step : report.simplified;
-    row = summarise(corrected_fields(readings, fitted->sensors), readings.f_nT, geometry);
+    row = errors(corrected_fields(readings, fitted->sensors));
   }
 }
 
@@ -78,7 +80,7 @@ std::optional<ErrorSummary> errors_of_check_poses(const PoseTable& table, const 
   JointState state = joint_state(*problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
   state.coefficients = fit.state.coefficients;
   refit_nuisances(*problem, state);
-  return joint_errors(*problem, state).summary;
+  return joint_errors(*problem, state, FixedBlock::frozen).summary;
 }
 
 std::vector<std::string> weak_texts(const Identifiability& known) {
@@ -95,6 +97,7 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
   report.chi2 = fit.chi2;
   report.dof = fit.dof;
   report.noise_nT = fit.noise_nT();
+  report.noise_told = fit.sample_noise_nT.has_value();
   report.chi2_table = fit.chi2_table;
   report.dof_table = fit.dof_table;
   report.table_sd_rad = fit.table_sd_rad;
@@ -102,12 +105,12 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
   report.site = site_of(fit);
   report.tensor_sd_nT_per_m =
       calibration_tensor_sd(fit.state.sensors, fit.problem.geometry, fit.covariance, report.site.f_nT);
-  const JointErrors in = joint_errors(fit.problem, fit.state);
+  const JointErrors in = joint_errors(fit.problem, fit.state, FixedBlock::fitted);
   report.after = in.summary;
-  report.residual_nT = in.residual_rms_nT;
+  report.residual_nT = in.residual_nT;
   if (const auto out = held_out_errors(fit)) {
     report.held_out = out->summary;
-    report.held_out_residual_nT = out->residual_rms_nT;
+    report.held_out_residual_nT = out->residual_nT;
   }
 }
 

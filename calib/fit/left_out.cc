@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "calib/fit/joint_solver.h"
+#include "calib/fit/pose_residuals.h"
 
 namespace mgtd::calib {
 namespace {
@@ -29,28 +29,11 @@ Fold fold_of(const JointFit& fit, std::size_t k) {
   return out;
 }
 
-/// Squares of raw readings less prediction, and how many.
-std::pair<double, int> residual_of(const JointProblem& problem, const JointState& state) {
-  const PoseModel model(problem, state);
-  PoseLinear linear;
-  double squares = 0;
-  int count = 0;
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    const JointPose& pose = problem.poses[k];
-    model.linearise(pose, state.nuisances[k], linear);
-    const auto there = (pose.weight.array() > 0);
-    squares += there.select(pose.y_nT - linear.y_nT, 0.0).squaredNorm();
-    count += static_cast<int>(there.count());
-  }
-  return {squares, count};
-}
-
 }  // namespace
 
-std::optional<double> left_out_rms_nT(const JointFit& fit) {
+std::optional<double> left_out_nT(const JointFit& fit) {
   const Reduced all = reduce(fit.problem, fit.state, 0);
-  double squares = 0;
-  int count = 0;
+  PoseResiduals sums;
   for (std::size_t k = 0; k < kFolds; ++k) {
     Fold fold = fold_of(fit, k);
     // Slots that nothing observes are held by a unit in both: they stay held.
@@ -62,10 +45,10 @@ std::optional<double> left_out_rms_nT(const JointFit& fit) {
     if (!d.allFinite() || llt.info() != Eigen::Success) return std::nullopt;
     JointState moved = fold.state.moved(d.cwiseProduct(llt.solve(d.cwiseProduct(all.g - fold.share.g))));
     refit_nuisances(fold.problem, moved);
-    const auto [more, readings] = residual_of(fold.problem, moved);
-    squares += more, count += readings;
+    const PoseResiduals more = pose_residuals(fold.problem, moved);
+    sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;
   }
-  return count > 0 ? std::optional(std::sqrt(squares / count)) : std::nullopt;
+  return sums.readings > 0 ? std::optional(sums.unseen_nT()) : std::nullopt;
 }
 
 }  // namespace mgtd::calib

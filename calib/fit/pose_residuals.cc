@@ -30,6 +30,8 @@ void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::L
     sums.squares(c / 3, c % 3) += b.residual[c] * b.residual[c];
     sums.freedom(c / 3, c % 3) += free;
     ++out.readings;
+    out.squares_nT2 += std::pow(b.residual[c] / pose.weight[c], 2);
+    out.freedom += free;
     if (free > kNothing) out.t(c, k) = static_cast<float>(std::abs(b.residual[c]) / std::sqrt(free));
   }
 }
@@ -65,6 +67,9 @@ double attitude_freedom(const Sums& sums) {
 
 }  // namespace
 
+double PoseResiduals::residual_nT() const { return std::sqrt(squares_nT2 / std::max(1.0, freedom - fitted)); }
+double PoseResiduals::unseen_nT() const { return std::sqrt(squares_nT2 / std::max(1.0, freedom)); }
+
 PoseResiduals pose_residuals(const JointProblem& problem, const JointState& state) {
   PoseResiduals out;
   out.t.setZero(kObservations, static_cast<Eigen::Index>(problem.poses.size()));
@@ -82,6 +87,7 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   // Each reading is an affine form of the field: four unknowns of the fixed block a channel, and its share of
   // effects.
   const double fitted = 4.0 + problem.coefficients() / double{kChannels};
+  out.fitted = kChannels * fitted;
   for (int i = 0; i < kSensors; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double free = sums.freedom(i, a) - fitted;

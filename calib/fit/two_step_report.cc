@@ -135,6 +135,7 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
   const AxisNoise effective = effective_noise(readings, fitted, report.after_step1);
   c.pose_noise_nT = (readings.pose_noise_nT.array() > 0).select(readings.pose_noise_nT, effective);
   report.noise_nT = rms(c.pose_noise_nT);
+  report.noise_told = (readings.pose_noise_nT.array() > 0).all();
   const FieldTable b = corrected_fields(readings, fitted.sensors);
   report.chi2 = field_chi2(b, readings, fitted.sensors, c.pose_noise_nT);
   report.dof = static_cast<double>(kSensors * (readings.poses() - 9));

@@ -61,7 +61,7 @@ Check determinant_check(const Calibration& c) {
 Check residual_check(const FitReport& r) {
   const auto& rms = r.after.total_field_rmse_nT;
   const double worst = *std::max_element(rms.begin(), rms.end());
-  return check("residual", worst <= kMaxResidualShare * r.site.f_nT,
+  return check("total field", worst <= kMaxResidualShare * r.site.f_nT,
                fmt::format("{:.3f} nT rms of |b| - F, worst sensor", worst),
                fmt::format("{:.1f} nT, 0.1 % of the field", kMaxResidualShare * r.site.f_nT),
                "look for a disturbed pose, a wrong total field or iron near the rig");
@@ -137,8 +137,9 @@ std::vector<std::string> remarks(const FitReport& report) {
     // The square root of chi-square per degree of freedom scatters by 1/sqrt(2 dof).
     if (ratio > 1 + 5 / std::sqrt(2 * report.dof)) {
       out.push_back(fmt::format(
-          "the residual is {:.2f} times the noise of a pose ({:.3f} nT): the model leaves something out",
-          ratio, report.noise_nT));
+          "the model leaves something out: chi-square is {:.3g} times its degrees of freedom, as if "
+          "the noise of a pose mean were {:.3g} nT, and it is {:.3g} nT",
+          ratio * ratio, ratio * report.noise_nT, report.noise_nT));
     }
   }
   return out;

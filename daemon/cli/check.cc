@@ -5,6 +5,7 @@
 
 #include "calib/change_report.h"
 #include "calib/fit/fit_report_json.h"
+#include "calib/fit/residual_words.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 
@@ -59,8 +60,9 @@ int run_check(const Session& session, const Arguments& args) {
   } else {
     fmt::print("calibration {} against {} poses: {}\n", checked->calibration, checked->poses,
                checked->valid ? "VALID" : "NOT VALID");
-    fmt::print("residual {:.3f} nT, noise of a pose mean {:.3f} nT\n", checked->residual_nT,
-               checked->noise_nT);
+    fmt::print("residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}\n", checked->residual_nT,
+               calib::kResidualIs, checked->noise_nT,
+               checked->noise_from_dwells ? calib::noise_source(true) : "of the calibration's own run");
     fmt::print("{}\n", calib::change_table(checked->change, kRows));
     for (const std::string& reason : checked->reasons) fmt::print("note: {}\n", reason);
   }

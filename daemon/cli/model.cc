@@ -154,10 +154,10 @@ int run_model(const Session& session, const Arguments& args) {
     const json result = json::parse(s.result, nullptr, false);
     std::string rms;
     if (result.is_object() && result.contains("rms_before_nT")) {
-      rms = fmt::format("{:.3f} -> {:.3f} nT", result["rms_before_nT"].get<double>(),
+      rms = fmt::format("residual {:.3g} -> {:.3g} nT", result["rms_before_nT"].get<double>(),
                         result["rms_after_nT"].get<double>());
     }
-    fmt::print("{:.19}Z  {:<5} {:<36} {:<22} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
+    fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
   }
   fmt::print("the model: {}\n", model_text(model));
   return 0;

@@ -5,12 +5,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
 
+#include "calib/criticism/noise_text.h"
 #include "calib/criticism/sentence.h"
+#include "calib/fit/fit_report_text.h"
+#include "calib/fit/residual_words.h"
+#include "calib/probability.h"
 #include "daemon/cli/html.h"
 #include "daemon/cli/svg.h"
 #include "proto/units.h"
@@ -40,6 +45,14 @@ std::vector<std::string> error_row(const std::string& name, const calib::ErrorSu
   const Gradient& g = e.tensor_rmse_nT_per_m;
   for (const double x : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) out.push_back(number(x));
   return out;
+}
+
+/// As a sentence of its own.
+std::string tests_clause(const calib::NoiseModel& noise) {
+  std::string out = calib::noise_of_tests(noise);
+  if (out.empty()) return out;
+  out.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(out.front())));
+  return escaped(out) + ".";
 }
 
 std::string banner_class(calib::Finding finding) {
@@ -99,9 +112,9 @@ std::string errors_section(const ReportContent& c) {
   rows.push_back(error_row("joint", c.fit.after));
   if (c.fit.held_out) rows.push_back(error_row("poses left out", *c.fit.held_out));
   if (c.fit.check_poses) rows.push_back(error_row("check poses", *c.fit.check_poses));
-  return "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares: total field of each sensor "
-         "against the "
-         "reference, nT, and the six components of the tensor, nT/m.</p>" +
+  return "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares over the poses, nT and "
+         "nT/m; " +
+         escaped(calib::rows_text(c.fit)) + ".</p>" +
          html_table({"", "s1", "s2", "s3", "s4", "xx", "yy", "zz", "xy", "xz", "yz"}, rows, false) +
          html_good(fmt::format(
              "the last rows agree with each other (nothing was overfitted) and lie near the noise of a "
@@ -112,19 +125,21 @@ std::string errors_section(const ReportContent& c) {
 std::string residual_section(const ReportContent& c) {
   constexpr double kStandsOut = -3;
   std::string out = fmt::format(
-      "<h2>What the model leaves</h2><p>Residual {:.3g} nT rms; noise of a pose mean {:.3g} nT. Each row is "
-      "a way of "
-      "looking at it, each plot its means over a covariate, of the component that depends most.</p>",
-      c.comparison.residual_nT, c.comparison.noise_nT);
+      "<h2>What the model leaves</h2><p>Residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}. {}</p>"
+      "<p class=\"quiet\">Each row is a way of looking at it, each plot its means over a covariate, of the "
+      "component that depends most.</p>",
+      c.comparison.residual_nT, calib::kResidualIs, c.comparison.noise_nT,
+      calib::noise_source(c.comparison.noise.told), tests_clause(c.comparison.noise));
   for (const calib::ResidualChannel& channel : c.comparison.channels) {
     double scale = 0;
     for (const calib::Dependence& d : channel.against)
       for (const double m : d.means) scale = std::max(scale, std::abs(m));
-    out += fmt::format("<h3>{} <span class=\"quiet\">rms {:.3g} {}</span></h3><div class=\"plots\">",
-                       escaped(channel.name), channel.rms, escaped(channel.unit));
+    out += fmt::format("<h3>{} <span class=\"quiet\">rms {:.3g}{}{}: {}</span></h3><div class=\"plots\">",
+                       escaped(channel.name), channel.rms, channel.unit.empty() ? "" : " ",
+                       escaped(channel.unit), escaped(channel.meaning));
     for (const calib::Dependence& d : channel.against) {
       const bool stands_out = d.log10_p < kStandsOut;
-      out += fmt::format("<figure{}>{}<figcaption>{}, p {}</figcaption></figure>",
+      out += fmt::format("<figure{}>{}<figcaption>{}, {}</figcaption></figure>",
                          stands_out ? " class=\"out\"" : "",
                          svg_series({.y = d.means,
                                      .from = d.from,
@@ -133,7 +148,7 @@ std::string residual_section(const ReportContent& c) {
                                      .unit = channel.unit,
                                      .scale = scale,
                                      .stands_out = stands_out}),
-                         escaped(d.component), calib::p_text(d.log10_p));
+                         escaped(d.component), escaped(calib::p_phrase(d.log10_p)));
     }
     out += "</div>";
   }
@@ -159,9 +174,10 @@ std::string waterfall_section(const ReportContent& c) {
   }
   bars.push_back(
       {"with all of them", w.with_nT, fmt::format("{:.3g} nT, {:.3g} nT/m", w.with_nT, w.with_nT_per_m), 2});
-  return "<h2>What each effect takes out</h2><p class=\"quiet\">Errors add in squares: a bar is the part of "
-         "the error, "
-         "rms in nT, that one effect accounts for.</p>" +
+  return "<h2>What each effect takes out</h2><p class=\"quiet\">Parts add in squares: a bar is the part of "
+         "the residual, nT, that one effect accounts for; beside it the same of the error of the tensor, rms "
+         "of its "
+         "six components.</p>" +
          svg_bars(bars, w.floor_nT, fmt::format("noise {:.3g} nT", w.floor_nT)) +
          html_good(
              "the last bar ends at the noise. Where the two bars of an effect differ, it shares what it "

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/sentence.h"
+#include "calib/probability.h"
 #include "daemon/cli/html.h"
 #include "daemon/cli/report_page.h"
 #include "daemon/cli/svg.h"
@@ -118,7 +119,7 @@ std::string history_section(const ReportContent& c) {
     rows.push_back({fmt::format("{:.19}Z", format_utc(s.at)), s.action, s.spec, change, s.who});
   }
   return "<h2>How the model came to be</h2>" +
-         html_table({"when", "", "effect", "residual", "who"}, rows, true);
+         html_table({"when", "", "effect", "residual before → after", "who"}, rows, true);
 }
 
 std::string report_page(const ReportContent& c) {

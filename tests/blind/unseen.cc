@@ -37,7 +37,7 @@ double unseen_rms_nT(const PoseTable& table, const JointOptions& options, const 
   JointState state = joint_state(problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
   state.coefficients = fit.state.coefficients;
   refit_nuisances(problem, state);
-  return joint_errors(problem, state).residual_rms_nT;
+  return joint_errors(problem, state, FixedBlock::frozen).residual_nT;
 }
 
 double frozen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {

@@ -9,6 +9,7 @@
 #include "calib/criticism/numbers.h"
 #include "calib/fit/joint_errors.h"
 #include "calib/fit/left_out.h"
+#include "calib/fit/pose_residuals.h"
 #include "tests/blind/hidden_run.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
@@ -49,11 +50,11 @@ TEST(LeftOut, IsTheErrorThatTenFitsFind) {
     options.effects.push_back(make_effect(spec).value());
   const auto fit = fit_joint(table, options);
   ASSERT_TRUE(fit);
-  const auto quick = left_out_rms_nT(*fit);
+  const auto quick = left_out_nT(*fit);
   const auto fits = held_out_errors(*fit);
   ASSERT_TRUE(quick && fits);
-  EXPECT_NEAR(*quick, fits->residual_rms_nT, 1e-3 * fits->residual_rms_nT);
-  EXPECT_GT(*quick, joint_errors(fit->problem, fit->state).residual_rms_nT);
+  EXPECT_NEAR(*quick, fits->residual_nT, 1e-3 * fits->residual_nT);
+  EXPECT_GT(*quick, joint_errors(fit->problem, fit->state, FixedBlock::fitted).residual_nT);
 }
 
 /// From the nearest value of a grid to the true width, without a search.
@@ -73,12 +74,12 @@ TEST(Numbers, TheWidthOfAHysteresisIsRefinedBesideEverythingElse) {
   options.effects.push_back(make_effect("axis.hysteresis@s2.x,w=0.22").value());
   auto fit = fit_joint(table, options);
   ASSERT_TRUE(fit);
-  const double before = residual_rms_nT(*fit);
+  const double before = pose_residuals(fit->problem, fit->state).residual_nT();
   refine_numbers(table, 0, options, *fit);
   const auto spec = EffectSpec::parse(options.effects.front()->spec());
   ASSERT_TRUE(spec);
   EXPECT_NEAR(*spec->number("w", 0, 0, 10), 0.3, 0.03);
-  EXPECT_LT(residual_rms_nT(*fit), before);
+  EXPECT_LT(pose_residuals(fit->problem, fit->state).residual_nT(), before);
 
   JointOptions kept;
   kept.effects.push_back(make_effect("axis.hysteresis@s2.x,w=0.22").value());
