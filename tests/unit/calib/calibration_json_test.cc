@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <random>
 #include <regex>
 
@@ -101,6 +102,22 @@ TEST(CalibrationJson, NoJsonAtAllIsRefused) {
     ASSERT_FALSE(read) << text;
     EXPECT_EQ(read.error().code, ErrorCode::bad_input);
   }
+}
+
+TEST(CalibrationJson, WhatIsWrongIsToldByLineAndColumnInOurWords) {
+  std::string text = to_json_text(random_calibration(1));
+  const std::string torn = text.substr(0, text.size() / 2);
+  EXPECT_THAT(calibration_from_json_text(torn).error().message,
+              HasSubstr("the text ends before the JSON does"));
+  const std::size_t at = text.find("\"poses\": ") + 9;
+  text.insert(at, "\"many\"; ");
+  const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  const std::string line = "line " + std::to_string(lines + 1) + ", column ";
+  EXPECT_EQ(calibration_from_json_text(text).error().message, line + "17: not JSON from here on");
+  text[text.find("; ", at)] = ',';
+  text.insert(text.find(", ", at) + 2, "\"spare\": ");
+  EXPECT_EQ(calibration_from_json_text(text).error().message,
+            "not a calibration: " + line + "11: poses: a number belongs here, not a text");
 }
 
 /// Removing only part of what it says would be silent falsehood.
