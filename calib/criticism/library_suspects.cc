@@ -100,9 +100,11 @@ Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& 
     const auto effect = make(family, std::nullopt, values.front(), context);
     const auto ok = effect ? (*effect)->check(table) : tl::unexpected(effect.error());
     if (!ok) {
-      Error why = ok.error();
-      why.message = without_name(std::move(why.message), family.name);
-      out.untestable.push_back({std::string(family.name), why.text()});
+      std::string why = without_name(ok.error().message, family.name);
+      const std::size_t lacking = effect ? (*effect)->lack_of(table).poses : 0;
+      if (lacking > 0 && lacking < table.poses.size())
+        why += ": fill it in, or leave those poses out of the table";
+      out.untestable.push_back({std::string(family.name), std::move(why)});
       continue;
     }
     out.testable.push_back(suspect_of(family, context));

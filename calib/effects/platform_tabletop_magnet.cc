@@ -38,10 +38,11 @@ Result<std::shared_ptr<const Effect>> TabletopMagnet::bound(const EffectContext&
     if (pose.mount) found.insert(*pose.mount);
   }
   if (found.size() < 2) {
-    return fail(ErrorCode::refused,
-                fmt::format("platform.tabletop-magnet: {} mounting of the array in the column mount, needs 2",
-                            found.size()),
-                "turn or tilt the array on the table, measure again, and number the mountings");
+    return fail(
+        ErrorCode::refused,
+        fmt::format("platform.tabletop-magnet: the column mount tells {} mountings of the array, needs 2",
+                    found.size()),
+        "turn or tilt the array on the table, measure again, and number the mountings");
   }
   return std::make_shared<const TabletopMagnet>(std::vector<int>(found.begin(), found.end()));
 }

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What poses lack for an effect, and which effect can do without it in some of them.
+#include <gmock/gmock.h>
+
+#include "calib/criticism/suspect.h"
+#include "calib/effects/library.h"
+#include "calib/fit/fit.h"
+#include "tests/blind/hidden_run.h"
+
+namespace mgtd::calib {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+PoseTable with_sense(std::size_t lacking) {
+  PoseTable table = testing::hidden_run({}, 4);
+  for (std::size_t k = 0; k < table.poses.size(); ++k)
+    if (k >= lacking) table.poses[k].sense = k % 3 == 0 ? 1 : -1;
+  return table;
+}
+
+const Untestable* find(const std::vector<Untestable>& all, std::string_view name) {
+  for (const Untestable& u : all)
+    if (u.effect == name) return &u;
+  return nullptr;
+}
+
+TEST(Backlash, TheFirstPoseOfARunNeedNotHaveASense) {
+  for (const std::size_t lacking : {0U, 1U, 15U}) {
+    const PoseTable table = with_sense(lacking);
+    EXPECT_TRUE((*make_effect("table.backlash"))->check(table)) << lacking;
+    EXPECT_EQ(find(library_suspects(table).untestable, "table.backlash"), nullptr) << lacking;
+    FitOptions options;
+    options.effects = {*make_effect("table.backlash")};
+    EXPECT_TRUE(fit(table, options)) << lacking;
+  }
+}
+
+TEST(Lack, SaysHowManyPosesAndWhatToDo) {
+  const PoseTable table = with_sense(16);
+  const auto refused = (*make_effect("table.backlash"))->check(table);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "table.backlash needs sense, which 16 of 157 poses have not (the first: pose 1)");
+  EXPECT_THAT(refused.error().remedy, HasSubstr("leave the poses without it out of the table"));
+  const Suspects suspects = library_suspects(table);
+  const Untestable* listed = find(suspects.untestable, "table.backlash");
+  ASSERT_NE(listed, nullptr);
+  EXPECT_THAT(listed->why, StartsWith("needs sense, which 16 of 157"));
+}
+
+TEST(Lack, AnAngleIsNeededOfEveryPose) {
+  PoseTable table = with_sense(1);
+  table.poses[7].pitch_rad.reset();
+  EXPECT_THAT((*make_effect("table.backlash"))->check(table).error().message,
+              HasSubstr("table.backlash needs"));
+}
+
+TEST(Lack, NoReasonBeginsWithTheNameItStandsBeside) {
+  for (const Untestable& u : library_suspects(with_sense(157)).untestable)
+    EXPECT_THAT(u.why, ::testing::Not(StartsWith(u.effect))) << u.effect;
+}
+
+}  // namespace
+}  // namespace mgtd::calib
