@@ -69,7 +69,10 @@ void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
   out.tensor_after_nT_per_m = tensor_rms(after.errors.summary.tensor_rmse_nT_per_m);
   out.held_out_before_nT = residual_of(before.held_out);
   out.held_out_after_nT = residual_of(after.held_out);
-  out.log10_p = out.realised > 0 ? chi_square_log10_p(out.realised, std::max(1, out.k)) : 0;
+  // A model that is far off in another way has its chi-square fall by thousands for nothing.
+  out.spread = (out.adding ? after : before).fit.spread;
+  const double fall = out.realised / (out.spread * out.spread);
+  out.log10_p = fall > 0 ? chi_square_log10_p(fall, std::max(1, out.k)) : 0;
 }
 
 }  // namespace

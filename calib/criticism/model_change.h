@@ -33,7 +33,8 @@ struct ModelChange {
   std::vector<EffectCoefficient> coefficients{};  ///< of this effect, in the wider model
   int k{0};                                       ///< coefficients that the poses can tell
   double predicted{0}, realised{0};               ///< fall (adding) or rise (dropping) of chi-square
-  double log10_p{0};                              ///< that chance alone makes so large a realised one
+  double log10_p{0};  ///< that chance alone makes so large a realised one, at the noise of the wider model
+  double spread{1};  ///< of what the wider model leaves, over the noise, where that is significantly above it
   double chi2_before{0}, chi2_after{0}, dof_before{0}, dof_after{0};
   double rms_before_nT{0}, rms_after_nT{0}, noise_nT{0};
   double tensor_before_nT_per_m{0}, tensor_after_nT_per_m{0};

@@ -54,6 +54,7 @@ json to_json(const ModelChange& c) {
           {c.adding ? "predicted_fall" : "predicted_rise", c.predicted},
           {c.adding ? "realised_fall" : "realised_rise", c.realised},
           {"log10_p", c.log10_p},
+          {"residual_over_noise", c.spread},
           {"chi2_before", c.chi2_before},
           {"chi2_after", c.chi2_after},
           {"dof_before", c.dof_before},
@@ -78,8 +79,12 @@ std::string to_text(const ModelChange& c) {
     out += line("on poses held out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
   out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
   fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
-  fmt::format_to(to, "chi-square {} by {:.1f} where {:.1f} was predicted; chance alone: {}\n",
-                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_phrase(c.log10_p));
+  fmt::format_to(to, "chi-square {} by {:.5g} where {:.5g} was predicted; chance alone: {}{}\n",
+                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_phrase(c.log10_p),
+                 c.spread > 1
+                     ? fmt::format(" (what is left {} is {:.3g} times the noise, and so is a fall by chance)",
+                                   c.adding ? "with it" : "before", c.spread)
+                     : "");
   if (c.price.parameter.empty()) {
     out += "price: no standard deviation of the calibration is larger for it\n";
   } else {
