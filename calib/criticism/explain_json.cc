@@ -94,9 +94,7 @@ json to_json(const ExplainReport& r) {
       {"chi2", r.chi2},
       {"dof", r.dof},
       {"omnibus_p", std::pow(10.0, r.omnibus_log10_p)},
-      {"share_of", r.noise.reference.known ? "chi-square beyond the noise"
-                   : r.rounds.empty()      ? "nothing: no noise is told, and nothing was added"
-                                           : "chi-square beyond what is left after the last round"},
+      {"share_of", share_of(r)},
       {"lack_of_fit", std::move(lack)},
       {"detectable_above",
        array_of(r.detectable,

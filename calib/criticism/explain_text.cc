@@ -31,6 +31,10 @@ void candidates(const ExplainReport& r, std::string& out) {
                    p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
                    size_text(c), bar(c.d));
   }
+  fmt::format_to(to,
+                 "k: coefficients; d: size in its own standard deviations; p: that chance alone makes it;\n"
+                 "share: of {}; size: of the coefficient that is best seen\n",
+                 share_of(r));
 }
 
 void maps(const std::vector<MapScore>& all, std::string& out) {

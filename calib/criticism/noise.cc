@@ -185,24 +185,32 @@ std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels&
 std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
   const auto pairs = revisits(fit.problem);
   if (pairs.empty()) return std::nullopt;
-  const Fitted f = fitted(fit.problem, fit.state);
+  // At the noise that is told, whatever the readings were taken for: else the angles of the table, each with
+  // its own error, pull at the attitudes.
+  JointProblem problem = fit.problem;
+  JointState state = fit.state;
+  if (fit.worse > 1) {
+    for (JointPose& pose : problem.poses) pose.weight *= fit.worse, pose.f_weight *= fit.worse;
+    refit_nuisances(problem, state);
+  }
+  const Fitted f = fitted(problem, state);
   PureError out{.pairs = static_cast<int>(pairs.size())};
   double squares = 0, expected = 0;
   for (const auto& [u, v] : pairs) {
     const auto a = static_cast<std::size_t>(u), b = static_cast<std::size_t>(v);
-    const auto [by_u, by_v] = in_common_units(fit.problem.poses[a].weight, fit.problem.poses[b].weight);
+    const auto [by_u, by_v] = in_common_units(problem.poses[a].weight, problem.poses[b].weight);
     squares += (by_u.cwiseProduct(f.e.col(u)) - by_v.cwiseProduct(f.e.col(v))).squaredNorm();
     expected += (by_u.asDiagonal() * f.M[a]).squaredNorm() + (by_v.asDiagonal() * f.M[b]).squaredNorm();
   }
   if (!(expected > 0)) return std::nullopt;
   out.nu = expected / 2;
-  const double ratio = squares / expected, worse2 = fit.worse * fit.worse;
-  out.ratio = ratio * worse2;
-  const double rest = std::max(0.0, chi2 - ratio * out.nu), rest_dof = dof - out.nu;
+  out.ratio = squares / expected;
+  const double rest = std::max(0.0, chi2 * fit.worse * fit.worse - out.ratio * out.nu),
+               rest_dof = dof - out.nu;
   if (rest_dof > 0) {
-    out.F = rest / rest_dof / ratio;
+    out.F = rest / rest_dof / out.ratio;
     out.log10_p = f_log10_p(out.F, rest_dof, out.nu);
-    out.model_nT = fit.noise_nT() * std::sqrt(worse2 * std::max(0.0, rest / rest_dof - ratio));
+    out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, rest / rest_dof - out.ratio));
   }
   return out;
 }

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 
 #include "calib/criticism/noise_text.h"
@@ -56,6 +58,14 @@ std::string left_text(const std::vector<MapScore>& maps) {
   return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where, p_phrase(m.log10_p));
 }
 
+/// So many significant digits, without an exponent where that stays short.
+std::string digits(double x, int n) {
+  const double rounded = std::strtod(fmt::format("{:.{}e}", x, n - 1).c_str(), nullptr);
+  const int exponent = rounded == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(rounded))));
+  if (exponent < -4 || exponent > 5) return fmt::format("{:.{}g}", x, n);
+  return fmt::format("{:.{}f}", rounded, std::max(0, n - 1 - exponent));
+}
+
 std::string outliers_text(const std::vector<OutlierNode>& outliers) {
   if (outliers.empty()) return {};
   std::set<int> poses;
@@ -68,13 +78,28 @@ std::string outliers_text(const std::vector<OutlierNode>& outliers) {
 
 }  // namespace
 
+std::string as_sentence(std::string clause) {
+  if (clause.empty()) return clause;
+  const std::string_view first = std::string_view(clause).substr(0, clause.find(' '));
+  if (first.find_first_of(".0123456789") == std::string_view::npos)
+    clause.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(clause.front())));
+  return clause + ".";
+}
+
+std::string_view share_of(const ExplainReport& r) {
+  if (r.noise.reference.known) return "chi-square beyond the noise";
+  return r.rounds.empty() ? "nothing, because the noise is not known and nothing was added"
+                          : "chi-square beyond what is left after the last round";
+}
+
 std::string size_text(const Candidate& c) {
   const auto sigmas = [](const EffectCoefficient& x) { return std::abs(x.value) / std::max(x.sd, 1e-300); };
   const auto largest = std::max_element(c.coefficients.begin(), c.coefficients.end(),
                                         [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
   if (largest == c.coefficients.end()) return "";
   const std::string what = c.coefficients.size() > 1 ? largest->name + " " : "";
-  return fmt::format("{}{:+.3g} +- {:.1g} {}", what, largest->value, largest->sd, largest->unit);
+  return fmt::format("{}{}{} +- {} {}", what, largest->value < 0 ? "" : "+", digits(largest->value, 3),
+                     digits(largest->sd, 1), largest->unit);
 }
 
 std::string sentence(const ExplainReport& r) {
@@ -112,7 +137,12 @@ std::string sentence(const ExplainReport& r) {
     default:
       break;
   }
-  for (const std::string& note : r.notes) parts.push_back(note + ".");
+  for (const std::string& note : r.notes) {
+    // A user's formula has any name.
+    const bool named = std::any_of(r.candidates.begin(), r.candidates.end(),
+                                   [&](const Candidate& c) { return note.starts_with(c.effect + " "); });
+    parts.push_back(named ? note + "." : as_sentence(note));
+  }
   std::erase(parts, "");
   return fmt::format("{}", fmt::join(parts, " "));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "calib/criticism/explain.h"
 
@@ -8,6 +9,13 @@ namespace mgtd::calib {
 
 /// The verdict as one paragraph for a person, made of the report's figures and nothing else.
 [[nodiscard]] std::string sentence(const ExplainReport& report);
+
+/// A clause with a capital letter and a full stop. A first word with a dot or a digit in it is a name and
+/// stays.
+[[nodiscard]] std::string as_sentence(std::string clause);
+
+/// What the share of a candidate is a share of.
+[[nodiscard]] std::string_view share_of(const ExplainReport& report);
 
 /// "+0.42 +- 0.03 nT/degC", for several coefficients the largest against its uncertainty.
 [[nodiscard]] std::string size_text(const Candidate& candidate);

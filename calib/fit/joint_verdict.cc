@@ -129,10 +129,10 @@ std::vector<Check> joint_verdict(const FitReport& r, const Identifiability& know
 std::vector<std::string> joint_remarks(const FitReport& report, const Identifiability& known, double spread) {
   std::vector<std::string> out = remarks(report);
   if (spread > 1) {
-    out.push_back(
-        fmt::format("for the uncertainties the readings count as {:.2f} times as noisy, so that they cover "
-                    "what the model leaves out",
-                    spread));
+    out.push_back(fmt::format(
+        "for the uncertainties the readings count as {:.4g} times as noisy (the root of chi-square "
+        "per degree of freedom), so that they cover what the model leaves out",
+        spread));
   }
   if (report.calibration.gauge.find(kScaleIsFree) != std::string::npos) {
     out.push_back(

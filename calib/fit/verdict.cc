@@ -136,10 +136,13 @@ std::vector<std::string> remarks(const FitReport& report) {
     const double ratio = std::sqrt(report.chi2 / report.dof);
     // The square root of chi-square per degree of freedom scatters by 1/sqrt(2 dof).
     if (ratio > 1 + 5 / std::sqrt(2 * report.dof)) {
-      out.push_back(fmt::format(
-          "the model leaves something out: chi-square is {:.3g} times its degrees of freedom, as if "
-          "the noise of a pose mean were {:.3g} nT, and it is {:.3g} nT",
-          ratio * ratio, ratio * report.noise_nT, report.noise_nT));
+      const std::string size =
+          report.residual_nT > 0
+              ? fmt::format("the residual is {:.3g} nT", report.residual_nT)
+              : fmt::format("|b| less F scatters as if that noise were {:.3g} nT", ratio * report.noise_nT);
+      out.push_back(
+          fmt::format("the model leaves something out: {}, and the noise of a pose mean is {:.3g} nT", size,
+                      report.noise_nT));
     }
   }
   return out;

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -45,14 +44,6 @@ std::vector<std::string> error_row(const std::string& name, const calib::ErrorSu
   const Gradient& g = e.tensor_rmse_nT_per_m;
   for (const double x : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) out.push_back(number(x));
   return out;
-}
-
-/// As a sentence of its own.
-std::string tests_clause(const calib::NoiseModel& noise) {
-  std::string out = calib::noise_of_tests(noise);
-  if (out.empty()) return out;
-  out.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(out.front())));
-  return escaped(out) + ".";
 }
 
 std::string banner_class(calib::Finding finding) {
@@ -129,7 +120,8 @@ std::string residual_section(const ReportContent& c) {
       "<p class=\"quiet\">Each row is a way of looking at it, each plot its means over a covariate, of the "
       "component that depends most.</p>",
       c.comparison.residual_nT, calib::kResidualIs, c.comparison.noise_nT,
-      calib::noise_source(c.comparison.noise.told), tests_clause(c.comparison.noise));
+      calib::noise_source(c.comparison.noise.told),
+      escaped(calib::as_sentence(calib::noise_of_tests(c.comparison.noise))));
   for (const calib::ResidualChannel& channel : c.comparison.channels) {
     double scale = 0;
     for (const calib::Dependence& d : channel.against)

@@ -52,7 +52,7 @@ std::string oracle_page(const Sizes& n) {
   table.line({"all", "", "", "", "", "", percent(within, runs), percent(settled, runs)});
   return "## On unseen poses, against an oracle\n\nd = 30; a hundred further poses of the same run that no "
          "fit saw, "
-         "each with its own field and attitude; rms of raw readings less prediction, medians over the runs. "
+         "each with its own field and attitude; residual of those poses, medians over the runs. "
          "The oracle is told the "
          "effect. Aim: within 3 % of it, chi-square per degree of freedom back to 1 within three standard "
          "deviations.\n\n" +

@@ -13,7 +13,7 @@
 namespace mgtd::calib::testing {
 
 struct Unseen {
-  double nothing_nT{0}, improved_nT{0}, oracle_nT{0};  ///< rms of raw readings less prediction
+  double nothing_nT{0}, improved_nT{0}, oracle_nT{0};  ///< residual of unseen poses
   double chi2{0}, dof{0};                              ///< of the poses that were fitted, after improve
   int rounds{0};
   std::vector<std::string> added;

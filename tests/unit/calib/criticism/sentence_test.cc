@@ -9,6 +9,29 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+TEST(Sentence, NotesBeginWithACapitalUnlessWithAName) {
+  ExplainReport report;
+  report.notes = {"the way of the table is not in these data",
+                  "axis.cubic accounts for 30 % of the excess only", "s3.z scatters little",
+                  "lamp accounts for 20 % of the excess only"};
+  report.candidates.push_back({.effect = "lamp"});
+  EXPECT_THAT(
+      sentence(report),
+      HasSubstr(". The way of the table is not in these data. axis.cubic accounts for 30 % of the excess "
+                "only. s3.z scatters little. lamp accounts for"));
+}
+
+TEST(Sentence, SizesAreWrittenWithoutExponentsWhereTheyStayShort) {
+  const auto text = [](double value, double sd) {
+    return size_text({.coefficients = {{"s1.x", value, sd, "nT"}}});
+  };
+  EXPECT_EQ(text(1090, 512), "+1090 +- 500 nT");
+  EXPECT_EQ(text(50.008, 1.96), "+50.0 +- 2 nT");
+  EXPECT_EQ(text(-0.04031, 0.02), "-0.0403 +- 0.02 nT");
+  EXPECT_EQ(text(9.996, 0.0951), "+10.0 +- 0.1 nT");
+  EXPECT_EQ(text(3.1e-7, 2e-8), "+3.1e-07 +- 2e-08 nT");
+}
+
 TEST(Sentence, SaysWhatWasLeftOut) {
   ExplainReport report;
   EXPECT_THAT(sentence(report), Not(HasSubstr("left out")));

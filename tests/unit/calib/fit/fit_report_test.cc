@@ -9,6 +9,7 @@ namespace mgtd::calib {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const FitReport& report() {
   static const FitReport kReport = [] {
@@ -70,6 +71,17 @@ TEST(FitReportText, TellsVerdictStagesAndParameters) {
         "step 1 ", "odd half", "held out", "theta deg", " ± ", "scale factors", "  ok "}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
+}
+
+TEST(FitReportText, SaysWhichReadingsNoRowCounts) {
+  FitReport some = report();
+  EXPECT_THAT(rows_text(some), Not(HasSubstr("left out")));
+  some.outliers = {{5, "s4.z", -50, "nT", 107}};
+  EXPECT_THAT(rows_text(some), HasSubstr("no row counts the reading that the fit left out: s4.z of pose 5"));
+  some.outliers.push_back({7, "angles", 1, "deg", 20});
+  some.outliers.push_back({9, "s1.x", 30, "nT", 20});
+  EXPECT_THAT(rows_text(some),
+              HasSubstr("the 2 readings that the fit left out: s4.z of pose 5, s1.x of pose 9"));
 }
 
 TEST(FitReportText, AFailedCheckShowsItsRemedy) {

@@ -33,6 +33,20 @@ TEST(JointErrors, NoiseOnlyStaysNoiseOutOfSample) {
   EXPECT_NEAR(out->summary.total_field_rmse_nT[0], 1.0, 0.25);
 }
 
+/// Fifty nanotesla on one reading of 157 poses would be 4 nT rms of that sensor.
+TEST(JointErrors, AReadingThatIsLeftOutCountsInNoRow) {
+  const Simulation sim{.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05};
+  PoseTable table = simulate(sim, 36, 121, 31);
+  table.poses[60].y_nT[3][2] += 50;
+  const auto report = fit(table, {});
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->outliers.size(), 1U);
+  for (const auto& row : {report->after, *report->held_out, *report->two_step}) {
+    EXPECT_LT(row.total_field_rmse_nT[3], 1.5);
+    EXPECT_LT(row.tensor_rmse_nT_per_m.xx, 5);
+  }
+}
+
 TEST(JointErrors, MissingGradientShowsOutOfSampleAndItsTermTakesItAway) {
   const PoseTable table = simulate(with_gradient(), 36, 121, 33);
   JointOptions options;
