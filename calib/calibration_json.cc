@@ -227,6 +227,11 @@ Result<Calibration> checked(const json& object, std::optional<std::string_view> 
                             more.front().at("path").get_ref<const std::string&>()),
                 "use the version of mgt that wrote it");
   }
+  // A 9 in the place of a 9.0 is the same number and another text: written again it would have another id.
+  if (content_id(to_json(*c)) != found) {
+    return fail(ErrorCode::bad_input, "its numbers are not written as mgt writes them",
+                "a calibration is never edited; fit again instead");
+  }
   return c;
 }
 

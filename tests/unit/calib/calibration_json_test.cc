@@ -139,6 +139,16 @@ TEST(CalibrationJson, WhatThisVersionDoesNotKnowIsRefusedByItsPath) {
 }
 
 /// A file of the right shape whose values are of the wrong type is an error, never an exception.
+TEST(CalibrationJson, ANumberThatWouldBeWrittenInAnotherWayIsRefused) {
+  // Its id would be another one as soon as a program had read it and written it again.
+  nlohmann::json object = to_json(random_calibration(3));
+  object["baseline_m"] = 1;
+  object["id"] = content_id(object);
+  const auto read = calibration_from_json(object);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, HasSubstr("not written as mgt writes them"));
+}
+
 TEST(CalibrationJson, EveryKeyMayBeWrong) {
   const nlohmann::json whole = to_json(random_calibration(1));
   for (const auto& [key, value] : whole.items()) {
