@@ -114,7 +114,7 @@ std::string spec_of(const Suspect& suspect, const Hypothesis& hypothesis, std::s
   const auto where = Where::parse(hypothesis.where);
   if (where && where->scale != Where::Scale::own) out += "@" + hypothesis.where;
   if (variant < suspect.values.size() && suspect.values[variant])
-    out += fmt::format(",{}={}", suspect.parameter, *suspect.values[variant]);
+    out += fmt::format(",{}={:.6g}", suspect.parameter, *suspect.values[variant]);
   return out;
 }
 

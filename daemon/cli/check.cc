@@ -62,7 +62,9 @@ int run_check(const Session& session, const Arguments& args) {
                checked->valid ? "VALID" : "NOT VALID");
     fmt::print("residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}\n", checked->residual_nT,
                calib::kResidualIs, checked->noise_nT,
-               checked->noise_from_dwells ? calib::noise_source(true) : "of the calibration's own run");
+               checked->noise_from_dwells
+                   ? "the larger of what the dwells tell and what the calibration's own run left"
+                   : "of the calibration's own run");
     fmt::print("{}\n", calib::change_table(checked->change, kRows));
     for (const std::string& reason : checked->reasons) fmt::print("note: {}\n", reason);
   }
