@@ -197,7 +197,7 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   }
   refine_numbers(search.table, kept(search.given, wider.effects), wider, *refit);
   if (report.rounds.empty()) {
-    report.next = next_measurements(search.table, fit, search.joint, round.added);
+    report.next = next_measurements(search.table, fit, search.joint, round.added).steps;
     report.candidates[f].rivals = round.added.rivals;
   }
   const double table_sd_rad = fit.table_sd_rad;

@@ -7,6 +7,7 @@
 
 #include "calib/criticism/actions.h"
 #include "calib/criticism/residual.h"
+#include "calib/effects/effect_family.h"
 
 namespace mgtd::calib {
 namespace {
@@ -80,9 +81,25 @@ Eigen::VectorXd sizes_of(const Candidate& winner, const std::vector<std::string>
   return out;
 }
 
+Longer as_it_is(const PoseTable& table) {
+  return {table, kPoseRows * static_cast<Eigen::Index>(table.poses.size())};
+}
+
+/// What of `v` is not in the space of B, in squares.
+double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& B) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
+  qr.setThreshold(1e-6);
+  return (v - B * qr.solve(v)).squaredNorm();
+}
+
+std::string_view reads(const std::string& spec) {
+  const EffectFamily* const family = find_family(family_name(spec));
+  return family == nullptr ? std::string_view() : family->needs;
+}
+
 /// Smallest probability over the rivals that the winner's name is told right, were it true.
 double p_right(const Longer& run, const JointFit& fit, const JointOptions& options, const Candidate& winner,
-               const std::vector<const Rival*>& rivals) {
+               const std::vector<Rival>& rivals) {
   const auto design = design_of(run.table, fit, options);
   if (!design) return 0;
   const Residual residual(design->problem, design->state, 0);
@@ -93,50 +110,67 @@ double p_right(const Longer& run, const JointFit& fit, const JointOptions& optio
   const Eigen::VectorXd v =
       Z.leftCols(sizes.size()) * sizes;  // what the site made here is not at another place
   double lambda = v.squaredNorm();
-  for (const Rival* rival : rivals) {
-    const Eigen::MatrixXd B = columns_of(*design, residual, rival->spec, run, nullptr);
+  for (const Rival& rival : rivals) {
+    const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
     if (B.cols() == 0) continue;
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
-    qr.setThreshold(1e-6);
-    const double told = (v - B * qr.solve(v)).squaredNorm();
-    lambda = std::min(lambda, rival->form_only ? beyond_form(told, v.squaredNorm()) : told);
+    const double told = outside(v, B);
+    lambda = std::min(lambda, rival.form_only ? beyond_form(told, v.squaredNorm()) : told);
   }
   return told_right(lambda);
 }
 
-std::vector<const Rival*> hardest(const Candidate& winner) {
-  std::vector<const Rival*> out;
+std::vector<Rival> hardest(const Candidate& winner) {
+  std::vector<Rival> out;
   for (const Rival& rival : winner.rivals)
-    if (rival.possible) out.push_back(&rival);
+    if (rival.possible) out.push_back(rival);
   if (out.empty() && !winner.rivals.empty()) {
-    out.push_back(&*std::min_element(winner.rivals.begin(), winner.rivals.end(),
-                                     [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; }));
+    out.push_back(*std::min_element(winner.rivals.begin(), winner.rivals.end(),
+                                    [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; }));
   }
   return out;
 }
 
+/// Of rivals that nobody has held against the winner yet.
+void find_form_only(const PoseTable& table, const JointFit& fit, const JointOptions& options,
+                    const Candidate& winner, std::vector<Rival>& rivals) {
+  const Longer run = as_it_is(table);
+  const auto design = design_of(table, fit, options);
+  if (!design) return;
+  const Residual residual(design->problem, design->state, 0);
+  std::vector<std::string> names;
+  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
+  if (Z.cols() == 0) return;
+  const Eigen::VectorXd v = Z * sizes_of(winner, names);
+  for (Rival& rival : rivals) {
+    if (rival.form_only || reads(rival.spec) != reads(winner.spec)) continue;
+    const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
+    rival.form_only = B.cols() > 0 && outside(v, B) < (1 - kAlike) * v.squaredNorm();
+  }
+}
+
 }  // namespace
 
-std::vector<NextMeasurement> next_measurements(const PoseTable& table, const JointFit& fit,
-                                               const JointOptions& options, const Candidate& winner) {
-  std::vector<NextMeasurement> out;
-  const auto rivals = hardest(winner);
+NextMenu next_measurements(const PoseTable& table, const JointFit& fit, const JointOptions& options,
+                           const Candidate& winner) {
+  NextMenu out;
+  auto rivals = hardest(winner);
   if (rivals.empty()) return out;
-  const auto rows = kPoseRows * static_cast<Eigen::Index>(table.poses.size());
-  const double before = p_right({table, rows}, fit, options, winner, rivals);
-  double worth = before + kWorth;
+  find_form_only(table, fit, options, winner, rivals);
+  out.p_right_before = p_right(as_it_is(table), fit, options, winner, rivals);
+  double worth = out.p_right_before + kWorth;
   for (const Action& action : actions()) {
     const double after = p_right(longer(table, action, fit), fit, options, winner, rivals);
     if (after < worth) continue;
     if (&action == actions().data()) worth = after + kBetter;
-    out.push_back({.action = std::string(action.text),
-                   .minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses),
-                   .p_right_before = before,
-                   .p_right_after = after});
+    out.steps.push_back(
+        {.action = std::string(action.text),
+         .minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses),
+         .p_right_before = out.p_right_before,
+         .p_right_after = after});
   }
-  std::stable_sort(out.begin(), out.end(), [](const NextMeasurement& a, const NextMeasurement& b) {
-    return a.p_right_after > b.p_right_after;
-  });
+  std::stable_sort(
+      out.steps.begin(), out.steps.end(),
+      [](const NextMeasurement& a, const NextMeasurement& b) { return a.p_right_after > b.p_right_after; });
   return out;
 }
 

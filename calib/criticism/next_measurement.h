@@ -14,11 +14,15 @@
 /// with it the probability Phi(sqrt(lambda_ab)/2) that the right one of the two wins.
 namespace mgtd::calib {
 
+struct NextMenu {
+  double p_right_before{1};  ///< on the run as it is
+  std::vector<NextMeasurement> steps{};
+};
+
 /// For the winner of a round against its possible rivals (or its nearest one), best first; actions that gain
 /// nothing, or no more than more of the same, are left out. `model`: the effects of the fit that the round
 /// started from.
-[[nodiscard]] std::vector<NextMeasurement> next_measurements(const PoseTable& table, const JointFit& fit,
-                                                             const JointOptions& options,
-                                                             const Candidate& winner);
+[[nodiscard]] NextMenu next_measurements(const PoseTable& table, const JointFit& fit,
+                                         const JointOptions& options, const Candidate& winner);
 
 }  // namespace mgtd::calib

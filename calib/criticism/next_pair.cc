@@ -131,10 +131,10 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
   const JointOptions joint = joint_options(options.fit);
   const auto fit = fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
-  const auto found = next_measurements(table, *fit, joint, *asked);
-  out.steps = steps_of(table, found, *fit);
-  out.p_right_before = found.empty() ? hardest->p_right : found.front().p_right_before;
-  if (found.empty())
+  const NextMenu found = next_measurements(table, *fit, joint, *asked);
+  out.steps = steps_of(table, found.steps, *fit);
+  out.p_right_before = found.p_right_before;
+  if (found.steps.empty())
     out.text = "none of the measurements that are known here would tell them apart better than this run does";
   return out;
 }

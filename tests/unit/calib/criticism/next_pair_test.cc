@@ -48,6 +48,23 @@ TEST(NextPair, WhatIsTheSitesStaysBehindWhereTheRigIsMoved) {
     EXPECT_GE(s.measurement.p_right_after, s.measurement.p_right_before) << s.measurement.action;
 }
 
+TEST(NextPair, APairThatIsAskedAboutAndTheVerdictsOwnGiveOneAnswer) {
+  const Hidden square = [](const Pose&, int i, int a, const Eigen::Vector3d& v) {
+    return i == 1 && a == 0 ? 6 * std::pow(v[0] / 5e4, 2) : 0.0;
+  };
+  const PoseTable run = hidden_run({.hidden = square}, 4);
+  const auto open = next_of(run, {}, std::nullopt);
+  ASSERT_TRUE(open);
+  EXPECT_NEAR(open->p_right_before, 0.5, 1e-3) << "in one field strength their forms alone differ";
+  for (const auto& [a, b] :
+       {std::pair("axis.quadratic", "axis.transverse"), std::pair("axis.transverse", "axis.quadratic")}) {
+    const NextReport asked = must_ask(run, a, b);
+    EXPECT_NEAR(asked.p_right_before, 0.5, 1e-3) << a;
+    ASSERT_NE(step(asked, "field a fifth weaker"), nullptr) << a;
+    EXPECT_GT(step(asked, "field a fifth weaker")->measurement.p_right_after, 0.9) << a;
+  }
+}
+
 TEST(NextPair, ANewTiltIsOfferedWhereTheRunIsFlat) {
   // The reading of a vertical axis hardly changes there: its offset and its scale factor drift alike.
   const Hidden drift = [](const Pose& p, int i, int a, const Eigen::Vector3d&) {
