@@ -50,13 +50,10 @@ void LiveTensor::look_around(const Epoch& epoch, const LiveConditions& condition
 }
 
 void LiveTensor::refresh(const FieldVector& b_P_nT) {
-  const ChannelCovariance covariance = effects_->covariance(now_, b_P_nT) + pipeline_.sample_noise();
-  const auto& geometry = calibration()->geometry;
-  const auto G = gradient_rows(geometry);
-  const Eigen::Matrix<double, 6, 1> sd = (G * covariance * G.transpose()).diagonal().cwiseSqrt();
-  g_sd_nT_per_m_ = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
-  const auto C = closure_rows(geometry);
-  closure_weight_ = (C * covariance * C.transpose()).eval().inverse();
+  const ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
+  g_sd_nT_per_m_ = pipeline_.gradient_sd(covariance, 1);
+  const auto C = closure_rows(calibration()->geometry);
+  closure_weight_ = (C * (covariance + pipeline_.sample_noise()) * C.transpose()).eval().inverse();
   at_P_nT_ = b_P_nT.head<3>();
   fresh_ = kRefresh;
 }

@@ -123,20 +123,27 @@ void TensorPipeline::prepare_uncertainty() {
     }
     return rows;
   };
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    noise_.block<3, 3>(3 * at, 3 * at) =
-        gain_[i] * calibration_->sample_noise_nT.row(at).array().square().matrix().asDiagonal() *
-        gain_[i].transpose();
-  }
+  const auto corrected = [&](const AxisNoise& of_reading_nT) {
+    ChannelCovariance out = ChannelCovariance::Zero();
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      out.block<3, 3>(3 * at, 3 * at) =
+          gain_[i] * of_reading_nT.row(at).array().square().matrix().asDiagonal() * gain_[i].transpose();
+    }
+    return out;
+  };
+  noise_ = corrected(calibration_->sample_noise_nT);
+  const ChannelCovariance scatter = corrected(calibration_->pose_noise_nT);
   const auto covariance = [&](const Eigen::Matrix<double, 1, kChannels>& u,
                               const Eigen::Matrix<double, 1, kChannels>& v) {
     const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
     return Variance{u.dot(noise_ * v.transpose()), 0.5 * (Q + Q.transpose())};
   };
   const auto G = gradient_rows(geometry_);
-  for (Eigen::Index i = 0; i < 6; ++i)
+  for (Eigen::Index i = 0; i < 6; ++i) {
     gradient_variance_[static_cast<std::size_t>(i)] = covariance(G.row(i), G.row(i));
+    unmodelled_[static_cast<std::size_t>(i)] = G.row(i).dot(scatter * G.row(i).transpose());
+  }
   const auto C = closure_rows(geometry_);
   std::size_t pair = 0;
   for (Eigen::Index i = 0; i < 4; ++i) {
@@ -168,7 +175,8 @@ void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   Eigen::Vector4d q;
   q << 1, out.b_P_nT;
   std::array<double, 6> sd{};
-  for (std::size_t i = 0; i < sd.size(); ++i) sd[i] = std::sqrt(gradient_variance_[i].at(q, samples));
+  for (std::size_t i = 0; i < sd.size(); ++i)
+    sd[i] = std::sqrt(gradient_variance_[i].by_parameters(q) + gradient_noise(i, samples));
   out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
   Eigen::Matrix4d S;
   std::size_t pair = 0;
@@ -178,12 +186,21 @@ void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   out.closure.chi2 = closure_chi2(out.closure, S);
 }
 
-void TensorPipeline::add_uncertainty(const ChannelCovariance& covariance, TensorSample& out) const {
+Gradient TensorPipeline::gradient_sd(const ChannelCovariance& covariance, double samples) const {
   const auto G = gradient_rows(geometry_);
-  const Eigen::Matrix<double, 6, 1> sd = (G * covariance * G.transpose()).diagonal().cwiseSqrt();
-  out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+  std::array<double, 6> sd{};
+  for (std::size_t i = 0; i < sd.size(); ++i) {
+    const auto row = G.row(static_cast<Eigen::Index>(i));
+    sd[i] = std::sqrt(row.dot(covariance * row.transpose()) + gradient_noise(i, samples));
+  }
+  return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+}
+
+void TensorPipeline::add_uncertainty(const ChannelCovariance& covariance, double samples,
+                                     TensorSample& out) const {
+  out.g_sd_nT_per_m = gradient_sd(covariance, samples);
   const auto C = closure_rows(geometry_);
-  out.closure.chi2 = closure_chi2(out.closure, C * covariance * C.transpose());
+  out.closure.chi2 = closure_chi2(out.closure, C * (covariance + noise_ / samples) * C.transpose());
 }
 
 TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,
@@ -200,7 +217,7 @@ TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove
   if (with_effects && !effects_->left_out(pose, remove_site).empty()) out.flags |= Flag::incomplete;
   if (calibration_ == nullptr || !noise_known_) return out;
   if (with_effects) {
-    add_uncertainty(corrected.covariance + noise_ / samples, out);
+    add_uncertainty(corrected.covariance, samples, out);
   } else {
     add_uncertainty(samples, out);
   }

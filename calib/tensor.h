@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -40,7 +41,9 @@ struct FieldAndGradient {
 ///
 /// Uncertainty. An error dp of the parameters shifts the corrected field of sensor i by -R (CA)^-1 dy(dp; b),
 /// linear in (1, b): so the variance of any linear function of the corrected fields is a quadratic form q' Q
-/// q in q = (1, b_P), with Q a constant 4x4 matrix per function. The noise of one sample adds a constant.
+/// q in q = (1, b_P), with Q a constant 4x4 matrix per function. The noise of n samples adds a constant over
+/// n, and never less than the scatter of a pose mean about the model in the calibration's own run: what the
+/// model leaves out does not average away.
 class TensorPipeline {
  public:
   /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
@@ -52,8 +55,8 @@ class TensorPipeline {
   /// Effects of the instrument are removed with the temperatures and the time of the epoch; one whose inputs
   /// are not in it is left out, widens g_sd by its size, and flags the sample `incomplete` (LiveTensor knows
   /// more of a stream, and its memory).
-  /// g_sd holds sample noise and calibration covariance together, the latter at the field of this very
-  /// sample. `samples` is the number of samples averaged into the readings.
+  /// g_sd holds noise and calibration covariance together, the latter at the field of this very sample.
+  /// `samples` is the number of samples averaged into the readings.
   [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1) const;
   /// The same for a pose of a table, with everything it knows and the pose before it. `remove_site` takes the
   /// effects of the site out, for which the pose needs its table angles. seq and time stay empty.
@@ -63,6 +66,8 @@ class TensorPipeline {
   [[nodiscard]] FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
   /// Field, gradient and closure of corrected fields, without their uncertainty.
   [[nodiscard]] TensorSample sample(const FieldVector& b_P_nT) const;
+  /// Of the gradient: `covariance` of the corrected components by calibration and effects, and the noise.
+  [[nodiscard]] Gradient gradient_sd(const ChannelCovariance& covariance, double samples) const;
   /// Of one sample, in the corrected components; zero where noise_known() is false.
   [[nodiscard]] const ChannelCovariance& sample_noise() const { return noise_; }
   [[nodiscard]] bool noise_known() const { return noise_known_; }
@@ -76,13 +81,17 @@ class TensorPipeline {
     double noise{0};
     Eigen::Matrix4d Q{Eigen::Matrix4d::Zero()};
     [[nodiscard]] double at(const Eigen::Vector4d& q, double samples) const {
-      return noise / samples + q.dot(Q * q);
+      return noise / samples + by_parameters(q);
     }
+    [[nodiscard]] double by_parameters(const Eigen::Vector4d& q) const { return q.dot(Q * q); }
   };
 
   void prepare_uncertainty();
   void add_uncertainty(double samples, TensorSample& out) const;
-  void add_uncertainty(const ChannelCovariance& covariance, TensorSample& out) const;
+  void add_uncertainty(const ChannelCovariance& covariance, double samples, TensorSample& out) const;
+  [[nodiscard]] double gradient_noise(std::size_t component, double samples) const {
+    return std::max(gradient_variance_[component].noise / samples, unmodelled_[component]);
+  }
 
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
@@ -93,6 +102,7 @@ class TensorPipeline {
   ChannelCovariance noise_{ChannelCovariance::Zero()};  ///< of one sample, in the corrected components
   bool noise_known_{false};
   std::array<Variance, 6> gradient_variance_;
+  std::array<double, 6> unmodelled_{};  ///< variance of a gradient by what scatters about the model
   /// Covariance of each pair of closure quantities, upper triangle by rows.
   std::array<Variance, 10> closure_covariance_;
 };

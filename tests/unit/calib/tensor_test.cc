@@ -137,5 +137,24 @@ TEST(TensorPipeline, StandardDeviationsAreThoseOfManySamples) {
   EXPECT_NEAR(chi2 / kTrials, 4, 0.22);  // sd of chi-square(4) is 2.83
 }
 
+TEST(Tensor, WhatTheModelLeavesOutDoesNotAverageAway) {
+  auto calibration = std::make_shared<Calibration>();
+  calibration->geometry.baseline_m = 0.4;
+  calibration->sample_noise_nT.setConstant(0.3);
+  const auto sd_of = [&](double pose_noise_nT, double samples) {
+    calibration->pose_noise_nT.setConstant(pose_noise_nT);
+    Pose pose;
+    pose.y_nT.fill({20'000, 3'000, 43'000});
+    return TensorPipeline(std::make_shared<const Calibration>(*calibration))
+        .apply(pose, samples)
+        .g_sd_nT_per_m.xx;
+  };
+  // One sample scatters more than the model is wrong; a long mean does not.
+  EXPECT_DOUBLE_EQ(sd_of(0.02, 1), sd_of(0, 1));
+  EXPECT_NEAR(sd_of(0, 900) / sd_of(0, 1), 1.0 / 30, 1e-9);
+  EXPECT_NEAR(sd_of(0.02, 900) / sd_of(0, 1), 0.02 / 0.3, 1e-9);
+  EXPECT_NEAR(sd_of(5, 1) / sd_of(0, 1), 5 / 0.3, 1e-9);
+}
+
 }  // namespace
 }  // namespace mgtd::calib
