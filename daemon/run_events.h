@@ -64,6 +64,7 @@ struct Solution {
   std::string calibration_id;
   std::vector<std::string> reasons;  ///< why it was not accepted
   std::vector<Check> checks;
+  std::string left_over{};  ///< what the model does not explain; empty when it fits to the noise
 };
 struct SolveDone {
   Result<Solution> result;

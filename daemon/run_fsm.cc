@@ -157,6 +157,7 @@ void RunFsm::on(const SolveDone& solved) {
     return;
   }
   proposed_ = solved.result->calibration_id;
+  left_over_ = solved.result->left_over;
   enter(Phase::proposing, "proposing calibration " + proposed_);
   act(ProposeCalibration{proposed_});
 }
@@ -164,7 +165,9 @@ void RunFsm::on(const SolveDone& solved) {
 void RunFsm::on(const CalibrationProposed& proposed) {
   if (phase_ != Phase::proposing) return;
   if (proposed.result) {
-    finish(RunState::done, fmt::format("calibration {} is proposed: accept it to make it active", proposed_));
+    std::string said = fmt::format("calibration {} is proposed: accept it to make it active", proposed_);
+    if (!left_over_.empty()) said += fmt::format(". But {}: mgt explain says what is missing", left_over_);
+    finish(RunState::done, std::move(said));
     return;
   }
   finish(RunState::failed, fmt::format("calibration {} could not be kept: {}", std::exchange(proposed_, {}),

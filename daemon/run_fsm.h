@@ -230,7 +230,7 @@ class RunFsm {
   Wiring wiring_;
   std::vector<std::string> wiring_told_;
   std::vector<Check> checks_;
-  std::string proposed_;
+  std::string proposed_, left_over_;
   RunState final_{RunState::idle};
 };
 

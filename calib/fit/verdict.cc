@@ -132,20 +132,21 @@ std::vector<std::string> remarks(const FitReport& report) {
         "sensor s{} is {}: its {}", i + 1,
         mirrored ? "mirrored (an axis wired backwards, or two swapped)" : "mounted turned", axes));
   }
-  if (report.dof > 0) {
-    const double ratio = std::sqrt(report.chi2 / report.dof);
-    // The square root of chi-square per degree of freedom scatters by 1/sqrt(2 dof).
-    if (ratio > 1 + 5 / std::sqrt(2 * report.dof)) {
-      const std::string size =
-          report.residual_nT > 0
-              ? fmt::format("the residual is {:.3g} nT", report.residual_nT)
-              : fmt::format("|b| less F scatters as if that noise were {:.3g} nT", ratio * report.noise_nT);
-      out.push_back(
-          fmt::format("the model leaves something out: {}, and the noise of a pose mean is {:.3g} nT", size,
-                      report.noise_nT));
-    }
-  }
+  if (std::string left = left_over(report); !left.empty()) out.push_back(std::move(left));
   return out;
+}
+
+std::string left_over(const FitReport& report) {
+  if (!(report.dof > 0)) return {};
+  const double ratio = std::sqrt(report.chi2 / report.dof);
+  // The square root of chi-square per degree of freedom scatters by 1/sqrt(2 dof).
+  if (ratio <= 1 + 5 / std::sqrt(2 * report.dof)) return {};
+  const std::string size =
+      report.residual_nT > 0
+          ? fmt::format("the residual is {:.3g} nT", report.residual_nT)
+          : fmt::format("|b| less F scatters as if that noise were {:.3g} nT", ratio * report.noise_nT);
+  return fmt::format("the model leaves something out: {}, and the noise of a pose mean is {:.3g} nT", size,
+                     report.noise_nT);
 }
 
 std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {

@@ -16,6 +16,9 @@ namespace mgtd::calib {
 /// Sentences about what was recognised: turned and mirrored sensors, gauge, residual against the noise.
 [[nodiscard]] std::vector<std::string> remarks(const FitReport& report);
 
+/// Residual against noise, where the model does not explain the data down to it; else empty.
+[[nodiscard]] std::string left_over(const FitReport& report);
+
 /// In words, with its uncertainty.
 [[nodiscard]] std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad);
 

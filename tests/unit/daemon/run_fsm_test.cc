@@ -273,6 +273,16 @@ TEST(RunFsm, CalibrationThatFailsItsChecksIsNotProposed) {
   EXPECT_THAT(bench.finished->message, HasSubstr("chi-square"));
 }
 
+TEST(RunFsm, WhatTheModelLeavesOutIsSaidWithTheProposal) {
+  RunBench bench(bench_plan(2));
+  bench.solver = [] {
+    return Solution{true, "cal-1", {}, {}, "the model leaves something out: the residual is 5 nT"};
+  };
+  ASSERT_TRUE(ends(bench, RunState::done));
+  EXPECT_THAT(bench.finished->message,
+              HasSubstr("But the model leaves something out: the residual is 5 nT: mgt explain says"));
+}
+
 TEST(RunFsm, RefusedFitIsARejectedRun) {
   RunBench bench(bench_plan(2));
   bench.solver = []() -> Result<Solution> {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the run asks to be done: orders to the table, poses and checks to disk, fits to the worker.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "calib/fit/accuracy_so_far.h"
+#include "calib/fit/verdict.h"
+#include "daemon/run_conductor.h"
+#include "daemon/solver.h"
+#include "drivers/hand_table.h"
+
+namespace mgtd::daemon {
+
+void RunConductor::act(const HomeTable&, Stamp) { hooks_.order({TableOrder::What::home, {}}); }
+
+void RunConductor::act(const MoveTable& action, Stamp) {
+  hooks_.order({TableOrder::What::move, action.target});
+}
+
+void RunConductor::act(const SetTable& action, Stamp) {
+  if (auto* const table = dynamic_cast<drivers::HandTable*>(&hooks_.table())) table->set(action.angles);
+}
+
+void RunConductor::act(const DropPoses& action, Stamp) {
+  if (auto dropped = file_->remove_poses(action.numbers); !dropped) {
+    spdlog::error("poses to be measured again could not be taken out: {}", dropped.error().text());
+    return;
+  }
+  auto left = std::make_shared<PoseTable>(*poses_);
+  std::erase_if(left->poses, [&](const Pose& pose) {
+    return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
+  });
+  poses_ = std::move(left);
+}
+
+void RunConductor::act(const StopTable&, Stamp) { hooks_.order({TableOrder::What::stop, {}}); }
+
+void RunConductor::act(const StorePose& action, Stamp) {
+  auto stored = file_->append_pose(action.pose);
+  if (stored) {
+    if (poses_.use_count() > 1) poses_ = std::make_shared<PoseTable>(*poses_);
+    poses_->poses.push_back(action.pose);
+    learn_accuracy();
+  }
+  answers_.push_back(PoseStored{action.pose.number, std::move(stored)});
+}
+
+/// One fit at a time; what was stored meanwhile is fitted after it.
+void RunConductor::learn_accuracy() {
+  if (learning_) return;
+  learning_ = true;
+  worker_.run(
+      [poses = std::shared_ptr<const PoseTable>(poses_), near = near_,
+       options = fit_options(file_->header().options)](std::stop_token) {
+        return calib::accuracy_so_far(*poses, options, near.get());
+      },
+      [this, generation = generation_, count = poses_->poses.size()](Result<calib::AccuracySoFar> known) {
+        if (generation != generation_ || !active()) return;
+        learning_ = false;
+        if (known) {
+          answers_.push_back(AccuracyKnown{known->poses, known->worst_nT_per_m()});
+          near_ = std::make_shared<const calib::JointState>(std::move(known->state));
+        }
+        if (poses_->poses.size() != count) learn_accuracy();
+      });
+}
+
+void RunConductor::act(const StorePath& action, Stamp) {
+  if (auto stored = file_->append_path(action.readings); !stored)
+    spdlog::warn("table path: {}", stored.error().text());
+}
+
+void RunConductor::act(const StoreChecks& action, Stamp) {
+  if (auto stored = file_->set_checks(action.stage, action.checks); !stored)
+    spdlog::warn("checks: {}", stored.error().text());
+}
+
+void RunConductor::act(const StartSolve&, Stamp) {
+  worker_.run([path = file_->path()](std::stop_token) { return solve_run(path); },
+              [this, generation = generation_](Result<calib::FitReport> report) {
+                if (generation != generation_ || !active()) return;
+                SolveDone done{tl::unexpected(Error{})};
+                if (report) {
+                  const calib::Calibration& c = report->calibration;
+                  done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict,
+                                         calib::left_over(*report)};
+                  solved_ = c;
+                } else {
+                  done.result = tl::unexpected(report.error());
+                }
+                answers_.push_back(std::move(done));
+              });
+}
+
+void RunConductor::act(const ProposeCalibration& action, Stamp now) {
+  Result<void> proposed =
+      fail(ErrorCode::internal, fmt::format("calibration {} was not solved here", action.calibration_id));
+  if (solved_ && solved_->id == action.calibration_id)
+    proposed = store_.propose(*solved_, file_->header().run_id, now.wall);
+  if (proposed) proposed = file_->set_document("proposed", calib::to_json_text(*solved_));
+  answers_.push_back(CalibrationProposed{std::move(proposed)});
+}
+
+void RunConductor::act(const PublishStatus& action, Stamp) {
+  // The file knows the state it would be found in after a crash.
+  if (const auto known = file_->state();
+      known && known->state != action.status.state && is_active(action.status.state)) {
+    if (auto set = file_->set_state(action.status.state, action.status.message); !set)
+      spdlog::warn("run state: {}", set.error().text());
+  }
+  hooks_.publish(action.status);
+}
+
+void RunConductor::act(const Record& action, Stamp now) {
+  spdlog::info("run: {}", action.what);
+  if (auto stored = file_->append_event({now, action.what}); !stored)
+    spdlog::warn("run log: {}", stored.error().text());
+}
+
+void RunConductor::act(const Finish& action, Stamp) {
+  spdlog::info("run ended, {}: {}", name(action.state), action.message);
+  if (auto set = file_->set_state(action.state, action.message); !set)
+    spdlog::error("run state: {}", set.error().text());
+  failed_.reset();
+  if (action.state == RunState::failed) failed_ = resumable(file_->path(), *file_);
+}
+
+}  // namespace mgtd::daemon
