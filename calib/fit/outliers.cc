@@ -16,11 +16,9 @@ constexpr double kWithWorst =
 constexpr double kMaxShare = 0.1;  ///< of the poses
 constexpr double kMadToSd = 1.4826;
 
-using Spreads = Eigen::Array<double, kObservations, 1>;
-
 /// Robust spread of t over the poses, by kind of observation, at least the nominal one.
-Spreads spreads(const PoseResiduals& residuals) {
-  Spreads spread = Spreads::Ones();
+Eigen::Array<double, kObservations, 1> spreads(const PoseResiduals& residuals) {
+  Eigen::Array<double, kObservations, 1> spread = Eigen::Array<double, kObservations, 1>::Ones();
   for (int row = 0; row < kObservations; ++row) {
     std::vector<float> values;
     for (const float t : residuals.t.row(row)) {
@@ -42,11 +40,10 @@ double& weight_of(JointPose& pose, int row) {
 }  // namespace
 
 std::vector<Outliers::Suspect> Outliers::find(const PoseResiduals& residuals) const {
-  const Spreads spread = spreads(residuals);
   std::vector<Suspect> found;
   double worst = 0;
   for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
-    Spreads t = residuals.t.col(k).cast<double>().array() / spread;
+    Spreads t = residuals.t.col(k).cast<double>().array() / spread_;
     for (const Suspect& s : taken_back_) {
       if (static_cast<Eigen::Index>(s.pose) == k) t[s.row] = 0;
     }
@@ -61,6 +58,7 @@ std::vector<Outliers::Suspect> Outliers::find(const PoseResiduals& residuals) co
 }
 
 bool Outliers::exclude(JointProblem& problem, const PoseResiduals& residuals) {
+  spread_ = spreads(residuals);
   auto found = find(residuals);
   if (static_cast<double>(found.size() + left_out_.size()) >
       kMaxShare * static_cast<double>(problem.poses.size()))
@@ -91,11 +89,53 @@ bool Outliers::restore(JointProblem& problem, const JointState& state) {
   const auto gone =
       std::stable_partition(left_out_.begin(), left_out_.end(), [&](const Suspect& s) { return !fits(s); });
   const bool any = gone != left_out_.end();
-  for (auto s = gone; s != left_out_.end(); ++s) {
+  take_back(problem, gone);
+  return restore_all_but_one(problem, state) || any;
+}
+
+void Outliers::take_back(JointProblem& problem, std::vector<Suspect>::iterator from) {
+  for (auto s = from; s != left_out_.end(); ++s) {
     weight_of(problem.poses[s->pose], s->row) = s->weight;
     taken_back_.push_back(*s);
   }
-  left_out_.erase(gone, left_out_.end());
+  left_out_.erase(from, left_out_.end());
+}
+
+/// The worst observation of a pose that has everything but the culprit, with the nuisances that fit best
+/// then.
+double Outliers::worst_without(const JointProblem& problem, const JointState& state,
+                               const Suspect& culprit) const {
+  JointProblem alone = problem;
+  alone.poses = {problem.poses[culprit.pose]};
+  for (const Suspect& s : left_out_)
+    if (s.pose == culprit.pose && s.row != culprit.row) weight_of(alone.poses.front(), s.row) = s.weight;
+  JointState at = state;
+  at.nuisances = {state.nuisances[culprit.pose]};
+  refit_nuisances(alone, at);
+  return (pose_residuals(alone, at).t.col(0).cast<double>().array() / spread_).maxCoeff();
+}
+
+bool Outliers::restore_all_but_one(JointProblem& problem, const JointState& state) {
+  bool any = false;
+  std::vector<std::size_t> poses;
+  for (const Suspect& s : left_out_) poses.push_back(s.pose);
+  std::sort(poses.begin(), poses.end());
+  for (auto pose = poses.begin(); pose != poses.end(); pose = std::upper_bound(pose, poses.end(), *pose)) {
+    if (std::count(poses.begin(), poses.end(), *pose) < 2) continue;
+    const Suspect* culprit = nullptr;
+    double least = kLimit;
+    for (const Suspect& s : left_out_) {
+      if (s.pose != *pose) continue;
+      const double worst = worst_without(problem, state, s);
+      if (worst < least) least = worst, culprit = &s;
+    }
+    if (culprit == nullptr) continue;
+    const int row = culprit->row;
+    take_back(problem, std::stable_partition(left_out_.begin(), left_out_.end(), [&](const Suspect& s) {
+                return s.pose != *pose || s.row == row;
+              }));
+    any = true;
+  }
   return any;
 }
 

@@ -16,7 +16,10 @@ class Outliers {
   /// Leaves out the worst observation of each pose that stands out, worst poses first; returns whether any
   /// was. A tenth of the poses at most: more is a model that fails, not bad poses.
   bool exclude(JointProblem& problem, const PoseResiduals& residuals);
-  /// Takes back, once each, what fits after all now that worse ones are gone; returns whether any was.
+  /// Takes back, once each, what fits after all now that worse ones are gone; returns whether any was. Of a
+  /// pose that lost several: all but the one without which the others agree, where there is one. A reading
+  /// that is far off bends attitude and field of its pose, and the poses' own parameters of its axis with
+  /// them: then good ones look worse than it does.
   bool restore(JointProblem& problem, const JointState& state);
   [[nodiscard]] std::vector<OutlierNode> nodes(const JointProblem& problem, const JointState& state) const;
 
@@ -27,7 +30,15 @@ class Outliers {
     double t{0};
     double weight{0};  ///< it had, to give back
   };
+  using Spreads = Eigen::Array<double, kObservations, 1>;
+
   [[nodiscard]] std::vector<Suspect> find(const PoseResiduals& residuals) const;
+  [[nodiscard]] bool restore_all_but_one(JointProblem& problem, const JointState& state);
+  [[nodiscard]] double worst_without(const JointProblem& problem, const JointState& state,
+                                     const Suspect& culprit) const;
+  void take_back(JointProblem& problem, std::vector<Suspect>::iterator from);
+
+  Spreads spread_{Spreads::Ones()};  ///< of t over the poses, as last seen
   std::vector<Suspect> left_out_, taken_back_;
 };
 

@@ -133,6 +133,21 @@ TEST(JointFit, BadPosesBecomeListedNodes) {
             48 + 3.3 * std::sqrt(96));
 }
 
+TEST(JointFit, OneReadingHoweverWildCostsNoOther) {
+  const Simulation sim = real_rig();
+  for (const double off_nT : {20.0, 1'000.0, 30'000.0}) {
+    for (const std::size_t at : {29U, 82U}) {
+      PoseTable table = simulate(sim, 36, 121, 11);
+      table.poses[at].y_nT[0][0] += off_nT;
+      const JointFit fit = must_fit(table);
+      ASSERT_EQ(fit.outliers.size(), 1U) << off_nT << " nT, pose " << at + 1;
+      EXPECT_EQ(fit.outliers.front().where, "s1.x");
+      EXPECT_NEAR(fit.outliers.front().shift, off_nT, 10);
+      EXPECT_NEAR(to_deg(fit.table_sd_rad), 0.1, 0.02);
+    }
+  }
+}
+
 TEST(JointFit, WithoutAnglesTheCommonRotationIsConvention) {
   Simulation sim = real_rig();
   sim.with_angles = false;
