@@ -17,7 +17,8 @@ constexpr std::int64_t kConfirmed = 64;     // samples on time after a loss
 constexpr std::int64_t kProved = 16;        // where delivery is never prompt
 constexpr double kAgree = 0.3;              // periods between count and time
 constexpr double kEarly = 0.1;              // periods before the line
-constexpr double kIdle = 0.9;               // periods since the last sample: nothing waits in the line
+constexpr double kIdle = 0.9;               // periods since the last sample: nothing waits in the line ...
+constexpr int kPromptInARow = 2;            // ... unless that one line was a long one
 constexpr double kNotYet = 0.7;             // periods since the last sample: no new one can be
 constexpr std::int64_t kOvertaken = 8;      // samples that a late one may come behind
 constexpr double kLate = 0.9;               // periods behind it, or ...
@@ -171,6 +172,7 @@ std::optional<std::int64_t> Sampler::number(int slot, const FieldReading& readin
       count_lost(s, step.by - 1);
       if (step.doubtful > 0) {
         s.doubtful = std::max(s.doubtful, step.doubtful);
+        s.prompt = 0;
         s.doubtful_since = s.last_k + step.by;
       }
       return s.last_k + step.by;
@@ -218,7 +220,8 @@ bool Sampler::comes_again(const Stream& s, const FieldReading& reading, double s
 
 /// By how much the number rises: as the device's clock or count says, as long as the sample does not then
 /// arrive before it was taken. A count that jumps is uncertain (torn lines merge, garbage looks like lines);
-/// where delivery is prompt, the time between decides. 0: not even by one.
+/// where delivery is prompt, the time between decides, and is no proof either: the bytes of garbage take time
+/// on the line, and a count and a delay that are both wrong may agree. 0: not even by one.
 Sampler::Step Sampler::step(const Stream& s, const FieldReading& reading, double sample_s) const {
   const auto counted = static_cast<std::int64_t>(reading.seq - s.last->seq);
   std::int64_t timed = 0;
@@ -234,7 +237,7 @@ Sampler::Step Sampler::step(const Stream& s, const FieldReading& reading, double
   if (counted > 1 && clock.settled && clock.residual_s < kPrompt * period_s_) {
     const double prompt = due - clock.residual_s / period_s_;
     const std::int64_t by = std::clamp<std::int64_t>(whole(prompt), 1, counted + kMerged);
-    return {by, std::abs(prompt - static_cast<double>(counted)) < kAgree ? 0 : by - 1};
+    return {by, by - 1};
   }
   if (possible(counted)) return {counted, counted - 1};
   return {possible(1) ? 1 : 0, 0};
@@ -266,13 +269,18 @@ void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
   late = {};
 }
 
-/// Numbers are proved by a prompt sample that nothing was waiting before, or by many that were not early.
+/// Numbers are proved by prompt samples that nothing was waiting before, or by many that were not early. One
+/// prompt sample is none: behind garbage lines come back to back, and one that carries a supplement takes
+/// longer than a period.
 void Sampler::watch_doubt(Stream& s, double since_last_s, double delay_s) const {
   if (s.doubtful == 0) return;
   const double usual_s = s.clock.state().residual_s;
-  const bool prompt = delay_s < usual_s + kAgree * period_s_ && since_last_s > kIdle * period_s_;
+  const bool due = delay_s > -kAgree * period_s_ && delay_s < usual_s + kAgree * period_s_;
+  const bool prompt = due && since_last_s > kIdle * period_s_;
   const bool never_prompt = usual_s > kPrompt * period_s_;
-  if ((s.last_k > s.doubtful_since && prompt) || (never_prompt && s.last_k - s.doubtful_since >= kProved)) {
+  s.prompt = prompt ? s.prompt + 1 : 0;
+  if ((s.last_k > s.doubtful_since && s.prompt >= kPromptInARow) ||
+      (never_prompt && s.last_k - s.doubtful_since >= kProved)) {
     s.lessen_doubt(s.doubtful_since, kNoDoubt_s);
     s.doubtful = 0;
   }

@@ -118,6 +118,7 @@ class Sampler {
     std::int64_t inserted_at{0};
     std::int64_t doubtful{0};  ///< numbers that may be too many
     std::int64_t doubtful_since{0};
+    int prompt{0};  ///< samples in a row that came when they were due, since then
     SensorStreamHealth health;
 
     [[nodiscard]] const Sample* find(std::int64_t k) const;

@@ -38,5 +38,12 @@ TEST(FaultCampaign, NothingIsLostAndNothingWrongIsSilent) {
       faults, runs, judged, flagged);
 }
 
+/// Garbage that looked like five lines and held up the line by as much: the number was five too high and not
+/// in doubt, and the epochs of a turning table were 70 nT off.
+TEST(FaultCampaign, ARunThatOnceWasWrongWithoutAWord) {
+  test::StruckRun run(77);
+  EXPECT_GT(run.play(), 10);
+}
+
 }  // namespace
 }  // namespace mgtd
