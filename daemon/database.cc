@@ -202,8 +202,12 @@ Error Database::error(int code) const {
               fmt::format("{}: {} ({})", file, said, os != 0 ? std::strerror(os) : "no reason given"),
               "check the disk: space, quota, kernel log"};
     }
+    case SQLITE_ERROR:  // the tables are others than this program makes
+      return {ErrorCode::bad_input, fmt::format("{} is damaged, or another program wrote it: {}", file, said),
+              "rescue what is readable with: sqlite3 FILE .recover"};
     default:
-      return {ErrorCode::internal, fmt::format("{}: {}", file, said), ""};
+      return {ErrorCode::internal, fmt::format("{}: {}", file, said),
+              "try a copy of the file on another disk"};
   }
 }
 

@@ -240,6 +240,14 @@ TEST(RunFile, RefusesWhatItIsNot) {
   damaged << std::string(4096 * 8, '\x7f');
   damaged.close();
   EXPECT_NE(refusal(dir / "damaged.mgtrun").find("is damaged"), std::string::npos);
+  { ASSERT_TRUE(RunFile::create(dir / "renamed.mgtrun", header())); }
+  EXPECT_TRUE(Database::open(dir / "renamed.mgtrun", Database::Mode::read_write)
+                  .value()
+                  ->execute("ALTER TABLE meta RENAME COLUMN value TO other"));
+  const auto renamed = RunFile::open(dir / "renamed.mgtrun", Access::read_only);
+  ASSERT_FALSE(renamed);
+  EXPECT_NE(renamed.error().message.find("is damaged, or another program wrote it"), std::string::npos);
+  EXPECT_FALSE(renamed.error().remedy.empty());
   std::filesystem::resize_file(dir / "newer.mgtrun", 600);
   EXPECT_NE(refusal(dir / "newer.mgtrun"), "opened");
 }
