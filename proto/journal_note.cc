@@ -42,11 +42,17 @@ Json to_json(const TableNote& n) {
 }
 Json to_json(const LostNote& n) { return {{"note", "lost"}, {"bytes", n.bytes}}; }
 
+/// A number that is written as a whole one: of any other the library makes what the processor makes of it.
+template <class T = std::uint64_t>
+T whole(const Json& j) {
+  return static_cast<T>(j.get_ref<const Json::number_integer_t&>());
+}
+
 LifeNote life(const Json& j) {
-  LifeNote n{j.at("software"), j.at("config"), j.at("first_seq"), {}};
+  LifeNote n{j.at("software"), j.at("config"), whole(j.at("first_seq")), {}};
   if (j.contains("before")) {
     const Json& b = j.at("before");
-    n.before = Gap{b.at("from_seq"), b.at("to_seq"), {}, b.at("why")};
+    n.before = Gap{whole(b.at("from_seq")), whole(b.at("to_seq")), {}, b.at("why")};
   }
   return n;
 }
@@ -62,8 +68,8 @@ TableOrder order(const Json& j) {
 
 TableNote table(const Json& j) {
   TableNote n;
-  n.reading.arrival = {Instant{Duration{j.at("mono_ns").get<std::int64_t>()}},
-                       WallTime{j.at("wall_ns").get<std::int64_t>()}};
+  n.reading.arrival = {Instant{Duration{whole<std::int64_t>(j.at("mono_ns"))}},
+                       WallTime{whole<std::int64_t>(j.at("wall_ns"))}};
   n.reading.angles = angles(j.at("angles_rad"));
   n.reading.referenced = j.at("referenced");
   n.reading.moving = j.at("moving");
@@ -79,10 +85,10 @@ std::optional<JournalNote> note_of(const Json& j) {
     return CalibrationNote{text.is_null() ? std::string() : text.get<std::string>()};
   }
   if (kind == "calibrating") return CalibratingNote{j.at("on").get<bool>()};
-  if (kind == "reopened") return ReopenedNote{j.at("slot").get<int>()};
+  if (kind == "reopened") return ReopenedNote{whole<int>(j.at("slot"))};
   if (kind == "order") return order(j);
   if (kind == "table") return table(j);
-  if (kind == "lost") return LostNote{j.at("bytes").get<std::uint64_t>()};
+  if (kind == "lost") return LostNote{whole(j.at("bytes"))};
   return std::nullopt;
 }
 
