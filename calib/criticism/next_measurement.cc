@@ -92,9 +92,18 @@ double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& B) {
   return (v - B * qr.solve(v)).squaredNorm();
 }
 
-std::string_view reads(const std::string& spec) {
-  const EffectFamily* const family = find_family(family_name(spec));
-  return family == nullptr ? std::string_view() : family->needs;
+/// Two shapes of one dependence: both on the axis' own reading alone, or of one quantity (axis.offset, site)
+/// on the same columns. An offset and a scale factor that drift differ by the reading, which is measured.
+bool differ_in_form(const std::string& a, const std::string& b) {
+  const auto reads = [](const std::string& spec) {
+    const EffectFamily* const family = find_family(family_name(spec));
+    return family == nullptr ? std::string_view() : family->needs;
+  };
+  const auto quantity = [](const std::string& spec) {
+    const std::string_view name = family_name(spec);
+    return name.substr(0, name.rfind('.'));
+  };
+  return reads(a) == reads(b) && (reads(a).empty() || quantity(a) == quantity(b));
 }
 
 /// Smallest probability over the rivals that the winner's name is told right, were it true.
@@ -142,7 +151,7 @@ void find_form_only(const PoseTable& table, const JointFit& fit, const JointOpti
   if (Z.cols() == 0) return;
   const Eigen::VectorXd v = Z * sizes_of(winner, names);
   for (Rival& rival : rivals) {
-    if (rival.form_only || reads(rival.spec) != reads(winner.spec)) continue;
+    if (rival.form_only || !differ_in_form(rival.spec, winner.spec)) continue;
     const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
     rival.form_only = B.cols() > 0 && outside(v, B) < (1 - kAlike) * v.squaredNorm();
   }

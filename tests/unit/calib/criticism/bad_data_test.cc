@@ -28,28 +28,28 @@ std::vector<Row> rows() {
        [](PoseTable& run) {
          for (Pose& pose : run.poses) std::swap(pose.y_nT[1][0], pose.y_nT[1][1]);
        },
-       {"sensor 2 is mirrored", "two leads are swapped or one is inverted"}},
+       {"Sensor 2 is mirrored", "two leads are swapped or one is inverted"}},
       {"one_lead_inverted",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) pose.y_nT[3][2] *= -1;
        },
-       {"sensor 4 is mirrored", "two leads are swapped or one is inverted"}},
+       {"Sensor 4 is mirrored", "two leads are swapped or one is inverted"}},
       {"azimuth_counted_backwards",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) *pose.azimuth_rad *= -1;
        },
-       {"the table angles contradict the readings", "2 is the limit"}},
+       {"The table angles contradict the readings", "2 is the limit"}},
       {"pitch_and_roll_exchanged",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) std::swap(pose.pitch_rad, pose.roll_rad);
        },
-       {"the table angles contradict the readings", "2 is the limit"}},
+       {"The table angles contradict the readings", "2 is the limit"}},
       {"one_reading_in_forty_is_of_something_else",
        [](PoseTable& run) {
          for (std::size_t k = 0; k < run.poses.size() * 12; k += 41)
            run.poses[k / 12].y_nT[k / 3 % 4][static_cast<Eigen::Index>(k % 3)] += k % 2 == 0 ? 40 : -25;
        },
-       {"readings in 9 % of the poses contradict the rest", "the limit is 6 %"}},
+       {"Readings in 9 % of the poses contradict the rest", "the limit is 6 %"}},
       {"spreads_of_another_instrument",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) {
@@ -62,7 +62,7 @@ std::vector<Row> rows() {
          run.poses[90].T_degC[1] = 90;
          run.poses[90].y_nT[1] += 0.075 * Eigen::Vector3d(1, -1, 1);
        },
-       {"one pose (91) carries the evidence", "measure it again"}},
+       {"One pose (91) carries the evidence", "measure it again"}},
   };
 }
 
