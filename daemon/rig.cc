@@ -146,8 +146,9 @@ void Rig::on_event(const std::string& device, const DeviceEvent& event) {
 
 void Rig::on_link(const std::string& device, const LinkHealth& health) {
   const Stamp now = clock_.now();
-  LinkState& before = link_states_[device];
-  if (before == health.state) return;
+  const auto [known, first] = link_states_.try_emplace(device, LinkState::absent);
+  LinkState& before = known->second;
+  if (!first && before == health.state) return;
   const bool answered = answers(before);
   before = health.state;
   const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(health.state));
@@ -162,7 +163,11 @@ void Rig::on_link(const std::string& device, const LinkHealth& health) {
     quiet_.info(device, "live again", now.mono);
   }
   if (health.state == LinkState::live) return;
-  quiet_.warn(device, fmt::format("{}: {}", state, health.detail), now.mono);
+  const std::string words = fmt::format("{}: {}", state, health.detail);
+  if (health.state == LinkState::probing)
+    quiet_.info(device, words, now.mono);
+  else
+    quiet_.warn(device, words, now.mono);
   if (answered && !answers(health.state)) run_.feed(DeviceLost{device, health.detail}, now);
 }
 

@@ -33,25 +33,31 @@ struct Output {
   }
 };
 
-Result<void> play(const std::string& path, daemon::Replay& replay) {
+/// How much of it could not be read because it is damaged. The end of a record that the daemon's end tore is
+/// no damage.
+Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(ErrorCode::bad_input, path + ": cannot be read", "check path and permissions");
   RawLogDecoder decoder;
+  std::uint64_t bytes = 0;
   std::string piece(1U << 20U, '\0');
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0) {
     decoder.feed(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
+    bytes += static_cast<std::uint64_t>(in.gcount());
     while (const auto record = decoder.next()) {
       if (auto fed = replay.feed(*record); !fed) {
         fed.error().message = path + ": " + fed.error().message;
-        return fed;
+        return tl::unexpected(std::move(fed.error()));
       }
     }
   }
   if (const auto whole = decoder.finish(); !whole) fmt::print(stderr, "{}: {}\n", path, whole.error().text());
-  return {};
+  const std::uint64_t unread = bytes - std::min(bytes, decoder.good_bytes());
+  return decoder.state() == RawLogDecoder::State::damaged || unread > kRawRecordMax ? unread : 0;
 }
 
-nlohmann::json summary(const daemon::ReplayCounts& counts, const std::vector<Error>& left_out) {
+nlohmann::json summary(const daemon::ReplayCounts& counts, const std::vector<Error>& left_out,
+                       std::uint64_t damaged) {
   auto not_played = nlohmann::json::array();
   for (const Error& why : left_out) not_played.push_back({{"message", why.message}, {"remedy", why.remedy}});
   return {{"schema", "mgt.replay/1"},
@@ -61,11 +67,12 @@ nlohmann::json summary(const daemon::ReplayCounts& counts, const std::vector<Err
           {"gaps", counts.gaps},
           {"missing", counts.missing},
           {"bytes_lost", counts.bytes_lost},
+          {"bytes_damaged", damaged},
           {"not_played", std::move(not_played)},
           {"parted", counts.parted ? nlohmann::json(*counts.parted) : nlohmann::json()}};
 }
 
-void print_summary(const daemon::ReplayCounts& counts) {
+void print_summary(const daemon::ReplayCounts& counts, std::uint64_t damaged) {
   fmt::print(stderr, "{} samples, {} missing in {} gaps, from {} start{} of the daemon\n", counts.samples,
              counts.missing, counts.gaps, counts.lives, counts.lives == 1 ? "" : "s");
   if (counts.bytes_lost > 0)
@@ -73,6 +80,12 @@ void print_summary(const daemon::ReplayCounts& counts) {
                "{} bytes are not in the journal, because the disk refused: after them the stream may "
                "differ from what it was\n",
                counts.bytes_lost);
+  if (damaged > 0)
+    fmt::print(
+        stderr,
+        "{} bytes are damaged or stand behind a damage in their file, and were not read: the stream is "
+        "not what it was from there on\n  play an undamaged copy\n",
+        damaged);
   if (counts.parted)
     fmt::print(stderr, "this is not how it went: {}\n  use the version of mgt that wrote the journal\n",
                *counts.parted);
@@ -98,14 +111,17 @@ int run_replay(const Session& session, const Arguments& args) {
     output.file = file.get();
   }
   daemon::Replay replay([&output](std::string_view line) { output.write(line); }, instead);
+  std::uint64_t damaged = 0;
   for (const std::string& path : journals->play) {
-    if (auto played = play(path, replay); !played) return report(session, played.error());
+    const auto unread = play(path, replay);
+    if (!unread) return report(session, unread.error());
+    damaged += *unread;
   }
   if (output.file != nullptr && (std::fflush(output.file) != 0 || output.failed > 0))
     return report(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
-  if (session.json) print_json(summary(replay.counts(), journals->left_out));
-  if (!session.json) print_summary(replay.counts());
-  return replay.counts().parted ? 1 : 0;
+  if (session.json) print_json(summary(replay.counts(), journals->left_out, damaged));
+  if (!session.json) print_summary(replay.counts(), damaged);
+  return replay.counts().parted || damaged > 0 ? 1 : 0;
 }
 
 }  // namespace

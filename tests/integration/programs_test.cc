@@ -86,6 +86,48 @@ TEST(Programs, AClosedTerminalEndsItInOrder) {
   EXPECT_THAT(ended->err, HasSubstr("stopping the table and closing"));
 }
 
+/// A file that is damaged in its middle is no journal of what was.
+TEST(Programs, AReplayOfADamagedJournalSaysSo) {
+  Bench bench;
+  bench.start_daemon();
+  ASSERT_EQ(bench.mgt({"watch", "--count", "20"}).exit_code, 0);
+  bench.daemon().signal(SIGTERM);
+  ASSERT_TRUE(bench.daemon().wait());
+  std::string journal;
+  for (const auto& entry : std::filesystem::directory_iterator(bench.dir() / "runs"))
+    if (entry.path().extension() == ".raw") journal = entry.path();
+  ASSERT_FALSE(journal.empty());
+  const auto replay = [&] {
+    return run_program({program("mgt"), "replay", "--json", journal}, bench.dir().path());
+  };
+  const Finished whole = replay();
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_EQ(json::parse(whole.out).at("bytes_damaged"), 0);
+  std::string bytes = slurp(journal);
+  const std::size_t middle = bytes.size() / 2;
+  for (std::size_t i = middle; i < middle + 64; ++i) bytes[i] = static_cast<char>(~bytes[i]);
+  std::ofstream(journal, std::ios::binary | std::ios::trunc) << bytes;
+  const Finished damaged = replay();
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_GT(json::parse(damaged.out).at("bytes_damaged"), bytes.size() / 3);
+  EXPECT_LT(json::parse(damaged.out).at("samples"), json::parse(whole.out).at("samples"));
+}
+
+/// Whoever reads the log of a daemon that streams nothing finds why.
+TEST(Programs, APortThatIsMissingFromTheStartIsInTheLog) {
+  Bench bench;
+  std::string config = slurp(bench.config_path());
+  const std::size_t port = config.find("/fluxgate2\"");
+  ASSERT_NE(port, std::string::npos);
+  config.replace(port, std::string("/fluxgate2").size(), "/nowhere");
+  std::ofstream(bench.dir() / "missing.toml") << config;
+  const ChildProcess daemon({program("mgtd"), "--config", bench.dir() / "missing.toml"}, bench.dir().path(),
+                            "mgtd");
+  EXPECT_TRUE(eventually([&] { return daemon.err().find("s2: absent: ") != std::string::npos; }))
+      << daemon.err();
+  EXPECT_THAT(daemon.err(), HasSubstr("/nowhere: there is no such port"));
+}
+
 /// What is no mistake and will be missed all the same is said by both programs.
 TEST(Programs, AConfigurationIsCheckedByTheDaemonAsByTheTool) {
   Bench bench;
