@@ -123,7 +123,10 @@ void Journal::synced(int os_error) {
 }
 
 void Journal::hold(Error why) {
-  if (std::exchange(held_, true)) return;
+  if (std::exchange(held_, true)) {
+    if (!recording()) trouble_ = std::move(why);  // what is measured now
+    return;
+  }
   if (recording() && !buffer_.empty()) flush();
   stop(std::move(why));
 }

@@ -20,7 +20,7 @@ using namespace mgtd;
 using namespace mgtd::daemon;
 
 // sysexits.h, as systemd and scripts know them.
-constexpr int kExitConfig = 78, kExitUnavailable = 69, kExitIo = 74;
+constexpr int kExitUsage = 64, kExitConfig = 78, kExitUnavailable = 69, kExitIo = 74;
 
 int report(const Error& error) {
   fmt::print(stderr, "mgtd: {}\n", error.text());
@@ -67,7 +67,11 @@ int main(int argc, char** argv) {
   bool check_only = false;
   app.add_option("--config", config_file, "the configuration")->capture_default_str();
   app.add_flag("--check-config", check_only, "only read the configuration");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
   auto config = load_config(config_file);
   if (!config) {
     for (const std::string& line : config.error().lines) fmt::print(stderr, "{}\n", line);

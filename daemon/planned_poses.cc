@@ -38,6 +38,14 @@ Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pa
 }  // namespace
 
 Result<PoseTable> planned_poses(const Config& config) {
+  if (const drivers::TableLimits limits = limits_of(config); limits.azimuth.max_rad <= limits.azimuth.min_rad)
+    return fail(
+        ErrorCode::refused,
+        config.file +
+            ": how far the table turns is not in the configuration; the daemon learns it from "
+            "the controller",
+        "state limits.azimuth, limits.pitch and limits.roll in [table], or ask the running daemon: mgt "
+        "run dry-run");
   const RunDefaults& d = config.run;
   const auto plan = make_plan({.step_deg = d.step_deg,
                                .random = d.random,

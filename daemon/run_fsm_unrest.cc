@@ -58,12 +58,16 @@ std::optional<std::string> RunFsm::at_another_level(std::optional<double> f_nT) 
 
 void RunFsm::suspend(const std::string& why) {
   ++retries_;
+  const bool railed = dwell_ && dwell_->quality().saturated > 0;
   dwell_.reset();
   watch_field(now_.mono);
   enter(Phase::suspended,
-        fmt::format("pose {} is suspended: {}; something magnetic is passing or has been put down nearby; it "
-                    "is measured again when the field is calm",
-                    planned().number, why));
+        fmt::format("pose {} is suspended: {}; {}; it is measured again when the field is calm",
+                    planned().number, why,
+                    railed ? "a sensor is at the end of its range: look at its supply and range, and for "
+                             "magnets and iron near it"
+                           : "something magnetic is passing or has been put down nearby, or the array itself "
+                             "moves"));
   act(Record{message_});
 }
 

@@ -29,7 +29,7 @@ constexpr std::array<KnownError, 19> kErrors{{
     {2, "the controller does not know a command", "check that the controller speaks GCS 2.0"},
     {3, "a command was too long for the controller", kReportIt},
     {5, "a move was refused because the axis is not referenced or its servo is off",
-     "reference the table first"},
+     "mgt run resume makes the reference move first"},
     {7, "a target lies outside the travel of the controller",
      "set limits in the configuration within TMN?..TMX?"},
     {8, "a velocity lies outside the limits of the controller", "lower velocity_deg_per_s"},

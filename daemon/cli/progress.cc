@@ -27,13 +27,19 @@ std::string progress_line(const RunStatus& status, int width) {
   const int filled = static_cast<int>(std::lround(share * kBar));
   std::string line =
       fmt::format("[{:#<{}}{:.<{}}] {:>4}/{}", "", filled, "", kBar - filled, status.pose, status.poses);
-  if (!status.set.empty()) line += fmt::format("  {}", status.set);
-  line += fmt::format("  {}", name(status.state));
-  if (status.retries > 0) line += fmt::format("  {} repeated", status.retries);
-  if (is_active(status.state)) line += fmt::format("  {} left", duration_text(status.remaining_s));
-  if (status.tensor_sd_nT_per_m) line += fmt::format("  tensor to {:.2f} nT/m", *status.tensor_sd_nT_per_m);
+  // Whole parts only: half a number is another number.
+  const auto add = [&](const std::string& part) {
+    if (static_cast<int>(line.size() + part.size()) <= width) line += part;
+  };
+  if (!status.set.empty()) add("  " + status.set);
+  add(fmt::format("  {}", name(status.state)));
+  if (status.retries > 0) add(fmt::format("  {} repeated", status.retries));
+  if (is_active(status.state)) add(fmt::format("  {} left", duration_text(status.remaining_s)));
+  std::string known;
+  if (status.tensor_sd_nT_per_m) known = fmt::format("  tensor to {:.2f} nT/m", *status.tensor_sd_nT_per_m);
   if (status.wanted_tensor_sd_nT_per_m)
-    line += fmt::format(" (wanted {:.2f})", *status.wanted_tensor_sd_nT_per_m);
+    known += fmt::format(" (wanted {:.2f} nT/m)", *status.wanted_tensor_sd_nT_per_m);
+  add(known);
   if (static_cast<int>(line.size()) > width) line.resize(static_cast<std::size_t>(std::max(width, 0)));
   return line;
 }

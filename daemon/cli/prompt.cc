@@ -45,7 +45,9 @@ Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What wh
   const auto refuse = [](const std::string& found) {
     return fail(ErrorCode::usage, found, "three numbers in degrees as the scales say: azimuth pitch roll");
   };
-  if (words.size() != 3) return refuse(fmt::format("{} words where three numbers are needed", words.size()));
+  if (words.size() != 3)
+    return refuse(
+        fmt::format("{} word{} where three numbers are needed", words.size(), words.size() == 1 ? "" : "s"));
   PromptAnswer out;
   static constexpr std::array kKeys{"azimuth_deg", "pitch_deg", "roll_deg"};
   for (std::size_t i = 0; i < words.size(); ++i) {

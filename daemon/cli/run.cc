@@ -31,6 +31,8 @@ struct Arguments {
 int print_end(const Session& session, const RunStatus& run) {
   if (session.json) print_json(nlohmann::json(to_json(run)));
   fmt::print(stderr, "{}: {}\n", name(run.state), run.message);
+  if (run.state == RunState::paused && run.message.find("mgt run resume") == std::string::npos)
+    fmt::print(stderr, "mgt run resume goes on with it, mgt run abort ends it\n");
   for (const Check& check : run.checks) {
     if (!check.passed)
       fmt::print(stderr, "  failed: {}: {}; limit {}; {}\n", check.name, check.measured, check.limit,

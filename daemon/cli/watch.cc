@@ -10,6 +10,7 @@
 
 #include "daemon/cli/ask.h"
 #include "daemon/cli/gap_line.h"
+#include "daemon/cli/in_range.h"
 #include "daemon/cli/progress.h"
 #include "daemon/stream_reader.h"
 
@@ -155,9 +156,11 @@ void add_watch(CLI::App& app, Session& session) {
   CLI::App* const command = add_command(app, session, "watch", "the live stream",
                                         [args, &session] { return run_watch(session, *args); });
   command->add_option("--rate", args->rate_hz, "samples a second")
-      ->check(CLI::PositiveNumber)
+      ->check(in_range(kWatchRateMin_hz, kWatchRateMax_hz, "Hz"))
       ->capture_default_str();
-  command->add_option("--count", args->count, "end after so many samples (0: never)")->capture_default_str();
+  command->add_option("--count", args->count, "end after so many samples (0: never)")
+      ->check(in_range(0, 1e15, "samples"))
+      ->capture_default_str();
   command->add_option("--stream", args->stream, "Unix socket or host:port; asked of the daemon when absent");
   command->add_flag("--raw", args->raw, "the objects as they come, one per line");
 }

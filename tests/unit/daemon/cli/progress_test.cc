@@ -38,6 +38,17 @@ TEST(Progress, NeverWiderThanTheTerminal) {
     EXPECT_LE(progress_line(halfway(), width).size(), static_cast<std::size_t>(width));
 }
 
+/// "7.60 nT" would be another quantity than "7.60 nT/m".
+TEST(Progress, APartThatDoesNotFitIsLeftOutWhole) {
+  RunStatus status = halfway();
+  status.tensor_sd_nT_per_m = 7.6;
+  const std::string whole = progress_line(status, 200);
+  EXPECT_THAT(whole, HasSubstr("tensor to 7.60 nT/m"));
+  const std::string cut = progress_line(status, static_cast<int>(whole.size()) - 1);
+  EXPECT_THAT(cut, Not(HasSubstr("tensor")));
+  EXPECT_THAT(cut, HasSubstr("left"));
+}
+
 TEST(Progress, AnEmptyPlanDoesNotDivideByZero) {
   EXPECT_THAT(progress_line(RunStatus{}, 200), HasSubstr("0/0"));
 }
