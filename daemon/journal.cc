@@ -56,9 +56,8 @@ void Journal::start_file() {
   written_ += header.size();
   unsynced_ = true;
   file_since_ = now_;
+  header_ = in_file_;
   encoder_ = {};
-  resumed_ = trouble_.has_value();
-  trouble_.reset();
 }
 
 void Journal::append(const RawRecord& record) {
@@ -96,6 +95,10 @@ void Journal::flush() {
     in_file_ += static_cast<std::uint64_t>(n);
     written_ += static_cast<std::uint64_t>(n);
     unsynced_ = true;
+  }
+  if (recording() && in_file_ > header_ && trouble_) {  // a disk that takes a header may take no more
+    resumed_ = true;
+    trouble_.reset();
   }
   buffer_.clear();
   if (in_file_ >= config_.rotate_bytes || now_ - file_since_ >= config_.rotate_after) rotate();
@@ -148,6 +151,10 @@ Error Journal::refused(int os_error, const char* doing) const {
 
 void Journal::stop(Error why) {
   lost_ += std::exchange(buffer_, {}).size();
+  if (recording() && trouble_) {  // it is tried every retry_every: a try leaves nothing behind
+    lost_ += in_file_ - header_;
+    ::unlink(file_.c_str());
+  }
   if (recording()) ::close(std::exchange(fd_, -1));
   if (!trouble_) {
     ++stops_;

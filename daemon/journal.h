@@ -19,7 +19,8 @@
 /// nobody.
 ///
 /// When the disk refuses, recording stops, says so once, and everything else goes on; a new file is tried
-/// every retry_every. Before a new file the oldest go by the `keep` rule.
+/// every retry_every, and recording goes on, which is said, when it has taken the first bytes. Before a new
+/// file the oldest go by the `keep` rule.
 namespace mgtd::daemon {
 
 struct JournalConfig {
@@ -60,7 +61,7 @@ class Journal {
   void synced(int os_error);
 
   [[nodiscard]] bool recording() const { return fd_ >= 0; }
-  /// Why it does not record; nothing while it does.
+  /// Why it does not record; nothing once it does.
   [[nodiscard]] const std::optional<Error>& trouble() const { return trouble_; }
   /// Trouble that was not told yet; given once.
   [[nodiscard]] std::optional<Error> take_error();
@@ -84,7 +85,7 @@ class Journal {
   int fd_{-1};
   RawLogEncoder encoder_;
   std::string buffer_;
-  std::uint64_t in_file_{0}, written_{0}, lost_{0}, lost_told_{0}, stops_{0}, removed_{0};
+  std::uint64_t header_{0}, in_file_{0}, written_{0}, lost_{0}, lost_told_{0}, stops_{0}, removed_{0};
   Instant now_, last_write_, last_sync_, last_try_, file_since_;
   bool unsynced_{false}, held_{false}, resumed_{false};
   std::vector<int> syncs_;  ///< of files that are full

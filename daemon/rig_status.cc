@@ -10,7 +10,7 @@ namespace {
 
 RecordingStatus recording(const Journal& journal) {
   RecordingStatus out;
-  out.state = journal.recording() ? "writing" : "stopped";
+  out.state = journal.recording() && !journal.trouble() ? "writing" : "stopped";
   if (journal.trouble()) out.why = journal.trouble()->text();
   out.bytes = journal.bytes_written();
   out.bytes_lost = journal.bytes_lost();

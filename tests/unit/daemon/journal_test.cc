@@ -187,14 +187,34 @@ TEST(Journal, FullDiskStopsRecordingOnceAndItGoesOnByItself) {
   EXPECT_FALSE(journal.recording()) << "tried every ten seconds";
   journal.tick(at(110));
   EXPECT_TRUE(journal.recording());
+  EXPECT_FALSE(journal.take_resumed()) << "not before bytes are there";
+  journal.append({0, RawDirection::received, {}, "again"});
+  journal.tick(at(112));
   EXPECT_EQ(journal.take_resumed(), journal.bytes_lost());
   EXPECT_FALSE(journal.take_resumed());
   EXPECT_FALSE(journal.trouble());
   EXPECT_EQ(journal.stops(), 1U);
-  journal.append({0, RawDirection::received, {}, "again"});
-  journal.tick(at(112));
   EXPECT_NE(journal.file(), first);
   EXPECT_EQ(payloads(journal.file()), "again");
+}
+
+/// Room for a header and no more, for an hour: one complaint, and not a file for every try.
+TEST(Journal, ADiskThatTakesOnlyAHeaderIsToldOnceAndLeavesNoFiles) {
+  TempDir dir;
+  const auto config = config_in(dir);
+  Journal journal(config, at(0));
+  const FullDisk full(header_bytes() + 4);
+  int told = 0;
+  for (int second = 1; second <= 3600; ++second) {
+    journal.append({0, RawDirection::received, {}, "0123456789"});
+    journal.tick(at(second));
+    if (journal.take_error()) ++told;
+    EXPECT_FALSE(journal.take_resumed());
+  }
+  EXPECT_EQ(told, 1);
+  EXPECT_EQ(journal.stops(), 1U);
+  EXPECT_LE(rotated_files(config.directory, "r1.", ".raw").size(), 2U);
+  EXPECT_GT(journal.bytes_lost(), 3000U * 10);
 }
 
 TEST(Journal, HeldItStopsUntilItIsReleased) {
@@ -208,6 +228,8 @@ TEST(Journal, HeldItStopsUntilItIsReleased) {
   journal.append({0, RawDirection::received, {}, "lost"});
   journal.release();
   EXPECT_TRUE(journal.recording());
+  journal.append({0, RawDirection::received, {}, "after"});
+  journal.tick(at(61));
   EXPECT_EQ(journal.take_resumed(), 4U);
 }
 
