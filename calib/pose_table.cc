@@ -103,10 +103,27 @@ bool Reader::next_line() {
   return false;
 }
 
+/// What a file is whose first line cannot be a header; empty where it can.
+std::string_view no_table(std::string_view line) {
+  if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")) return "the file is UTF-16 text";
+  if (line.find('\0') != std::string_view::npos) return "the file is no text: it holds zero bytes";
+  if (line.starts_with('{') || line.starts_with('[')) return "the file is JSON, not a table";
+  if (line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos)
+    return "its columns are separated by semicolons";
+  if (line.find(',') == std::string_view::npos && line.find('\t') != std::string_view::npos)
+    return "its columns are separated by tabs";
+  return {};
+}
+
 Result<void> Reader::read_header() {
   if (!next_line()) {
     return fail(ErrorCode::bad_input, fmt::format("{}: the file is empty", file_),
                 "a header row and one row per pose are needed");
+  }
+  if (const std::string_view what = no_table(line_); !what.empty()) {
+    return fail(
+        ErrorCode::bad_input, fmt::format("{}: {}", file_, what),
+        "give a *.mgtrun, or a pose table in CSV: commas between the columns, a decimal point, UTF-8");
   }
   for (const Cell& cell : cells_of(line_)) {
     if (cell.text.empty()) return complain(cell.column, "a column has no name", "name it in the header row");

@@ -117,6 +117,11 @@ Result<void> check_identity(const Database& db, const std::string& file) {
   if (!application) return tl::unexpected(application.error());
   const auto version = db.integer("PRAGMA user_version");
   if (!version) return tl::unexpected(version.error());
+  const auto tables = db.integer("SELECT count(*) FROM sqlite_master");
+  if (tables && *tables == 0) {
+    return fail(ErrorCode::bad_input, fmt::format("{} is empty: it holds no run", file),
+                "name a *.mgtrun file written by mgtd or mgt import");
+  }
   if (*application != kRunApplicationId) {
     return fail(ErrorCode::bad_input, fmt::format("{} is a database, but not a run file", file),
                 "name a *.mgtrun file written by mgtd or mgt import");

@@ -14,6 +14,8 @@ constexpr Eigen::Index kMinPoses = 9;
 /// Spread across the thinnest direction over the widest: below, the readings lie on a plane. A table turning
 /// about one axis with 0.1 degree of wobble reaches 0.004, tilts of 5 degrees reach 0.1.
 constexpr double kFlat = 0.02;
+/// An axis that moves less over all poses does not measure.
+constexpr double kDead_nT = 1e-3;
 /// Scale factors and axis ratios a fluxgate cannot have.
 constexpr double kMaxScale = 3;
 
@@ -43,6 +45,13 @@ Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT, const Eigen
   const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(z.cols());
   const Eigen::Vector3d spread =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues().cwiseMax(0).cwiseSqrt();
+  for (int a = 0; a < 3; ++a) {
+    if (z.row(a).cwiseAbs().maxCoeff() > kDead_nT) continue;
+    return fail(
+        ErrorCode::refused,
+        fmt::format("its axis {} reads {:.3f} nT in every pose: it is dead or stuck", "xyz"[a], mean[a]),
+        "check this axis, its cable and its channel of the digitiser");
+  }
   if (!(spread[0] > kFlat * spread[2])) {
     return fail(ErrorCode::refused,
                 fmt::format("the readings lie on a plane: they spread {:.4g} nT across it and {:.4g} nT "

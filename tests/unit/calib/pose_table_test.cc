@@ -226,6 +226,14 @@ TEST(PoseTable, AnglesSurviveToAMillionthOfADegreeAndTheTextIsStable) {
   EXPECT_EQ(format_pose_table(*again), format_pose_table(table));
 }
 
+TEST(PoseTable, AnotherKindOfFileIsCalledByItsName) {
+  EXPECT_THAT(error_of("pose;set;f_nT\n1;random;50000\n").message, HasSubstr("separated by semicolons"));
+  EXPECT_THAT(error_of("pose\tset\tf_nT\n").message, HasSubstr("separated by tabs"));
+  EXPECT_THAT(error_of("{\"schema\": \"mgt.cal/1\"}\n").message, HasSubstr("JSON, not a table"));
+  EXPECT_THAT(error_of("\xFF\xFEp").message, HasSubstr("UTF-16"));
+  EXPECT_THAT(error_of(std::string("pose,\0set\n", 10)).message, HasSubstr("zero bytes"));
+}
+
 TEST(PoseList, NeedsAnglesAndNoReadings) {
   const auto list =
       parse_pose_list("pose,azimuth_deg,pitch_deg,roll_deg,s1_T_degC\n7,90,-45,180,21.5\n", "list.csv");

@@ -47,6 +47,15 @@ TEST(JointErrors, AReadingThatIsLeftOutCountsInNoRow) {
   }
 }
 
+TEST(JointFit, AnAxisThatReadsTheSameInEveryPoseIsCalledDead) {
+  PoseTable table = simulate(Simulation{}, 36, 40, 31);
+  for (Pose& pose : table.poses) pose.y_nT[1][1] = 123.5;
+  const auto refused = fit(table, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "sensor 2: its axis y reads 123.500 nT in every pose: it is dead or stuck");
+}
+
 TEST(JointErrors, MissingGradientShowsOutOfSampleAndItsTermTakesItAway) {
   const PoseTable table = simulate(with_gradient(), 36, 121, 33);
   JointOptions options;
