@@ -21,6 +21,20 @@ bool name_unknown_command(const CLI::App& app) {
   return true;
 }
 
+/// What was wrong with the words of a command, and where to look; a group without its command lists them.
+std::string words_of(const CLI::App* app, const CLI::Error& error) {
+  const CLI::App* at = app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
+  std::string path;
+  for (const CLI::App* x = at; x != app; x = x->get_parent()) path = " " + x->get_name() + path;
+  std::vector<std::string> commands;
+  for (const CLI::App* x : at->get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(x->get_name());
+  const bool lacks = !commands.empty() && error.get_name() == "RequiredError";
+  return fmt::format("mgt: {}\n     {}mgt{} --help tells more\n", lacks ? "which command?" : error.what(),
+                     lacks ? fmt::format("one of {}; ", fmt::join(commands, ", ")) : "", path);
+}
+
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations, control\n"
@@ -38,6 +52,7 @@ int main(int argc, char** argv) {
   CLI::App app{kDescription, "mgt"};
   app.set_version_flag("--version", MGTD_VERSION);
   app.require_subcommand(1);
+  app.failure_message(&words_of);
   app.fallthrough();
   Session session;
   session.control_socket = "/run/mgtd/control.sock";

@@ -30,6 +30,12 @@ int run_next(const Session& session, const Arguments& args) {
   if (args.pair.size() == 1)
     return report(session,
                   {ErrorCode::usage, "one effect alone leaves nothing to settle", "name two, or none"});
+  for (const std::string& name : args.pair) {
+    if (name.find_first_of("@,") == std::string::npos) continue;
+    return report(session,
+                  {ErrorCode::usage, fmt::format("'{}': two effects are compared wherever they act", name),
+                   "name them without place and numbers, like " + name.substr(0, name.find_first_of("@,"))});
+  }
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
