@@ -40,6 +40,7 @@ Exit code 0: kept. 1: not kept (absorbed whole), or not confirmed.)";
 struct Arguments {
   std::string run, name, expression, level{"axis"}, scale, unit{"nT"}, scan, from;
   std::optional<double> prior;
+  bool drop{false};
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -124,6 +125,12 @@ struct Confirmation {
 };
 
 constexpr double kConfirmed_log10_p = -2;
+constexpr double kAllAbsorbed = 0.9995;  ///< in squares
+
+bool nothing_left(const calib::FormulaExamination& x) {
+  return x.wholly_absorbed() || x.absorbed > kAllAbsorbed;
+}
+
 constexpr double kAgree_sigmas = 4;
 
 void print(const Session& session, const Arguments& args, const calib::FormulaExamination& x,
@@ -134,12 +141,16 @@ void print(const Session& session, const Arguments& args, const calib::FormulaEx
     out["spec"] = definition.spec;
     out["exploratory"] = definition.exploratory();
     out["confirmed"] = c.asked ? json(c.given) : json();
-    out["kept"] = !x.wholly_absorbed();
+    out["kept"] = !nothing_left(x);
     print_json(out);
     return;
   }
   fmt::print("{}", to_text(x));
   if (x.wholly_absorbed()) return;
+  if (nothing_left(x)) {
+    fmt::print("not kept: nothing of it is left to be seen on these poses\n");
+    return;
+  }
   if (!c.asked) {
     fmt::print(
         "exploratory: it was thought of on these poses, so their p-value proves nothing; a second run does\n"
@@ -156,9 +167,30 @@ void print(const Session& session, const Arguments& args, const calib::FormulaEx
   fmt::print("kept in {}; mgt add {} {} puts it into the model\n", args.run, args.name, args.run);
 }
 
+int drop(const Session& session, const Arguments& args, KeptRun& run) {
+  std::vector<daemon::Definition> all = run.source.definitions;
+  if (std::erase_if(all, [&](const daemon::Definition& d) { return d.name == args.name; }) == 0)
+    return report(session, {ErrorCode::usage, args.run + " keeps no formula called " + args.name,
+                            "mgt model " + args.run + " lists them"});
+  for (const calib::EffectPtr& e : run.options.effects) {
+    if (e->name() != args.name) continue;
+    return report(session, {ErrorCode::state, "the model of the run holds " + args.name,
+                            fmt::format("mgt drop {} {} takes it out first", args.name, args.run)});
+  }
+  if (auto ok = run.file.set_document(daemon::kFormulasDocument, daemon::to_text(all)); !ok)
+    return report(session, ok.error());
+  if (session.json) {
+    print_json({{"schema", "mgt.define/1"}, {"dropped", args.name}});
+  } else {
+    fmt::print("{} is forgotten\n", args.name);
+  }
+  return 0;
+}
+
 int run_define(const Session& session, const Arguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
+  if (args.drop) return drop(session, args, *run);
   if (args.from.empty() == args.expression.empty()) {
     return report(session, {ErrorCode::usage, "a formula is given, or taken from another run with --from",
                             "mgt define RUN NAME 'EXPR', or mgt define RUN NAME --from OTHER.mgtrun"});
@@ -190,11 +222,13 @@ int run_define(const Session& session, const Arguments& args) {
   } else {
     definition.found = x->coefficients;
   }
-  if (!x->wholly_absorbed()) {
+  if (!nothing_left(*x)) {
+    for (const daemon::Definition& d : run->source.definitions)
+      if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);
     if (auto ok = keep(*run, definition); !ok) return report(session, ok.error());
   }
   print(session, args, *x, definition, confirmation);
-  return x->wholly_absorbed() || (confirmation.asked && !confirmation.given) ? 1 : 0;
+  return nothing_left(*x) || (confirmation.asked && !confirmation.given) ? 1 : 0;
 }
 
 }  // namespace
@@ -214,6 +248,7 @@ void add_define(CLI::App& app, Session& session) {
   command->add_option("--unit", args->unit, "of its coefficients")->capture_default_str();
   command->add_option("--prior", args->prior, "standard deviation of the coefficients about zero");
   command->add_option("--scan", args->scan, "NAME=FROM:TO: a number in it that is looked for");
+  command->add_flag("--drop", args->drop, "forget the formula of this name");
   command->add_option("--from", args->from, "run file that keeps the formula: does this run confirm it?");
   args->flags = add_kept_model_flags(command);
 }

@@ -143,11 +143,19 @@ int run_model(const Session& session, const Arguments& args) {
   if (!file) return report(session, file.error());
   const auto steps = file->model_steps();
   if (!steps) return report(session, steps.error());
+  const auto source = daemon::read_run(args.run);
+  if (!source) return report(session, source.error());
   const auto model = daemon::kept_model(*steps);
   if (session.json) {
     json history = json::array();
     for (const daemon::ModelStep& s : *steps) history.push_back(step_json(s));
-    print_json({{"schema", "mgt.model/1"}, {"model", model}, {"history", std::move(history)}});
+    json formulas = json::array();
+    for (const daemon::Definition& d : source->definitions)
+      formulas.push_back({{"name", d.name}, {"spec", d.spec}, {"exploratory", d.exploratory()}});
+    print_json({{"schema", "mgt.model/1"},
+                {"model", model},
+                {"history", std::move(history)},
+                {"formulas", std::move(formulas)}});
     return 0;
   }
   for (const daemon::ModelStep& s : *steps) {
@@ -160,6 +168,8 @@ int run_model(const Session& session, const Arguments& args) {
     fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
   }
   fmt::print("the model: {}\n", model_text(model));
+  for (const daemon::Definition& d : source->definitions)
+    fmt::print("formula: {}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "");
   return 0;
 }
 
