@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "calib/chi_square.h"
 #include "calib/f_distribution.h"
@@ -17,8 +18,9 @@ constexpr double kMaxRho = 0.95;
 /// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
 /// too large costs a little power. The median is so much worse than the mean.
 constexpr double kCautious = 1.5, kMedianOfMean = 1.25;
-/// Angles that are the same pose again.
-constexpr double kSameAngle_rad = 1e-6;
+/// Angles that are the same pose again, as a table reads them back. What a model misses does not change over
+/// so little, and each pose has its own attitude.
+const double kSameAngle_rad = to_rad(0.05);
 /// The dwells are believed unless the revisits contradict them this clearly.
 constexpr double kContradicts_log10_p = -3;
 
@@ -63,7 +65,9 @@ Eigen::MatrixXd leverages(const Fitted& f) {
 
 bool same_attitude(const Pose& a, const Pose& b) {
   const auto p = a.angles(), q = b.angles();
-  const auto near = [](double x, double y) { return std::abs(x - y) < kSameAngle_rad; };
+  const auto near = [](double x, double y) {
+    return std::abs(std::remainder(x - y, 2 * std::numbers::pi)) < kSameAngle_rad;
+  };
   return p && q && a.mount == b.mount && near(p->azimuth_rad, q->azimuth_rad) &&
          near(p->pitch_rad, q->pitch_rad) && near(p->roll_rad, q->roll_rad);
 }
