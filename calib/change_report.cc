@@ -62,7 +62,7 @@ std::string named_text(const Change& change) {
 }
 
 std::string change_table(const Change& change, std::size_t rows) {
-  std::string out = "probability that nothing changed but this sensor:";
+  std::string out = "were it one sensor that changed, would the others be as they were?";
   for (std::size_t i = 0; i < kSensors; ++i)
     out += fmt::format("   s{} {}", i + 1, p_phrase(change.others_log10_p[i]));
   out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "as if it alone changed", "by", "sd", "sigmas",

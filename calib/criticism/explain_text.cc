@@ -22,12 +22,12 @@ std::string bar(double d) { return std::string(static_cast<std::size_t>(std::min
 void candidates(const ExplainReport& r, std::string& out) {
   if (r.candidates.empty()) return;
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "\n{:<30} {:<11} {:>2} {:>7} {:>9} {:>6}  {:<32}\n", "effect", "where", "k", "d", "p",
+  fmt::format_to(to, "\n{:<32} {:<11} {:>2} {:>7} {:>9} {:>6}  {:<32}\n", "effect", "where", "k", "d", "p",
                  "share", "size");
   const std::size_t n = std::min(kShown, r.candidates.size());
   for (std::size_t i = 0; i < n; ++i) {
     const Candidate& c = r.candidates[i];
-    fmt::format_to(to, "{:<30} {:<11} {:>2} {:>7.1f} {:>9} {:>6}  {:<32} {}\n", c.effect, c.where, c.k, c.d,
+    fmt::format_to(to, "{:<32} {:<11} {:>2} {:>7.1f} {:>9} {:>6}  {:<32} {}\n", c.effect, c.where, c.k, c.d,
                    p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
                    size_text(c), bar(c.d));
   }
@@ -40,10 +40,10 @@ void candidates(const ExplainReport& r, std::string& out) {
 void maps(const std::vector<MapScore>& all, std::string& out) {
   const auto to = std::back_inserter(out);
   if (all.empty()) return;
-  fmt::format_to(to, "\n{:<30} {:<11} {:>3} {:>9}\n", "residual against", "where", "k", "p");
+  fmt::format_to(to, "\n{:<32} {:<11} {:>3} {:>9}\n", "residual against", "where", "k", "p");
   for (std::size_t i = 0; i < std::min(kMapsShown, all.size()); ++i) {
     const MapScore& m = all[i];
-    fmt::format_to(to, "{:<30} {:<11} {:>3} {:>9}\n", m.map, m.where, m.k, p_text(m.log10_p));
+    fmt::format_to(to, "{:<32} {:<11} {:>3} {:>9}\n", m.map, m.where, m.k, p_text(m.log10_p));
   }
 }
 
@@ -59,10 +59,9 @@ std::string to_text(const ExplainReport& r) {
   if (!r.detectable.empty())
     fmt::format_to(to, "\nsmallest size that would have been seen{} (d = 8):\n",
                    r.rounds.empty() ? "" : ", with what was added in the model");
-  for (const Detectable& d : r.detectable)
-    fmt::format_to(to, "  {:<30} {:.3g} {} ({})\n", d.effect, d.value, d.unit, d.where);
+  for (const Detectable& d : r.detectable) fmt::format_to(to, "  {:<32} {}\n", d.effect, detectable_text(d));
   if (!r.untestable.empty()) out += "\nthese poses cannot test:\n";
-  for (const Untestable& u : r.untestable) fmt::format_to(to, "  {:<30} {}\n", u.effect, u.why);
+  for (const Untestable& u : r.untestable) fmt::format_to(to, "  {:<32} {}\n", u.effect, u.why);
   if (!r.next.empty())
     out += "\nwhat would settle the name (probability that the right one wins, before -> after):\n";
   for (const NextMeasurement& n : r.next) {

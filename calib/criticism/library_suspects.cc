@@ -72,6 +72,25 @@ Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
   return out;
 }
 
+bool by_temperature(const EffectFamily& family) {
+  return family.name.find("temperature") != std::string_view::npos ||
+         family.name.find("thermal") != std::string_view::npos;
+}
+
+bool temperature_changes(const PoseTable& table) {
+  constexpr double kNoChange_degC = 1e-6;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    std::optional<double> low, high;
+    for (const Pose& pose : table.poses) {
+      if (!pose.T_degC[i]) continue;
+      low = std::min(low.value_or(*pose.T_degC[i]), *pose.T_degC[i]);
+      high = std::max(high.value_or(*pose.T_degC[i]), *pose.T_degC[i]);
+    }
+    if (low && *high - *low > kNoChange_degC) return true;
+  }
+  return false;
+}
+
 /// The list says whose reason it is.
 std::string without_name(std::string message, std::string_view name) {
   if (!message.starts_with(name)) return message;
@@ -105,6 +124,10 @@ Suspects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& 
       if (lacking > 0 && lacking < table.poses.size())
         why += ": fill it in, or leave those poses out of the table";
       out.untestable.push_back({std::string(family.name), std::move(why)});
+      continue;
+    }
+    if (by_temperature(family) && !temperature_changes(table)) {
+      out.untestable.push_back({std::string(family.name), "the temperatures of these poses never change"});
       continue;
     }
     out.testable.push_back(suspect_of(family, context));

@@ -93,8 +93,12 @@ std::string to_text(const ModelChange& c) {
   }
   for (const EffectCoefficient& x : c.coefficients)
     fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", x.name, x.value, x.sd, x.unit);
-  if (c.adding && c.log10_p > -2)
-    out += "chance alone brings such a fall in more than one run of a hundred: it is not shown to be there\n";
+  constexpr double kWeak_log10_p = -2;
+  if (c.adding && c.log10_p > std::log10(kVetoChance)) {
+    fmt::format_to(to, "it is not shown to be there: the limit is p = {}\n", kVetoChance);
+  } else if (c.adding && c.log10_p > kWeak_log10_p) {
+    out += "weak evidence: chance alone brings such a fall in more than one run of a hundred\n";
+  }
   return out;
 }
 

@@ -10,6 +10,9 @@ namespace mgtd::calib {
 /// The verdict as one paragraph for a person, made of the report's figures and nothing else.
 [[nodiscard]] std::string sentence(const ExplainReport& report);
 
+/// "0.14 nT (s3.z)"; in words where no size would be seen.
+[[nodiscard]] std::string detectable_text(const Detectable& detectable);
+
 /// A clause with a capital letter and a full stop. A first word with a dot or a digit in it is a name and
 /// stays.
 [[nodiscard]] std::string as_sentence(std::string clause);

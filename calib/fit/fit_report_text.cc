@@ -21,10 +21,10 @@ constexpr auto kCount = static_cast<std::size_t>(kSensors);
 
 std::string error_row(std::string_view stage, const ErrorSummary& errors) {
   std::string row = fmt::format("{:<12}", stage);
-  for (const double rmse : errors.total_field_rmse_nT) row += fmt::format("{:>9.3f}", rmse);
+  for (const double rmse : errors.total_field_rmse_nT) row += fmt::format(" {:>8.3f}", rmse);
   row += "  ";
   const Gradient& g = errors.tensor_rmse_nT_per_m;
-  for (const double rmse : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += fmt::format("{:>10.3f}", rmse);
+  for (const double rmse : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += fmt::format(" {:>9.3f}", rmse);
   return row + "\n";
 }
 

@@ -92,8 +92,18 @@ std::string verdict_section(const ReportContent& c) {
   }
   out += "<h2>Checks of the calibration</h2>" +
          html_table({"check", "", "measured", "limit", "what to do"}, rows, true, failed);
+  constexpr double kFarAbove = 3;
+  if (c.fit.residual_nT > kFarAbove * c.fit.noise_nT && failed.empty()) {
+    out += fmt::format(
+        "<p><strong>The checks catch blunders; they do not say that the model is complete.</strong> The "
+        "residual is "
+        "{:.3g} times the noise: look at what the model leaves and what could be missing.</p>",
+        c.fit.residual_nT / c.fit.noise_nT);
+  }
   for (const std::string& reason : c.fit.reasons) out += "<p class=\"quiet\">" + escaped(reason) + "</p>";
-  return out + html_good("every check passed. A calibration that fails one is not accepted by itself.");
+  return out + html_good(
+                   "every check passed, and the residual is near the noise. A calibration that fails a check "
+                   "is not accepted by itself.");
 }
 
 std::string errors_section(const ReportContent& c) {

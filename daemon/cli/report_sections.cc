@@ -58,7 +58,7 @@ std::string limits_section(const ReportContent& c) {
   Rows untestable, detectable, next;
   for (const calib::Untestable& u : c.explained.untestable) untestable.push_back({u.effect, u.why});
   for (const calib::Detectable& d : c.explained.detectable)
-    detectable.push_back({d.effect, d.where, fmt::format("{:.3g} {}", d.value, d.unit)});
+    detectable.push_back({d.effect, calib::detectable_text(d)});
   for (const calib::NextMeasurement& n : c.explained.next)
     next.push_back({n.action, fmt::format("{:.0f}", n.minutes), fmt::format("{:.3f}", n.p_right_before),
                     fmt::format("{:.3f}", n.p_right_after)});
@@ -68,7 +68,7 @@ std::string limits_section(const ReportContent& c) {
     out += "<h3>What would settle the name</h3>" +
            html_table({"measurement", "minutes", "p right now", "p right then"}, next, true);
   out += "<h3>Smallest sizes that would have been seen, in 99 of 100 runs like this</h3>" +
-         html_table({"effect", "where", "size"}, detectable, true);
+         html_table({"effect", "size (where)"}, detectable, true);
   return out +
          html_good(
              "sizes smaller than what your work can bear. An effect below its size may be there unseen.");

@@ -49,7 +49,19 @@ TEST(ModelChange, AnEffectThatIsNotThereBuysNothingAndHasItsPrice) {
   EXPECT_NEAR(change->realised, change->predicted, 0.1);
   EXPECT_GT(change->price.growth, 1.2);
   EXPECT_EQ(change->price.parameter, "s2.cy") << "a cubic hides behind the scale of its own axis";
-  EXPECT_THAT(to_text(*change), ::testing::HasSubstr("is not shown to be there"));
+  EXPECT_THAT(to_text(*change), ::testing::HasSubstr("weak evidence")) << "p = 0.048";
+}
+
+/// A gradient that nobody knows of leaves fifty times the noise: chi-square falls by hundreds for nothing.
+TEST(ModelChange, InAModelFarOffChanceIsJudgedByWhatIsLeft) {
+  Eigen::Matrix3d G;
+  G << 50, 15, -25, 15, -20, 10, -25, 10, -30;
+  const auto change =
+      add_effect(hidden_run({.noise_nT = 0.02, .G_nT_per_m = G}, 2), {}, effect("axis.cubic@s2.y"));
+  ASSERT_TRUE(change);
+  EXPECT_GT(change->spread, 50);
+  EXPECT_GT(change->realised, 100);
+  EXPECT_GT(change->log10_p, -2);
 }
 
 TEST(ModelChange, DroppingIsAddingBackwards) {

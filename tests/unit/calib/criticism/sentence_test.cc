@@ -21,15 +21,21 @@ TEST(Sentence, NotesBeginWithACapitalUnlessWithAName) {
                 "only. s3.z scatters little. lamp accounts for"));
 }
 
-TEST(Sentence, SizesAreWrittenWithoutExponentsWhereTheyStayShort) {
+TEST(Sentence, SizesHaveTheDigitsThatTheirUncertaintyAllows) {
   const auto text = [](double value, double sd) {
     return size_text({.coefficients = {{"s1.x", value, sd, "nT"}}});
   };
-  EXPECT_EQ(text(1090, 512), "+1090 +- 500 nT");
-  EXPECT_EQ(text(50.008, 1.96), "+50.0 +- 2 nT");
-  EXPECT_EQ(text(-0.04031, 0.02), "-0.0403 +- 0.02 nT");
-  EXPECT_EQ(text(9.996, 0.0951), "+10.0 +- 0.1 nT");
+  EXPECT_EQ(text(1090, 512), "+1090 +- 512 nT");
+  EXPECT_EQ(text(50.008, 1.96), "+50.0 +- 2.0 nT");
+  EXPECT_EQ(text(-0.04031, 0.02), "-0.040 +- 0.020 nT");
+  EXPECT_EQ(text(9.996, 0.0951), "+9.996 +- 0.095 nT");
   EXPECT_EQ(text(3.1e-7, 2e-8), "+3.1e-07 +- 2e-08 nT");
+}
+
+TEST(Sentence, AnEffectThatWouldBeSeenAtNoSizeIsToldSo) {
+  EXPECT_EQ(detectable_text({"axis.cubic", "s3.x", 0.0841, "nT"}), "0.0841 nT (s3.x)");
+  EXPECT_EQ(detectable_text({"site.dipole", "site", 3.3e13, "A m^2"}),
+            "at no size: what is in the model takes it up");
 }
 
 TEST(Sentence, SaysWhatWasLeftOut) {

@@ -57,6 +57,16 @@ TEST(Lack, AnAngleIsNeededOfEveryPose) {
               HasSubstr("table.backlash needs"));
 }
 
+TEST(Lack, ATemperatureThatNeverChangesTestsNothing) {
+  PoseTable table = with_sense(0);
+  for (Pose& pose : table.poses) pose.T_degC = {20, 20, 21, 20};
+  const Suspects suspects = library_suspects(table);
+  const Untestable* listed = find(suspects.untestable, "axis.offset.temperature");
+  ASSERT_NE(listed, nullptr);
+  EXPECT_THAT(listed->why, HasSubstr("never change"));
+  EXPECT_EQ(find(suspects.untestable, "axis.offset.drift"), nullptr);
+}
+
 TEST(Lack, NoReasonBeginsWithTheNameItStandsBeside) {
   for (const Untestable& u : library_suspects(with_sense(157)).untestable)
     EXPECT_THAT(u.why, ::testing::Not(StartsWith(u.effect))) << u.effect;
