@@ -107,7 +107,7 @@ bool Reader::next_line() {
 std::string_view no_table(std::string_view line) {
   if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")) return "the file is UTF-16 text";
   if (line.find('\0') != std::string_view::npos) return "the file is no text: it holds zero bytes";
-  if (line.starts_with('{') || line.starts_with('[')) return "the file is JSON, not a table";
+  if (line.starts_with('{')) return "the file is JSON, not a table";
   if (line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos)
     return "its columns are separated by semicolons";
   if (line.find(',') == std::string_view::npos && line.find('\t') != std::string_view::npos)

@@ -119,7 +119,7 @@ Result<void> check_identity(const Database& db, const std::string& file) {
   if (!version) return tl::unexpected(version.error());
   const auto tables = db.integer("SELECT count(*) FROM sqlite_master");
   if (tables && *tables == 0) {
-    return fail(ErrorCode::bad_input, fmt::format("{} is empty: it holds no run", file),
+    return fail(ErrorCode::bad_input, fmt::format("{} is empty, not a run file", file),
                 "name a *.mgtrun file written by mgtd or mgt import");
   }
   if (*application != kRunApplicationId) {
