@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <thread>
@@ -94,6 +95,26 @@ void print_clients(const nlohmann::json& s) {
   fmt::print("\n");
 }
 
+/// What a person would ask about the line of the stream. The limit of the skew is that of a run's preflight.
+void print_stream_remarks(const nlohmann::json& sampler, double speed_up) {
+  constexpr double kMostSkew_s = 0.02, kMostMissing = 0.01;
+  const double skew_s = sampler.at("skew_bound_s").is_null() ? 0 : sampler.at("skew_bound_s").get<double>();
+  if (skew_s > kMostSkew_s)
+    fmt::print(
+        "\n          the times of the sensors are known worse than a run accepts (limit {:.0f} ms): {}",
+        1e3 * kMostSkew_s,
+        speed_up > 1 ? "in a simulation faster than time that is the host's own delay"
+                     : "it passes minutes after a start; else look at the load of this computer and at "
+                       "the converters' latency");
+  const double missing = sampler.at("gaps").get<double>();
+  const double share = missing / std::max(1.0, missing + sampler.at("epochs").get<double>());
+  if (share > kMostMissing)
+    fmt::print(
+        "\n          {:.0f} % are missing since the start, from devices that are or were not live; mgt watch "
+        "names them",
+        100 * share);
+}
+
 void print_recording(const char* what, const nlohmann::json& recording) {
   fmt::print("{:<9} {}", what, recording.at("state").get<std::string>());
   if (recording.at("state") != "off")
@@ -138,6 +159,7 @@ int run_status(const Session& session, double patience_s) {
   if (!sampler.at("rate_hz").is_null()) fmt::print(", {:.2f} a second", sampler.at("rate_hz").get<double>());
   if (!sampler.at("skew_bound_s").is_null())
     fmt::print(", skew below {:.3f} ms", 1e3 * sampler.at("skew_bound_s").get<double>());
+  print_stream_remarks(sampler, s.value("speed_up", 1.0));
   fmt::print("\ncalibr.   {}\n", text_or(s, "cal", "none: the stream is raw and says so"));
   print_calibration(s);
   print_recording("journal", s.at("journal"));
