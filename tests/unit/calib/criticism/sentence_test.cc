@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "proto/units.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -48,6 +50,22 @@ TEST(Sentence, SaysWhatWasLeftOut) {
   report.outliers.push_back({9, "s1.x", 30, "nT", 20});
   EXPECT_THAT(sentence(report),
               HasSubstr("3 observations that the others contradict are left out, in pose 5, 9"));
+}
+
+/// The readings tell each pose its own attitude: what is gained are the angles.
+TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
+  const auto with_table_sd_deg = [](double sd_deg) {
+    auto fit = std::make_shared<JointFit>();
+    fit->table_sd_rad = to_rad(sd_deg);
+    return fit;
+  };
+  ExplainReport report;
+  report.fit = with_table_sd_deg(0.35);
+  Round round{.added = {.effect = "table.wobble", .where = "table"}};
+  round.fit = with_table_sd_deg(0.1);
+  report.rounds = {round};
+  EXPECT_THAT(sentence(report),
+              HasSubstr("with it the angles of the table scatter by 0.1 instead of 0.35 deg"));
 }
 
 }  // namespace
