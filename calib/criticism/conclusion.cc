@@ -43,7 +43,6 @@ double contradicted(const JointFit& fit) {
 /// Why a single name that accounts for the data is not yet an explanation; empty when it is.
 std::string doubt(const Round& round, const Asked& before) {
   const Candidate& a = round.added;
-  if (!a.plausible) return fmt::format("the size that {} would need is beyond what occurs", a.effect);
   const double spread = 4 * std::sqrt(2 * before.dof);
   if (before.reference.known && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
     return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);

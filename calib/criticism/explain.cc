@@ -14,6 +14,7 @@
 #include "calib/criticism/growth.h"
 #include "calib/criticism/next_measurement.h"
 #include "calib/criticism/numbers.h"
+#include "calib/criticism/sentence.h"
 #include "calib/fit/joint_report.h"
 #include "calib/fit/pose_residuals.h"
 
@@ -110,14 +111,15 @@ struct Search {
   Suspects suspects;
   std::uint64_t seed;
   std::vector<EffectPtr> given{};  ///< the model that was asked about
-  std::set<std::string> failed{};  ///< effects that no fit settled with
+  std::set<std::string> failed{};  ///< effects that no fit settled with, or of a size that does not occur
+  bool slow{false};                ///< the residual follows time or temperature: no memory of a turn does
 };
 
 /// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
 /// stands out by itself stays possible.
 void keep_memory_possible(const Search& search, const Criticism& c, Round& round) {
   constexpr std::string_view kMemory = "axis.hysteresis";
-  if (!search.table.path.empty() || round.added.effect == kMemory) return;
+  if (!search.table.path.empty() || round.added.effect == kMemory || search.slow) return;
   for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
     if (c.families[f].suspect->name != kMemory || c.families[f].winner().d() < kHalf * round.added.d)
       continue;
@@ -217,6 +219,12 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
 bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
   for (std::size_t f = 0; f < criticism.families.size() && criticism.rejects_named(f); ++f) {
     if (search.failed.contains(criticism.families[f].suspect->name)) continue;
+    if (const Candidate c = candidate_of(criticism.families[f], criticism, fit.worse); !c.plausible) {
+      report.notes.push_back(fmt::format(
+          "the size that {} would need, {}, is beyond what occurs: it is not named", c.effect, size_text(c)));
+      search.failed.insert(c.effect);
+      continue;
+    }
     if (add(search, f, fit, criticism, report)) return true;
   }
   return false;
@@ -273,6 +281,8 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   Criticism criticism = criticise(*fit, search.suspects, search.seed);
   look_at_maps(*fit, criticism);
   describe(*fit, criticism, out);
+  search.slow =
+      !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
   if (bad_data(*fit, criticism, out.notes)) {
     out.finding = Finding::bad_data;
     return out;
@@ -294,7 +304,8 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   }
   const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
   const bool remembers = std::any_of(out.rounds.begin(), out.rounds.end(), [&](const Round& r) {
-    return memory(r.added.effect) || std::any_of(r.possible.begin(), r.possible.end(), memory);
+    return memory(r.added.effect) ||
+           (!search.slow && std::any_of(r.possible.begin(), r.possible.end(), memory));
   });
   if (remembers && table.path.empty())
     out.notes.emplace_back(

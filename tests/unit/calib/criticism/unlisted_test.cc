@@ -74,6 +74,21 @@ TEST_P(NotListed, IsNotGivenASingleName) {
   EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
 }
 
+/// An exponential of the time, in a table of poses without the way between them.
+TEST(Unlisted, ManyNamesOnOneAxisAreToldToBeNoCauses) {
+  const testing::Stage stage = testing::full_stage(kSeed);
+  const testing::Sized planted = testing::sized(stage, {"hidden.warm-up", "s1.y", {1, 400}, {}}, 80, kSeed);
+  PoseTable run = testing::planted_run(stage, {planted.effect}, kSeed);
+  run.path.clear();
+  const auto r = explain(run, {});
+  ASSERT_TRUE(r) << r.error().text();
+  ASSERT_GE(r->rounds.size(), 3U) << sentence(*r);
+  const std::string text = sentence(*r);
+  EXPECT_NE(text.find("s1.y follows something that is probably in no library"), std::string::npos) << text;
+  EXPECT_EQ(text.find("Nothing else in the library looks like it"), std::string::npos) << text;
+  EXPECT_EQ(text.find("way of the table"), std::string::npos) << text;
+}
+
 INSTANTIATE_TEST_SUITE_P(Unlisted, NotListed, ::testing::ValuesIn(rows()), title_of);
 
 }  // namespace
