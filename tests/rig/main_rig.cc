@@ -170,8 +170,12 @@ int ask(const Arguments& args, const std::string& line) {
     return 3;
   }
   const bool done = *answer == "ok" || answer->starts_with('{');
-  fmt::print(done ? stdout : stderr, "{}\n", *answer);
-  return done ? 0 : 1;
+  if (done) {
+    fmt::print("{}\n", *answer);
+    return 0;
+  }
+  fmt::print(stderr, "mgt-rig: {}\n", *answer);
+  return 1;
 }
 
 template <class Body>
