@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <set>
 
@@ -35,6 +34,25 @@ std::string noise_text(const ExplainReport& r) {
   return out + ".";
 }
 
+/// The candidate with its coefficients of the fit that holds it. Before it everything that is missing counts
+/// as noise, so that no size is better known than to one part in the root of the number of poses.
+Candidate as_fitted(const Round& round) {
+  Candidate out = round.added;
+  if (round.fit == nullptr) return out;
+  std::vector<EffectCoefficient> found;
+  Eigen::Index slot = 0;
+  for (const EffectPtr& effect : round.fit->problem.effects) {
+    for (const Coefficient& c : effect->coefficients()) {
+      const double variance = round.fit->covariance(kEffectSlot + slot, kEffectSlot + slot);
+      if (effect->name() == out.effect)
+        found.push_back({c.name, round.fit->state.coefficients[slot], std::sqrt(variance), c.unit});
+      ++slot;
+    }
+  }
+  if (!found.empty()) out.coefficients = std::move(found);
+  return out;
+}
+
 /// What adding it did; `before`: the fit without it. Wrong angles hardly show in the readings, which tell
 /// each pose its own attitude.
 std::string fall_text(const Round& round, const JointFit* before) {
@@ -46,8 +64,9 @@ std::string fall_text(const Round& round, const JointFit* before) {
 
 std::string round_text(const Round& round, const JointFit* before) {
   const Candidate& a = round.added;
-  return fmt::format("It behaves like {}{}: {}, {:.1f} sigma, {}; with it {}.", a.effect, place(a),
-                     size_text(a), a.d, p_phrase(a.log10_p), fall_text(round, before));
+  return fmt::format("It behaves like {}{}: {:.1f} sigma, {}. With it in the model {}, and its size is {}.",
+                     a.effect, place(a), a.d, p_phrase(a.log10_p), fall_text(round, before),
+                     size_text(as_fitted(round)));
 }
 
 /// The one axis that three rounds or more were spent on; empty when there is none.
@@ -88,12 +107,12 @@ std::string left_text(const std::vector<MapScore>& maps) {
   return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where, p_phrase(m.log10_p));
 }
 
-/// So many significant digits, without an exponent where that stays short.
-std::string digits(double x, int n) {
-  const double rounded = std::strtod(fmt::format("{:.{}e}", x, n - 1).c_str(), nullptr);
-  const int exponent = rounded == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(rounded))));
-  if (exponent < -4 || exponent > 5) return fmt::format("{:.{}g}", x, n);
-  return fmt::format("{:.{}f}", rounded, std::max(0, n - 1 - exponent));
+/// As many decimals as show two digits of the standard deviation, without an exponent where that stays short.
+std::string with_sd(double value, double sd) {
+  constexpr double kShort = 1e-4;
+  if (!(sd > kShort)) return fmt::format("{:+.3g} +- {:.1g}", value, sd);
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(sd))));
+  return fmt::format("{:+.{}f} +- {:.{}f}", value, decimals, sd, decimals);
 }
 
 std::string outliers_text(const std::vector<OutlierNode>& outliers) {
@@ -107,6 +126,12 @@ std::string outliers_text(const std::vector<OutlierNode>& outliers) {
 }
 
 }  // namespace
+
+std::string detectable_text(const Detectable& d) {
+  constexpr double kBeyondAll = 1e9;  // in any unit of the library
+  if (!(d.value < kBeyondAll)) return "at no size: what is in the model takes it up";
+  return fmt::format("{:.3g} {} ({})", d.value, d.unit, d.where);
+}
 
 std::string as_sentence(std::string clause) {
   if (clause.empty()) return clause;
@@ -128,8 +153,7 @@ std::string size_text(const Candidate& c) {
                                         [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
   if (largest == c.coefficients.end()) return "";
   const std::string what = c.coefficients.size() > 1 ? largest->name + " " : "";
-  return fmt::format("{}{}{} +- {} {}", what, largest->value < 0 ? "" : "+", digits(largest->value, 3),
-                     digits(largest->sd, 1), largest->unit);
+  return fmt::format("{}{} {}", what, with_sd(largest->value, largest->sd), largest->unit);
 }
 
 std::string sentence(const ExplainReport& r) {
