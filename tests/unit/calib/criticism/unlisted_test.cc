@@ -3,6 +3,7 @@
 // by a single name. No law of the library describes any of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "calib/criticism/explain.h"
@@ -72,6 +73,20 @@ TEST_P(NotListed, IsNotGivenASingleName) {
   EXPECT_NE(r->finding, Finding::pass);
   EXPECT_NE(r->finding, Finding::bad_data) << sentence(*r);
   EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
+}
+
+/// Twice what is believed of an offset that follows temperature: the same shape, but of something else.
+TEST(Unlisted, ASizeThatDoesNotOccurIsNotNamed) {
+  const Planted hot{"axis.offset.temperature", "s1.y", {40}, {}};
+  const PoseTable run = testing::planted_run(testing::full_stage(kSeed), {hot}, kSeed);
+  const auto r = explain(run, {});
+  ASSERT_TRUE(r) << r.error().text();
+  ASSERT_EQ(r->candidates.front().effect, hot.kind);
+  EXPECT_FALSE(r->candidates.front().plausible);
+  EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
+  EXPECT_NE(r->finding, Finding::pass);
+  EXPECT_EQ(std::count(r->named.begin(), r->named.end(), hot.kind), 0) << sentence(*r);
+  EXPECT_NE(sentence(*r).find("is beyond what occurs: it is not named"), std::string::npos) << sentence(*r);
 }
 
 /// An exponential of the time, in a table of poses without the way between them.
