@@ -77,6 +77,24 @@ std::vector<std::vector<Eigen::Index>> bins_of(const Covariate& c) {
   return out;
 }
 
+/// Those that make the same bins as one before them say nothing of their own.
+std::vector<std::pair<std::string, std::string>> take_out_alike(std::vector<Covariate>& all) {
+  std::vector<std::pair<std::string, std::string>> out;
+  std::vector<Covariate> kept;
+  for (Covariate& c : all) {
+    const auto bins = bins_of(c);
+    const auto same =
+        std::find_if(kept.begin(), kept.end(), [&](const Covariate& k) { return bins_of(k) == bins; });
+    if (same == kept.end()) {
+      kept.push_back(std::move(c));
+    } else {
+      out.emplace_back(c.name, same->name);
+    }
+  }
+  all = std::move(kept);
+  return out;
+}
+
 /// One-way analysis of variance of a component over the bins.
 double log10_p_of(const Eigen::VectorXd& values, const std::vector<std::vector<Eigen::Index>>& bins,
                   std::vector<double>& means) {
@@ -164,9 +182,8 @@ Fields fields_of(const JointFit& fit) {
   return out;
 }
 
-std::vector<ResidualChannel> channels_of(const JointFit& fit) {
+std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<Covariate>& all) {
   const Fields f = fields_of(fit);
-  const auto all = covariates(fit.problem);
   std::vector<Component> whitened, scalar, attitude, between, closure;
   const Eigen::MatrixXd closures = closure_rows(fit.problem.geometry) * f.delta_nT;
   for (int c = 0; c < kChannels; ++c) {
@@ -220,7 +237,9 @@ Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
   }
 
   out.table_sd_deg = to_deg(fit->table_sd_rad);
-  out.channels = channels_of(*fit);
+  std::vector<Covariate> all = covariates(fit->problem);
+  out.alike = take_out_alike(all);
+  out.channels = channels_of(*fit, all);
   out.maps = c.maps;
   out.outliers = fit->outliers;
   out.fits = !c.rejects();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/criticism/maps.h"
@@ -45,6 +46,8 @@ struct Comparison {
       log10_p{};  ///< that the noise makes so large a residual; empty where no noise is told
   double table_sd_deg{0};
   std::vector<ResidualChannel> channels{};
+  /// Covariates that order the poses as another one does, by name, with that one: shown once.
+  std::vector<std::pair<std::string, std::string>> alike{};
   std::vector<MapScore> maps{};
   std::vector<OutlierNode> outliers{};
   bool fits{true};  ///< no map and no size stands out: one clean run in two hundred fails

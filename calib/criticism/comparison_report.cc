@@ -2,11 +2,13 @@
 #include "calib/criticism/comparison_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/explain_json.h"
@@ -82,8 +84,20 @@ std::string noise_text(const Comparison& c) {
 
 }  // namespace
 
+std::vector<std::string> alike_text(const Comparison& c) {
+  std::map<std::string, std::vector<std::string>> by_shown;
+  for (const auto& [name, shown] : c.alike) by_shown[shown].push_back(name);
+  std::vector<std::string> out;
+  for (const auto& [shown, names] : by_shown) {
+    out.push_back(fmt::format("{} {} the poses as {} does: shown once, these poses do not tell them apart",
+                              fmt::join(names, ", "), names.size() == 1 ? "orders" : "order", shown));
+  }
+  return out;
+}
+
 json to_json(const Comparison& c) {
-  json channels = json::array(), maps = json::array(), outliers = json::array(), lack;
+  json channels = json::array(), maps = json::array(), outliers = json::array(), lack, alike = json::array();
+  for (const auto& [name, shown] : c.alike) alike.push_back({{"covariate", name}, {"as", shown}});
   for (const ResidualChannel& channel : c.channels) channels.push_back(channel_json(channel));
   for (const MapScore& map : c.maps) maps.push_back(to_json(map));
   for (const OutlierNode& o : c.outliers)
@@ -106,6 +120,7 @@ json to_json(const Comparison& c) {
           {"table_sd_deg", c.table_sd_deg},
           {"lack_of_fit", std::move(lack)},
           {"channels", std::move(channels)},
+          {"alike", std::move(alike)},
           {"maps", std::move(maps)},
           {"outliers", std::move(outliers)}};
 }
@@ -124,6 +139,7 @@ std::string to_text(const Comparison& c) {
     }
     if (!head.empty()) fmt::format_to(to, "{:<26}  nothing recorded that it could depend on\n", head);
   }
+  for (const std::string& line : alike_text(c)) fmt::format_to(to, "  {}\n", line);
   for (const ResidualChannel& channel : c.channels)
     fmt::format_to(to, "  {:<13} {}\n", channel.name, channel.meaning);
   fmt::format_to(to, "\n{:<26}  {:<12} {:>3} {:>8}\n", "map of the residual", "where", "k", "p");

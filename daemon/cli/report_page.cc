@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "calib/criticism/comparison_report.h"
 #include "calib/criticism/noise_text.h"
 #include "calib/criticism/sentence.h"
 #include "calib/fit/fit_report_text.h"
@@ -154,6 +155,8 @@ std::string residual_section(const ReportContent& c) {
     }
     out += "</div>";
   }
+  for (const std::string& line : calib::alike_text(c.comparison))
+    out += "<p class=\"quiet\">" + escaped(line) + ".</p>";
   return out +
          html_good(
              "blue points that scatter about the line without a shape. An orange frame (p below 0.001) means "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -126,6 +126,18 @@ TEST(Comparison, SaysWhichChannelFollowsWhat) {
   EXPECT_NE(d.covariate.find("T_degC"), std::string::npos);
   EXPECT_EQ(d.component, "s3.x");
   EXPECT_EQ(to_json(*r)["schema"], "mgt.compare/1");
+}
+
+TEST(Comparison, WhatOrdersThePosesAlikeIsShownOnce) {
+  PoseTable table = hidden_run({}, 14);
+  for (Pose& pose : table.poses) {
+    for (auto& T : pose.T_degC) T = 20 + *pose.t_s / 3600;
+    pose.covariates["battery_V"] = 13 - *pose.t_s / 36'000;
+  }
+  const auto r = compare(table, {});
+  ASSERT_TRUE(r);
+  EXPECT_EQ(r->channels.front().against.size(), 3U) << "time, azimuth, and the battery, which falls";
+  EXPECT_THAT(r->alike, ::testing::Contains(std::pair<std::string, std::string>("s3_T_degC", "time_h")));
 }
 
 }  // namespace
