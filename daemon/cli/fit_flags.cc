@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/cli/in_range.h"
 #include "daemon/solver.h"
+#include "proto/units.h"
 
 namespace mgtd::cli {
 
@@ -78,8 +80,32 @@ std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
   return f;
 }
 
+namespace {
+
+constexpr double kTurn = 6.4;  ///< in radians, rounded up
+
+/// Every pose has its angles, and none is larger than a turn in radians would be.
+bool looks_like_radians(const PoseTable& table) {
+  double largest = 0;
+  for (const Pose& pose : table.poses) {
+    const auto angles = pose.angles();
+    if (!angles) return false;
+    for (const double a : {angles->azimuth_rad, angles->pitch_rad, angles->roll_rad})
+      largest = std::max(largest, std::abs(to_deg(a)));
+  }
+  return largest > kTurn / 8 && largest <= kTurn;
+}
+
+}  // namespace
+
 Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
-  return daemon::read_runs(run, flags.further);
+  auto source = daemon::read_runs(run, flags.further);
+  if (source && looks_like_radians(source->table))
+    fmt::print(stderr,
+               "no table angle is beyond {:.1f} degrees: are they radians? azimuth_deg, pitch_deg and "
+               "roll_deg are degrees\n",
+               kTurn);
+  return source;
 }
 
 namespace {

@@ -65,13 +65,15 @@ class Gaps {
 
 void print_sample(const nlohmann::json& s) {
   const auto& g = s.at("g_nT_per_m");
-  const auto& sd = s.at("g_sd_nT_per_m").at("xx");
+  double sd = 0;  // the largest of the six; zero without a calibration
+  for (const auto& value : s.at("g_sd_nT_per_m"))
+    if (value.is_number()) sd = std::max(sd, value.get<double>());
   std::string flags;
   for (const auto& flag : s.at("flags")) flags += " " + flag.get<std::string>();
   fmt::print("{}  F {} nT  G xx {} yy {} zz {} xy {} xz {} yz {}{} nT/m  cal {}{}\n",
              s.at("t").get<std::string>().substr(11, 12), number(s, "f_nT", 10), number(g, "xx", 8),
              number(g, "yy", 8), number(g, "zz", 8), number(g, "xy", 8), number(g, "xz", 8),
-             number(g, "yz", 8), sd.is_null() ? "" : fmt::format(" +-{:6.2f}", sd.get<double>()),
+             number(g, "yz", 8), sd > 0 ? fmt::format(" each to +-{:.2f} or better", sd) : "",
              s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
   std::fflush(stdout);
 }
