@@ -65,7 +65,7 @@ TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
   round.fit = with_table_sd_deg(0.1);
   report.rounds = {round};
   EXPECT_THAT(sentence(report),
-              HasSubstr("with it the angles of the table scatter by 0.1 instead of 0.35 deg"));
+              HasSubstr("With it in the model the angles of the table scatter by 0.1 instead of 0.35 deg"));
 }
 
 }  // namespace
