@@ -28,11 +28,15 @@ std::string sensor(const Scenario& s, const std::string& port) {
 
 std::string table(const Scenario& s, const std::string& dir) {
   if (s.hands == "table") return "\n[table]\ndriver = \"hand\"\n";
-  const char* const axes =
-      s.hands == "mount" ? "mount_by_hand = true\n" : "axes.pitch = \"2\"\naxes.roll = \"3\"\n";
+  const std::string axes = s.hands == "mount"
+                               ? "mount_by_hand = true\n"
+                               : fmt::format(
+                                     "axes.pitch = \"2\"\naxes.roll = \"3\"\nlimits.pitch = [-{0}, {0}]\n"
+                                     "limits.roll = [-{0}, {0}]\n",
+                                     s.tilt_limit_deg);
   return fmt::format(
       "\n[table]\ndriver = \"gcs2\"\nport = \"{}/table\"\nbaud = 115200\nvelocity_deg_per_s = {}\n"
-      "axes.azimuth = \"1\"\n{}",
+      "axes.azimuth = \"1\"\nlimits.azimuth = [-360, 360]\n{}",
       dir, s.table_velocity_deg_per_s, axes);
 }
 
