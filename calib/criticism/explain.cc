@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -111,8 +112,10 @@ struct Search {
   Suspects suspects;
   std::uint64_t seed;
   std::vector<EffectPtr> given{};  ///< the model that was asked about
-  std::set<std::string> failed{};  ///< effects that no fit settled with, or of a size that does not occur
-  bool slow{false};                ///< the residual follows time or temperature: no memory of a turn does
+  std::set<std::string> failed{};  ///< effects that no fit settled with
+  /// Effects that would have needed a size beyond what occurs, and that size as last seen.
+  std::map<std::string, std::string> absurd{};
+  bool slow{false};  ///< the residual follows time or temperature: no memory of a turn does
 };
 
 /// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
@@ -191,6 +194,7 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   wider.worse = fit.worse;
   const JointState near = widened(search.joint.effects, fit.state, wider.effects);
   auto refit = fit_joint_at_size(search.table, wider, &near);
+  if (!refit) refit = fit_joint_at_size(search.table, wider);  // the narrower model may be a bad start
   if (!refit) {
     report.notes.push_back(
         fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
@@ -220,14 +224,23 @@ bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainRepo
   for (std::size_t f = 0; f < criticism.families.size() && criticism.rejects_named(f); ++f) {
     if (search.failed.contains(criticism.families[f].suspect->name)) continue;
     if (const Candidate c = candidate_of(criticism.families[f], criticism, fit.worse); !c.plausible) {
-      report.notes.push_back(fmt::format(
-          "the size that {} would need, {}, is beyond what occurs: it is not named", c.effect, size_text(c)));
-      search.failed.insert(c.effect);
-      continue;
+      search.absurd[c.effect] = size_text(c);
+      continue;  // for now: beside what is still missing a size may be absurd that later is none
     }
     if (add(search, f, fit, criticism, report)) return true;
   }
   return false;
+}
+
+/// Of what still stands out at the end.
+void say_absurd(const Search& search, const Criticism& c, ExplainReport& report) {
+  for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
+    const auto found = search.absurd.find(c.families[f].suspect->name);
+    if (found == search.absurd.end()) continue;
+    report.notes.push_back(
+        fmt::format("the size that {} would need, {}, is beyond what occurs: it is not named", found->first,
+                    found->second));
+  }
 }
 
 void name(ExplainReport& report) {
@@ -302,6 +315,7 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
     }
     if (!add_winner(search, *fit, criticism, out)) break;
   }
+  say_absurd(search, criticism, out);
   const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
   const bool remembers = std::any_of(out.rounds.begin(), out.rounds.end(), [&](const Round& r) {
     return memory(r.added.effect) ||

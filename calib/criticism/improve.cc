@@ -9,13 +9,15 @@
 #include "calib/criticism/polish.h"
 #include "calib/fit/joint_report.h"
 #include "calib/fit/left_out.h"
+#include "calib/fit/pose_residuals.h"
 
 namespace mgtd::calib {
 namespace {
 
 constexpr std::size_t kRounds = 24;
 
-/// The model tidied up, where the error on poses left out does not rise.
+/// The model tidied up, where the error on poses left out does not rise; where that cannot be told, the
+/// residual.
 void polish(const PoseTable& table, const FitOptions& options, const JointOptions& joint,
             const JointFit& last, FitOptions& best) {
   JointOptions tidy = joint;
@@ -25,6 +27,8 @@ void polish(const PoseTable& table, const FitOptions& options, const JointOption
   polished(table, options.effects.size(), tidy, fit);
   const auto before = left_out_nT(last), after = left_out_nT(fit);
   if (before && (!after || *after > kHeldOutVeto * *before)) return;
+  const auto residual_nT = [](const JointFit& f) { return pose_residuals(f.problem, f.state).residual_nT(); };
+  if (!before && residual_nT(fit) > kHeldOutVeto * residual_nT(last)) return;
   best.effects = std::move(tidy.effects);
 }
 

@@ -8,7 +8,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kMaxIterations = 60;
+constexpr int kMaxIterations = 200;
 /// A predicted fall of the chi-square below this share of it is rounding, not progress.
 constexpr double kRelativeDecrease = 1e-11;
 constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
