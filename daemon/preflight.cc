@@ -24,8 +24,20 @@ Check check(std::string name, bool passed, std::string measured, std::string lim
   return {std::move(name), passed, std::move(measured), std::move(limit), passed ? "" : std::move(remedy)};
 }
 
-bool inside(const drivers::TableLimits::Range& range, double a_rad) {
-  return a_rad >= range.min_rad - kReachTolerance_rad && a_rad <= range.max_rad + kReachTolerance_rad;
+/// "azimuth 529.70 is outside 0 to 360 deg", or nothing.
+std::string outside_limits(const TableAngles& a, const drivers::TableLimits& limits) {
+  struct Axis {
+    const char* name;
+    double at_rad;
+    const drivers::TableLimits::Range& range;
+  };
+  for (const Axis& axis : {Axis{"azimuth", a.azimuth_rad, limits.azimuth},
+                           Axis{"pitch", a.pitch_rad, limits.pitch}, Axis{"roll", a.roll_rad, limits.roll}})
+    if (axis.at_rad < axis.range.min_rad - kReachTolerance_rad ||
+        axis.at_rad > axis.range.max_rad + kReachTolerance_rad)
+      return fmt::format("{} {:.2f} is outside {:.6g} to {:.6g} deg", axis.name, to_deg(axis.at_rad),
+                         to_deg(axis.range.min_rad), to_deg(axis.range.max_rad));
+  return "";
 }
 
 }  // namespace
@@ -219,20 +231,22 @@ Check Preflight::scalar() const {
 }
 
 Check Preflight::table(const drivers::TableLimits& limits, Instant now) const {
-  const std::string remedy = "check the controller's power, port and axis names; is the axis free?";
+  constexpr const char* kRemedy = "check the controller's power, port and axis names; is the axis free?";
   if (!table_ || now - table_->arrival.mono > from_seconds(kTableSilence_s))
     return check("table", false, "no position from the table",
-                 fmt::format("one every {:.0f} s", kTableSilence_s), remedy);
+                 fmt::format("one every {:.0f} s", kTableSilence_s), kRemedy);
   const TableAngles& a = table_->angles;
-  const bool reachable =
-      !table_->referenced || (inside(limits.azimuth, a.azimuth_rad) && inside(limits.pitch, a.pitch_rad) &&
-                              inside(limits.roll, a.roll_rad));
-  return check("table", reachable && !table_->moving,
+  const std::string outside = table_->referenced ? outside_limits(a, limits) : "";
+  return check("table", outside.empty() && !table_->moving,
                fmt::format("azimuth {:.2f}, pitch {:.2f}, roll {:.2f} deg, {}, {}", to_deg(a.azimuth_rad),
                            to_deg(a.pitch_rad), to_deg(a.roll_rad),
                            table_->referenced ? "referenced" : "not referenced yet",
                            table_->moving ? "moving" : "at rest"),
-               "at rest within its limits", remedy);
+               "at rest within its limits",
+               outside.empty() ? kRemedy
+                               : outside +
+                                     ": see that no cable is wound up, then switch the controller off "
+                                     "and on: the run begins with a reference move");
 }
 
 std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant now) const {

@@ -45,5 +45,12 @@ TEST(FaultCampaign, ARunThatOnceWasWrongWithoutAWord) {
   EXPECT_GT(run.play(), 10);
 }
 
+/// A table that ran away during the preflight stood at 529 deg: each preflight after it failed, and what it
+/// said did not help.
+TEST(FaultCampaign, ARunThatOnceWaitedForEver) {
+  test::StruckRun run(116);
+  EXPECT_GT(run.play(), 10);
+}
+
 }  // namespace
 }  // namespace mgtd

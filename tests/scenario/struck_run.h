@@ -146,6 +146,8 @@ class StruckRun {
     }
     if (daemon_.finished || !daemon_.status || daemon_.status->state != RunState::paused) return;
     EXPECT_FALSE(daemon_.status->message.empty());
+    if (daemon_.status->message.find("switch the controller off and on") != std::string::npos)
+      daemon_.fault("power table for 1");
     daemon_.run(40);
     daemon_.tell(Request::resume);
   }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -121,6 +122,15 @@ TEST(Preflight, EachTroubleFailsItsOwnCheck) {
 
 TEST(Preflight, TableThatIsNotReferencedYetMayReportAnything) {
   EXPECT_EQ(failed(Rig{.table_referenced = false, .azimuth_rad = 40}.checks()), "");
+}
+
+TEST(Preflight, TableOutsideItsLimitsIsToldHowItGetsBack) {
+  const auto checks = Rig{.azimuth_rad = 4}.checks();
+  const auto table =
+      std::find_if(checks.begin(), checks.end(), [](const Check& c) { return c.name == "table"; });
+  ASSERT_NE(table, checks.end());
+  EXPECT_THAT(table->remedy, testing::StartsWith("azimuth 229.18 is outside -183.346 to 183.346 deg: "));
+  EXPECT_THAT(table->remedy, testing::HasSubstr("switch the controller off and on"));
 }
 
 TEST(Preflight, WithoutScalarTheStatedFieldOrTheEarthsCounts) {
