@@ -14,7 +14,7 @@ constexpr double kImpossiblyEarly = 0.5;    // periods before the model's sample
 constexpr double kPrompt = 0.2;             // periods of mean delay: lost frames can be counted by time
 constexpr std::int64_t kMerged = 2;         // frames that garbage can hide in one rejected line
 constexpr std::int64_t kConfirmed = 64;     // samples on time after a loss
-constexpr std::int64_t kProved = 16;        // where delivery is never prompt
+constexpr int kProved = 16;                 // where delivery is never prompt
 constexpr double kAgree = 0.3;              // periods between count and time
 constexpr double kEarly = 0.1;              // periods before the line
 constexpr double kIdle = 0.9;               // periods since the last sample: nothing waits in the line ...
@@ -39,25 +39,31 @@ const Sampler::Sample* Sampler::Stream::find(std::int64_t k) const {
   return sample.k == k ? &sample : nullptr;
 }
 
-void Sampler::Stream::renumber(std::int64_t from, std::int64_t by) {
+template <class Do>
+void Sampler::Stream::for_each_from(std::int64_t from, const Do& act) {
   const auto capacity = static_cast<std::int64_t>(ring.size());
   for (std::int64_t k = last_k; k >= std::max(from, last_k - capacity + 1); --k) {
     Sample& sample = ring[static_cast<std::size_t>(k) & (ring.size() - 1)];
-    if (sample.k != k) continue;
+    if (sample.k == k) act(sample);
+  }
+}
+
+void Sampler::Stream::renumber(std::int64_t from, std::int64_t by) {
+  for_each_from(from, [&](Sample& sample) {
     Sample moved = sample;
     sample.k = -1;
     moved.k += by;
     ring[static_cast<std::size_t>(moved.k) & (ring.size() - 1)] = moved;
-  }
+  });
   last_k += by;
 }
 
-void Sampler::Stream::lessen_doubt(std::int64_t from, double by_s) {
-  const auto capacity = static_cast<std::int64_t>(ring.size());
-  for (std::int64_t k = std::max(from, last_k - capacity + 1); k <= last_k; ++k) {
-    Sample& sample = ring[static_cast<std::size_t>(k) & (ring.size() - 1)];
-    if (sample.k == k) sample.doubt_s = std::max(0.0, sample.doubt_s - by_s);
-  }
+void Sampler::Stream::lessen_lateness(std::int64_t from, double by_s) {
+  for_each_from(from, [&](Sample& sample) { sample.late_s = std::max(0.0, sample.late_s - by_s); });
+}
+
+void Sampler::Stream::prove(std::int64_t from) {
+  for_each_from(from, [](Sample& sample) { sample.doubt_s = 0; });
 }
 
 Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.rate_hz) {
@@ -105,8 +111,8 @@ void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
   if (reading.y_nT.allFinite()) {
     Flags flags = reading.flags;
     if (s.repeats.stands_still(reading.y_nT)) flags |= Flag::frozen;
-    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {k, arrival_s, reading.y_nT, flags,
-                                                                 static_cast<double>(s.doubtful) * period_s_};
+    s.ring[static_cast<std::size_t>(k) & (s.ring.size() - 1)] = {
+        k, arrival_s, reading.y_nT, flags, static_cast<double>(s.doubtful) * period_s_, 0};
   }
   s.last_k = k;
   ++s.health.samples;
@@ -172,7 +178,7 @@ std::optional<std::int64_t> Sampler::number(int slot, const FieldReading& readin
       count_lost(s, step.by - 1);
       if (step.doubtful > 0) {
         s.doubtful = std::max(s.doubtful, step.doubtful);
-        s.prompt = 0;
+        s.prompt = s.in_time = 0;
         s.doubtful_since = s.last_k + step.by;
       }
       return s.last_k + step.by;
@@ -243,35 +249,38 @@ Sampler::Step Sampler::step(const Stream& s, const FieldReading& reading, double
   return {possible(1) ? 1 : 0, 0};
 }
 
+/// A delay that is no longer the usual one of this stream's delivery.
+double Sampler::late_from_s(const Stream& s) const {
+  return std::clamp(kLateResiduals * s.clock.state().residual_s, kLate * period_s_, kLatest * period_s_);
+}
+
 /// Frames lost before the driver saw them leave no trace but time: from then on every sample is whole periods
 /// late.
 void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
   Lateness& late = s.late;
-  const double usual_s =
-      std::clamp(kLateResiduals * s.clock.state().residual_s, kLate * period_s_, kLatest * period_s_);
-  if (delay_s < usual_s) {
+  if (delay_s < late_from_s(s)) {
     // All were delayed, none was lost.
-    if (late.samples > 0 && s.doubtful == 0) s.lessen_doubt(late.first_k, kNoDoubt_s);
+    if (late.samples > 0) s.lessen_lateness(late.first_k, kNoDoubt_s);
     late.samples = 0;
     return;
   }
   if (late.samples == 0) late = {0, s.last_k, arrival_s, delay_s, 0};
   ++late.samples;
-  Sample& newest = s.ring[static_cast<std::size_t>(s.last_k) & (s.ring.size() - 1)];
-  newest.doubt_s = std::max(newest.doubt_s, delay_s);
+  s.ring[static_cast<std::size_t>(s.last_k) & (s.ring.size() - 1)].late_s = delay_s;
   late.least_s = std::min(late.least_s, delay_s);
   late.span_s = arrival_s - late.since_s;
   if (!s.clock.settled() || late.samples < kLateSamples || late.span_s < config_.silence_s / 2) return;
   const std::int64_t lost = std::max<std::int64_t>(1, whole(late.least_s / period_s_));
   s.renumber(late.first_k, lost);
-  s.lessen_doubt(late.first_k + lost, static_cast<double>(lost) * period_s_);
+  s.lessen_lateness(late.first_k + lost, static_cast<double>(lost) * period_s_);
   count_lost(s, lost);
   late = {};
 }
 
-/// Numbers are proved by prompt samples that nothing was waiting before, or by many that were not early. One
-/// prompt sample is none: behind garbage lines come back to back, and one that carries a supplement takes
-/// longer than a period.
+/// Numbers are proved by prompt samples that nothing was waiting before, or by many that were neither early
+/// nor late. One prompt sample is none: behind garbage lines come back to back, and one that carries a
+/// supplement takes longer than a period. Late ones prove nothing: of a device that sends half as often as it
+/// should, each is later than the one before.
 void Sampler::watch_doubt(Stream& s, double since_last_s, double delay_s) const {
   if (s.doubtful == 0) return;
   const double usual_s = s.clock.state().residual_s;
@@ -279,9 +288,9 @@ void Sampler::watch_doubt(Stream& s, double since_last_s, double delay_s) const 
   const bool prompt = due && since_last_s > kIdle * period_s_;
   const bool never_prompt = usual_s > kPrompt * period_s_;
   s.prompt = prompt ? s.prompt + 1 : 0;
-  if ((s.last_k > s.doubtful_since && s.prompt >= kPromptInARow) ||
-      (never_prompt && s.last_k - s.doubtful_since >= kProved)) {
-    s.lessen_doubt(s.doubtful_since, kNoDoubt_s);
+  s.in_time = delay_s < late_from_s(s) ? s.in_time + 1 : 0;
+  if ((s.last_k > s.doubtful_since && s.prompt >= kPromptInARow) || (never_prompt && s.in_time >= kProved)) {
+    s.prove(s.doubtful_since);
     s.doubtful = 0;
   }
 }

@@ -91,7 +91,8 @@ class Sampler {
     double arrival_s{0};
     Eigen::Vector3d y_nT;
     Flags flags;
-    double doubt_s{0};  ///< by which its time may be wrong beside what the clock model says
+    double doubt_s{0};  ///< by which its time may be wrong as long as its number is not proved
+    double late_s{0};   ///< later than usual by so much: delivery, or frames lost unseen before it
   };
   /// Samples that all come more than a period late: frames were lost unseen, or delivery stalls.
   struct Lateness {
@@ -118,13 +119,18 @@ class Sampler {
     std::int64_t inserted_at{0};
     std::int64_t doubtful{0};  ///< numbers that may be too many
     std::int64_t doubtful_since{0};
-    int prompt{0};  ///< samples in a row that came when they were due, since then
+    int prompt{0};   ///< samples in a row that came when they were due, since then
+    int in_time{0};  ///< samples in a row that came no later than usual, since then
     SensorStreamHealth health;
 
     [[nodiscard]] const Sample* find(std::int64_t k) const;
+    /// Newest first.
+    template <class Do>
+    void for_each_from(std::int64_t from, const Do& act);
     /// Gives the samples from `from` on numbers that are higher by so many.
     void renumber(std::int64_t from, std::int64_t by);
-    void lessen_doubt(std::int64_t from, double by_s);
+    void lessen_lateness(std::int64_t from, double by_s);
+    void prove(std::int64_t from);
     [[nodiscard]] bool in_doubt() const { return late.samples > 0 || doubtful > 0; }
   };
   /// Where the reference sensor's samples lie while it has no clock model.
@@ -139,7 +145,7 @@ class Sampler {
     bool interpolated{false};
     Eigen::Vector3d y_nT;
     Flags flags;
-    double doubt_s{0};
+    double doubt_s{0};  ///< by which its time may be wrong beside what the clock model says
 
     void take(const Sample& sample);
   };
@@ -153,6 +159,7 @@ class Sampler {
   void count_lost(Stream& s, std::int64_t frames) const;
   void restart(int slot);
   [[nodiscard]] std::int64_t first_number(int slot, double sample_s) const;
+  [[nodiscard]] double late_from_s(const Stream& s) const;
   void watch_lateness(Stream& s, double arrival_s, double delay_s);
   void watch_doubt(Stream& s, double since_last_s, double delay_s) const;
   [[nodiscard]] bool in_doubt() const;

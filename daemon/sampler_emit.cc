@@ -17,7 +17,7 @@ constexpr double kMaxUninterpolated = 0.02;  // periods
 void Sampler::Pick::take(const Sample& sample) {
   y_nT = sample.y_nT;
   flags |= sample.flags;
-  doubt_s = std::max(doubt_s, sample.doubt_s);
+  doubt_s = std::max({doubt_s, sample.doubt_s, sample.late_s});
 }
 
 /// The sample of one sensor at t: its nearest when that is near enough, else between its two neighbours.

@@ -367,5 +367,33 @@ TEST(Sampler, AnOvercountInLateDeliveryCostsSamplesNotTheClock) {
     EXPECT_TRUE(true_skew(e) < 1e-3 || true_time(e.t) < 13) << true_time(e.t);
 }
 
+/// Each of its samples comes later than the one before; that is no proof of a count that is wrong as well.
+TEST(Sampler, ADeviceThatSendsHalfAsOftenStaysInDoubt) {
+  auto devices = free_running();
+  for (std::size_t i = 0; i < kSensors; ++i) devices[i].delay_s = test::uniform_delay(0.002, i);
+  std::vector<FieldReading> readings;
+  for (FieldReading& r : merged(devices, 30)) {
+    if (r.slot == 1 && r.seq > 1000) {
+      if (r.seq % 2 == 1) continue;
+      const std::uint64_t sent = (r.seq - 1000) / 2;
+      r.seq = 1000 + sent + sent / 20;  // a line in twenty is damaged so that it counts as two
+    }
+    readings.push_back(r);
+  }
+  Sampler sampler({});
+  std::vector<EpochOrGap> items;
+  for (const FieldReading& r : readings) {
+    sampler.push(r, items);
+    sampler.advance(r.arrival.mono, items);
+  }
+  expect_tiling(items);
+  int doubted = 0;
+  for (const Epoch& e : epochs(items)) {
+    EXPECT_LT(true_skew(e), e.skew_bound_s + 1e-4) << true_time(e.t);
+    doubted += true_time(e.t) > 21 && e.flags.has(Flag::clock_unsettled);
+  }
+  EXPECT_GT(doubted, 50);
+}
+
 }  // namespace
 }  // namespace mgtd::daemon
