@@ -194,7 +194,6 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   wider.worse = fit.worse;
   const JointState near = widened(search.joint.effects, fit.state, wider.effects);
   auto refit = fit_joint_at_size(search.table, wider, &near);
-  if (!refit) refit = fit_joint_at_size(search.table, wider);  // the narrower model may be a bad start
   if (!refit) {
     report.notes.push_back(
         fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
