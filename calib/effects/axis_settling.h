@@ -13,9 +13,12 @@
 ///
 ///     y += eta (x_prev - x) exp(-s/tau)       x = v/F0, eta in nT, s = seconds from the stop to mid-dwell
 ///
-/// Needs since_stop_s. The first pose of a run has no pose before it and no term. On a stream x_prev
-/// exp(-s/tau) becomes what it stands for, a reading that follows x with the time constant tau: z <- x + (z -
-/// x) exp(-dt/tau), y += eta (z - x), known five time constants after the first sample.
+/// Needs since_stop_s. The first pose of a run has no pose before it and no term.
+///
+/// x_prev stands for a slow reading z that follows x with the time constant tau, dz/dt = (x - z)/tau, and
+/// has come to rest at each pose; y += eta (z - x). Where the run kept the way of the table, z itself is
+/// followed, straight from point to point: x_prev is z at the stop, and exp(-s/tau) its mean over the dwell.
+/// On a stream z follows the samples and is known five time constants after the first.
 namespace mgtd::calib {
 
 /// The slow part z of the readings on a stream.
@@ -37,13 +40,19 @@ class LiveSettling final : public LiveMemory {
   SensorReadings z_nT_;
 };
 
+/// What a pose begins with.
+struct SlowAtStop {
+  SensorReadings v_nT;
+  double over_dwell{1};  ///< mean of exp(-s/tau) over the dwell against its middle
+};
+
 struct Settling {
   static constexpr std::string_view kName = "axis.settling";
   static constexpr int kPerAxis = 1;
   static constexpr double kDefaultTau_s = 10;
   std::optional<double> tau_s;
-  /// v of the pose before; empty for the first of the run.
-  std::shared_ptr<const std::unordered_map<int, std::optional<SensorReadings>>> before{};
+  /// By number of the pose; empty for the first of the run.
+  std::shared_ptr<const std::unordered_map<int, std::optional<SlowAtStop>>> before{};
   std::shared_ptr<const LiveSettling> now{};  ///< on a stream
 
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
@@ -61,10 +70,11 @@ struct Settling {
   template <class S>
   S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
     if (now) return S(now->slow_nT(sensor, axis) / kReferenceField_nT) - in_F0(v, axis);
-    const auto& v_prev = before->at(at.pose.number);
-    if (!v_prev) return S(0.0);
-    const double x_prev = (*v_prev)[static_cast<std::size_t>(sensor)][axis] / kReferenceField_nT;
-    return (S(x_prev) - in_F0(v, axis)) * S(std::exp(-*at.pose.since_stop_s / tau_s.value_or(kDefaultTau_s)));
+    const auto& slow = before->at(at.pose.number);
+    if (!slow) return S(0.0);
+    const double x_prev = slow->v_nT[static_cast<std::size_t>(sensor)][axis] / kReferenceField_nT;
+    const double left = slow->over_dwell * std::exp(-*at.pose.since_stop_s / tau_s.value_or(kDefaultTau_s));
+    return (S(x_prev) - in_F0(v, axis)) * S(left);
   }
 };
 

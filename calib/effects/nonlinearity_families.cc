@@ -175,7 +175,9 @@ constexpr std::array kFamilies{
         .level = Level::axis,
         .title = "readings creep after the table has stopped",
         .cause = "memory of a filter, self-heating after a change of direction, creep of the head's mounting",
-        .equation = "y += eta (x_prev - x) exp(-s/tau), x = v/F0, s = since_stop_s",
+        .equation =
+            "y += eta (x_prev - x) exp(-s/tau), x = v/F0, s = since_stop_s; where the run kept the way "
+            "of the table, x_prev is what a reading that lags by tau shows at the stop",
         .coefficients = "eta, nT at F0, one an axis; tau in s is scanned and then estimated",
         .typical = 2,
         .bound = 1000,
