@@ -14,6 +14,10 @@ constexpr double kTakeBack = 4;  ///< spreads below which an observation fits af
 constexpr double kWithWorst =
     0.2;  ///< smaller than this share of the worst may be its shadow: wait for the next round
 constexpr double kMaxShare = 0.1;  ///< of the poses
+/// Of the largest misfit of its pose, in units of the noise: what is smaller is bent by that one. The worst
+/// of an axis that misfits everywhere stands out least where it is one of many, and its neighbours in its
+/// stead.
+constexpr double kOfLargest = 0.8;
 constexpr double kMadToSd = 1.4826;
 
 /// Robust spread of t over the poses, by kind of observation, at least the nominal one.
@@ -43,13 +47,14 @@ std::vector<Outliers::Suspect> Outliers::find(const PoseResiduals& residuals) co
   std::vector<Suspect> found;
   double worst = 0;
   for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
-    Spreads t = residuals.t.col(k).cast<double>().array() / spread_;
+    Spreads by_noise = residuals.t.col(k).cast<double>().array();
     for (const Suspect& s : taken_back_) {
-      if (static_cast<Eigen::Index>(s.pose) == k) t[s.row] = 0;
+      if (static_cast<Eigen::Index>(s.pose) == k) by_noise[s.row] = 0;
     }
     Eigen::Index row = 0;
-    const double largest = t.maxCoeff(&row);
-    if (largest > kLimit)
+    const double largest = (by_noise / spread_).maxCoeff(&row);
+    const double of_readings = by_noise.head<kChannels>().maxCoeff();
+    if (largest > kLimit && by_noise[row] >= kOfLargest * of_readings)
       found.push_back({.pose = static_cast<std::size_t>(k), .row = static_cast<int>(row), .t = largest});
     worst = std::max(worst, largest);
   }
