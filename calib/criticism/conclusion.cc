@@ -44,7 +44,7 @@ double contradicted(const JointFit& fit) {
 std::string doubt(const Round& round, const Asked& before) {
   const Candidate& a = round.added;
   const double spread = 4 * std::sqrt(2 * before.dof);
-  if (before.reference.known && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
+  if (before.reference.from_dwells() && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
     return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
   const double realised = round.chi2_before - round.chi2_after;
   if (before.reference.known && std::abs(realised - a.fall) > kRefit * a.fall + 3 * std::sqrt(2 * a.fall))
@@ -121,7 +121,10 @@ Finding conclude(const ExplainReport& report, const Asked& first, const Criticis
     notes.push_back(std::move(rest));
     return Finding::partial;
   }
-  if (!one_law(report.rounds)) return Finding::partial;
+  if (!one_law(report.rounds)) {
+    notes.emplace_back("more than one effect was needed; together they leave nothing that stands out");
+    return Finding::partial;
+  }
   if (!round.possible.empty()) return Finding::ambiguous;
   std::string why = doubt(round, first);
   if (why.empty()) return Finding::explained;
@@ -151,7 +154,7 @@ bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>&
 }
 
 void share_what_fell(ExplainReport& report) {
-  if (report.rounds.empty() || report.noise.reference.known) return;
+  if (report.rounds.empty() || report.noise.reference.from_dwells()) return;
   const double left = std::pow(report.rounds.back().rms_after_nT / report.rounds.front().rms_before_nT, 2);
   const double unit = report.chi2 / report.dof, excess = report.chi2 * (1 - left);
   const auto share = [&](Candidate& c) {

@@ -21,7 +21,7 @@ struct Asked {
 /// which in `notes`.
 [[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, std::vector<std::string>& notes);
 
-/// Where no noise is told, the excess that the candidates share is what the rounds took away: the residual at
+/// Where the dwells do not say how large the noise is, the excess that the candidates share is what the rounds took away: the residual at
 /// their end stands for the noise. Nothing to share where nothing was added.
 void share_what_fell(ExplainReport& report);
 

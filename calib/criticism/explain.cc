@@ -53,9 +53,9 @@ Candidate candidate_of(const ScoredFamily& family, const Criticism& c, double wo
                 .fall = score.S * c.noise.reference.scale2 * worse * worse,
                 .coefficients = coefficients_of(family)};
   const double excess = c.noise.reference.chi2 - c.dof;
-  out.share = !c.noise.reference.known ? kNotTold
-              : excess > 0             ? std::clamp((score.S - score.k) / excess, 0.0, 1.0)
-                                       : 0;
+  out.share = !c.noise.reference.from_dwells() ? kNotTold
+              : excess > 0                     ? std::clamp((score.S - score.k) / excess, 0.0, 1.0)
+                                               : 0;
   if (family.suspect->bound > 0) {
     out.plausible = std::all_of(out.coefficients.begin(), out.coefficients.end(), [&](const auto& x) {
       return std::abs(x.value) < family.suspect->bound + 3 * x.sd;

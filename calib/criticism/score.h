@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
@@ -27,6 +28,8 @@ struct NoiseReference {
   double scale2{1};       ///< variance of the noise over that of the weights, where the dwells say too little
   double nu{std::numeric_limits<double>::infinity()};  ///< degrees of freedom behind scale2
   double chi2{0}, dof{0};                              ///< of the residual in units of this noise
+  /// The dwells say how large the noise is, and nothing contradicts them.
+  [[nodiscard]] bool from_dwells() const { return known && std::isinf(nu); }
   /// log10 of the probability that an absent effect on `axes` channels gives a fall of S or more.
   [[nodiscard]] double log10_p(double S, int k, int axes) const;
 };

@@ -11,6 +11,8 @@
 #include <set>
 
 #include "calib/criticism/noise_text.h"
+#include "calib/effects/effect_family.h"
+#include "calib/effects/effect_spec.h"
 #include "calib/fit/residual_words.h"
 #include "calib/probability.h"
 #include "proto/units.h"
@@ -59,14 +61,34 @@ std::string fall_text(const Round& round, const JointFit* before) {
   if (before != nullptr && round.fit && round.added.where == "table")
     return fmt::format("the angles of the table scatter by {:.3g} instead of {:.3g} deg",
                        to_deg(round.fit->table_sd_rad), to_deg(before->table_sd_rad));
-  return fmt::format("the residual falls from {:.3g} to {:.3g} nT", round.rms_before_nT, round.rms_after_nT);
+  const std::string from = fmt::format("{:.3g}", round.rms_before_nT),
+                    to = fmt::format("{:.3g}", round.rms_after_nT);
+  if (from == to) return fmt::format("the residual stays at {} nT", to);
+  return fmt::format("the residual {} from {} to {} nT",
+                     round.rms_after_nT < round.rms_before_nT ? "falls" : "goes", from, to);
+}
+
+/// Numbers that were searched for, as fitted: " (ts = 0.383 h)".
+std::string searched_text(const Round& round) {
+  const EffectFamily* const family = find_family(round.added.effect);
+  if (family == nullptr || !family->scan) return {};
+  std::set<std::string> numbers;
+  for (const EffectPtr& effect : round.model) {
+    if (effect->name() != family->name) continue;
+    const auto spec = EffectSpec::parse(effect->spec());
+    if (!spec) continue;
+    for (const auto& [name, value] : spec->parameters)
+      if (name == family->scan->parameter)
+        numbers.insert(fmt::format("{} = {} {}", name, value, family->scan->unit));
+  }
+  return numbers.empty() ? "" : fmt::format(" ({})", fmt::join(numbers, ", "));
 }
 
 std::string round_text(const Round& round, const JointFit* before) {
   const Candidate& a = round.added;
-  return fmt::format("It behaves like {}{}: {:.1f} sigma, {}. With it in the model {}, and its size is {}.",
-                     a.effect, place(a), a.d, p_phrase(a.log10_p), fall_text(round, before),
-                     size_text(as_fitted(round)));
+  return fmt::format("It behaves like {}{}: {:.1f} sigma, {}. With it in the model{} {}, and its size is {}.",
+                     a.effect, place(a), a.d, p_phrase(a.log10_p), searched_text(round),
+                     fall_text(round, before), size_text(as_fitted(round)));
 }
 
 /// The one axis that three rounds or more were spent on; empty when there is none.
@@ -142,7 +164,7 @@ std::string as_sentence(std::string clause) {
 }
 
 std::string_view share_of(const ExplainReport& r) {
-  if (r.noise.reference.known) return "chi-square beyond the noise";
+  if (r.noise.reference.from_dwells()) return "chi-square beyond the noise";
   return r.rounds.empty() ? "nothing, because the noise is not known and nothing was added"
                           : "chi-square beyond what is left after the last round";
 }

@@ -68,5 +68,20 @@ TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
               HasSubstr("With it in the model the angles of the table scatter by 0.1 instead of 0.35 deg"));
 }
 
+TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
+  const auto told = [](double before_nT, double after_nT) {
+    Round round{.added = {.effect = "site.gradient-drift", .where = "site"}};
+    round.rms_before_nT = before_nT, round.rms_after_nT = after_nT;
+    round.model = {*make_effect("axis.offset.step@s1.y,ts=0.5"), *make_effect("site.gradient-drift,ts=0.25")};
+    ExplainReport report;
+    report.rounds = {round};
+    return sentence(report);
+  };
+  EXPECT_THAT(told(9.5, 0.31),
+              HasSubstr("With it in the model (ts = 0.25 h) the residual falls from 9.5 to 0.31 nT"));
+  EXPECT_THAT(told(0.5071, 0.5069), HasSubstr("the residual stays at 0.507 nT"));
+  EXPECT_THAT(told(9.46, 9.51), HasSubstr("the residual goes from 9.46 to 9.51 nT"));
+}
+
 }  // namespace
 }  // namespace mgtd::calib
