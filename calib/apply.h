@@ -25,8 +25,8 @@ struct AppliedPose {
   std::optional<double> t_s;
   FieldVector b_P_nT;   ///< of the four sensors
   TensorSample sample;  ///< at the centre; the noise is that of the pose's n_eff (else n, else one) samples
-  std::vector<std::string>
-      left_out;  ///< effects that were not removed, by name; the sd is wider by their size
+  /// Effects that were not removed, by name; the sd is wider by their size.
+  std::vector<std::string> left_out;
 };
 
 /// Refuses a pose that lacks what an effect needs (unless missing_ok), and remove_site without effects of the

@@ -50,15 +50,15 @@ struct Calibration {
   std::string id;      ///< "c" and 12 hex digits; set by seal()
   std::string method;  ///< "simplified", "two-step", "joint"
   std::array<SensorModel, kSensors> sensors;
-  ArrayCovariance covariance{
-      ArrayCovariance::Zero()};  ///< of the parameters in kParameterNames order, sensor by sensor
+  /// Of the parameters in kParameterNames order, sensor by sensor.
+  ArrayCovariance covariance{ArrayCovariance::Zero()};
   std::vector<CalibratedEffect> effects;
   /// Of all coefficients (rows) with the 48 parameters and then with all coefficients (columns); empty
   /// without effects.
   Eigen::MatrixXd effect_covariance;
   Geometry geometry;
-  AxisNoise sample_noise_nT{
-      AxisNoise::Zero()};  ///< of one sample, for the stream's standard deviations; 0 unknown
+  /// Of one sample, for the stream's standard deviations; 0: unknown.
+  AxisNoise sample_noise_nT{AxisNoise::Zero()};
   AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< scatter of a pose mean about the model
   std::string gauge;  ///< which common rotation was fixed, how, and how well it is known
   Reference reference;

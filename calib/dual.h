@@ -18,10 +18,10 @@ struct Dual {
   double v;
   Derivatives d;
 
-  Dual() {}  // NOLINT(modernize-use-equals-default): like a double, not initialised
-  Dual(double value)
-      : v(value),
-        d(Derivatives::Zero()) {}  // NOLINT(google-explicit-constructor): constants mix with variables
+  /// Like a double, not initialised.
+  Dual() {}
+  /// Not explicit: constants mix with variables.
+  Dual(double value) : v(value), d(Derivatives::Zero()) {}
   Dual(double value, const Derivatives& derivatives) : v(value), d(derivatives) {}
   /// The variable that owns derivative slot `slot`.
   [[nodiscard]] static Dual variable(double value, int slot) {

@@ -15,7 +15,7 @@
 #include "proto/tensor.h"
 #include "proto/units.h"
 
-/// Before anything is measured: what a list of poses would tell: how well the calibration would be known,
+/// What a list of poses would tell, before anything is measured: how well the calibration would be known,
 /// and which missing effects would be seen and told apart (plan_power.h).
 ///
 /// The rig is measured in thought at the listed table angles, and the information of the joint fit is

@@ -6,16 +6,16 @@
 
 /// One three-axis fluxgate on the cross: twelve parameters and a mounting.
 ///
-///     y = C A b_S + I          C = diag(cx, cy, cz), I = (ix, iy, iz), A upper triangular in theta, phi, psi
-///     (eq. 5) b_P = R_PS b_S           R_PS = A_gamma A_beta A_alpha M (eqs. 13-14)
+///     y   = C A b_S + I        C = diag(cx, cy, cz), I = (ix, iy, iz), A upper triangular in        (eq. 5)
+///                              theta, phi, psi
+///     b_P = R_PS b_S           R_PS = A_gamma A_beta A_alpha M                                 (eqs. 13-14)
 ///
 ///   y    3x1 nT   reading at nominal scale, no frame
 ///   b_S  3x1 nT   field in the sensor's ideal orthogonal frame S
 ///   b_P  3x1 nT   field at the sensor in the platform frame P
 ///   M             mounting, a signed permutation: the nearest of the 48 right- and left-handed axis
-///   orientations, so that
-///                 alpha, beta, gamma stay small and no orientation is a singularity. Identity on an upright
-///                 sensor.
+///                 orientations, so that alpha, beta, gamma stay small and no orientation is a singularity.
+///                 Identity on an upright sensor.
 ///
 /// Li Qingzhu et al., "Two-step linear calibration of planar cross magnetic gradient tensor system". Does not
 /// model temperature, hysteresis, nonlinearity or neighbours' fields.

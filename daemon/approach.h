@@ -4,12 +4,13 @@
 
 #include "drivers/device.h"
 #include "proto/reading.h"
+#include "proto/units.h"
 
 /// From which side the azimuth comes to a pose: backlash of the table and hysteresis of the cores show only
 /// where both sides occur.
 namespace mgtd::daemon {
 
-inline constexpr double kApproach_rad = 0.0872664625997165;  ///< 5 deg of overshoot
+inline constexpr double kApproach_rad = to_rad(5);  ///< overshoot
 
 [[nodiscard]] bool inside(const drivers::TableLimits& limits, const TableAngles& angles);
 

@@ -49,8 +49,8 @@ struct DwellQuality {
   std::size_t missing{0};  ///< of those expected so far, frozen ones included
   std::size_t frozen{0};
   std::size_t saturated{0};
-  std::array<std::size_t, kSensors>
-      repeats{};  ///< successive epochs with all three axes of a sensor exactly equal
+  /// Successive epochs with all three axes of a sensor exactly equal.
+  std::array<std::size_t, kSensors> repeats{};
   double gap_share{0};
 };
 
@@ -91,7 +91,7 @@ class Dwell {
     std::size_t count{0};
   };
   std::map<std::string, Sum> auxiliary_;  ///< by column
-  std::optional<Sample> last_nT_;  ///< of any epoch of the dwell
+  std::optional<Sample> last_nT_;         ///< of any epoch of the dwell
   std::array<std::size_t, kSensors> repeats_{};
   std::size_t heard_{0}, saturated_{0}, frozen_{0};
   bool past_end_{false};

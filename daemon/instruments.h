@@ -14,8 +14,8 @@
 #include "proto/status_report.h"
 
 /// The instruments of the rig on their ports: four sensors, the table and, where configured, the scalar
-/// reference. Opens and keeps them, and tells its owner what they say. Does not know what their words are
-/// for.
+/// reference and auxiliary inputs. Opens and keeps them, and tells its owner what they say. Does not know
+/// what their words are for.
 namespace mgtd::daemon {
 
 /// Every device at its number in the journal: sensors, table, scalar (null without one), auxiliary inputs.

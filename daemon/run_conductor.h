@@ -41,8 +41,8 @@ class RunConductor {
   [[nodiscard]] Pace pace() const;
   /// Refused while a run is active, or one is waiting to be resumed or aborted.
   [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
-  /// Pause, resume, abort, retry. Resume and abort also settle an interrupted run; resume takes up the last
-  /// run when it failed. A new run leaves a failed one where it is.
+  /// Resume and abort also settle an interrupted run; resume takes up the last run when it failed. A new run
+  /// leaves a failed one where it is.
   [[nodiscard]] Result<void> request(Request request, Stamp now);
 
   /// What the scales say that the run asks for. Refused when it asks for nothing.
@@ -108,8 +108,8 @@ class RunConductor {
   std::optional<calib::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
   std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins
-  std::optional<Interrupted>
-      failed_;                  ///< the last run, when it failed with poses on disk: resume takes it up
+  /// The last run, when it failed with poses on disk: resume takes it up.
+  std::optional<Interrupted> failed_;
   std::vector<Event> answers_;  ///< of actions carried out at once, fed after them
   std::uint64_t generation_{0};
 };

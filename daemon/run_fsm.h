@@ -204,8 +204,8 @@ class RunFsm {
   std::optional<Settle> settle_;
   std::optional<Dwell> dwell_;
   std::vector<TableAngles> at_rest_;  ///< reported during the dwell
-  std::optional<TableReading>
-      rests_;                        ///< the first word of the table at rest here, whatever it was told since
+  /// The first word of the table at rest here, whatever it was told since.
+  std::optional<TableReading> rests_;
   std::optional<StillField> still_;  ///< since the table stands; in the preflight, too
   std::size_t judged_{0};            ///< blocks of it
   FieldNoise field_noise_;

@@ -36,8 +36,8 @@ struct SamplerConfig {
   double rate_hz{50};
   std::array<double, kSensors> latency_s{};  ///< sample instant to first byte: filter group delay, conversion
   std::array<double, kSensors> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
-  double silence_s{
-      1.0};  ///< a sensor that sent nothing for so long is silent; multiply by a simulation's speed-up
+  /// A sensor that sent nothing for so long is silent; multiply by a simulation's speed-up.
+  double silence_s{1.0};
   double clock_window_s{600};
   double max_drift{2e-3};  ///< of a device's rate against rate_hz, relative
   std::uint64_t settle_samples{100};

@@ -9,8 +9,8 @@
 /// Does the field change while the table stands: has something magnetic passed by?
 ///
 ///   array    S = sum over 12 axes and B blocks of (block - mean)^2 / w,  w = expected variance of a block
-///            F = S / (12 (B - 1)) / kappa,  kappa the same quotient at rest (preflight, and every good
-///            dwell)
+///            F = S / (12 (B - 1)) / kappa,  kappa the same quotient at rest: preflight and good dwells
+///
 ///   scalar   F = scatter of its readings / that at rest
 ///
 /// Disturbed when F is exceeded by chance with less than `false_alarm` / looks, and the change is above

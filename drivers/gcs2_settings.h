@@ -11,12 +11,12 @@
 /// What the configuration says about a turntable behind a GCS 2 controller:
 ///
 ///   port, baud = 115200
-///   axes.azimuth = "1"          name of the axis in the controller; axes.pitch and axes.roll where they
-///   exist limits.azimuth = [-180, 180]  deg, narrower than the controller's own; likewise pitch, roll
-///   serial = ""                 of the controller; stated: another one is refused
+///   axes.azimuth = "1"              name of the axis in the controller; likewise pitch, roll
+///   limits.azimuth = [-180, 180]    deg, narrower than the controller's own; likewise pitch, roll
+///   serial = ""                     of the controller; stated: another one is refused
 ///   velocity_deg_per_s = 10
-///   servo_off_in_dwell = true   motor current and servo hold are magnetic noise
-///   dwell_tolerance_deg = 0.5   a table that stands and yet turns by more is a fault
+///   servo_off_in_dwell = true       motor current and servo hold are magnetic noise
+///   dwell_tolerance_deg = 0.5       a table that stands and yet turns by more is a fault
 namespace mgtd::drivers::gcs2 {
 
 /// Which of the table's angles an axis turns.

@@ -15,11 +15,11 @@
 /// Scalar reference: listens to a GSM-90 or GSM-19, after sending set-up strings when some are configured.
 ///
 ///   port, baud = 115200
-///   init = ["S", "5", "T048.5", "C", "{utc}", "R"]   optional; sent one by one without ending, at least a
-///                                        second apart; "{utc}" becomes the time for the clock menu
-///   serial = ""                          of the instrument; stated: one whose header tells another is
-///   refused range_nT = [20000, 120000]           a reading outside is rejected silence_s = 15 without a
-///   reading the link is silent
+///   init = []                      set-up strings, sent one by one without ending, at least a second apart:
+///                                  ["S", "5", "T048.5", "C", "{utc}", "R"], {utc} = time for the clock menu
+///   serial = ""                    of the instrument; stated: one whose header tells another is refused
+///   range_nT = [20000, 120000]     a reading outside is rejected
+///   silence_s = 15                 without a reading the link is silent
 ///
 /// Its serial number is in the header that it prints when it starts; one that prints none is believed.
 ///

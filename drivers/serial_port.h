@@ -10,8 +10,8 @@
 /// does not stop.
 ///
 /// Real ports are opened and set up by libserialport. It refuses ptys (they have no entry in /sys/class/tty),
-/// so these are opened by plain termios. Names are those of port_list.h: a path, a
-/// link to one (as udev makes them), or "usb:SERIAL".
+/// so these are opened by plain termios. Names are those of port_list.h: a path, a link to one (as udev makes
+/// them), or "usb:SERIAL".
 ///
 /// Does not read, write or wait: lend `fd()` to whoever does, and take it back before the port is destroyed.
 namespace mgtd::drivers {

@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
-/// The part of the configuration that belongs to one device, as a driver reads it. Nested tables are
-/// flattened
-/// ("axes.azimuth"). Mistakes are collected with their line, not thrown: the operator sees all of them at
-/// once.
+/// The part of the configuration that belongs to one device, as a driver reads it.
+///
+/// Nested tables are flattened ("axes.azimuth"). Mistakes are collected with their line, not thrown: the
+/// operator sees all of them at once.
 namespace mgtd::drivers {
 
 struct SettingError {

@@ -19,16 +19,16 @@
 ///   version              {"software","rig","protocol":{"major","minor"},"stream_tcp","stream_unix"}
 ///   status               STATUS (status_codec.h)
 ///   run.start            args: run_request.h            -> RUN
-///   run.dry-run          args: run_request.h            -> {"poses","minutes","list":[...]}
+///   run.dry-run          args: run_request.h            -> {"poses","minutes","text","list":[...]}
 ///   run.pause, run.resume, run.finish, run.abort, run.status       -> RUN
 ///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
-///   run.redo             the pose before the one that is asked for, again                    -> RUN
+///   run.redo             what was entered last is asked for again                            -> RUN
 ///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
-///   calibrations.list                                  -> {"calibrations":[{"id","state","since","origin"}]}
-///   calibrations.show    args: {"id":".."}            -> CAL.json
+///   calibrations.list                    -> {"calibrations":[{"id","state","since","origin","forced"}]}
+///   calibrations.show    args: calibration_request.h  -> CAL.json
 ///   calibrations.accept  args: calibration_request.h  -> {"active"}
-///   calibrations.import  args: calibration_request.h  -> {"id","state","forced"}
-///   calibrations.rollback
+///   calibrations.import  args: calibration_request.h  -> {"id","forced"}, and "active" when accepted
+///   calibrations.rollback                             -> {"active"}
 ///   control.take         args: control_hold.h         -> the holder
 ///   control.release                                   -> {}
 ///   control.break        takes control from whoever has it        -> {"was": holder or null}
@@ -38,8 +38,8 @@ namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
 inline constexpr int kControlProtocolMinor = 2;
-inline constexpr std::size_t kControlLineLimit =
-    1 << 20;  ///< a calibration with a hundred coefficients: 0.4 MB
+/// A calibration with a hundred coefficients takes 0.4 MB.
+inline constexpr std::size_t kControlLineLimit = 1 << 20;
 
 enum class ControlCommand : std::uint8_t {
   version,

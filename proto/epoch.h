@@ -18,8 +18,8 @@ struct Epoch {
   std::uint64_t seq{0};  ///< counts epochs of the stream, gaps included
   Stamp t;               ///< when the field was what it was (device latency removed as far as known)
   std::array<Eigen::Vector3d, kSensors> y_nT{no_readings()};
+  /// Latest head temperature; NaN where never measured.
   std::array<double, kSensors> T_degC{
-      ///< latest head temperature; NaN where never measured
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   double skew_bound_s{0};  ///< no two of the four samples differ in true time by more than this

@@ -16,10 +16,10 @@ enum class Flag : std::uint16_t {
   uncalibrated = 1U << 3U,     ///< no active calibration: the numbers are raw readings
   suspect = 1U << 4U,          ///< the closure follows temperature, time or attitude: check the calibration
   clock_unsettled = 1U << 5U,  ///< the clock model of a device is still being learnt
-  frozen = 1U << 9U,           ///< a sensor repeats its last reading to the bit
   incomplete = 1U << 6U,       ///< an effect of the calibration is not removed: its inputs are not measured
   forced = 1U << 7U,           ///< the active calibration failed its checks and was forced
   near_source = 1U << 8U,      ///< the closure is large and follows nothing of the instrument's
+  frozen = 1U << 9U,           ///< a sensor repeats its last reading to the bit
 };
 
 class Flags {

@@ -29,9 +29,9 @@ inline constexpr int kSensors = 4;
 /// that are neither orthogonal nor aligned. Nothing is corrected here.
 struct FieldReading {
   int slot{0};
-  std::uint64_t seq{
-      0};         ///< counts the frames of this device since it was opened, lost ones included if known
-  Stamp arrival;  ///< of the last byte
+  /// Counts the frames of this device since it was opened, lost ones included if known.
+  std::uint64_t seq{0};
+  Stamp arrival;                        ///< of the last byte
   std::optional<double> device_time_s;  ///< of the device's own clock, where it sends one (origin: any)
   Eigen::Vector3d y_nT{Eigen::Vector3d::Zero()};
   Flags flags;

@@ -8,20 +8,20 @@
 
 /// The JSON of STATUS and RUN, the same on the stream, on the control socket and in `mgt status --json`.
 ///
-/// RUN:    {"run_id","state","set","pose","poses","retries","elapsed_s","remaining_s","message",
-///          "proposed": id or null, "checks":[{"name","passed","measured","limit","remedy"}]}
+/// RUN:    {"run_id","state","set","pose","poses","retries","elapsed_s","remaining_s","message","goes_on",
+///          "prompt": operator_prompt.h or null,"tensor_sd_nT_per_m","wanted_tensor_sd_nT_per_m",
+///          "proposed": id or null,"checks":[{"name","passed","measured","limit","remedy"}]}
 /// STATUS: {"t","t_ns","uptime_s","software","rig","speed_up","cal": id or null,
 ///          "calibration":{"forced","left_out":[{"effect","lacks"}]},
 ///          "criticism":{"state","measured","limit","remedy"},
 ///          "devices":[{"name","driver","port","state","detail","identity","bytes_in","bytes_in_frames",
 ///                      "bytes_rejected","bytes_resync","bytes_pending","bytes_out","frames",
-///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s": s or
-///                      null}],
+///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s"}],
 ///          "sampler":{"epochs","gaps","rate_hz","skew_bound_s"},
-///          "stream":{"clients","accepted","refused","dropped","dropped_for":{"behind":0,..},"last_drop","gaps"},
+///          "stream":{"clients","accepted","refused","dropped","dropped_for":{..},"last_drop","gaps"},
 ///          "control":{as stream but gaps, "holder": control_hold.h},
-///          "journal":{"state","bytes"},"disk_free_bytes","run":{RUN},
-///          "magnet":{..} or null}
+///          "journal":{"state","why","bytes","bytes_lost","stops"},"ring":{as journal},"oldest_seq",
+///          "disk_free_bytes","run":{RUN},"magnet": magnet_status.h or null}
 /// The stream puts "class" before these keys. What is not known is null; NaN becomes null.
 namespace mgtd {
 

@@ -42,15 +42,15 @@ struct Comparison {
   AxisNoise axis_noise_nT{AxisNoise::Zero()};     ///< of a pose mean as it was weighted
   AxisNoise axis_residual_nT{AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
   double chi2{0}, dof{0};                         ///< of readings, scalar reference and table angles together
-  std::optional<double>
-      log10_p{};  ///< that the noise makes so large a residual; empty where no noise is told
+  /// That the noise makes so large a residual; empty where no noise is told.
+  std::optional<double> log10_p{};
   double table_sd_deg{0};
   std::vector<ResidualChannel> channels{};
   /// Covariates that order the poses as another one does, by name, with that one: shown once.
   std::vector<std::pair<std::string, std::string>> alike{};
   std::vector<MapScore> maps{};
   std::vector<OutlierNode> outliers{};
-  bool fits{true};  ///< no map and no size stands out: one clean run in two hundred fails
+  bool fits{true};  ///< no map and no size stands out: one clean run in three hundred fails
 };
 
 [[nodiscard]] Result<Comparison> compare(const PoseTable& table, const FitOptions& options);

@@ -5,8 +5,8 @@
 #include "calib/criticism/score.h"
 
 /// The smallest size of an effect that a run would show. A coefficient with standard error s, everything else
-/// of the model free, is found at d = value / s = 8 in 99.9 of 100 runs, one chance in a hundred of a false
-/// alarm over the whole library, and named right in nine cases of ten.
+/// of the model free, is found at d = value / s = 8 in 99 of 100 runs and named right in nine cases of ten,
+/// with one chance in a hundred of a false alarm over the whole library.
 namespace mgtd::calib {
 
 inline constexpr double kSeen = 8;

@@ -13,15 +13,15 @@
 /// field that is uniform but for a constant gradient.
 ///
 ///     suspect       they follow temperature, time or attitude: no field outside knows of these, so the
-///     calibration
-///                   no longer holds. In the last hour (blocks of 10 s) or the last day (of 10 min): chance
-///                   below 1e-8, half of what they do beyond their noise explained and more than an event
-///                   (one interval of time) explains, and a swing larger than the standard deviation that the
-///                   calibration states for them.
+///                   calibration no longer holds. In the last hour (blocks of 10 s) or the last day (of
+///                   10 min): chance below 1e-8, half of what they do beyond their noise explained and
+///                   more than an event (one interval of time) explains, and a swing larger than the
+///                   standard deviation that the calibration states for them.
+///
 ///     near source   they are larger than noise and calibration allow (chance below 1e-5 in 10 s, twice
-///     running) and
-///                   follow nothing: something magnetic is so near that its field has curvature across the
-///                   array. It ends after a minute without.
+///                   running) and follow nothing: something magnetic is so near that its field has
+///                   curvature across the array. It ends after a minute without.
+///
 ///
 /// Not judged: samples that are saturated or frozen, that lack an effect of the calibration, or whose field
 /// turns so fast that the skew bound lets it move by more than half the noise. An effect of the calibration

@@ -14,8 +14,8 @@
 /// in them, so the calibration states how large W may be.
 namespace mgtd::calib {
 
-using ClosureErrors =
-    Eigen::Matrix<double, 16, 16>;  ///< of W by columns: 4 for the constant, 4 for each of b
+/// Of W by columns: 4 for the constant, 4 for each component of b.
+using ClosureErrors = Eigen::Matrix<double, 16, 16>;
 
 /// What closure an intact calibration may have.
 struct ClosurePrior {

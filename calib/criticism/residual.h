@@ -31,7 +31,7 @@ class Residual {
   /// Rows as effect_rows() gives them.
   [[nodiscard]] Columns project(const Eigen::MatrixXd& rows) const;
 
-  /// How large a residual at rho = 0 looks correlated from pose to pose: see noise.h.
+  /// Orthonormal, of the directions that the model's own parameters can take.
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
  private:

@@ -5,8 +5,8 @@
 #include "calib/fit/joint_problem.h"
 
 /// The linearised joint fit as rows, one block of sixteen a pose, each divided by its standard deviation:
-///     0..11  readings     12  scalar reference     13..15  attitude (or, without table angles, the idle
-///     slot)
+///     0..11  readings     12  scalar reference     13..15  attitude (without table angles: the idle slot)
+///
 /// An observation that was left out is a row of zeros. Nothing is eliminated here: see whitener.h.
 namespace mgtd::calib {
 

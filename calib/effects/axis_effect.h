@@ -15,8 +15,8 @@
 ///     AxisCoefficients coefficients() const;
 ///     std::string_view missing(const Pose&, int sensor) const;
 ///     void parameters(EffectSpec&) const;            fixed numbers of the law, for its text
-///     template <class S> S shape(const Conditions&, int sensor, int axis, std::span<const S> v, int j)
-///     const;
+///     template <class S>
+///     S shape(const Conditions&, int sensor, int axis, std::span<const S> v, int j) const;
 /// and, where it needs the run, Result<Law> on_run(const EffectContext&) const; where it has a memory,
 /// std::pair<Law, std::shared_ptr<LiveMemory>> live() const.
 namespace mgtd::calib {

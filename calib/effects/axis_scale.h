@@ -13,8 +13,8 @@ namespace mgtd::calib {
 
 /// What one axis has of a law.
 struct AxisCoefficients {
-  /// Name of each coefficient of axis a, appended to the place: "" or ".tau1"; for a law that couples axes it
-  /// depends on the axis ("x" of "s3.zx").
+  /// Name of each coefficient of axis a, appended to the place: "" or ".squares"; for a law that couples axes
+  /// it depends on the axis ("x" of "s3.zx").
   std::array<std::vector<std::string>, 3> suffix;
   std::string unit;
   double typical{1};

@@ -41,8 +41,8 @@ enum class Level { site, table, platform, axis, reference };
 struct Coefficient {
   std::string name;  ///< "Gxx", "s3.z", ...
   std::string unit;  ///< as printed: "nT/m", "nT/degC"
-  double typical{
-      1};  ///< size that occurs in practice, same unit: scale of steps and differences, never a limit
+  /// Size that occurs in practice, same unit: scale of steps and differences, never a limit.
+  double typical{1};
   double prior_sd{0};  ///< of a Gaussian prior about zero; 0: no prior
 };
 
@@ -117,9 +117,9 @@ class Effect {
 };
 
 /// Derive as `class Mine : public EffectOf<Mine>` and write
-///     template <class S> void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const
-///     S> c,
-///                                      std::span<S> out) const;
+///     template <class S>
+///     void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
+///                   std::span<S> out) const;
 /// which assigns every element of `out`.
 template <class Self>
 class EffectOf : public Effect {

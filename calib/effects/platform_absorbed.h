@@ -8,9 +8,9 @@
 ///
 ///     platform.hard-iron   b_i += h_i                        nT        part of the offsets
 ///     platform.soft-iron   b_i += 1e-6 K_i b_i               ppm       part of the matrices
-///     platform.crosstalk   b_i += sum_j D_ij kappa_j b_i     cm^3      part of the matrices; D_ij = (3 n n'
-///     - 1)/r^3,
-///                          b_j = b_i to the uniformity of the field
+///     platform.crosstalk   b_i += sum_j D_ij kappa_j b_i     cm^3      part of the matrices
+///
+/// with D_ij = (3 n n' - 1)/r^3, and b_j = b_i as far as the field is uniform.
 namespace mgtd::calib {
 
 /// Refuses, whatever the poses.

@@ -8,8 +8,8 @@
 
 /// A sensor turns against the platform: R_i <- exp[omega_i]x R_i, so the sensor sees exp[-omega_i]x b_i.
 ///
-///     platform.flexure          omega_i = S_i g, g unit gravity in the platform frame      deg, 3 x 3 a
-///     sensor platform.thermal-bending  omega_i = w_i (T_i - T0) arcsec/degC, 3 a sensor
+///     platform.flexure          omega_i = S_i g, g unit gravity, platform frame     deg, 3 x 3 a sensor
+///     platform.thermal-bending  omega_i = w_i (T_i - T0)                            arcsec/degC, 3 a sensor
 ///
 /// A turn that all four sensors make together is a turn of the table: only its angles speak against it. One
 /// such turn nothing speaks against: S_i = 1 for all turns the array about the vertical, which is another

@@ -4,8 +4,8 @@
 
 /// `site.reference-error`: the heading error of a scalar reference that rides on the platform.
 ///
-///     f = |B(0)| + k u + u' K u,   u = direction of the field in the platform frame, K symmetric and
-///     traceless kx ky kz, kxx kyy kxy kxz kyz in nT
+///     f = |B(0)| + k u + u' K u,   u = direction of the field in the platform frame
+///     k: kx ky kz;  K symmetric and traceless: kxx kyy kxy kxz kyz;  all in nT
 ///
 /// A constant error of the reference is a common error of all scale factors and no residual shows it. A
 /// reference that stands still beside the table has no heading of its own.

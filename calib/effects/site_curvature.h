@@ -4,8 +4,8 @@
 
 /// `site.curvature`: the gradient of the site changes over the cross.
 ///
-///     B_i += 1/2 H_ijk x_j x_k      nT/m^2, H symmetric in all indices and traceless (no currents, no
-///     divergence): seven numbers; Hxzz = -(Hxxx + Hxyy), Hyzz = -(Hxxy + Hyyy), Hzzz = -(Hxxz + Hyyz)
+///     B_i += 1/2 H_ijk x_j x_k      nT/m^2, H symmetric in all indices and traceless: seven numbers
+///     Hxzz = -(Hxxx + Hxyy), Hyzz = -(Hxxy + Hyyy), Hzzz = -(Hxxz + Hyyz)     no currents, no divergence
 namespace mgtd::calib {
 
 class SiteCurvature final : public SiteEffect<SiteCurvature> {

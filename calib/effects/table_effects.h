@@ -7,9 +7,9 @@
 /// azimuth axis (sensor_equations.h, table_rotation).
 ///
 ///     table.eccentricity  azimuth += e1 cos az + e2 sin az + e3 cos 2az + e4 sin 2az     deg
-///     table.angle-scale   azimuth += 1e-6 kappa azimuth        ppm; azimuth as recorded, not reduced to one
-///     turn table.backlash      azimuth += beta sense                deg; sense = +-1 of the last approach
-///     table.wobble        tilt of the axis: w1 cos az + w2 sin az about X, w2 cos az - w1 sin az about Y deg
+///     table.angle-scale   azimuth += 1e-6 kappa azimuth     ppm; azimuth as recorded, whole turns included
+///     table.backlash      azimuth += beta sense             deg; sense = +-1 of the last approach
+///     table.wobble        axis tilts by w1 cos az + w2 sin az about X, w2 cos az - w1 sin az about Y     deg
 ///
 /// Of the four numbers of a general wobble (cos and sin about X and Y) the other two turn the array on the
 /// table by a fixed rotation, which is part of the alignment of the sensors.

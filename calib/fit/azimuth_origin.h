@@ -9,8 +9,8 @@
 /// of the horizontal field in the platform frame at azimuth zero. It is, in this order,
 ///   - given (the operator's declination),
 ///   - found from poses that tilt: their table angles T_k say where the field was, T_k B_site = b_k,
-///   - set so that the mean gamma of the four sensors is zero. The tensor of a uniform field does not depend
-///   on it.
+///   - set so that the mean gamma of the four sensors is zero.
+/// The tensor of a uniform field does not depend on it.
 namespace mgtd::calib {
 
 enum class AzimuthGauge { declination_given, table_frame, mean_gamma_zero };

@@ -31,7 +31,7 @@ struct FitOptions {
   std::optional<double> inclination_rad, declination_rad;
   double baseline_m{0.4};
   double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
-  std::uint64_t seed{1};             ///< of anything random in a method; no method here draws
+  std::uint64_t seed{1};             ///< of the draws that judge a fit (criticism); no method draws
   std::vector<EffectPtr> effects;    ///< beside the twelve parameters a sensor; joint only
 };
 
@@ -64,14 +64,14 @@ struct FitReport {
   double dof{0};
   double noise_nT{0};      ///< of a pose mean, rms over the axes
   bool noise_told{false};  ///< by the spreads within the dwells; else the residual's own
-  std::vector<std::string>
-      reasons;  ///< sentences for the operator: what failed, what was recognised, what is left over
+  /// Sentences for the operator: what failed, what was recognised, what is left over.
+  std::vector<std::string> reasons;
   SiteField site;
   ErrorSummary before, after_step1, after;
   std::optional<ErrorSummary> two_step;    ///< beside a joint fit, where the poses allow one
-  std::optional<ErrorSummary> simplified;  ///< the baseline method beside a two-step fit
-  std::optional<ErrorSummary>
-      held_out;  ///< folds contiguous in time; empty when a fold cannot be fitted without its poses
+  std::optional<ErrorSummary> simplified;  ///< the baseline method beside the others, likewise
+  /// Folds contiguous in time; empty when a fold cannot be fitted without its poses.
+  std::optional<ErrorSummary> held_out;
   std::optional<ErrorSummary> check_poses;  ///< poses of the set "check", which no fit has seen
   std::optional<HalvesComparison> halves;
 
@@ -81,9 +81,9 @@ struct FitReport {
   double residual_nT{0};                       ///< as PoseResiduals tells it
   std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
   std::vector<OutlierNode> outliers;
-  std::vector<std::string>
-      weak;  ///< what the poses do not tell, with the standard deviation it leaves in the field
-  Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, mean square over all attitudes
+  /// What the poses do not tell, with the standard deviation it leaves in the field.
+  std::vector<std::string> weak;
+  Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, rms over all attitudes
 };
 
 /// Refuses (ErrorCode::refused), with what was measured and what to do: too few poses, poses about one axis

@@ -7,8 +7,8 @@
 ///
 ///   step 1     dp_i  = -(J'J)^-1 sum_k J_k' (n' G dy_k - dF_k),   J = n' d(b)/d(p), n = b/|b|, G = R (CA)^-1
 ///   field      db_ik = G dy_ik + D_ik dp_i + (dT_k/dangles) B dangles_k,   relative to F_k in step 2
-///   step 2     w_i   = -1/2 sum_k m_ik x db_ik,   m_ik = (sum_k b b')^-1 b_ik     (nearest rotation, R -> w
-///   x R) azimuth    origin from the tilted poses, from the operator (exact), or from the mean of gamma
+///   step 2     w_i   = -1/2 sum_k m_ik x db_ik,   m_ik = (sum_k b b')^-1 b_ik   nearest rotation, dR = w x R
+///   azimuth    origin from the tilted poses, from the operator (exact), or from the mean of gamma
 ///
 /// Independent errors: every reading (noise of a pose mean per axis), every scalar reading, every table angle
 /// of every pose. The table's errors are common to the four sensors, so are those of F: the covariance says

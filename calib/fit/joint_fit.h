@@ -24,8 +24,8 @@ inline constexpr std::string_view kScaleIsFree = "the overall scale is free";
 struct JointFit {
   JointProblem problem;  ///< final weights; points into the pose table
   JointState state;
-  Eigen::MatrixXd
-      covariance;  ///< of the fixed block, gauge constraints included; readings taken as worse by `spread`
+  /// Of the fixed block, gauge constraints included; readings taken as worse by `spread`.
+  Eigen::MatrixXd covariance;
   AxisNoise pose_noise_nT{AxisNoise::Zero()};
   std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
   double worse{1};                           ///< JointOptions::worse: in the weights, not in what follows

@@ -65,9 +65,9 @@ struct JointProblem {
   bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
   bool has_angles{false};           ///< at least one pose has table angles
   std::vector<LinearPrior> priors;  ///< gauge, coefficients, known field
-  std::optional<double> known_inclination_rad,
-      known_declination_rad;   ///< of the site's field, from the operator
-  double direction_weight{0};  ///< 1/rad, of both
+  /// Of the site's field, from the operator; and the weight of both, 1/rad.
+  std::optional<double> known_inclination_rad, known_declination_rad;
+  double direction_weight{0};
 
   [[nodiscard]] int coefficients() const;
   [[nodiscard]] int fixed() const { return kEffectSlot + coefficients(); }

@@ -18,8 +18,8 @@ struct JointOptions {
   Geometry geometry;
   std::vector<EffectPtr> effects;
   std::optional<double> field_nT;  ///< known field where no scalar reference is in the data
-  std::optional<double>
-      field_sd_nT;  ///< of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT
+  /// Of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT.
+  std::optional<double> field_sd_nT;
   std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
   double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
   /// Readings and scalar reference are taken as so much worse than the table says: for a model that is known

@@ -58,10 +58,10 @@ struct JointSolution {
   int iterations{0};
 };
 
-/// Refuses when it does not converge, or when the information is not positive definite (names nothing: see
-/// weakness.h).
-/// Stops when the next step is predicted to lower the chi-square by less than `enough`.
+/// Predicted fall of chi-square by the next step at which solve() may stop.
 inline constexpr double kConverged = 1e-9, kNearlyConverged = 0.1;
+/// Stops at `enough`. Refuses when it does not get there, or when the information is not positive definite
+/// (which parameters that is about says identifiability.h).
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
                                           double enough = kConverged);
 

@@ -23,8 +23,8 @@ const double kOneAxis = std::sin(to_rad(1.0));
 
 struct Aligned {
   std::array<ScalarCalibration, kCount> alone;
-  std::array<Eigen::Matrix3d, kCount>
-      to_first;                    ///< sensor frame to the frame of sensor 1, reflections allowed
+  /// Sensor frame to the frame of sensor 1, reflections allowed.
+  std::array<Eigen::Matrix3d, kCount> to_first;
   std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
 };
 
@@ -72,8 +72,8 @@ double handedness(const Aligned& aligned) {
 }
 
 struct Placement {
-  Eigen::Matrix3d Q{
-      Eigen::Matrix3d::Identity()};  ///< frame of sensor 1 (made right-handed) to the platform, proper
+  /// Frame of sensor 1 (made right-handed) to the platform, proper.
+  Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
   Eigen::Vector3d n{0, 0, 1};
 };
 

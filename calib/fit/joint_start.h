@@ -6,9 +6,9 @@
 /// A start for the joint fit from the poses alone, for any mounting, handedness and offset:
 ///   1. each sensor by itself: sensor_start.h;
 ///   2. sensors to each other: Procrustes over all poses, reflections allowed;
-///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n, n
-///   searched over the
-///      whole sphere. (Q, n) and (-Q, -n) fit equally: the majority of the sensors is taken as right-handed.
+///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n,
+///      n searched over the whole sphere. (Q, n) and (-Q, -n) fit equally: the majority of the sensors is
+///      taken as right-handed.
 /// Without table angles, or with angles about one axis only, the freedom that is left is spent on turning
 /// sensor 1 upright.
 namespace mgtd::calib {
@@ -26,8 +26,8 @@ enum class AngleCoverage { none, one_axis, full };
                                      const std::array<SensorModel, kSensors>& sensors,
                                      const Eigen::Vector3d& direction, double f_nT);
 
-/// The same around sensors of an earlier calibration that may stand turned on the table since: they are turned
-/// together by the rotation Q that brings them to these poses' angles (identity without angles).
+/// The same around sensors of an earlier calibration that may stand turned on the table since: they are
+/// turned together by the rotation Q that brings them to these poses' angles (identity without angles).
 struct PlacedState {
   JointState state;
   Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};

@@ -12,8 +12,8 @@ namespace mgtd::calib {
 
 struct PoseLinear {
   Channels y_nT;  ///< predicted readings
-  Eigen::Matrix<double, kChannels, kSensorParameters>
-      d_sensor;  ///< rows of sensor i by the parameters of sensor i
+  /// Rows of sensor i by the parameters of sensor i.
+  Eigen::Matrix<double, kChannels, kSensorParameters> d_sensor;
   Eigen::Matrix<double, kChannels, kNuisances> d_nuisance;
   Eigen::Matrix<double, kChannels, Eigen::Dynamic> d_global;  ///< by slots kSiteSlot .. of the fixed block
   double f_nT{0};                                             ///< predicted |B(0)|

@@ -9,8 +9,8 @@
 namespace mgtd::calib {
 
 struct ScalarCalibration {
-  Eigen::Matrix3d K{
-      Eigen::Matrix3d::Identity()};  ///< b_S = K (y - I), upper triangular, positive diagonal (eq. 6)
+  /// b_S = K (y - I), upper triangular, positive diagonal (eq. 6).
+  Eigen::Matrix3d K{Eigen::Matrix3d::Identity()};
   Eigen::Vector3d offset_nT{Eigen::Vector3d::Zero()};
   double condition{0};  ///< of the nine columns, centred and scaled; some tens for poses in general position
 

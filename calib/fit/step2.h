@@ -14,11 +14,11 @@
 ///     P Tz = Bz,   P Tx = Bh cos(D - az),   P Ty = Bh sin(D - az)          (eqs. 16-18)
 ///
 /// P holds the fields of step 1, one row per pose, brought to the mean total field. |Bz| is not given by the
-/// table: P u = 1 gives Tz =
-/// +-u/|u|, |Bz| = 1/|u|. The horizontal rows fix Tx and Ty with their signs, so the sign of Tz decides
-/// between a right-handed and a mirrored sensor; it is common to the four (the sign of Bz) and chosen by the
-/// majority, by a known inclination, or by the poses that tilt. Here D = 0: the origin of the azimuth is a
-/// common turn of all sensors, found elsewhere (azimuth_origin.h).
+/// table: P u = 1 gives |Bz| = 1/|u| and Tz, which is u/|u| or its opposite. The horizontal rows fix Tx and
+/// Ty with their signs, so the sign of Tz decides between a right-handed and a mirrored sensor; it is common
+/// to the four (the sign of Bz) and chosen by the majority, by a known inclination, or by the poses that
+/// tilt. Here D = 0: the origin of the azimuth is a common turn of all sensors, found elsewhere
+/// (azimuth_origin.h).
 namespace mgtd::calib {
 
 struct Alignment {

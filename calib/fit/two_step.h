@@ -20,7 +20,7 @@ struct TwoStep {
   [[nodiscard]] Eigen::Vector3d site_direction() const;
 };
 
-/// `method` decides about step 1 only. Refusals name the sensor.
+/// `options.method` decides about step 1 only. Refusals name the sensor.
 [[nodiscard]] Result<TwoStep> two_step(const Readings& readings, const FitOptions& options);
 
 }  // namespace mgtd::calib

@@ -61,8 +61,8 @@ struct Scenario {
 
   double table_accuracy_deg{0.1};
   double table_velocity_deg_per_s{20}, table_acceleration_deg_per_s2{40};
-  std::string hands{
-      "none"};  ///< "mount": it has one axis, and the array is mounted by hand; "table": no motors
+  /// "mount": it has one axis, and the array is mounted by hand; "table": no motors.
+  std::string hands{"none"};
   double tilt_limit_deg{180};  ///< travel of pitch and roll
 
   bool scalar{true};

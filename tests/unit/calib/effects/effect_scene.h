@@ -13,15 +13,17 @@ namespace mgtd::calib::testing {
 /// What the rig does beyond the twelve parameters; each is null when it does nothing.
 struct Injection {
   std::function<Eigen::Vector3d(double t_h, const Eigen::Vector3d& x_S_m)> site{};
-  std::function<Eigen::Matrix3d(const Pose&)>
-      attitude{};  ///< true site to platform, instead of the recorded one
+  /// True site to platform, instead of the recorded one.
+  std::function<Eigen::Matrix3d(const Pose&)> attitude{};
+  /// The field a sensor sees, given the field at its place.
   std::function<Eigen::Vector3d(const Pose&, int sensor, const Eigen::Vector3d& b, const Eigen::Vector3d& g)>
-      platform{};  ///< the field a sensor sees, given the field at its place
+      platform{};
+  /// Added to the reading; v of the pose before, null at the first.
   std::function<double(const Pose&, int sensor, int axis, const Eigen::Vector3d& v,
                        const Eigen::Vector3d* v_before)>
-      axis{};  ///< added to the reading; v of the pose before, null at the first
-  std::function<double(const Pose&, const Eigen::Vector3d& u_P)>
-      reference{};  ///< added to the scalar reference
+      axis{};
+  /// Added to the scalar reference.
+  std::function<double(const Pose&, const Eigen::Vector3d& u_P)> reference{};
 };
 
 struct Scene {
