@@ -48,7 +48,7 @@ std::vector<double> run_gaps_h(const EffectContext& context) {
   const RunTime time = RunTime::of(*context.table);
   for (const Pose& pose : context.table->poses) t.push_back(time.hours(pose));
   std::sort(t.begin(), t.end());
-  for (std::size_t k = 1; k < t.size(); ++k) {
+  for (std::size_t k = kStepPoses; k + kStepPoses <= t.size(); ++k) {
     if (t[k] > t[k - 1]) out.push_back((t[k] + t[k - 1]) / 2);
   }
   return out;

@@ -70,7 +70,10 @@ struct EffectFamily {
 /// The numbers a score test tries; empty for a family without a scan. `run` ranges need the context's table.
 [[nodiscard]] std::vector<double> scan_values(const EffectFamily& family, const EffectContext& context);
 
-/// Hours half-way between successive poses, ascending.
+/// Poses that a step must leave on either side: fewer that differ from the rest are bad poses.
+inline constexpr std::size_t kStepPoses = 3;
+
+/// Hours half-way between successive poses, ascending; where a step can be told.
 [[nodiscard]] std::vector<double> run_gaps_h(const EffectContext& context);
 
 /// An effect of a family on a run. `where` defaults to the family's own (each-axis for sensors and axes).
