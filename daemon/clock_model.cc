@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace mgtd::daemon {
 namespace {
 
-constexpr double kBeat_s = 300;       // 4 ms, what 16 leave of 20, at 17 ppm: 235 s
-constexpr double kNear = 1.0 / 8;     // of the mean delay: next to the envelope
-constexpr double kSteps = 0.16;       // share of delays there that chance does not explain: kNear / 2
+constexpr double kBeat_s = 300;    // 4 ms, what 16 leave of 20, at 17 ppm: 235 s
+constexpr double kNear = 1.0 / 8;  // of the mean delay: next to the envelope
+constexpr double kSteps = 0.16;    // share of delays there that chance does not explain: kNear / 2
 constexpr double kResidualWeight = 1.0 / 256;  // of the running mean of delays
 
 }  // namespace

@@ -45,6 +45,19 @@ void prepare(Listener::Socket& socket) {
   socket.set_option(TcpOption{TCP_KEEPINTVL, 10}, ignored);
 }
 
+tl::unexpected<Error> cannot_listen(const std::string& address, const tcp::endpoint& endpoint,
+                                    const error_code& ec) {
+  if (ec == asio::error::address_in_use) {
+    return fail(
+        ErrorCode::io, fmt::format("{} is occupied by another program", address),
+        fmt::format("is mgtd running already (systemctl status mgtd)? \"ss -ltnp sport = :{}\" shows who "
+                    "has the port; or choose another in the configuration",
+                    endpoint.port()));
+  }
+  return fail(ErrorCode::io, fmt::format("cannot listen at {}: {}", address, ec.message()),
+              "use an address of this machine (\"ip address\" lists them) and a port above 1023");
+}
+
 }  // namespace
 
 class Listener::State : public std::enable_shared_from_this<State> {
@@ -97,23 +110,6 @@ class Listener::State : public std::enable_shared_from_this<State> {
   OnClient on_client_;
   bool stopped_{false};
 };
-
-namespace {
-
-tl::unexpected<Error> cannot_listen(const std::string& address, const tcp::endpoint& endpoint,
-                                    const error_code& ec) {
-  if (ec == asio::error::address_in_use) {
-    return fail(
-        ErrorCode::io, fmt::format("{} is occupied by another program", address),
-        fmt::format("is mgtd running already (systemctl status mgtd)? \"ss -ltnp sport = :{}\" shows who "
-                    "has the port; or choose another in the configuration",
-                    endpoint.port()));
-  }
-  return fail(ErrorCode::io, fmt::format("cannot listen at {}: {}", address, ec.message()),
-              "use an address of this machine (\"ip address\" lists them) and a port above 1023");
-}
-
-}  // namespace
 
 Result<Listener> Listener::tcp(asio::io_context& io, const std::string& address) {
   const auto endpoint = parse_tcp_address(address);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live_pipeline.h"
 
-#include <utility>
-
 namespace mgtd::daemon {
 namespace {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the rig records all the time: raw bytes and the stream's samples.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <system_error>
 

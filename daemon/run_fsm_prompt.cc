@@ -2,7 +2,6 @@
 // What is set by hand: asked for, entered, held against the turn of the field, entered again.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "proto/units.h"
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <set>
 
 #include "calib/criticism/site_maps.h"

@@ -3,7 +3,6 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <cmath>
 
 #include "calib/criticism/actions.h"
 #include "calib/criticism/residual.h"

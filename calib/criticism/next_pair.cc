@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/actions.h"
+#include "calib/criticism/detectable.h"
 #include "calib/criticism/next_measurement.h"
 #include "calib/effects/effect_family.h"
 #include "calib/fit/joint_report.h"
@@ -18,8 +19,6 @@ namespace mgtd::calib {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kSeen = 8;  ///< d of an effect that is seen in 99 of 100 runs
 
 Result<const Candidate*> candidate_of(const ExplainReport& report, const std::string& effect) {
   const std::string_view name = family_name(effect);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -86,10 +85,6 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const JointProblem& 
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// sum over j of rho^|k-j| x_j: the covariance of the noise times columns over the poses.
 Eigen::MatrixXd correlated(const Eigen::MatrixXd& x, double rho) {
   Eigen::MatrixXd out = x, back = x;
@@ -138,10 +133,6 @@ std::vector<LagOne> lag_one(const JointProblem& problem, const JointState& state
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 double median_correlation(const JointProblem& problem, const JointState& state) {
   const std::vector<LagOne> channels = lag_one(problem, state);
   std::vector<double> seen;
@@ -163,17 +154,6 @@ double median_correlation(const JointProblem& problem, const JointState& state) 
   return kMaxRho;
 }
 
-}  // namespace
-
-double pose_correlation(const JointProblem& problem, const JointState& state) {
-  const double rho = median_correlation(problem, state);
-  if (rho <= kCorrelated) return rho;
-  const double values = kChannels * static_cast<double>(problem.poses.size());
-  return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
-}
-
-namespace {
-
 /// Factors that bring the residuals of two visits, each in units of its own noise, to units in which the same
 /// misfit is the same number. Zero where one of them was left out; one where both weigh alike.
 std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels& v) {
@@ -185,6 +165,13 @@ std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels&
 }
 
 }  // namespace
+
+double pose_correlation(const JointProblem& problem, const JointState& state) {
+  const double rho = median_correlation(problem, state);
+  if (rho <= kCorrelated) return rho;
+  const double values = kChannels * static_cast<double>(problem.poses.size());
+  return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
+}
 
 std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
   const auto pairs = revisits(fit.problem);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/polish.h"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "calib/criticism/detectable.h"
 #include "calib/criticism/noise.h"
 #include "calib/criticism/score.h"
 #include "calib/effects/derivative_check.h"
@@ -20,7 +21,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kSeen = 8;            ///< d of an effect that is seen in 99 of 100 runs
 constexpr double kWorthTelling = 0.3;  ///< correlation
 constexpr std::size_t kToldAtMost = 5;
 constexpr double kTheSame = 0.98;

@@ -2,7 +2,6 @@
 #include "calib/criticism/rest.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "calib/effects/where.h"

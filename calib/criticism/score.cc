@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 
 #include "calib/f_distribution.h"
 

@@ -2,7 +2,6 @@
 #include "calib/effects/run_memory.h"
 
 #include <Eigen/QR>
-#include <algorithm>
 #include <optional>
 
 #include "calib/channels.h"

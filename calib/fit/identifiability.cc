@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "calib/fit/joint_solver.h"
 #include "calib/sensor_equations.h"

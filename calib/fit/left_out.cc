@@ -2,7 +2,6 @@
 #include "calib/fit/left_out.h"
 
 #include <Eigen/Cholesky>
-#include <cmath>
 
 #include "calib/fit/pose_residuals.h"
 

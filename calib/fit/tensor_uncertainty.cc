@@ -2,7 +2,6 @@
 #include "calib/fit/tensor_uncertainty.h"
 
 #include <Eigen/LU>
-#include <cmath>
 
 #include "calib/fit/pose_model.h"
 #include "calib/tensor.h"

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "calib/fit/error_summary.h"
 #include "calib/fit/influence.h"

@@ -13,13 +13,6 @@
 
 namespace mgtd::cli {
 
-void add_field_flags(CLI::App* command, FitFlags& flags) {
-  command->add_option("--field", flags.field_nT, "total field in nT, for poses without f_nT")
-      ->check(in_range(1'000, 200'000, "nT"));
-  command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT")
-      ->check(above_zero(10'000, "nT"));
-}
-
 namespace {
 
 void add_with(CLI::App* command, FitFlags& f) {
@@ -53,7 +46,34 @@ void add_site_flags(CLI::App* command, FitFlags& f) {
   command->add_option("--seed", f.seed, "of everything random");
 }
 
+constexpr double kTurn = 6.4;  ///< in radians, rounded up
+
+/// Every pose has its angles, and none is larger than a turn in radians would be.
+bool looks_like_radians(const PoseTable& table) {
+  double largest = 0;
+  for (const Pose& pose : table.poses) {
+    const auto angles = pose.angles();
+    if (!angles) return false;
+    for (const double a : {angles->azimuth_rad, angles->pitch_rad, angles->roll_rad})
+      largest = std::max(largest, std::abs(to_deg(a)));
+  }
+  return largest > kTurn / 8 && largest <= kTurn;
+}
+
+/// One effect into a list, in the place of the one of its name.
+void put(std::vector<calib::EffectPtr>& effects, calib::EffectPtr effect) {
+  std::erase_if(effects, [&](const calib::EffectPtr& e) { return e->name() == effect->name(); });
+  effects.push_back(std::move(effect));
+}
+
 }  // namespace
+
+void add_field_flags(CLI::App* command, FitFlags& flags) {
+  command->add_option("--field", flags.field_nT, "total field in nT, for poses without f_nT")
+      ->check(in_range(1'000, 200'000, "nT"));
+  command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT")
+      ->check(above_zero(10'000, "nT"));
+}
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
@@ -80,24 +100,6 @@ std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
   return f;
 }
 
-namespace {
-
-constexpr double kTurn = 6.4;  ///< in radians, rounded up
-
-/// Every pose has its angles, and none is larger than a turn in radians would be.
-bool looks_like_radians(const PoseTable& table) {
-  double largest = 0;
-  for (const Pose& pose : table.poses) {
-    const auto angles = pose.angles();
-    if (!angles) return false;
-    for (const double a : {angles->azimuth_rad, angles->pitch_rad, angles->roll_rad})
-      largest = std::max(largest, std::abs(to_deg(a)));
-  }
-  return largest > kTurn / 8 && largest <= kTurn;
-}
-
-}  // namespace
-
 Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
   auto source = daemon::read_runs(run, flags.further);
   if (source && looks_like_radians(source->table))
@@ -107,16 +109,6 @@ Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& f
                kTurn);
   return source;
 }
-
-namespace {
-
-/// One effect into a list, in the place of the one of its name.
-void put(std::vector<calib::EffectPtr>& effects, calib::EffectPtr effect) {
-  std::erase_if(effects, [&](const calib::EffectPtr& e) { return e->name() == effect->name(); });
-  effects.push_back(std::move(effect));
-}
-
-}  // namespace
 
 Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source) {
   auto kept = daemon::fit_options(source);

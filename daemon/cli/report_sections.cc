@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calib/criticism/detectable.h"
 #include "calib/criticism/sentence.h"
 #include "calib/probability.h"
 #include "daemon/cli/html.h"
@@ -17,7 +18,6 @@ namespace mgtd::cli {
 namespace {
 
 constexpr std::size_t kCandidates = 12;
-constexpr double kSeen = 8;
 
 std::string rivals_text(const calib::Candidate& candidate) {
   std::vector<std::string> names;
@@ -45,7 +45,7 @@ std::string candidates_section(const ReportContent& c) {
          "model "
          "leaves, with calibration, attitude and field free. d is its size in units of its own "
          "uncertainty.</p>" +
-         svg_bars(bars, kSeen, "d = 8: seen in 99 of 100 runs") +
+         svg_bars(bars, calib::kSeen, fmt::format("d = {:g}: seen in 99 of 100 runs", calib::kSeen)) +
          html_table({"effect", "where", "d", "p", "size", "", "could also be"}, rows, true) +
          html_good(
              "all bars short of the dashed line. Orange bars are named by the verdict; a name is a "

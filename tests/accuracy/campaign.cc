@@ -2,7 +2,6 @@
 #include "tests/accuracy/campaign.h"
 
 #include <Eigen/Cholesky>
-#include <cmath>
 #include <random>
 #include <stdexcept>
 

@@ -142,22 +142,6 @@ std::string table3(const RunErrors& run) {
          fmt::format("Mean of (error / standard error)² over the 48: {:.2f}.\n\n", chi2 / 48);
 }
 
-}  // namespace
-
-std::string simulation_section(int seeds) {
-  const RunErrors g = simulated(gaussian(1), 0.4, seeds), u = simulated(uniform(1), 0.4, seeds),
-                  wide = simulated(uniform(1), 0.5, seeds);
-  const PoseTable one = measure(table3_rig(), {}, grid_5832(), 18, gaussian(1), 1);
-  return fmt::format(
-             "## The paper's simulation\n\nThe rig of Table 3 in 50 000 nT, inclination 60°, declination "
-             "−5°, turned in "
-             "steps of 20° about Z, Y and X: 5832 attitudes. Root mean square over {} seeds.\n\n",
-             seeds) +
-         table1(g, u) + table2(g, u, wide) + table3(run_errors(table3_rig(), one, {}));
-}
-
-namespace {
-
 /// The experiment as far as it can be simulated: the parameters of Table 6, the number and kind of poses.
 RunErrors experiment(bool gradient, bool in_model, std::uint64_t seed) {
   Scene scene;
@@ -258,6 +242,18 @@ std::string table6() {
 }
 
 }  // namespace
+
+std::string simulation_section(int seeds) {
+  const RunErrors g = simulated(gaussian(1), 0.4, seeds), u = simulated(uniform(1), 0.4, seeds),
+                  wide = simulated(uniform(1), 0.5, seeds);
+  const PoseTable one = measure(table3_rig(), {}, grid_5832(), 18, gaussian(1), 1);
+  return fmt::format(
+             "## The paper's simulation\n\nThe rig of Table 3 in 50 000 nT, inclination 60°, declination "
+             "−5°, turned in "
+             "steps of 20° about Z, Y and X: 5832 attitudes. Root mean square over {} seeds.\n\n",
+             seeds) +
+         table1(g, u) + table2(g, u, wide) + table3(run_errors(table3_rig(), one, {}));
+}
 
 std::string experiment_section() {
   const RunErrors clean = experiment(false, false, 71), disturbed = experiment(true, false, 71),

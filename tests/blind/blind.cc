@@ -61,6 +61,43 @@ void ask(const PoseTable& table, const std::string& truth, Answers& out, bool ta
   if (changes_the_field(*report)) ++out.advised;
 }
 
+struct Pick {
+  const HiddenLaw* law;
+  int sensor, axis;
+};
+
+Hidden both(const Hidden& a, const Hidden& b) {
+  return [a, b](const Pose& p, int s, int axis, const Eigen::Vector3d& v) {
+    return a(p, s, axis, v) + b(p, s, axis, v);
+  };
+}
+
+void count(const ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers& out) {
+  const auto is_true = [&](const std::string& name) {
+    return name == truth[0].law->name || name == truth[1].law->name;
+  };
+  int added = 0, found = 0;
+  for (const Pick& pick : truth) {
+    const std::string name(pick.law->name);
+    const auto has = [&](const ImproveRound& round) { return round.added.effect == name; };
+    const auto may = [&](const ImproveRound& round) {
+      return has(round) ||
+             std::find(round.possible.begin(), round.possible.end(), name) != round.possible.end();
+    };
+    const bool was_found = std::any_of(r.rounds.begin(), r.rounds.end(), may);
+    added += std::any_of(r.rounds.begin(), r.rounds.end(), has) ? 1 : 0;
+    found += was_found ? 1 : 0;
+    if (!was_found) ++out.missed[name];
+  }
+  const bool wrong = std::any_of(r.rounds.begin(), r.rounds.end(), [&](const ImproveRound& round) {
+    return !is_true(round.added.effect) &&
+           std::none_of(round.possible.begin(), round.possible.end(), is_true);
+  });
+  out.both_added += added == 2 ? 1 : 0;
+  out.both_found += found == 2 ? 1 : 0;
+  out.wrong_added += wrong ? 1 : 0;
+}
+
 }  // namespace
 
 int Answers::of(Finding finding) const {
@@ -110,47 +147,6 @@ Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed, boo
   }
   return out;
 }
-
-namespace {
-
-struct Pick {
-  const HiddenLaw* law;
-  int sensor, axis;
-};
-
-Hidden both(const Hidden& a, const Hidden& b) {
-  return [a, b](const Pose& p, int s, int axis, const Eigen::Vector3d& v) {
-    return a(p, s, axis, v) + b(p, s, axis, v);
-  };
-}
-
-void count(const ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers& out) {
-  const auto is_true = [&](const std::string& name) {
-    return name == truth[0].law->name || name == truth[1].law->name;
-  };
-  int added = 0, found = 0;
-  for (const Pick& pick : truth) {
-    const std::string name(pick.law->name);
-    const auto has = [&](const ImproveRound& round) { return round.added.effect == name; };
-    const auto may = [&](const ImproveRound& round) {
-      return has(round) ||
-             std::find(round.possible.begin(), round.possible.end(), name) != round.possible.end();
-    };
-    const bool was_found = std::any_of(r.rounds.begin(), r.rounds.end(), may);
-    added += std::any_of(r.rounds.begin(), r.rounds.end(), has) ? 1 : 0;
-    found += was_found ? 1 : 0;
-    if (!was_found) ++out.missed[name];
-  }
-  const bool wrong = std::any_of(r.rounds.begin(), r.rounds.end(), [&](const ImproveRound& round) {
-    return !is_true(round.added.effect) &&
-           std::none_of(round.possible.begin(), round.possible.end(), is_true);
-  });
-  out.both_added += added == 2 ? 1 : 0;
-  out.both_found += found == 2 ? 1 : 0;
-  out.wrong_added += wrong ? 1 : 0;
-}
-
-}  // namespace
 
 TwoAnswers two_hidden(double d, int runs, std::uint64_t seed) {
   TwoAnswers out;

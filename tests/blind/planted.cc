@@ -2,7 +2,6 @@
 #include "tests/blind/planted.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

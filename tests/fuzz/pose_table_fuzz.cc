@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever a file holds that is given as a pose table: what is accepted survives being written and read
 // again, its numbers are finite, and what is refused is refused with a place and a remedy.
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 

@@ -4,7 +4,6 @@
 //
 //   MGTD_KILLS=100 build/bin/integration_test --gtest_filter='Kill.*'
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // A current near the array, from the input module to the poses, the model and the corrected stream.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

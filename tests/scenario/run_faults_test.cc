@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cables pulled, instruments stuck and the program killed in the middle of a run, through the real drivers.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 // What the default run is good for, against runs with simpler habits at the same attitudes.
 //
 //   run                                  effects seen   pairs told apart
-//   default: both senses, two dwells          27           342 of 351
-//   azimuth always from below                 26           316 of 325   (no backlash)
-//   senses and stops not recorded             25           291 of 300   (no backlash, no settling)
+//   default: both senses, two dwells          28           367 of 378
+//   azimuth always from below                 27           340 of 351   (no backlash)
+//   senses and stops not recorded             26           314 of 325   (no backlash, no settling)
 //
 // Coming from both sides takes 2 of the 60 minutes.
 #include <gtest/gtest.h>

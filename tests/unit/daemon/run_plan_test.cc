@@ -5,9 +5,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <random>
 #include <set>
 

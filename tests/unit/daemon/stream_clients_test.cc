@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clients that are slow, dead, flooding, malformed or too many.
-#include <fmt/format.h>
 
 #include "proto/watch_request.h"
 #include "tests/unit/daemon/stream_server_bench.h"

@@ -5,7 +5,6 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <string>
 #include <vector>
 

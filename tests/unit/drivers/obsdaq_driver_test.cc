@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/obsdaq_driver.h"
 
-#include <fmt/format.h>
-
 #include "drivers/registry.h"
 #include "tests/unit/drivers/obsdaq_bench.h"
 

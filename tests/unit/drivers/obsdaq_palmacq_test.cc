@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include "tests/unit/drivers/obsdaq_bench.h"
 
 namespace mgtd::drivers::obsdaq {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a digitiser is found, stopped, told its settings and started; who is refused.
-#include <fmt/format.h>
-
-#include <set>
 
 #include "tests/unit/drivers/obsdaq_bench.h"
 

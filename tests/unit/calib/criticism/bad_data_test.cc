@@ -3,8 +3,6 @@
 // wrong on a rig.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "calib/criticism/explain.h"
 #include "calib/criticism/sentence.h"
 #include "tests/blind/planted.h"

@@ -3,7 +3,6 @@
 // rate at its aim passes in all but one of a thousand draws of seeds.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/blind/blind.h"

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "calib/criticism/model_change.h"
 #include "calib/criticism/numbers.h"
 #include "calib/fit/joint_errors.h"
