@@ -87,8 +87,7 @@ void add_check(CLI::App& app, Session& session) {
                    "effect of the site to allow for, by name; may be given again")
       ->allow_extra_args(false);
   add_field_flags(command, *args->flags);
-  command->add_option("--table-sd", args->flags->table_sd_deg,
-                      "standard deviation of a table angle in deg (0.1)");
+  add_table_flag(command, *args->flags);
 }
 
 }  // namespace mgtd::cli

@@ -41,8 +41,7 @@ void add_site_flags(CLI::App* command, FitFlags& f) {
       ->check(in_range(-90, 90, "deg"));
   command->add_option("--declination", f.declination_deg, "the same, from X towards Y, deg")
       ->check(in_range(-360, 360, "deg"));
-  command->add_option("--table-sd", f.table_sd_deg, "standard deviation of a table angle in deg (0.1)")
-      ->check(above_zero(10, "deg"));
+  add_table_flag(command, f);
   command->add_option("--seed", f.seed, "of everything random");
 }
 
@@ -73,6 +72,11 @@ void add_field_flags(CLI::App* command, FitFlags& flags) {
       ->check(in_range(1'000, 200'000, "nT"));
   command->add_option("--field-sd", flags.field_sd_nT, "its standard uncertainty in nT")
       ->check(above_zero(10'000, "nT"));
+}
+
+void add_table_flag(CLI::App* command, FitFlags& flags) {
+  command->add_option("--table-sd", flags.table_sd_deg, "standard deviation of a table angle in deg (0.1)")
+      ->check(above_zero(10, "deg"));
 }
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {

@@ -28,6 +28,8 @@ std::shared_ptr<FitFlags> add_model_flags(CLI::App* command);
 std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command);
 /// Those about the field alone.
 void add_field_flags(CLI::App* command, FitFlags& flags);
+/// That about the table's angles alone.
+void add_table_flag(CLI::App* command, FitFlags& flags);
 
 /// RUN, and the further runs behind it.
 [[nodiscard]] Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags);
