@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kRemembered = 30;  ///< poses that a new one is held against, spread over the run
 constexpr int kDirections = 600;         ///< tried for n: 5 deg apart
 constexpr double kFinest_rad = 2e-3;
-constexpr double kGross_rad =
-    0.26;  ///< 15 deg: a pair that is off by more says no more than that it is wrong
+/// 15 deg: a pair that is off by more says no more than that it is wrong.
+constexpr double kGross_rad = 0.26;
 
 double angle(double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); }
 

@@ -18,10 +18,10 @@ namespace {
 
 using drivers::TableLimits;
 
-constexpr double kPerDegree =
-    100;                       // planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit
-constexpr int kMinRandom = 9;  // unknowns of a sensor by itself
-constexpr double kMinTravel_rad = to_rad(1);  // less is no axis
+/// Planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit.
+constexpr double kPerDegree = 100;
+constexpr int kMinRandom = 9;                 ///< unknowns of a sensor by itself
+constexpr double kMinTravel_rad = to_rad(1);  ///< less is no axis
 
 /// Multiples of 0.01 deg inside a range of travel.
 struct Travel {

@@ -9,8 +9,8 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kBatch =
-    32;  ///< poses eliminated per rank update: enough for a blocked product, small enough for the cache
+/// Poses eliminated per rank update: enough for a blocked product, small enough for the cache.
+constexpr int kBatch = 32;
 
 /// Slots that no observation reaches are held by a unit information.
 void hold_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {

@@ -97,8 +97,8 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
 }
 
 void refit_nuisances(const JointProblem& problem, JointState& state) {
-  constexpr int kSteps =
-      8;  // the field enters almost linearly: two steps settle it, the rest costs nothing when settled
+  // The field enters almost linearly: two steps settle it, the rest costs nothing when settled.
+  constexpr int kSteps = 8;
   const PoseModel model(problem, state);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {

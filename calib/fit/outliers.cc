@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kLimit = 6;     ///< robust spreads: one false node in 10^8 Gaussian observations
 constexpr double kTakeBack = 4;  ///< spreads below which an observation fits after all
-constexpr double kWithWorst =
-    0.2;  ///< smaller than this share of the worst may be its shadow: wait for the next round
+/// Smaller than this share of the worst may be its shadow: wait for the next round.
+constexpr double kWithWorst = 0.2;
 constexpr double kMaxShare = 0.1;  ///< of the poses
 /// Of the largest misfit of its pose, in units of the noise: what is smaller is bent by that one. The worst
 /// of an axis that misfits everywhere stands out least where it is one of many, and its neighbours in its

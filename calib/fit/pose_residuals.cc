@@ -8,8 +8,8 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kNothing =
-    1e-9;  ///< share of an observation's freedom below which it has no residual of its own
+/// Share of an observation's freedom below which it has no residual of its own.
+constexpr double kNothing = 1e-9;
 
 /// Freedom of an observation: one less its leverage through the pose's own nuisances.
 double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const Eigen::LLT<Eigen::Matrix4d>& H) {
