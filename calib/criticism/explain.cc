@@ -253,6 +253,45 @@ void name(ExplainReport& report) {
   }
 }
 
+/// No residual shows it.
+Untestable swapped_sensors() {
+  return {
+      "data.swapped-sensors",
+      "two sensors whose cables are exchanged read the same uniform field through matrices that are free: "
+      "pass a small magnet by each sensor in turn and see which one answers, or compare with an earlier "
+      "calibration (mgt diff)"};
+}
+
+/// Adds what stands out, round by round. False: the evidence for the first name is that of one pose.
+bool add_rounds(int most, Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
+  for (int round = 0; round < most && criticism.rejects_named(); ++round) {
+    Candidate weighed;
+    weigh_poses(fit, criticism.evidence_by_pose(0), weighed);
+    if (weighed.largest_pose > kOnePose) {
+      report.notes.push_back(fmt::format("one pose ({}) carries the evidence for {}: measure it again",
+                                         weighed.poses.front(), criticism.families.front().suspect->name));
+      return !report.rounds.empty();
+    }
+    if (!add_winner(search, fit, criticism, report)) break;
+  }
+  return true;
+}
+
+/// A memory follows the way of the table, which may not be in the data.
+void say_way_unknown(const Search& search, ExplainReport& report) {
+  const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
+  const bool remembers = std::any_of(report.rounds.begin(), report.rounds.end(), [&](const Round& r) {
+    return memory(r.added.effect) ||
+           (!search.slow && std::any_of(r.possible.begin(), r.possible.end(), memory));
+  });
+  if (!remembers || !search.table.path.empty()) return;
+  report.notes.emplace_back(
+      "the way of the table between its poses is not in these data: a memory of the cores is followed from "
+      "dwell to dwell only, its size and its width are rough, and another name may stand in its place. To "
+      "settle it: measure with the daemon, whose run file keeps the angles of the table on the way, or go "
+      "to a dozen of the poses from both sides");
+}
+
 }  // namespace
 
 std::string_view to_string(Finding finding) {
@@ -282,12 +321,7 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   if (!fit) return tl::unexpected(fit.error());
   ExplainReport out;
   out.untestable = search.suspects.untestable;
-  out.untestable.push_back({"data.swapped-sensors",
-                            "two sensors whose cables are exchanged read the same uniform field through "
-                            "matrices that are free: pass a "
-                            "small magnet by each sensor in turn and see which one answers, or compare with "
-                            "an earlier calibration "
-                            "(mgt diff)"});
+  out.untestable.push_back(swapped_sensors());
   out.fit = std::make_shared<const JointFit>(*fit);
   search.given = search.joint.effects;
   Criticism criticism = criticise(*fit, search.suspects, search.seed);
@@ -295,37 +329,13 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   describe(*fit, criticism, out);
   search.slow =
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
-  if (bad_data(*fit, criticism, out.notes)) {
+  const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
+  if (bad_data(*fit, criticism, out.notes) || !add_rounds(options.rounds, search, *fit, criticism, out)) {
     out.finding = Finding::bad_data;
     return out;
   }
-  const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
-  for (int round = 0; round < options.rounds && criticism.rejects_named(); ++round) {
-    Candidate weighed;
-    weigh_poses(*fit, criticism.evidence_by_pose(0), weighed);
-    if (weighed.largest_pose > kOnePose) {
-      out.notes.push_back(fmt::format("one pose ({}) carries the evidence for {}: measure it again",
-                                      weighed.poses.front(), criticism.families.front().suspect->name));
-      if (out.rounds.empty()) {
-        out.finding = Finding::bad_data;
-        return out;
-      }
-      break;
-    }
-    if (!add_winner(search, *fit, criticism, out)) break;
-  }
   say_absurd(search, criticism, out);
-  const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
-  const bool remembers = std::any_of(out.rounds.begin(), out.rounds.end(), [&](const Round& r) {
-    return memory(r.added.effect) ||
-           (!search.slow && std::any_of(r.possible.begin(), r.possible.end(), memory));
-  });
-  if (remembers && table.path.empty())
-    out.notes.emplace_back(
-        "the way of the table between its poses is not in these data: a memory of the cores is followed from "
-        "dwell to dwell only, its size and its width are rough, and another name may stand in its place. To "
-        "settle it: measure with the daemon, whose run file keeps the angles of the table on the way, or go "
-        "to a dozen of the poses from both sides");
+  say_way_unknown(search, out);
   if (!out.rounds.empty()) {
     look_at_maps(*fit, criticism);
     out.detectable = detectable(criticism);

@@ -16,8 +16,8 @@ constexpr double kNoiseFloor_nT = 1e-4;
 /// where to begin when nothing is known.
 constexpr double kFarOff = 10, kNearAgain = 3, kVeryFarOff = 100;
 constexpr double kSizeSettled = 0.1;
-constexpr double kWeightsUnknown =
-    10;  ///< of chi-square: less is not worth a step before the weights are known
+/// Of chi-square: less is not worth a step before the weights are known.
+constexpr double kWeightsUnknown = 10;
 const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
 
 struct Noise {
@@ -157,7 +157,44 @@ AxisNoise assumed_noise(const JointProblem& problem) {
   return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(kSensors, 3);
 }
 
-/// `unsettled` tells that no more than that went wrong.
+/// Where fitting, weighing anew and leaving out ended.
+struct Weighed {
+  JointSolution solution;
+  PoseResiduals residuals;
+  Outliers outliers;
+};
+
+/// Fits, weighs anew and leaves out in turn until nothing moves. `unsettled` tells that no more than that
+/// went wrong.
+Result<Weighed> weighed(JointState state, JointFit& fit, Noise& noise, bool& unsettled) {
+  Weighed out;
+  // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
+  double enough = kWeightsUnknown;
+  for (int round = 1;; ++round) {
+    apply(noise, fit.problem);
+    auto solution = solve(fit.problem, std::move(state), enough);
+    unsettled = !solution;
+    if (!solution) return tl::unexpected(solution.error());
+    if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
+    fit.iterations += solution->iterations;
+    out.solution = *std::move(solution);
+    JointState& found = out.solution.state;
+    out.residuals = pose_residuals(fit.problem, found);
+    if (round > kMaxRounds) return out;
+    const bool excluded = out.outliers.exclude(fit.problem, out.residuals);
+    const bool moved = update(out.residuals, fit.problem, noise);
+    if (moved && !excluded) {
+      settle(fit.problem, found, noise);
+      enough = kConverged;
+    }
+    if ((!excluded && !moved && !out.outliers.restore(fit.problem, found)) || round == kMaxRounds) {
+      if (enough == kConverged) return out;
+      enough = kConverged;
+    }
+    state = std::move(found);
+  }
+}
+
 Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near,
                      bool& unsettled) {
   auto problem = joint_problem(table, options);
@@ -178,39 +215,16 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   noise.table_sd_rad = options.table_sd_rad;
   fit.worse = noise.worse = noise.sample_nT ? options.worse : 1;
   for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.worse;
-  Outliers outliers;
-  Result<JointSolution> solution = JointSolution{};
-  PoseResiduals residuals;
-  // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
-  double enough = kWeightsUnknown;
-  for (int round = 1;; ++round) {
-    apply(noise, fit.problem);
-    solution = solve(fit.problem, std::move(*state), enough);
-    unsettled = !solution;
-    if (!solution) return tl::unexpected(solution.error());
-    if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
-    fit.iterations += solution->iterations;
-    residuals = pose_residuals(fit.problem, solution->state);
-    if (round > kMaxRounds) break;
-    const bool excluded = outliers.exclude(fit.problem, residuals);
-    const bool moved = update(residuals, fit.problem, noise);
-    if (moved && !excluded) {
-      settle(fit.problem, solution->state, noise);
-      enough = kConverged;
-    }
-    if ((!excluded && !moved && !outliers.restore(fit.problem, solution->state)) || round == kMaxRounds) {
-      if (enough == kConverged) break;
-      enough = kConverged;
-    }
-    state = std::move(solution->state);
-  }
-  fit.state = std::move(solution->state);
-  fit.outliers = outliers.nodes(fit.problem, fit.state);
+  auto found = weighed(*std::move(state), fit, noise, unsettled);
+  if (!found) return tl::unexpected(found.error());
+  fit.state = std::move(found->solution.state);
+  fit.outliers = found->outliers.nodes(fit.problem, fit.state);
   fit.pose_noise_nT = assumed_noise(fit.problem) / fit.worse;
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
-  fill_statistics(residuals, solution->reduced, fit);
-  auto covariance = covariance_of(fit.spread > 1 ? widened_information(fit) : std::move(solution->reduced.S));
+  Reduced& reduced = found->solution.reduced;
+  fill_statistics(found->residuals, reduced, fit);
+  auto covariance = covariance_of(fit.spread > 1 ? widened_information(fit) : std::move(reduced.S));
   if (!covariance) return tl::unexpected(covariance.error());
   fit.covariance = *std::move(covariance);
   fit.gauge_text = describe_gauge(fit);
