@@ -4,6 +4,7 @@
 
 #include "calib/effects/axis_scale.h"
 #include "calib/effects/effect_spec.h"
+#include "calib/run_time.h"
 
 /// An effect of the electronics or the core of an axis, linear in its coefficients:
 ///
@@ -89,6 +90,14 @@ class AxisEffect final : public EffectOf<AxisEffect<Law>> {
   AxisScale scale_;
 };
 
+/// What most laws say of themselves: one coefficient an axis, no numbers of their own, and nothing they need
+/// of a pose. A law that differs in one of these says that one.
+struct PlainLaw {
+  static constexpr int kPerAxis = 1;
+  static std::string_view missing(const Pose&, int) { return {}; }
+  static void parameters(EffectSpec&) {}
+};
+
 /// One coefficient an axis, called after the axis.
 [[nodiscard]] inline AxisCoefficients one_per_axis(std::string unit, double typical) {
   return {.suffix = {{{""}, {""}, {""}}}, .unit = std::move(unit), .typical = typical};
@@ -96,6 +105,14 @@ class AxisEffect final : public EffectOf<AxisEffect<Law>> {
 
 /// "s3_T_degC" for a pose that lacks this sensor's temperature, else empty.
 [[nodiscard]] std::string_view missing_temperature(const Pose& pose, int sensor);
+/// A law that reads the temperature of its sensor.
+struct TemperatureLaw : PlainLaw {
+  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
+};
+/// A law that reads the time.
+struct TimeLaw : PlainLaw {
+  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
+};
 /// Of the sensor less T0; the pose has it.
 [[nodiscard]] inline double warmer_degC(const Conditions& at, int sensor) {
   return *at.pose.T_degC[static_cast<std::size_t>(sensor)] - kReferenceT_degC;

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "calib/effects/axis_effect.h"
-#include "calib/run_time.h"
 
 /// Effects on the scale factor of an axis:
 ///
@@ -14,36 +13,27 @@
 ///     axis.gain.step           y += 1e-6 g v [|v| > c]          ppm, c in nT
 namespace mgtd::calib {
 
-struct GainTemperature {
+struct GainTemperature : TemperatureLaw {
   static constexpr std::string_view kName = "axis.gain.temperature";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("ppm/degC", 20); }
-  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) {
     return v[static_cast<std::size_t>(axis)] * S(1e-6 * warmer_degC(at, sensor));
   }
 };
 
-struct GainTemperature2 {
+struct GainTemperature2 : TemperatureLaw {
   static constexpr std::string_view kName = "axis.gain.temperature2";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("ppm/degC^2", 1); }
-  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) {
     return v[static_cast<std::size_t>(axis)] * S(1e-6 * warmer_degC(at, sensor) * warmer_degC(at, sensor));
   }
 };
 
-struct GainDrift {
+struct GainDrift : TimeLaw {
   static constexpr std::string_view kName = "axis.gain.drift";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("ppm/h", 5); }
-  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int, int axis, std::span<const S> v, int) {
     return v[static_cast<std::size_t>(axis)] * S(1e-6 * at.t_h);

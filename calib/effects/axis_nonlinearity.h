@@ -15,12 +15,9 @@ template <class S>
   return v[static_cast<std::size_t>(axis)] * S(1 / kReferenceField_nT);
 }
 
-struct Quadratic {
+struct Quadratic : PlainLaw {
   static constexpr std::string_view kName = "axis.quadratic";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
-  static std::string_view missing(const Pose&, int) { return {}; }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions&, int, int axis, std::span<const S> v, int) {
     const S x = in_F0(v, axis);
@@ -28,12 +25,9 @@ struct Quadratic {
   }
 };
 
-struct Cubic {
+struct Cubic : PlainLaw {
   static constexpr std::string_view kName = "axis.cubic";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
-  static std::string_view missing(const Pose&, int) { return {}; }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions&, int, int axis, std::span<const S> v, int) {
     const S x = in_F0(v, axis);
@@ -41,15 +35,13 @@ struct Cubic {
   }
 };
 
-struct Transverse {
+struct Transverse : PlainLaw {
   static constexpr std::string_view kName = "axis.transverse";
   static constexpr int kPerAxis = 2;
   static AxisCoefficients coefficients() {
     const std::vector<std::string> two{".squares", ".product"};
     return {.suffix = {{two, two, two}}, .unit = "nT", .typical = 2};
   }
-  static std::string_view missing(const Pose&, int) { return {}; }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions&, int, int axis, std::span<const S> v, int j) {
     const S b = in_F0(v, (axis + 1) % 3), c = in_F0(v, (axis + 2) % 3);
@@ -57,12 +49,9 @@ struct Transverse {
   }
 };
 
-struct ZeroCrossing {
+struct ZeroCrossing : PlainLaw {
   static constexpr std::string_view kName = "axis.zero-crossing";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("nT", 0.5); }
-  static std::string_view missing(const Pose&, int) { return {}; }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions&, int, int axis, std::span<const S> v, int) {
     const double own = value_of(v[static_cast<std::size_t>(axis)]);

@@ -13,36 +13,27 @@
 ///     axis.offset.step           y += s [t >= ts]            nT, ts in hours since the start of the run
 namespace mgtd::calib {
 
-struct OffsetTemperature {
+struct OffsetTemperature : TemperatureLaw {
   static constexpr std::string_view kName = "axis.offset.temperature";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("nT/degC", 0.3); }
-  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int sensor, int, std::span<const S>, int) {
     return S(warmer_degC(at, sensor));
   }
 };
 
-struct OffsetTemperature2 {
+struct OffsetTemperature2 : TemperatureLaw {
   static constexpr std::string_view kName = "axis.offset.temperature2";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("nT/degC^2", 0.02); }
-  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int sensor, int, std::span<const S>, int) {
     return S(warmer_degC(at, sensor) * warmer_degC(at, sensor));
   }
 };
 
-struct OffsetDrift {
+struct OffsetDrift : TimeLaw {
   static constexpr std::string_view kName = "axis.offset.drift";
-  static constexpr int kPerAxis = 1;
   static AxisCoefficients coefficients() { return one_per_axis("nT/h", 1); }
-  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int, int, std::span<const S>, int) {
     return S(at.t_h);

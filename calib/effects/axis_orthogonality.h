@@ -13,7 +13,7 @@
 namespace mgtd::calib {
 
 template <int kPower>
-struct OrthogonalityLaw {
+struct OrthogonalityLaw : TemperatureLaw {
   static constexpr std::string_view kName =
       kPower == 1 ? "axis.orthogonality.temperature" : "axis.orthogonality.temperature2";
   static constexpr int kPerAxis = 2;
@@ -23,8 +23,6 @@ struct OrthogonalityLaw {
             .typical = kPower == 1 ? 1 : 0.1,
             .axes_alike = false};
   }
-  static std::string_view missing(const Pose& pose, int sensor) { return missing_temperature(pose, sensor); }
-  static void parameters(EffectSpec&) {}
   template <class S>
   static S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int j) {
     const int other = j < axis ? j : j + 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "calib/effects/effect.h"
-#include "calib/effects/platform_scale.h"
+#include "calib/effects/platform_effect.h"
 
 /// Effects of the platform that the twelve parameters of a sensor swallow whole in a uniform field. They are
 /// here so that this can be shown; a fit with one of them is refused with the reason.
@@ -16,37 +16,26 @@ namespace mgtd::calib {
 /// Refuses, whatever the poses.
 [[nodiscard]] Result<void> absorbed(std::string_view name);
 
-class HardIron final : public EffectOf<HardIron> {
+class HardIron final : public PlatformEffect<HardIron> {
  public:
-  HardIron() : scale_({"x", "y", "z"}, "nT", 100, {.scale = Where::Scale::own}) {}
-  [[nodiscard]] std::string_view name() const override { return "platform.hard-iron"; }
-  [[nodiscard]] Level level() const override { return Level::platform; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override {
-    return scale_.coefficients();
-  }
-  [[nodiscard]] std::span<const int> at(int sensor) const override { return scale_.at(sensor); }
+  static constexpr std::string_view kName = "platform.hard-iron";
+  HardIron() : PlatformEffect({{"x", "y", "z"}, "nT", 100, {.scale = Where::Scale::own}}) {}
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   [[nodiscard]] Result<void> check(const PoseTable&) const override { return absorbed(name()); }
   template <class S>
   void equation(const Conditions&, int, std::span<const S>, std::span<const S> h, std::span<S> out) const {
     for (std::size_t i = 0; i < 3; ++i) out[i] = h[i];
   }
-
- private:
-  PlatformScale scale_;
 };
 
-class SoftIron final : public EffectOf<SoftIron> {
+class SoftIron final : public PlatformEffect<SoftIron> {
  public:
+  static constexpr std::string_view kName = "platform.soft-iron";
   SoftIron()
-      : scale_({"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, "ppm", 1000,
-               {.scale = Where::Scale::own}) {}
-  [[nodiscard]] std::string_view name() const override { return "platform.soft-iron"; }
-  [[nodiscard]] Level level() const override { return Level::platform; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override {
-    return scale_.coefficients();
-  }
-  [[nodiscard]] std::span<const int> at(int sensor) const override { return scale_.at(sensor); }
+      : PlatformEffect({{"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"},
+                        "ppm",
+                        1000,
+                        {.scale = Where::Scale::own}}) {}
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   [[nodiscard]] Result<void> check(const PoseTable&) const override { return absorbed(name()); }
   template <class S>
@@ -54,9 +43,6 @@ class SoftIron final : public EffectOf<SoftIron> {
     for (std::size_t i = 0; i < 3; ++i)
       out[i] = (k[3 * i] * in[0] + k[3 * i + 1] * in[1] + k[3 * i + 2] * in[2]) * S(1e-6);
   }
-
- private:
-  PlatformScale scale_;
 };
 
 class Crosstalk final : public EffectOf<Crosstalk> {

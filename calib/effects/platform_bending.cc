@@ -2,19 +2,22 @@
 #include "calib/effects/platform_bending.h"
 
 namespace mgtd::calib {
-
 namespace {
+
 constexpr double kPrior_deg = 0.1;
-}
+
+}  // namespace
 
 Flexure::Flexure(const Where& where)
-    : scale_({"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, "deg", 0.01, where, kPrior_deg) {}
+    : PlatformEffect(
+          {{"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}, "deg", 0.01, where, kPrior_deg}) {}
 
-ThermalBending::ThermalBending(const Where& where) : scale_({"x", "y", "z"}, "arcsec/degC", 5, where) {}
+ThermalBending::ThermalBending(const Where& where)
+    : PlatformEffect({{"x", "y", "z"}, "arcsec/degC", 5, where}) {}
 
 std::string_view ThermalBending::missing(const Pose& pose) const {
   for (int sensor = 0; sensor < kSensors; ++sensor) {
-    if (scale_.at(sensor).empty()) continue;
+    if (at(sensor).empty()) continue;
     if (const auto column = missing_temperature(pose, sensor); !column.empty()) return column;
   }
   return {};

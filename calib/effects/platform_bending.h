@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "calib/effects/axis_effect.h"
-#include "calib/effects/platform_scale.h"
+#include "calib/effects/platform_effect.h"
 #include "proto/units.h"
 
 /// A sensor turns against the platform: R_i <- exp[omega_i]x R_i, so the sensor sees exp[-omega_i]x b_i.
@@ -36,16 +36,10 @@ void turn_term(const std::array<S, 3>& w, std::span<const S> b, std::span<S> out
   out[2] = second * (w[0] * wb[1] - w[1] * wb[0]) - first * wb[2];
 }
 
-class Flexure final : public EffectOf<Flexure> {
+class Flexure final : public PlatformEffect<Flexure> {
  public:
+  static constexpr std::string_view kName = "platform.flexure";
   explicit Flexure(const Where& where);
-  [[nodiscard]] std::string_view name() const override { return "platform.flexure"; }
-  [[nodiscard]] std::string spec() const override { return scale_.spec(name()); }
-  [[nodiscard]] Level level() const override { return Level::platform; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override {
-    return scale_.coefficients();
-  }
-  [[nodiscard]] std::span<const int> at(int sensor) const override { return scale_.at(sensor); }
   [[nodiscard]] std::string_view missing(const Pose& pose) const override { return missing_angle(pose); }
 
   template <class S>
@@ -59,21 +53,12 @@ class Flexure final : public EffectOf<Flexure> {
       w[i] = (c[3 * i] * in[3] + c[3 * i + 1] * in[4] + c[3 * i + 2] * in[5]) * S(to_rad(1.0));
     turn_term(w, in.first(3), out);
   }
-
- private:
-  PlatformScale scale_;
 };
 
-class ThermalBending final : public EffectOf<ThermalBending> {
+class ThermalBending final : public PlatformEffect<ThermalBending> {
  public:
+  static constexpr std::string_view kName = "platform.thermal-bending";
   explicit ThermalBending(const Where& where);
-  [[nodiscard]] std::string_view name() const override { return "platform.thermal-bending"; }
-  [[nodiscard]] std::string spec() const override { return scale_.spec(name()); }
-  [[nodiscard]] Level level() const override { return Level::platform; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override {
-    return scale_.coefficients();
-  }
-  [[nodiscard]] std::span<const int> at(int sensor) const override { return scale_.at(sensor); }
   [[nodiscard]] std::string_view missing(const Pose& pose) const override;
 
   template <class S>
@@ -86,9 +71,6 @@ class ThermalBending final : public EffectOf<ThermalBending> {
     const S warmer(to_rad(warmer_degC(at, sensor) / 3600));
     turn_term<S>({c[0] * warmer, c[1] * warmer, c[2] * warmer}, in.first(3), out);
   }
-
- private:
-  PlatformScale scale_;
 };
 
 }  // namespace mgtd::calib

@@ -33,10 +33,10 @@ std::vector<std::string> current_columns(const PoseTable& table) {
 }
 
 PlatformCurrent::PlatformCurrent(std::vector<std::string> columns, const Where& where)
-    : columns_(std::move(columns)), scale_(names_of(columns_), "nT/A", 20, where) {}
+    : PlatformEffect({names_of(columns), "nT/A", 20, where}), columns_(std::move(columns)) {}
 
 std::string PlatformCurrent::spec() const {
-  std::string out = scale_.spec(name());
+  std::string out = PlatformEffect::spec();
   if (!columns_.empty()) out += fmt::format(",columns={}", fmt::join(columns_, "/"));
   return out;
 }
@@ -54,7 +54,7 @@ Result<std::shared_ptr<const Effect>> PlatformCurrent::bound(const EffectContext
                             kMaxColumns),
                 fmt::format("name them: platform.current,columns={}", fmt::join(columns, "/")));
   }
-  return std::make_shared<const PlatformCurrent>(std::move(columns), scale_.where());
+  return std::make_shared<const PlatformCurrent>(std::move(columns), scale().where());
 }
 
 std::string_view PlatformCurrent::missing(const Pose& pose) const {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/effects/effect.h"
-#include "calib/effects/platform_scale.h"
+#include "calib/effects/platform_effect.h"
 
 /// `platform.current`: the field of currents that flow near the array and turn with it.
 ///
@@ -14,18 +14,13 @@
 /// most three at once. A current that never changes is absorbed by the offsets and refused.
 namespace mgtd::calib {
 
-class PlatformCurrent final : public EffectOf<PlatformCurrent> {
+class PlatformCurrent final : public PlatformEffect<PlatformCurrent> {
  public:
+  static constexpr std::string_view kName = "platform.current";
   static constexpr std::size_t kMaxColumns = 3;
   PlatformCurrent(std::vector<std::string> columns, const Where& where);
-  [[nodiscard]] std::string_view name() const override { return "platform.current"; }
   [[nodiscard]] std::string spec() const override;
   [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
-  [[nodiscard]] Level level() const override { return Level::platform; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override {
-    return scale_.coefficients();
-  }
-  [[nodiscard]] std::span<const int> at(int sensor) const override { return scale_.at(sensor); }
   [[nodiscard]] std::string_view missing(const Pose& pose) const override;
   [[nodiscard]] Result<void> check(const PoseTable& table) const override;
 
@@ -42,7 +37,6 @@ class PlatformCurrent final : public EffectOf<PlatformCurrent> {
   [[nodiscard]] static double above_mean_A(const Conditions& at, const std::string& column);
 
   std::vector<std::string> columns_;
-  PlatformScale scale_;
 };
 
 /// Names of the covariates that end in "_A", over all poses, sorted.
