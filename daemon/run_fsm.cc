@@ -223,48 +223,42 @@ std::string RunFsm::kept() const {
                                : fmt::format("the {} poses measured are kept", progress_.done());
 }
 
+RunState RunFsm::state() const {
+  switch (phase_) {
+    case Phase::preflight:
+      return RunState::preflight;
+    case Phase::homing:
+      return RunState::homing;
+    case Phase::asking:
+      return RunState::asking;
+    case Phase::approaching:
+      return RunState::moving;
+    case Phase::moving:
+      return settle_->stopped() ? RunState::settling : RunState::moving;
+    case Phase::dwelling:
+    case Phase::storing:
+      return RunState::dwelling;
+    case Phase::suspended:
+      return RunState::suspended;
+    case Phase::paused:
+    case Phase::waiting:
+      return RunState::paused;
+    case Phase::solving:
+    case Phase::proposing:
+      return RunState::solving;
+    case Phase::stopping:
+      return RunState::aborting;
+    case Phase::ended:
+      return final_;
+  }
+  return final_;
+}
+
 RunStatus RunFsm::status(Instant now) const {
   RunStatus s;
   s.run_id = config_.run_id;
-  switch (phase_) {
-    case Phase::preflight:
-      s.state = RunState::preflight;
-      break;
-    case Phase::homing:
-      s.state = RunState::homing;
-      break;
-    case Phase::asking:
-      s.state = RunState::asking;
-      s.prompt = prompt_;
-      break;
-    case Phase::approaching:
-      s.state = RunState::moving;
-      break;
-    case Phase::moving:
-      s.state = settle_->stopped() ? RunState::settling : RunState::moving;
-      break;
-    case Phase::dwelling:
-    case Phase::storing:
-      s.state = RunState::dwelling;
-      break;
-    case Phase::suspended:
-      s.state = RunState::suspended;
-      break;
-    case Phase::paused:
-    case Phase::waiting:
-      s.state = RunState::paused;
-      break;
-    case Phase::solving:
-    case Phase::proposing:
-      s.state = RunState::solving;
-      break;
-    case Phase::stopping:
-      s.state = RunState::aborting;
-      break;
-    case Phase::ended:
-      s.state = final_;
-      break;
-  }
+  s.state = state();
+  if (phase_ == Phase::asking) s.prompt = prompt_;
   if (index_ < plan_.poses.size()) s.set = planned().set;
   s.pose = static_cast<int>(progress_.done());
   s.poses = static_cast<int>(plan_.poses.size());

@@ -169,6 +169,7 @@ class RunFsm {
   [[nodiscard]] Result<void> undisturbed(const Pose& pose) const;
   [[nodiscard]] const PlannedPose& planned() const { return plan_.poses[index_]; }
   [[nodiscard]] std::string kept() const;
+  [[nodiscard]] RunState state() const;
   void publish();
   void flush_path();
   template <class A>

@@ -120,6 +120,18 @@ tl::unexpected<Error> not_a_status(std::string_view why) {
               "use mgt and mgtd of the same version");
 }
 
+Result<Check> check_from_json(const nlohmann::json& entry) {
+  Check check;
+  Reader fields(entry);
+  fields.read("name", check.name);
+  fields.read("passed", check.passed);
+  fields.read("measured", check.measured);
+  fields.read("limit", check.limit);
+  fields.read("remedy", check.remedy);
+  if (!fields.objection().empty()) return not_a_status("in checks: " + fields.objection());
+  return check;
+}
+
 Result<RunState> state_from_name(std::string_view text) {
   for (std::uint8_t i = 0; i <= static_cast<std::uint8_t>(RunState::interrupted); ++i) {
     if (name(static_cast<RunState>(i)) == text) return static_cast<RunState>(i);
@@ -214,15 +226,9 @@ Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
   if (!parsed) return tl::unexpected(parsed.error());
   run.state = *parsed;
   for (const nlohmann::json& entry : object.value("checks", nlohmann::json::array())) {
-    Check check;
-    Reader fields(entry);
-    fields.read("name", check.name);
-    fields.read("passed", check.passed);
-    fields.read("measured", check.measured);
-    fields.read("limit", check.limit);
-    fields.read("remedy", check.remedy);
-    if (!fields.objection().empty()) return not_a_status("in checks: " + fields.objection());
-    run.checks.push_back(std::move(check));
+    auto check = check_from_json(entry);
+    if (!check) return tl::unexpected(check.error());
+    run.checks.push_back(*std::move(check));
   }
   return run;
 }
