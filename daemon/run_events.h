@@ -15,9 +15,9 @@
 /// "aux1", ...
 namespace mgtd::daemon {
 
-enum class Request { pause, resume, abort, retry, finish, redo };  ///< of the operator
+enum class Request { pause, resume, abort, finish, redo };  ///< of the operator
 [[nodiscard]] constexpr std::string_view name(Request request) {
-  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "retry", "finish", "redo"};
+  constexpr std::string_view kNames[] = {"pause", "resume", "abort", "finish", "redo"};
   return kNames[static_cast<std::size_t>(request)];
 }
 

@@ -108,7 +108,6 @@ class RunFsm {
 
   void pause();
   void abort();
-  void retry();
   void finish_early();
   void redo();
 

@@ -29,12 +29,6 @@ Result<void> RunFsm::possible(Request request) const {
       if (!lost_.empty())
         return refuse(fmt::format("{} is not connected", *lost_.begin()), "reconnect it, then resume");
       return {};
-    case Request::retry:
-      if (phase_ == Phase::paused) return possible(Request::resume);
-      if (phase_ == Phase::approaching || phase_ == Phase::moving || phase_ == Phase::dwelling ||
-          phase_ == Phase::suspended)
-        return {};
-      return refuse("no pose is under way that could be measured again", "");
     case Request::redo:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
       if (unanswered_) return refuse("a pose is being stored", "ask again in a moment");
@@ -60,8 +54,6 @@ void RunFsm::on(const Request& request) {
       if (asks_for_deed()) return carried_out();
       attempt_ = 0;
       return go_on();
-    case Request::retry:
-      return retry();
     case Request::finish:
       return finish_early();
     case Request::redo:
@@ -72,15 +64,6 @@ void RunFsm::on(const Request& request) {
 void RunFsm::pause() {
   hold(progress_.next() ? "paused by the operator; the pose under way will be measured again"
                         : "paused by the operator");
-}
-
-void RunFsm::retry() {
-  attempt_ = 0;
-  if (phase_ != Phase::paused) {
-    ++retries_;
-    act(StopTable{});
-  }
-  go_on();
 }
 
 /// What is being measured is kept, what is only under way is not.

@@ -108,16 +108,6 @@ TEST(RunFsmInterruption, PauseStopsTheTableAndResumeRepeatsThePose) {
   });
 }
 
-TEST(RunFsmInterruption, RetryMeasuresThePoseAgainAndTheRunEnds) {
-  at_every_step([](RunBench& bench) {
-    bench.send(Request::retry);
-    bench.run(300);
-    ASSERT_TRUE(bench.finished);
-    EXPECT_EQ(bench.finished->state, RunState::done) << bench.finished->message;
-    EXPECT_EQ(bench.stored.size(), 3u);
-  });
-}
-
 TEST(RunFsmInterruption, DeviceThatComesBackCostsOnePose) {
   for (const char* device : {"s3", "table", "scalar"}) {
     SCOPED_TRACE(device);
@@ -225,7 +215,6 @@ TEST(RunFsmInterruption, EveryEventIsHandledInEveryState) {
     return std::vector<Event>{Tick{},
                               Request::pause,
                               Request::resume,
-                              Request::retry,
                               epoch,
                               Gap{1, 9, bench.now(), "s1 silent"},
                               ScalarReading{bench.now(), 0, 0, false},
@@ -275,9 +264,6 @@ TEST(RunFsmInterruption, RandomTroubleNeverBreaksAPromise) {
         case 1:
           bench.lose(device);
           if (device == "table") bench.table.stop();
-          break;
-        case 2:
-          bench.send(Request::retry);
           break;
         case 3:
           bench.disk_full = !bench.disk_full;

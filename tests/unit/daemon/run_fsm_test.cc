@@ -163,7 +163,7 @@ TEST(RunFsm, PoseThatStaysBadPausesTheRunWithTheReason) {
   EXPECT_THAT(bench.status->message, HasSubstr("attempt 4"));
   EXPECT_TRUE(bench.stored.empty());
   bench.saturated = false;
-  bench.send(Request::retry);
+  bench.send(Request::resume);
   ASSERT_TRUE(ends(bench, RunState::done));
   EXPECT_EQ(bench.stored.size(), 2u);
 }
