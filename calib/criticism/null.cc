@@ -13,6 +13,7 @@
 namespace mgtd::calib {
 namespace {
 
+constexpr int kDraws = 1000;
 /// Of a searched number so many values take part in the draws of all families together: neighbours are
 /// alike. Draws of one family have all of them.
 constexpr std::size_t kTogether = 3;
@@ -59,7 +60,7 @@ Eigen::MatrixXd normal(Eigen::Index rows, Eigen::Index columns, std::uint64_t se
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return gauss(random); });
 }
 
-Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64_t seed, int draws) {
+Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64_t seed) {
   Draws out;
   Eigen::Index m = 0, rows = 0;
   for (const ScoredFamily& family : families) {
@@ -85,7 +86,7 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
   gram.diagonal().array() += kJitter;
   gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(gram.selfadjointView<Eigen::Lower>());
-  out.sums = llt.matrixL() * normal(m, draws, seed);
+  out.sums = llt.matrixL() * normal(m, kDraws, seed);
   return out;
 }
 
@@ -137,12 +138,12 @@ double best_of(double log10_p, double m) {
   return std::log10(-std::expm1(m * std::log1p(-std::pow(10.0, std::min(log10_p, -1e-12)))));
 }
 
-Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
+Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed) {
   Rates out;
   if (families.empty()) return out;
-  const Draws together = draw(families, kTogether, seed, draws);
+  const Draws together = draw(families, kTogether, seed);
   std::map<int, Tail> tails;
-  std::vector<double> best(static_cast<std::size_t>(draws), 0.0);
+  std::vector<double> best(kDraws, 0.0);
   for (std::size_t f = 0; f < families.size(); ++f) {
     const ScoredFamily& family = families[f];
     const std::vector<double> own = smallest(family, together, f, tails);
@@ -150,7 +151,7 @@ Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed, 
     for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
     double& asked = out.family[family.suspect->name] = m;
     if (family.signatures.size() > kTogether) {
-      const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1, draws);
+      const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1);
       asked = rate_of(smallest(family, alone, 0, tails));
     }
   }
@@ -167,12 +168,6 @@ bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates) {
     family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
   }
   return all;
-}
-
-double calibrate(std::vector<ScoredFamily>& families, std::uint64_t seed, int draws) {
-  const Rates rates = draw_rates(families, seed, draws);
-  calibrate(families, rates);
-  return rates.best;
 }
 
 }  // namespace mgtd::calib

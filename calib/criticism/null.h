@@ -16,20 +16,14 @@
 /// point far better than counting draws below it, and p becomes 1 - (1 - p)^m.
 namespace mgtd::calib {
 
-inline constexpr int kDraws = 1000;
-
 /// Rates by the name of a family, and that of the best of all.
 struct Rates {
   std::map<std::string, double> family{};
   double best{1};
 };
 
-/// By draws.
-[[nodiscard]] Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed,
-                               int draws = kDraws);
-
-/// Both, and the rate of the best of all.
-double calibrate(std::vector<ScoredFamily>& families, std::uint64_t seed, int draws = kDraws);
+/// By a thousand draws.
+[[nodiscard]] Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed);
 
 /// Sets `asked` and `calibrated` of each family. False where a family has no rate.
 bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates);

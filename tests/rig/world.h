@@ -16,7 +16,6 @@
 ///   B(t, x)                                     site frame, x from the centre of the array
 ///   b_i = R B(t, R' r_i)                        R = M Rz(azimuth) Ry(pitch) Rx(roll), the angles as they
 ///                                               truly are, M the mounting of the array on the table
-///
 ///   y_i = C A R_i' b_i + I_i + noise            SensorTruth; effects at their levels (effect.h)
 namespace mgtd::rig {
 

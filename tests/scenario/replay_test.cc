@@ -13,11 +13,11 @@ namespace mgtd::daemon {
 namespace {
 
 using test::perfect_calibration;
-using test::stream_scenario;
+using test::scenario_of;
 using test::VirtualStream;
 
 rig::Scenario table6() {
-  return stream_scenario("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n");
+  return scenario_of("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n");
 }
 
 /// A virtual daemon, what its clients got, and its journal as bytes.

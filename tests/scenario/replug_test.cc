@@ -38,7 +38,7 @@ TEST_P(Replug, TheTensorStreamsInUnderTwoSeconds) {
   const auto [palmacq, autostart] = GetParam();
   double longest_s = 0;
   for (const int sensor : {1, 3}) {
-    VirtualStream daemon(stream_scenario(scenario_text(palmacq, autostart)));
+    VirtualStream daemon(scenario_of(scenario_text(palmacq, autostart)));
     daemon.start();
     daemon.run(10);
     for (const double away_s : {0.05, 0.3, 1.07, 2.9, 4.16, 7.33, 20.01, 20.21}) {

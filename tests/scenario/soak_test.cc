@@ -25,7 +25,7 @@ namespace mgtd::daemon {
 namespace {
 
 using test::perfect_calibration;
-using test::stream_scenario;
+using test::scenario_of;
 using test::VirtualStream;
 
 constexpr std::uint64_t kKept_bytes = 4U << 20U, kBuffer_bytes = 1U << 16U;
@@ -150,8 +150,7 @@ TEST(Soak, MemoryDescriptorsLogAndDiskStayWhereTheyAre) {
   const double period_h = hours > 24 ? 12 : 1;
   const int periods = static_cast<int>(hours / period_h), warm = std::min(periods / 2, 6);
   ASSERT_GE(periods, 6);
-  Household house(
-      stream_scenario("[rig]\nname = \"soak\"\nparameters = \"table6\"\n[sensors]\nrate_hz = 5\n"));
+  Household house(scenario_of("[rig]\nname = \"soak\"\nparameters = \"table6\"\n[sensors]\nrate_hz = 5\n"));
   Figures before;
   std::vector<double> log;  // bytes in each period
   for (int period = 0; period < periods; ++period) {

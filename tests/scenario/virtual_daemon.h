@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "daemon/config.h"
+#include "daemon/live_pipeline.h"
 #include "daemon/run_fsm.h"
 #include "daemon/sampler.h"
 #include "drivers/link_life.h"
 #include "tests/rig/bench_rig.h"
 #include "tests/rig/config_text.h"
+#include "tests/scenario/virtual_time.h"
 
 /// The whole stack in virtual time and in one thread: the simulated instruments, byte by byte through the
 /// real drivers, the sampler and the run. Only ports, clock and disk are left out: bytes are handed over
@@ -27,18 +29,11 @@ using namespace mgtd::daemon;
 
 inline constexpr double kStep_s = 0.005;
 inline constexpr double kTick_s = 0.02;
-inline constexpr double kSwitchedOn_utc_s = 1'795'255'200;  // 2026-11-21T10:00:00Z
-
-inline rig::Scenario scenario_of(const std::string& text) {
-  auto scenario = rig::parse_scenario(text, "test");
-  if (!scenario) throw std::invalid_argument(scenario.error().at(0));
-  return *scenario;
-}
 
 class VirtualDaemon {
  public:
   explicit VirtualDaemon(const rig::Scenario& scenario)
-      : rig(scenario, kSwitchedOn_utc_s), config_(read_config(scenario)), sampler_(sampler_config()) {
+      : rig(scenario, kSwitchedOn_utc_s), config_(read_config(scenario)), sampler_(sampler_config(config_)) {
     add_ports();
   }
 
@@ -57,11 +52,7 @@ class VirtualDaemon {
   double t_s{0};
   double wall_step_s{0};  ///< by which the host's clock was set since the beginning
 
-  [[nodiscard]] Stamp now() const {
-    return {Instant{from_seconds(1000 + t_s)},
-            WallTime{static_cast<std::int64_t>(kSwitchedOn_utc_s) * 1'000'000'000 +
-                     from_seconds(t_s + wall_step_s).count()}};
-  }
+  [[nodiscard]] Stamp now() const { return stamp_at(t_s, wall_step_s); }
   [[nodiscard]] WallTime started_utc() const { return started_utc_; }
   [[nodiscard]] drivers::Turntable& table() { return dynamic_cast<drivers::Turntable&>(*ports_[4].device); }
   [[nodiscard]] const LinkHealth& health(std::size_t port) const { return ports_.at(port).device->health(); }
@@ -114,7 +105,7 @@ class VirtualDaemon {
     config_ = read_config(rig.world().scenario());
     ports_.clear();
     add_ports();
-    sampler_ = Sampler(sampler_config());
+    sampler_ = Sampler(sampler_config(config_));
     fsm_.reset();
     pending_.clear();
     answers_.clear();
@@ -167,15 +158,6 @@ class VirtualDaemon {
         parse_config(rig::config_text(scenario, "/dev", "/nowhere", 1, "127.0.0.1:0"), "virtual.toml");
     if (!config) throw std::invalid_argument(config.error().lines.at(0));
     return *std::move(config);
-  }
-  [[nodiscard]] SamplerConfig sampler_config() const {
-    SamplerConfig sampler;
-    sampler.rate_hz = config_.rate_hz;
-    for (std::size_t i = 0; i < kSensors; ++i) {
-      const drivers::Device& device = *config_.sensors.at(i).device;
-      sampler.wire_s.at(i) = wire_s(device.line_bytes(), device.baud());
-    }
-    return sampler;
   }
   void add_ports() {
     for (const DeviceConfig& sensor : config_.sensors) ports_.push_back({sensor.name, sensor.device});

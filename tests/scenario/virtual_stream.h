@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,18 +20,13 @@
 #include "proto/units.h"
 #include "tests/rig/bench_rig.h"
 #include "tests/rig/config_text.h"
+#include "tests/scenario/virtual_time.h"
 
 /// The daemon's way from the wires to the stream in virtual time, without a run: simulated instruments byte
 /// by byte, the real drivers and link lives, the pipeline, and everything that the daemon would record.
 namespace mgtd::test {
 
 using namespace mgtd::daemon;
-
-inline rig::Scenario stream_scenario(const std::string& text) {
-  auto scenario = rig::parse_scenario(text, "test");
-  if (!scenario) throw std::invalid_argument(scenario.error().at(0));
-  return *scenario;
-}
 
 /// What a perfect calibration of this rig would be.
 inline std::shared_ptr<const calib::Calibration> perfect_calibration(const rig::Scenario& scenario) {
@@ -69,11 +62,7 @@ class VirtualStream {
   double t_s{0};
   double wall_step_s{0};  ///< by which the host's clock was set since the beginning
 
-  [[nodiscard]] Stamp now() const {
-    return {Instant{from_seconds(1000 + t_s)},
-            WallTime{static_cast<std::int64_t>(kSwitchedOn_utc_s) * 1'000'000'000 +
-                     from_seconds(t_s + wall_step_s).count()}};
-  }
+  [[nodiscard]] Stamp now() const { return stamp_at(t_s, wall_step_s); }
   [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] std::uint64_t next_seq() const { return pipeline_->sampler().next_seq(); }
   [[nodiscard]] const LivePipeline& pipeline() const { return *pipeline_; }
@@ -113,7 +102,6 @@ class VirtualStream {
   }
 
  private:
-  static constexpr double kSwitchedOn_utc_s = 1'795'255'200;  // 2026-11-21T10:00:00Z
   struct Port {
     std::string name;
     std::shared_ptr<drivers::Device> device;
