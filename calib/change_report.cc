@@ -65,11 +65,11 @@ std::string change_table(const Change& change, std::size_t rows) {
   std::string out = "were it one sensor that changed, would the others be as they were?";
   for (std::size_t i = 0; i < kSensors; ++i)
     out += fmt::format("   s{} {}", i + 1, p_phrase(change.others_log10_p[i]));
-  out += fmt::format("\n\n{:<26}{:>14}{:>14}{:>9}{:>22}\n", "as if it alone changed", "by", "sd", "sigmas",
-                     "smallest to be seen");
+  out += fmt::format("\n\n{:<24} {:>20} {:>18} {:>8} {:>20}\n", "as if it alone changed", "by", "sd",
+                     "sigmas", "smallest to be seen");
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
     const ParameterChange& p = change.parameters[j];
-    out += fmt::format("{:<26}{:>14}{:>14}{:>9.1f}{:>22}\n", p.name, amount(p.change, p.unit, true),
+    out += fmt::format("{:<24} {:>20} {:>18} {:>8.1f} {:>20}\n", p.name, amount(p.change, p.unit, true),
                        amount(p.sd, p.unit, false), p.sigmas,
                        std::isfinite(p.seen) ? amount(p.seen, p.unit, false) : "none");
   }

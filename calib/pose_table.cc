@@ -144,8 +144,11 @@ Result<void> Reader::read_header() {
   }
   if (column_of("pose") == kNowhere) missing = "pose" + (missing.empty() ? "" : ", " + missing);
   if (!missing.empty()) {
-    return complain(1, fmt::format("missing column: {}", missing),
-                    "add it to the header row; docs/pose-table.md lists every column");
+    return complain(
+        1, fmt::format("missing column: {}", missing),
+        column_of("s1_x_uT") == kNowhere
+            ? "add it to the header row; docs/pose-table.md lists every column"
+            : "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...");
   }
   return {};
 }

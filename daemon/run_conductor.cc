@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "calib/fit/joint_fit.h"
 #include "daemon/listed_plan.h"
 #include "daemon/run_plan_json.h"
 #include "daemon/solver.h"
@@ -106,6 +107,7 @@ Pace RunConductor::pace() const { return {}; }
 RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& request) const {
   RunConfig out;
   out.run_id = run_id;
+  out.fewest_poses = calib::kFewestPoses;
   out.limits = hooks_.table().limits();
   out.preflight.length_s = config_.run.preflight_s;
   out.preflight.field_nT = config_.field_nT;

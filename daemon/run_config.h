@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,7 @@ struct RunConfig {
 
   /// Measure no further pose once the tensor is known so well (nT/m, worst component); empty: the whole plan.
   std::optional<double> until_tensor_sd_nT_per_m;
+  std::size_t fewest_poses{1};         ///< that a calibration needs: none is finished before
   int retries{3};                      ///< of one pose, before the run pauses and asks
   double approach_rad{kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
   double reach_rad{to_rad(1)};         ///< a table at rest further from its target has not reached it

@@ -36,7 +36,10 @@ Result<void> RunFsm::possible(Request request) const {
       return refuse("nothing was entered by hand yet that could be entered again", "");
     case Request::finish:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
-      if (progress_.done() == 0) return refuse("no pose is measured yet", "mgt run abort ends the run");
+      if (progress_.done() < config_.fewest_poses)
+        return refuse(fmt::format("{} poses are measured, and a calibration needs at least {}",
+                                  progress_.done(), config_.fewest_poses),
+                      "let it go on, or end it without a calibration: mgt run abort");
       return {};
   }
   return refuse("no such request", "");

@@ -91,15 +91,33 @@ std::string round_text(const Round& round, const JointFit* before) {
                      fall_text(round, before), size_text(as_fitted(round)));
 }
 
-/// The one axis that three rounds or more were spent on; empty when there is none.
+/// The one axis that three effects or more were spent on; empty when there is none.
 std::string heap(const ExplainReport& r) {
   constexpr int kHeap = 3;
-  std::map<std::string, int> rounds;
+  std::map<std::string, int> effects;
   for (const Round& round : r.rounds) {
-    const std::string& where = round.added.where;
-    if (where.size() == 4 && where[2] == '.' && ++rounds[where] == kHeap) return where;
+    std::set<std::string> places;
+    for (const EffectPtr& effect : round.effects) {
+      const auto spec = EffectSpec::parse(effect->spec());
+      if (spec && spec->where && spec->where->scale == Where::Scale::axis) places.insert(spec->where->text());
+    }
+    for (const std::string& place : places)
+      if (++effects[place] == kHeap) return place;
   }
   return {};
+}
+
+/// Where what was found is the lesser part of what is there.
+std::string lesser_part_text(const ExplainReport& r) {
+  constexpr double kHalf = 0.5;
+  if (r.finding != Finding::partial || !r.noise.told || r.rounds.empty()) return {};
+  const auto beyond = [&](double rms_nT) { return rms_nT * rms_nT - r.noise_nT * r.noise_nT; };
+  const double before = beyond(r.rounds.front().rms_before_nT), after = beyond(r.rounds.back().rms_after_nT);
+  if (!(before > 0) || after < kHalf * before) return {};
+  return fmt::format(
+      "What is named below takes away only {:.0f} % of what is beyond the noise: most of it is something "
+      "else.",
+      100 * std::max(0.0, 1 - after / before));
 }
 
 std::string heap_text(const ExplainReport& r) {
@@ -179,12 +197,13 @@ std::string size_text(const Candidate& c) {
 }
 
 std::string sentence(const ExplainReport& r) {
-  std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), heap_text(r)};
-  const bool several = !parts.back().empty();
+  const std::string lesser_part = lesser_part_text(r), heap = heap_text(r);
+  std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part, heap};
+  const bool stand_ins = !lesser_part.empty() || !heap.empty();
   const JointFit* before = r.fit.get();
   for (const Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
-    if (!several) parts.push_back(rivals_text(round));
+    if (!stand_ins) parts.push_back(rivals_text(round));
     before = round.fit.get();
   }
   switch (r.finding) {
@@ -199,7 +218,7 @@ std::string sentence(const ExplainReport& r) {
       parts.push_back(left_text(r.maps));
       break;
     case Finding::partial:
-      parts.push_back(left_text(r.maps_left));
+      if (r.left != Finding::pass) parts.push_back(left_text(r.maps_left));
       break;
     case Finding::ambiguous:
       if (!r.next.empty()) {

@@ -41,6 +41,9 @@ struct JointFit {
   [[nodiscard]] double noise_nT() const;  ///< rms of a pose mean over the axes
 };
 
+/// Poses that a fit needs; in general position, and better sixty.
+inline constexpr std::size_t kFewestPoses = 12;
+
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options);
 /// The same from a state that is already near (another fold, the run before the last pose). Nuisances are
 /// refitted.

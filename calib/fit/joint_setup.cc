@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint_fit.h"
 #include "calib/run_time.h"
 #include "calib/sensor_equations.h"
 
 namespace mgtd::calib {
 namespace {
 
-constexpr int kMinPoses = 12;
 /// A reference cannot be better than its last digit, and the weights stay finite.
 constexpr double kMinFieldSd_nT = 1e-3;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
@@ -91,9 +91,9 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   const auto total = std::count_if(table.poses.begin(), table.poses.end(), fitted);
   const auto with_f = std::count_if(table.poses.begin(), table.poses.end(),
                                     [&](const Pose& p) { return fitted(p) && p.f_nT; });
-  if (total < (use == PoseUse::fit ? kMinPoses : 1)) {
+  if (static_cast<std::size_t>(total) < (use == PoseUse::fit ? kFewestPoses : 1)) {
     return fail(ErrorCode::refused,
-                fmt::format("{} poses to fit; the joint fit needs at least {}", total, kMinPoses),
+                fmt::format("{} poses to fit; the joint fit needs at least {}", total, kFewestPoses),
                 "measure at least 12 poses in general position, better 60");
   }
   if (with_f != 0 && with_f != total && !options.field_nT) {

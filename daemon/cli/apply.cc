@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "daemon/cli/calibration_file.h"
@@ -18,6 +21,29 @@ struct Arguments {
   calib::ApplyOptions options;
 };
 
+/// Of four numbers that are zero in any smooth field; empty where no row tells their uncertainty.
+std::optional<double> median_closure_chi2(const std::vector<calib::AppliedPose>& rows) {
+  std::vector<double> chi2;
+  for (const calib::AppliedPose& row : rows)
+    if (std::isfinite(row.sample.closure.chi2)) chi2.push_back(row.sample.closure.chi2);
+  if (chi2.empty()) return std::nullopt;
+  const auto middle = chi2.begin() + static_cast<std::ptrdiff_t>(chi2.size() / 2);
+  std::nth_element(chi2.begin(), middle, chi2.end());
+  return *middle;
+}
+
+/// A calibration of another rig calibrates nothing.
+void doubt_closure(const std::vector<calib::AppliedPose>& rows) {
+  constexpr double kExpected = 3.4, kDoubtful = 100;  // median of chi-square with four degrees of freedom
+  const auto chi2 = median_closure_chi2(rows);
+  if (!chi2 || *chi2 < kDoubtful) return;
+  fmt::print(
+      stderr,
+      "closure_chi2 is {:.3g} in the median of the rows where {} is expected: the calibration does not "
+      "hold for these readings, or is that of another rig; mgt check tells what has changed\n",
+      *chi2, kExpected);
+}
+
 int run_apply(const Session& session, const Arguments& args) {
   const auto calibration = calibration_of(args.calibration, {});
   if (!calibration) return report(session, calibration.error());
@@ -30,6 +56,7 @@ int run_apply(const Session& session, const Arguments& args) {
   for (const calib::AppliedPose& row : *rows) left_out.insert(row.left_out.begin(), row.left_out.end());
   for (const std::string& effect : left_out)
     fmt::print(stderr, "{} was left out where its inputs are missing: see the column left_out\n", effect);
+  doubt_closure(*rows);
   if (!args.output.empty()) {
     if (auto written = write_file(args.output, csv); !written) return report(session, written.error());
   }

@@ -1,38 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "daemon/cli/command.h"
 #include "proto/nearest_word.h"
 
 namespace {
 
-/// The words where a command was expected and none of them was one. False: it was another mistake.
-bool name_unknown_command(const CLI::App& app) {
+/// The words where a command was expected and none of them was one; empty: it was another mistake.
+std::optional<mgtd::Error> unknown_command(const CLI::App& app) {
   const CLI::App* group = &app;
   while (!group->get_subcommands().empty()) group = group->get_subcommands().front();
   const std::vector<std::string> left = app.remaining(true);
   std::vector<std::string> commands;
   for (const CLI::App* command : group->get_subcommands([](const CLI::App*) { return true; }))
     commands.push_back(command->get_name());
-  if (commands.empty() || left.empty() || left.front().starts_with('-')) return false;
+  if (commands.empty() || left.empty() || left.front().starts_with('-')) return std::nullopt;
   const auto meant = mgtd::nearest_word(left.front(), commands);
-  fmt::print(stderr, "mgt: unknown command '{}'{}\n     there are: {}\n", left.front(),
-             meant ? fmt::format(", did you mean '{}'?", *meant) : "", fmt::join(commands, ", "));
-  return true;
+  return mgtd::Error{mgtd::ErrorCode::usage,
+                     fmt::format("unknown command '{}'{}", left.front(),
+                                 meant ? fmt::format(", did you mean '{}'?", *meant) : ""),
+                     fmt::format("there are: {}", fmt::join(commands, ", "))};
 }
 
 /// What was wrong with the words of a command, and where to look; a group without its command lists them.
-std::string words_of(const CLI::App* app, const CLI::Error& error) {
-  const CLI::App* at = app;
+mgtd::Error wrong_words(const CLI::App& app, const CLI::Error& error) {
+  const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
   std::string path;
-  for (const CLI::App* x = at; x != app; x = x->get_parent()) path = " " + x->get_name() + path;
+  for (const CLI::App* x = at; x != &app; x = x->get_parent()) path = " " + x->get_name() + path;
   std::vector<std::string> commands;
   for (const CLI::App* x : at->get_subcommands([](const CLI::App*) { return true; }))
     commands.push_back(x->get_name());
   const bool lacks = !commands.empty() && error.get_name() == "RequiredError";
-  return fmt::format("mgt: {}\n     {}mgt{} --help tells more\n", lacks ? "which command?" : error.what(),
-                     lacks ? fmt::format("one of {}; ", fmt::join(commands, ", ")) : "", path);
+  return {mgtd::ErrorCode::usage, lacks ? "which command?" : error.what(),
+          fmt::format("{}mgt{} --help tells more",
+                      lacks ? fmt::format("one of {}; ", fmt::join(commands, ", ")) : "", path)};
 }
 
 constexpr const char* kDescription =
@@ -52,7 +61,6 @@ int main(int argc, char** argv) {
   CLI::App app{kDescription, "mgt"};
   app.set_version_flag("--version", MGTD_VERSION);
   app.require_subcommand(1);
-  app.failure_message(&words_of);
   app.fallthrough();
   Session session;
   session.control_socket = "/run/mgtd/control.sock";
@@ -90,9 +98,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0 && name_unknown_command(app)) return 2;
-    const int code = app.exit(error);
-    return code == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const std::span words(argv, static_cast<std::size_t>(argc));
+    session.json =
+        session.json || std::find(words.begin(), words.end(), std::string_view("--json")) != words.end();
+    const auto unknown = unknown_command(app);
+    return report(session, unknown ? *unknown : wrong_words(app, error));
   }
   return session.exit_code;
 }

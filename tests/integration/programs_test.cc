@@ -258,7 +258,15 @@ TEST(Programs, BadInputIsNamedAndNothingIsWritten) {
   EXPECT_EQ(fit.exit_code, 2);
   EXPECT_THAT(fit.err, HasSubstr("bad.csv:1:1: missing column"));
   EXPECT_EQ(slurp(dir / "cal.json"), "");
-  EXPECT_EQ(run_program({program("mgt"), "frobnicate"}, dir.path()).exit_code, 2);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"frobnicate"}, {"explain"}, {"fit", "x.csv", "--method", "guess"}}) {
+    std::vector<std::string> command{program("mgt"), "--json"};
+    command.insert(command.end(), words.begin(), words.end());
+    const Finished wrong = run_program(command, dir.path());
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.err, ::testing::StartsWith("mgt: "));
+    EXPECT_EQ(json::parse(wrong.out).at("error").at("code"), "usage") << wrong.out;
+  }
   const Finished nobody =
       run_program({program("mgt"), "--socket", dir / "nobody.sock", "status"}, dir.path());
   EXPECT_EQ(nobody.exit_code, 3);
@@ -285,6 +293,15 @@ TEST(Programs, TheOfflineChainFromTableToTensor) {
       run_program({program("mgt"), "apply", dir / "cal.json", dir / "run.mgtrun"}, dir.path());
   EXPECT_EQ(apply.exit_code, 0);
   EXPECT_THAT(apply.out, HasSubstr("Gxx_nT_per_m"));
+  EXPECT_EQ(apply.err, "");
+  ASSERT_EQ(
+      run_program({program("mgt-rig"), "table", "--rig", "random", "--seed", "5", "-o", dir / "other.csv"},
+                  dir.path())
+          .exit_code,
+      0);
+  const Finished foreign =
+      run_program({program("mgt"), "apply", dir / "cal.json", dir / "other.csv"}, dir.path());
+  EXPECT_THAT(foreign.err, HasSubstr("is that of another rig"));
   const Finished exported = run_program({program("mgt"), "export", dir / "run.mgtrun"}, dir.path());
   EXPECT_THAT(exported.out, HasSubstr("azimuth_deg"));
 }

@@ -60,19 +60,21 @@ void Operator::serve(const json& prompt) {
 }
 
 int Operator::work() {
-  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+  for (bool told = false;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
     const auto reply = say("run.status", json::object());
     if (!reply || !reply->value("ok", false)) return 3;
     const json& run = reply->at("result");
     const std::string state = run.at("state");
+    const bool paused = state == "paused";
     if (run.at("prompt").is_object()) {
       serve(run.at("prompt"));
     } else if (state == "done") {
       return 0;
-    } else if (state == "rejected" || state == "aborted" || state == "failed" || state == "paused") {
+    } else if (state == "rejected" || state == "aborted" || state == "failed" || (paused && !told)) {
       fmt::print(stderr, "{}: {}\n", state, run.at("message").get<std::string>());
-      return 1;
+      if (!paused) return 1;
     }
+    told = paused;
   }
 }
 

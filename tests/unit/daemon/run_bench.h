@@ -30,6 +30,7 @@ inline drivers::TableLimits bench_limits() {
 inline RunConfig bench_config() {
   RunConfig c;
   c.run_id = "bench";
+  c.fewest_poses = 2;
   c.limits = bench_limits();
   c.preflight.rate_hz = c.settle.rate_hz = c.dwell.rate_hz = 10;
   c.preflight.scalar = true;

@@ -108,7 +108,11 @@ TEST(RunFsm, TheOperatorMayFinishEarly) {
   for (const RunState state : {RunState::moving, RunState::dwelling, RunState::paused}) {
     SCOPED_TRACE(name(state));
     RunBench bench(bench_plan(6));
-    EXPECT_FALSE(bench.fsm.possible(Request::finish));  // nothing to fit
+    ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+    const auto too_early = bench.fsm.possible(Request::finish);
+    ASSERT_FALSE(too_early);
+    EXPECT_THAT(too_early.error().message,
+                HasSubstr("1 poses are measured, and a calibration needs at least 2"));
     ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 2; }));
     if (state == RunState::paused) bench.send(Request::pause);
     ASSERT_TRUE(bench.run_to(state));

@@ -83,5 +83,21 @@ TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
   EXPECT_THAT(told(9.46, 9.51), HasSubstr("the residual goes from 9.46 to 9.51 nT"));
 }
 
+/// A law of no library: names that take away a tenth of it are no causes.
+TEST(Sentence, SaysWhenWhatWasFoundIsTheLesserPart) {
+  ExplainReport report;
+  report.finding = Finding::partial;
+  report.noise.told = true;
+  report.noise_nT = 0.02;
+  Round round{.added = {.effect = "axis.offset.step", .where = "s1.y"}};
+  round.rms_before_nT = 0.0911, round.rms_after_nT = 0.0809;
+  report.rounds = {round};
+  EXPECT_THAT(sentence(report), HasSubstr("takes away only 22 % of what is beyond the noise"));
+  EXPECT_THAT(sentence(report), Not(HasSubstr("Nothing else in the library looks like it")));
+  report.rounds.front().rms_after_nT = 0.03;
+  EXPECT_THAT(sentence(report), Not(HasSubstr("takes away only")));
+  EXPECT_THAT(sentence(report), HasSubstr("Nothing else in the library looks like it"));
+}
+
 }  // namespace
 }  // namespace mgtd::calib
