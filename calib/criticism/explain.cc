@@ -115,7 +115,8 @@ struct Search {
   std::set<std::string> failed{};  ///< effects that no fit settled with
   /// Effects that would have needed a size beyond what occurs, and that size as last seen.
   std::map<std::string, std::string> absurd{};
-  bool slow{false};  ///< the residual follows time or temperature: no memory of a turn does
+  std::string one_pose{};  ///< said of what rests on one pose
+  bool slow{false};        ///< the residual follows time or temperature: no memory of a turn does
 };
 
 /// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
@@ -218,10 +219,24 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   return true;
 }
 
-/// Adds the best family that can be fitted; those that cannot are noted.
+/// The note on a family whose evidence is that of one pose; empty where it is spread.
+std::string one_pose_text(const JointFit& fit, const Criticism& c, std::size_t f) {
+  Candidate weighed;
+  weigh_poses(fit, c.evidence_by_pose(f), weighed);
+  if (weighed.largest_pose <= kOnePose) return {};
+  return fmt::format("one pose ({}) carries the evidence for {}: measure it again", weighed.poses.front(),
+                     c.families[f].suspect->name);
+}
+
+/// Adds the best family that can be fitted; those that cannot are noted, as is the first that rests on one
+/// pose.
 bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
   for (std::size_t f = 0; f < criticism.families.size() && criticism.rejects_named(f); ++f) {
     if (search.failed.contains(criticism.families[f].suspect->name)) continue;
+    if (std::string one = one_pose_text(fit, criticism, f); !one.empty()) {
+      if (search.one_pose.empty()) search.one_pose = std::move(one);
+      continue;
+    }
     if (const Candidate c = candidate_of(criticism.families[f], criticism, fit.worse); !c.plausible) {
       search.absurd[c.effect] = size_text(c);
       continue;  // for now: beside what is still missing a size may be absurd that later is none
@@ -262,19 +277,15 @@ Untestable swapped_sensors() {
       "calibration (mgt diff)"};
 }
 
-/// Adds what stands out, round by round. False: the evidence for the first name is that of one pose.
+/// Adds what stands out, round by round. False: nothing does but what rests on one pose.
 bool add_rounds(int most, Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
   for (int round = 0; round < most && criticism.rejects_named(); ++round) {
-    Candidate weighed;
-    weigh_poses(fit, criticism.evidence_by_pose(0), weighed);
-    if (weighed.largest_pose > kOnePose) {
-      report.notes.push_back(fmt::format("one pose ({}) carries the evidence for {}: measure it again",
-                                         weighed.poses.front(), criticism.families.front().suspect->name));
-      return !report.rounds.empty();
-    }
+    search.one_pose.clear();
     if (!add_winner(search, fit, criticism, report)) break;
   }
-  return true;
+  if (search.one_pose.empty() || !criticism.rejects_named()) return true;
+  report.notes.push_back(search.one_pose);
+  return !report.rounds.empty();
 }
 
 /// A memory follows the way of the table, which may not be in the data.

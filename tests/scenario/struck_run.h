@@ -20,7 +20,7 @@ struct Strike {
   const char* words;
   bool lasts;
 };
-inline constexpr std::array<Strike, 20> kStrikes{{
+inline constexpr std::array<Strike, 21> kStrikes{{
     {Strike::Where::any, "unplug", true},
     {Strike::Where::any, "torn", true},
     {Strike::Where::any, "half", true},
@@ -41,6 +41,7 @@ inline constexpr std::array<Strike, 20> kStrikes{{
     {Strike::Where::program, "terminate", false},
     {Strike::Where::program, "set the host's clock", false},
     {Strike::Where::program, "pause", false},
+    {Strike::Where::program, "redo", false},
 }};
 
 /// One run with everything that strikes it, and an operator who looks, waits, and goes on.
@@ -121,6 +122,7 @@ class StruckRun {
     if (what == "kill") return come_back([&] { daemon_.restart(); });
     if (what == "terminate") return come_back([&] { daemon_.terminate(); });
     if (what == "pause") return daemon_.tell(Request::pause);
+    if (what == "redo") return daemon_.tell(Request::redo);
     static constexpr std::array<double, 4> kSteps_s{-1, 1, -3600, 86'400};
     daemon_.wall_step_s += kSteps_s.at(pick(kSteps_s.size()));
   }
