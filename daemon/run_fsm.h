@@ -221,6 +221,7 @@ class RunFsm {
   bool unproved_{false};                ///< the last entry was not yet held against the field
   bool doubtful_{false};                ///< the operator stands by it: others are not held against its poses
   std::optional<TableAngles> doubted_;  ///< the entry that disagreed with it
+  std::optional<TableAngles> far_;      ///< the entry that was far from what was asked for
   std::optional<Pose> stored_;          ///< whose PoseStored is awaited, for field_turn_
   std::optional<std::size_t> last_stored_;
   FieldTurn field_turn_;

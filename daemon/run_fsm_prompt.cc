@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "daemon/approach.h"
@@ -20,6 +21,22 @@ bool same(const TableAngles& a, const TableAngles& b) {
   return std::abs(a.azimuth_rad - b.azimuth_rad) < kSameEntry_rad &&
          std::abs(a.pitch_rad - b.pitch_rad) < kSameEntry_rad &&
          std::abs(a.roll_rad - b.roll_rad) < kSameEntry_rad;
+}
+
+/// The scale on which an entry is so far from what was asked for that it may be misread; empty: none.
+std::string far_from(const TableAngles& asked, const TableAngles& entered) {
+  constexpr double kFar_rad = to_rad(10);
+  const auto far = [](const char* scale, double wanted_rad, double read_rad) {
+    if (std::abs(std::remainder(read_rad - wanted_rad, 2 * std::numbers::pi)) < kFar_rad)
+      return std::string();
+    return fmt::format("{} {:.6g} deg was entered where {:.6g} was asked for", scale, to_deg(read_rad),
+                       to_deg(wanted_rad));
+  };
+  for (std::string text :
+       {far("azimuth", asked.azimuth_rad, entered.azimuth_rad),
+        far("pitch", asked.pitch_rad, entered.pitch_rad), far("roll", asked.roll_rad, entered.roll_rad)})
+    if (!text.empty()) return text;
+  return {};
 }
 
 std::string on_scales(const TableAngles& a) {
@@ -95,6 +112,14 @@ void RunFsm::on(const ScaleEntered& entered) {
       fmt::format("pose {}: entered {}: {}", prompt_->pose,
                   prompt_->what == What::mount ? "the mounting of the array" : "the scales of the table",
                   on_scales(entered.angles))});
+  // The first poses cannot tell by the field. The same entry twice is the operator's word.
+  const std::string far = far_from(prompt_->target, entered.angles);
+  const auto twice = [&](const std::optional<TableAngles>& x) { return x && same(*x, entered.angles); };
+  if (!far.empty() && !twice(far_) && !twice(doubted_)) {
+    far_ = entered.angles;
+    return ask(prompt_->what, far + ": look at the scales again");
+  }
+  far_.reset();
   if (prompt_->what == What::mount) {
     mounted_ = planned().mount;
     mounting_ = entered.angles;

@@ -101,21 +101,38 @@ TEST(RunByHand, NobodyAnswersAndTheRunPausesWithoutAGuess) {
   EXPECT_EQ(bench.status->prompt->pose, 1);
 }
 
-TEST(RunByHand, ABlunderIsNoticedByTheTurnOfTheFieldAndAskedAgain) {
+/// The field tells nothing yet.
+TEST(RunByHand, AnEntryFarFromWhatWasAskedForIsAskedForAgain) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
   int prompts = 0;
   while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
          !bench.finished && hands.entries.size() < 50)
     hands.serve(bench, [&](TableAngles& read) {
-      if (++prompts == 8) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
+      if (++prompts == 2) read.roll_rad += to_rad(read.roll_rad > 0 ? -30 : 30);
     });
   EXPECT_EQ(bench.finished->state, RunState::done);
   ASSERT_EQ(hands.again.size(), 1U);
-  EXPECT_THAT(hands.again[0], HasSubstr("the field turned by"));
+  EXPECT_THAT(hands.again[0], HasSubstr("was entered where"));
   ASSERT_EQ(bench.stored.size(), 12U);
-  EXPECT_EQ(prompts, 13);
-  EXPECT_NEAR(*bench.stored[7].pitch_rad, hands.entries[8].pitch_rad, 1e-12) << "the second entry counts";
+  EXPECT_NEAR(*bench.stored[1].roll_rad, hands.entries[2].roll_rad, 1e-12);
+}
+
+TEST(RunByHand, ABlunderThatIsRepeatedIsNoticedByTheTurnOfTheField) {
+  RunBench bench(hand_plan(12), hand_config());
+  Operator hands;
+  int prompts = 0;
+  while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
+         !bench.finished && hands.entries.size() < 50)
+    hands.serve(bench, [&](TableAngles& read) {
+      if (++prompts == 8 || prompts == 9) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
+    });
+  EXPECT_EQ(bench.finished->state, RunState::done);
+  ASSERT_EQ(hands.again.size(), 2U);
+  EXPECT_THAT(hands.again[1], HasSubstr("the field turned by"));
+  ASSERT_EQ(bench.stored.size(), 12U);
+  EXPECT_EQ(prompts, 14);
+  EXPECT_NEAR(*bench.stored[7].pitch_rad, hands.entries[9].pitch_rad, 1e-12) << "the last entry counts";
 }
 
 TEST(RunByHand, TheSameEntryTwiceIsTheOperatorsWord) {
@@ -128,7 +145,7 @@ TEST(RunByHand, TheSameEntryTwiceIsTheOperatorsWord) {
       if (wrong) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
     });
   }
-  EXPECT_EQ(hands.again.size(), 1U);
+  EXPECT_EQ(hands.again.size(), 2U);  // far from what was asked for, and against the turn of the field
   EXPECT_EQ(bench.stored.size(), 12U);
   const bool said = std::any_of(bench.log.begin(), bench.log.end(), [](const Action& a) {
     const auto* const record = std::get_if<Record>(&a);
