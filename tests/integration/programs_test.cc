@@ -231,6 +231,7 @@ TEST(Programs, AOneAxisTableIsCalibratedWithMountingsByHand) {
                                       bench.dir() / "control.sock", "--blunder", "3"},
                                      bench.dir().path(), std::chrono::seconds(300));
   EXPECT_EQ(hands.exit_code, 0) << hands.out << hands.err << bench.daemon().err();
+  EXPECT_THAT(hands.out, HasSubstr("was asked for"));
   EXPECT_THAT(hands.out, HasSubstr("the field turned by"));
   const json run = bench.ask({"run", "status"});
   EXPECT_EQ(run.at("state"), "done") << run.dump();

@@ -237,7 +237,8 @@ void add_hands(CLI::App& app, Arguments& args) {
   operate_command->add_option("--error", args.hands.error_deg, "degrees to which things are set")
       ->capture_default_str();
   operate_command->add_flag("--magnet", args.hands.magnet, "hold a magnet where a magnet test asks for it");
-  operate_command->add_option("--blunder", args.hands.blunder, "misread the scale at this prompt, once");
+  operate_command->add_option("--blunder", args.hands.blunder,
+                              "misread the scale at this prompt, and once more");
 }
 
 void add_commands(CLI::App& app, Arguments& args) {

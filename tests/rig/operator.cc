@@ -17,6 +17,7 @@ namespace mgtd::rig {
 namespace {
 
 using nlohmann::json;
+constexpr int kMisread = 2;  ///< entries of a blunder: the one, and the same again when it is doubted
 constexpr std::array kAxes{"azimuth_deg", "pitch_deg", "roll_deg"};
 
 class Operator {
@@ -36,23 +37,26 @@ class Operator {
 
   OperatorOptions options_;
   std::mt19937_64 random_;
-  int prompts_{0};
+  int prompts_{0}, asked_again_{0};
+  std::array<double, 3> there_deg_{};
 };
 
 void Operator::serve(const json& prompt) {
-  std::array<double, 3> there{};
+  const bool again = prompt.at("again").is_string() && prompts_ > 0;  // only looked at again
+  asked_again_ = again ? asked_again_ + 1 : 0;
+  if (!again) ++prompts_;
   json entry;
   for (std::size_t a = 0; a < kAxes.size(); ++a) {
     const double sloppy = static_cast<double>(random_() >> 11U) * 0x1p-52 - 1;
     const double wanted = prompt.at("target").at(kAxes[a]);
     // What is read to a tenth is where it stands to half of that.
-    entry[kAxes[a]] = std::round(10 * (wanted + options_.error_deg * sloppy)) / 10;
-    there[a] = entry[kAxes[a]];
+    if (!again) there_deg_[a] = std::round(10 * (wanted + options_.error_deg * sloppy)) / 10;
+    entry[kAxes[a]] = there_deg_[a];
   }
-  const bool again = prompt.at("again").is_string();
-  if (!again) ++prompts_;
-  static_cast<void>(ask_rig(options_.dir, fmt::format("mount {} {} {}", there[0], there[1], there[2])));
-  if (prompts_ == options_.blunder && !again) entry["roll_deg"] = entry["roll_deg"].get<double>() + 30;
+  static_cast<void>(
+      ask_rig(options_.dir, fmt::format("mount {} {} {}", there_deg_[0], there_deg_[1], there_deg_[2])));
+  if (prompts_ == options_.blunder && asked_again_ < kMisread)
+    entry["roll_deg"] = entry["roll_deg"].get<double>() + 30;
   fmt::print("{}\n{}{}\n", prompt.at("text").get<std::string>(),
              again ? "  " + prompt.at("again").get<std::string>() + "\n" : "", entry.dump());
   std::fflush(stdout);
