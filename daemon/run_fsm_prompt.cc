@@ -187,6 +187,7 @@ void RunFsm::redo() {
   last_stored_.reset();
   scales_of_.reset();
   doubted_.reset();
+  far_.reset();
   attempt_ = 0;
   drop(again);
   go_on();

@@ -26,7 +26,7 @@ constexpr std::array kSections{Section{"clean", &clean_page},         Section{"n
 std::string page(const Sizes& n, const std::vector<std::string>& only, const std::string& command) {
   std::string out = fmt::format(
       "# The blind benchmark\n\nWritten by this command (1000 clean runs and 60 of each cell, its defaults, "
-      "take an hour and a half of one core; sections may be written one by one):\n\n    {}\n\n157 poses of "
+      "take more than an hour of one core; sections may be written one by one):\n\n    {}\n\n157 poses of "
       "the Table 6 "
       "rig (36 level, 121 random), 0.3 nT of noise a pose, table angles to 0.1 degrees, a scalar reference, "
       "temperatures up and down by 3 degrees. The laws are written once more in "

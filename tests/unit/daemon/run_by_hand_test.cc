@@ -101,16 +101,22 @@ TEST(RunByHand, NobodyAnswersAndTheRunPausesWithoutAGuess) {
   EXPECT_EQ(bench.status->prompt->pose, 1);
 }
 
+/// Whatever is asked for is entered, as it is read, until the run ends.
+template <class Misread>
+void serve_all(RunBench& bench, Operator& hands, const Misread& misread) {
+  while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
+         !bench.finished && hands.entries.size() < 50)
+    hands.serve(bench, misread);
+}
+
 /// The field tells nothing yet.
 TEST(RunByHand, AnEntryFarFromWhatWasAskedForIsAskedForAgain) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
   int prompts = 0;
-  while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
-         !bench.finished && hands.entries.size() < 50)
-    hands.serve(bench, [&](TableAngles& read) {
-      if (++prompts == 2) read.roll_rad += to_rad(read.roll_rad > 0 ? -30 : 30);
-    });
+  serve_all(bench, hands, [&](TableAngles& read) {
+    if (++prompts == 2) read.roll_rad += to_rad(read.roll_rad > 0 ? -30 : 30);
+  });
   EXPECT_EQ(bench.finished->state, RunState::done);
   ASSERT_EQ(hands.again.size(), 1U);
   EXPECT_THAT(hands.again[0], HasSubstr("was entered where"));
@@ -122,11 +128,9 @@ TEST(RunByHand, ABlunderThatIsRepeatedIsNoticedByTheTurnOfTheField) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
   int prompts = 0;
-  while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
-         !bench.finished && hands.entries.size() < 50)
-    hands.serve(bench, [&](TableAngles& read) {
-      if (++prompts == 8 || prompts == 9) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
-    });
+  serve_all(bench, hands, [&](TableAngles& read) {
+    if (++prompts == 8 || prompts == 9) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
+  });
   EXPECT_EQ(bench.finished->state, RunState::done);
   ASSERT_EQ(hands.again.size(), 2U);
   EXPECT_THAT(hands.again[1], HasSubstr("the field turned by"));
@@ -138,13 +142,9 @@ TEST(RunByHand, ABlunderThatIsRepeatedIsNoticedByTheTurnOfTheField) {
 TEST(RunByHand, TheSameEntryTwiceIsTheOperatorsWord) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
-  while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
-         !bench.finished && hands.entries.size() < 50) {
-    const bool wrong = bench.status->prompt->pose == 8;
-    hands.serve(bench, [&](TableAngles& read) {
-      if (wrong) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
-    });
-  }
+  serve_all(bench, hands, [&](TableAngles& read) {
+    if (bench.status->prompt->pose == 8) read.pitch_rad += to_rad(read.pitch_rad > 0 ? -60 : 60);
+  });
   EXPECT_EQ(hands.again.size(), 2U);  // far from what was asked for, and against the turn of the field
   EXPECT_EQ(bench.stored.size(), 12U);
   const bool said = std::any_of(bench.log.begin(), bench.log.end(), [](const Action& a) {
