@@ -28,6 +28,16 @@ std::array<double, 3> attitude(std::mt19937_64& random, double tilt_limit_deg) {
   return out;
 }
 
+/// Drawn until it is one that is wanted.
+std::array<double, 3> attitude(std::mt19937_64& random, const DesignOptions& options) {
+  for (;;) {
+    const auto deg = attitude(random, options.tilt_limit_deg);
+    if (!options.octant) return deg;
+    const Eigen::Vector3d seen = about_z(deg[0]) * about_y(deg[1]) * about_x(deg[2]) * *options.octant;
+    if (seen.minCoeff() > 0) return deg;
+  }
+}
+
 /// Which of the random poses are revisits: never the first two.
 std::vector<bool> revisits(std::size_t poses, std::size_t count, std::mt19937_64& random) {
   std::vector<bool> out(poses, false);
@@ -47,8 +57,8 @@ Design run_of_157(const DesignOptions& options, std::uint64_t seed) {
   const std::vector<bool> again = revisits(options.random, options.revisits, random);
   for (std::size_t k = 0; k < options.random; ++k) {
     PlannedPose pose;
-    pose.angles_deg = again[k] ? out.poses.at(first + below(random, k - 1)).angles_deg
-                               : attitude(random, options.tilt_limit_deg);
+    pose.angles_deg =
+        again[k] ? out.poses.at(first + below(random, k - 1)).angles_deg : attitude(random, options);
     pose.dwell_s = options.dwells_s.at(below(random, options.dwells_s.size()));
     if (options.senses) pose.sense = below(random, 2) == 0 ? -1 : 1;
     pose.pause_s = options.pause_s;

@@ -41,16 +41,22 @@ constexpr const char* kScenarioHelp =
                  record (usgs-bou-2016-01-18, quiet, or usgs-bou-2016-01-20, a storm), record_start_h
   [temperature]  start_degC, ramp_degC_per_h, head_degC = [4], pulse_degC, pulse_at_s, pulse_tau_s, pulse_head,
                  law = "calib1520": the measured temperature laws of four real fluxgates
-  [sensors]      noise (gaussian, uniform, student), noise_nT (sd or half width of one sample), student_dof,
-                 ar1_rho, slow_nT, slow_tau_s, spike_share, spike_nT, lsb_nT, wiring = [4], rate_hz, range_V,
-                 uT_full_scale, palmacq, common_trigger, autostart, oscillator_ppm
-  [visit]        noise, noise_nT, student_dof, rho, outlier_share, outlier_nT: what coming back to a pose does
-                 not reproduce
+  [sensors]      noise (gaussian, uniform, student; or ar, walk, flicker, quantised: gaussian with ar1_rho = 0.9,
+                 walk_nT_per_sqrt_h = 1, flicker_nT_per_sqrt_hz = 0.02, mean_step_nT = 0.1 where the key itself is
+                 absent), noise_nT (sd or half width of one sample), student_dof, ar1_rho, tells_n_eff, slow_nT,
+                 slow_tau_s, spike_share, spike_nT, lsb_nT (of samples), mean_step_nT (of the means in a table),
+                 wiring = [4], copied = 2 (every connector carries sensor 2), apart (in a table the sensors did
+                 not share their attitudes), rate_hz, range_V, uT_full_scale, palmacq, common_trigger, autostart,
+                 oscillator_ppm
+  [visit]        noise, noise_nT, student_dof, rho, outlier_share, outlier_nT, cycle_nT, cycle_visits,
+                 cycle_where: what coming back to a pose does not reproduce
   [table]        accuracy_deg, velocity_deg_per_s, acceleration_deg_per_s2, tilt_limit_deg,
                  hands = "mount" (one axis, the array is mounted by hand) or "table" (no motors)
   [scalar]       present, noise_nT, period_s, bad_every
   [[fault]]      at_s, do = "unplug fluxgate2 for 3"
   [[vehicle]]    at_s, nearest_m, speed_m_per_s, stands_s, moment_Am2: passes, or stands for a while
+  [[magnet]]     at_s, until_s, moment_Am2 = [3], at_m = [3]: put down near the array; stays without until_s
+  [[gross]]      pose, poses, where, do = "off" (by nT), "stuck" or "saturated": readings of a table
   [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern
   [[effect]]     name and coefficients; where = all, s1 .. s4, s1.x .. s4.z (default all):
 )";
@@ -139,10 +145,20 @@ std::optional<Scenario> prepared(const Arguments& args, Scenario s) {
   return s;
 }
 
+DesignOptions options_of(const std::string& poses, const Scenario& s) {
+  DesignOptions out{.tilt_limit_deg = s.tilt_limit_deg};
+  if (poses == "octant157") {
+    out.standard = false;
+    out.random = 157;
+    out.octant = s.field_direction();
+  }
+  return out;
+}
+
 int table(const Arguments& args, Scenario s) {
   const bool grid = args.poses == "grid5832";
   if (grid) s.table_accuracy_deg = 0;
-  const Design design = grid ? grid_of_5832() : run_of_157({.tilt_limit_deg = s.tilt_limit_deg}, s.seed);
+  const Design design = grid ? grid_of_5832() : run_of_157(options_of(args.poses, s), s.seed);
   const std::uint64_t seed = s.seed;
   return write(args.output,
                pose_table_csv(simulated_table(std::move(s), design, seed,
@@ -261,8 +277,11 @@ void add_commands(CLI::App& app, Arguments& args) {
                                        });
   add_game(poses, args);
   poses->add_flag("--samples", args.samples, "every sample instead of the distribution of the means");
-  poses->add_option("--poses", args.poses, "run157 (36 standard and 121 random poses) or grid5832")
-      ->check(CLI::IsMember({"run157", "grid5832"}))
+  poses
+      ->add_option("--poses", args.poses,
+                   "run157 (36 standard and 121 random poses), octant157 (the field in one octant only) or "
+                   "grid5832")
+      ->check(CLI::IsMember({"run157", "octant157", "grid5832"}))
       ->capture_default_str();
   poses->add_option("-o,--output", args.output, "file; standard output when absent");
   add_scenario(app, "truth", "print what the rig really is, as JSON", args,

@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/noise.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mgtd::rig {
+namespace {
+
+std::vector<SlowProcess> slow_parts(const SampleNoise& n) {
+  std::vector<SlowProcess> out;
+  if (n.slow_nT > 0) out.push_back(SlowProcess::wandering(n.slow_nT, n.slow_tau_s));
+  if (n.walk_nT_per_sqrt_h > 0) out.push_back(SlowProcess::walk(n.walk_nT_per_sqrt_h));
+  if (n.flicker_nT_per_sqrt_hz > 0) {
+    const auto parts = flicker(n.flicker_nT_per_sqrt_hz);
+    out.insert(out.end(), parts.begin(), parts.end());
+  }
+  return out;
+}
+
+}  // namespace
 
 std::mt19937_64 noise_stream(std::uint64_t seed, std::uint32_t which) {
   std::seed_seq words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U), which};
@@ -15,7 +31,10 @@ SensorNoise::SensorNoise(const SampleNoise& sample, const VisitNoise& visit, std
     : noise_(sample),
       visit_noise_(visit),
       random_(noise_stream(seed, which)),
-      visit_random_(noise_stream(seed, which + 16)) {}
+      visit_random_(noise_stream(seed, which + 16)),
+      sensor_(static_cast<int>(which)) {
+  slow_.fill(slow_parts(sample));
+}
 
 /// Unit sd, except uniform: half width one.
 double SensorNoise::draw(NoiseKind kind, double dof) {
@@ -27,13 +46,16 @@ double SensorNoise::draw(NoiseKind kind, double dof) {
 void SensorNoise::draw_visit() {
   visit_due_ = false;
   const VisitNoise& v = visit_noise_;
-  if (v.noise_nT == 0 && v.outlier_share == 0) return;
+  const double turns = visits_++ / v.cycle_visits;
+  if (v.noise_nT == 0 && v.outlier_share == 0 && v.cycle_nT == 0) return;
   std::swap(random_, visit_random_);  // visits have a stream of their own
   for (std::size_t a = 0; a < 3; ++a) {
     const double fresh = draw(v.kind, v.student_dof);
     between_visits_.at(a) =
         begun_ ? v.rho * between_visits_.at(a) + std::sqrt(1 - v.rho * v.rho) * fresh : fresh;
     offset_.at(a) = v.noise_nT * between_visits_.at(a);
+    if (v.cycle_where.covers({.sensor = sensor_, .axis = static_cast<int>(a)}))
+      offset_.at(a) += v.cycle_nT * std::cos(2 * std::numbers::pi * turns);
     std::uniform_real_distribution<double> unit(0, 1);
     const double luck = unit(random_);
     if (luck < v.outlier_share) offset_.at(a) += luck < v.outlier_share / 2 ? -v.outlier_nT : v.outlier_nT;
@@ -43,13 +65,26 @@ void SensorNoise::draw_visit() {
   begun_ = true;
 }
 
-/// The slow part, an Ornstein-Uhlenbeck process, at time t.
+/// The slow parts at time t.
 void SensorNoise::wander_to(double t_s) {
-  if (noise_.slow_nT == 0) return;
-  const double decay = wandering_ ? std::exp(-(t_s - t_s_) / noise_.slow_tau_s) : 0;
-  for (double& w : wander_) w = decay * w + noise_.slow_nT * std::sqrt(1 - decay * decay) * normal_(random_);
+  if (slow_[0].empty() || (wandering_ && t_s <= t_s_)) return;
+  for (auto& axis : slow_) {
+    for (SlowProcess& part : axis) {
+      if (wandering_) {
+        part.advance(t_s - t_s_, random_, normal_);
+      } else {
+        part.begin(random_, normal_);
+      }
+    }
+  }
   wandering_ = true;
   t_s_ = t_s;
+}
+
+double SensorNoise::slow_nT(std::size_t axis) const {
+  double out = 0;
+  for (const SlowProcess& part : slow_.at(axis)) out += part.value_nT();
+  return out;
 }
 
 double SensorNoise::one(std::size_t axis) {
@@ -71,25 +106,10 @@ Eigen::Vector3d SensorNoise::sample(const Eigen::Vector3d& true_nT, double t_s) 
   Eigen::Vector3d y_nT = true_nT;
   for (std::size_t a = 0; a < 3; ++a) {
     double& y = y_nT[static_cast<Eigen::Index>(a)];
-    y += offset_.at(a) + wander_.at(a) + one(a);
+    y += offset_.at(a) + slow_nT(a) + one(a);
     if (noise_.lsb_nT > 0) y = noise_.lsb_nT * std::round(y / noise_.lsb_nT);
   }
   return y_nT;
-}
-
-/// Mean of the slow part over a length that begins now; the part is left where the length ends. Both are
-/// Gaussian, with the covariance of the process and its integral.
-double SensorNoise::wander_mean(std::size_t axis, double length_s) {
-  const double tau = noise_.slow_tau_s, L = length_s / tau, e = std::exp(-L);
-  const double s2 = noise_.slow_nT * noise_.slow_nT;
-  const double var_end = s2 * (1 - e * e), var_mean = s2 * (2 * L - 3 + 4 * e - e * e) / (L * L);
-  const double covariance = s2 * (1 - e) * (1 - e) / L;
-  double& w = wander_.at(axis);
-  const double u = normal_(random_), v = normal_(random_);
-  const double mean = w * (1 - e) / L + covariance / std::sqrt(var_end) * u +
-                      std::sqrt(std::max(0.0, var_mean - covariance * covariance / var_end)) * v;
-  w = e * w + std::sqrt(var_end) * u;
-  return mean;
 }
 
 SensorNoise::Dwell SensorNoise::drawn(const Eigen::Vector3d& true_nT, double from_s, int n, double period_s) {
@@ -105,7 +125,7 @@ SensorNoise::Dwell SensorNoise::drawn(const Eigen::Vector3d& true_nT, double fro
 }
 
 SensorNoise::Dwell SensorNoise::dwell(const Eigen::Vector3d& true_nT, double from_s, int n, double period_s) {
-  const bool fine = noise_.lsb_nT <= 2 * noise_.noise_nT;  // dithered: no bias of 1e-8 lsb
+  const bool fine = noise_.lsb_nT <= noise_.noise_nT;  // dithered: a bias of 1e-9 lsb
   if (n < 8 || noise_.kind != NoiseKind::gaussian || noise_.ar1_rho != 0 || noise_.spike_share > 0 || !fine)
     return drawn(true_nT, from_s, n, period_s);
   if (visit_due_) draw_visit();
@@ -116,11 +136,10 @@ SensorNoise::Dwell SensorNoise::dwell(const Eigen::Vector3d& true_nT, double fro
   Dwell out;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
-    double slow = wander_.at(a), within = variance;
-    if (noise_.slow_nT > 0) {
-      slow = wander_mean(a, length_s);
-      const double L = length_s / noise_.slow_tau_s;  // what is left within the dwell, on average
-      within += noise_.slow_nT * noise_.slow_nT * (1 - 2 * (L - 1 + std::exp(-L)) / (L * L));
+    double slow = 0, within = variance;
+    for (SlowProcess& part : slow_.at(a)) {
+      slow += part.mean_over(length_s, random_, normal_);
+      within += part.variance_within(length_s);
     }
     out.mean_nT[axis] = true_nT[axis] + offset_.at(a) + slow + std::sqrt(variance / n) * normal_(random_);
     out.sd_nT[axis] = within > 0 ? std::sqrt(within * chi2(random_) / (n - 1)) : 0;

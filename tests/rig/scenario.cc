@@ -5,12 +5,14 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "tests/rig/effect_list.h"
 #include "tests/rig/effects/site_record.h"
 #include "tests/rig/effects/temperature_law.h"
 #include "tests/rig/fault.h"
+#include "tests/rig/rotations.h"
 #include "tests/rig/section.h"
 
 namespace mgtd::rig {
@@ -32,6 +34,27 @@ void read_wave(Section& section, Wave& wave) {
   if (text != "toggle" && text != "sine" && text != "ramp")
     section.complain("wave", "wave must be toggle, sine or ramp");
   wave = text == "sine" ? Wave::sine : text == "ramp" ? Wave::ramp : Wave::toggle;
+}
+
+/// What a word for noise stands for where no key beside it says otherwise.
+void read_noise_word(Section& sensors, SampleNoise& noise) {
+  std::string text = "gaussian";
+  sensors.read("noise", text);
+  if (text == "uniform") {
+    noise.kind = NoiseKind::uniform;
+  } else if (text == "student") {
+    noise.kind = NoiseKind::student;
+  } else if (text == "ar") {
+    noise.ar1_rho = 0.9;
+  } else if (text == "walk") {
+    noise.walk_nT_per_sqrt_h = 1;
+  } else if (text == "flicker") {
+    noise.flicker_nT_per_sqrt_hz = 0.02;  // 20 pT/sqrt(Hz) at 1 Hz: a basic fluxgate
+  } else if (text == "quantised") {
+    noise.mean_step_nT = 0.1;
+  } else if (text != "gaussian") {
+    sensors.complain("noise", "noise must be gaussian, uniform, student, ar, walk, flicker or quantised");
+  }
 }
 
 class Reader {
@@ -59,6 +82,8 @@ class Reader {
   void read_effects(Scenario& s);
   void read_faults(Scenario& s);
   void read_vehicles(Scenario& s);
+  void read_magnets(Scenario& s);
+  void read_gross(Scenario& s);
   template <class Body>
   void for_each(std::string_view name, Body body);
 
@@ -68,8 +93,8 @@ class Reader {
 
 void Reader::refuse_unknown_sections() {
   static const std::set<std::string_view> kSections{
-      "rig",   "site",  "temperature", "sensors",   "s1",     "s2",    "s3",     "s4",
-      "visit", "table", "scalar",      "covariate", "effect", "fault", "vehicle"};
+      "rig",   "site",   "temperature", "sensors", "s1",    "s2",      "s3",     "s4",   "visit",
+      "table", "scalar", "covariate",   "effect",  "fault", "vehicle", "magnet", "gross"};
   for (const auto& [key, node] : root_) {
     if (!kSections.contains(key.str())) {
       mistakes_.push_back({node.source().begin.line, fmt::format("unknown section '{}'; there are: {}",
@@ -163,6 +188,9 @@ void Reader::read_sensors(Scenario& s) {
   Section sensors = section("sensors");
   read_noise(sensors, s.noise);
   read_wiring(sensors, s);
+  sensors.read("copied", s.copied);
+  if (s.copied > 4) sensors.complain("copied", "copied must be 1 .. 4, or 0 for none");
+  sensors.read("apart", s.apart);
   sensors.read("rate_hz", s.rate_hz, {1, 1000});
   sensors.read("range_V", s.range_V);
   if (s.range_V != 10 && s.range_V != 5 && s.range_V != 2.5)
@@ -176,7 +204,7 @@ void Reader::read_sensors(Scenario& s) {
 }
 
 void Reader::read_noise(Section& sensors, SampleNoise& noise) {
-  read_kind(sensors, noise.kind);
+  read_noise_word(sensors, noise);
   sensors.read("noise_nT", noise.noise_nT, {0, 1e5});
   sensors.read("student_dof", noise.student_dof, {2.1, 1000});
   sensors.read("ar1_rho", noise.ar1_rho, {-0.999, 0.999});
@@ -184,7 +212,11 @@ void Reader::read_noise(Section& sensors, SampleNoise& noise) {
   sensors.read("slow_tau_s", noise.slow_tau_s, {0.01, 1e6});
   sensors.read("spike_share", noise.spike_share, {0, 1});
   sensors.read("spike_nT", noise.spike_nT, {0, 1e6});
+  sensors.read("walk_nT_per_sqrt_h", noise.walk_nT_per_sqrt_h, {0, 1e5});
+  sensors.read("flicker_nT_per_sqrt_hz", noise.flicker_nT_per_sqrt_hz, {0, 1e5});
   sensors.read("lsb_nT", noise.lsb_nT, {0, 1e5});
+  sensors.read("mean_step_nT", noise.mean_step_nT, {0, 1e5});
+  sensors.read("tells_n_eff", noise.tells_n_eff);
 }
 
 void Reader::read_wiring(Section& sensors, Scenario& s) {
@@ -204,6 +236,9 @@ void Reader::read_visit(Scenario& s) {
   visit.read("rho", s.visit.rho, {-0.999, 0.999});
   visit.read("outlier_share", s.visit.outlier_share, {0, 1});
   visit.read("outlier_nT", s.visit.outlier_nT, {0, 1e6});
+  visit.read("cycle_nT", s.visit.cycle_nT, {-1e6, 1e6});
+  visit.read("cycle_visits", s.visit.cycle_visits, {2, 1e6});
+  s.visit.cycle_where = visit.where("cycle_where");
   visit.refuse_rest();
 }
 
@@ -295,6 +330,43 @@ void Reader::read_vehicles(Scenario& s) {
   });
 }
 
+void Reader::read_magnets(Scenario& s) {
+  for_each("magnet", [&](Section& section) {
+    DroppedMagnet m;
+    section.read("at_s", m.at_s, {0, 1e9});
+    section.read("until_s", m.until_s, {0, 1e9});
+    section.read("moment_Am2", m.moment_Am2);
+    section.read("at_m", m.at_m);
+    const double away_m = Eigen::Vector3d(m.at_m.data()).norm();
+    if (away_m < s.baseline_m)
+      section.complain("at_m", fmt::format("at_m is {} m from the centre of the array and must be {} m or "
+                                           "more, so that the magnet lies outside of it",
+                                           away_m, s.baseline_m));
+    s.magnets.push_back(m);
+  });
+}
+
+void Reader::read_gross(Scenario& s) {
+  for_each("gross", [&](Section& section) {
+    GrossReading g;
+    std::string what = "off";
+    section.read("do", what);
+    section.read("pose", g.pose);
+    section.read("poses", g.poses);
+    section.read("nT", g.nT, {-1e6, 1e6});
+    g.where = section.where();
+    if (g.pose == 0) section.complain("pose", "poses are counted from 1");
+    if (what == "stuck") {
+      g.kind = Gross::stuck;
+    } else if (what == "saturated") {
+      g.kind = Gross::saturated;
+    } else if (what != "off") {
+      section.complain("do", fmt::format("do = '{}' must be off, stuck or saturated", what));
+    }
+    s.gross.push_back(g);
+  });
+}
+
 Scenario Reader::read() {
   Scenario scenario;
   refuse_unknown_sections();
@@ -309,6 +381,8 @@ Scenario Reader::read() {
   read_effects(scenario);
   read_faults(scenario);
   read_vehicles(scenario);
+  read_magnets(scenario);
+  read_gross(scenario);
   return scenario;
 }
 
@@ -319,6 +393,12 @@ std::vector<Mistake> Reader::mistakes() && {
 }
 
 }  // namespace
+
+Eigen::Vector3d Scenario::field_direction() const {
+  const double inclination = inclination_deg * kDeg, declination = declination_deg * kDeg;
+  return {std::cos(inclination) * std::cos(declination), std::cos(inclination) * std::sin(declination),
+          std::sin(inclination)};
+}
 
 tl::expected<Scenario, std::vector<std::string>> parse_scenario(std::string_view text,
                                                                 std::string_view file) {

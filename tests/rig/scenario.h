@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "tests/rig/covariate.h"
+#include "tests/rig/dropped_magnet.h"
 #include "tests/rig/effect.h"
+#include "tests/rig/gross_reading.h"
 #include "tests/rig/noise.h"
 #include "tests/rig/truth.h"
 #include "tests/rig/vehicle.h"
@@ -50,6 +52,10 @@ struct Scenario {
   VisitNoise visit;
   /// Whose readings come out of which connector: {2, 1, 3, 4} are two swapped sensors.
   std::array<int, 4> wiring{1, 2, 3, 4};
+  /// 1 .. 4: every connector carries the readings of this sensor; 0: each its own.
+  std::uint64_t copied{0};
+  /// Each sensor was turned by itself: row by row the four did not share their attitudes. Of a table.
+  bool apart{false};
   TemperatureScript temperature;
   double rate_hz{50};         ///< when nobody commands one
   double range_V{10};         ///< the digitiser's range, for the printed configuration
@@ -74,6 +80,11 @@ struct Scenario {
   std::vector<std::shared_ptr<const Effect>> effects;
   std::vector<TimedFault> faults;  ///< in the order of their times
   std::vector<Vehicle> vehicles;
+  std::vector<DroppedMagnet> magnets;
+  std::vector<GrossReading> gross;
+
+  /// Of the field when the run begins, site frame.
+  [[nodiscard]] Eigen::Vector3d field_direction() const;
 };
 
 /// Errors are all reported at once, "file:line: ...".

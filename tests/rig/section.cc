@@ -86,11 +86,11 @@ std::vector<double> Section::numbers(std::string_view key, std::size_t count, do
   return out;
 }
 
-Where Section::where() {
+Where Section::where(std::string_view key) {
   std::string text = "all";
-  read("where", text);
+  read(key, text);
   const auto where = Where::parse(text);
-  if (!where) complain("where", fmt::format("where = '{}' must be all, s1 .. s4 or s1.x .. s4.z", text));
+  if (!where) complain(key, fmt::format("{} = '{}' must be all, s1 .. s4 or s1.x .. s4.z", key, text));
   return where.value_or(Where{});
 }
 

@@ -43,8 +43,8 @@ class Section {
 
   /// A number or a list of `count`; absent: as many fallbacks, or a mistake when the fallback is NaN.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, double fallback);
-  /// The key "where"; all axes when absent.
-  [[nodiscard]] Where where();
+  /// All axes when the key is absent.
+  [[nodiscard]] Where where(std::string_view key = "where");
 
   /// Notes a mistake at the line of the key, or of the section when it is not there.
   void complain(std::string_view key, const std::string& what);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 #include <utility>
 
 #include "tests/rig/rotations.h"
@@ -22,6 +24,45 @@ constexpr std::array<Node, 5> kNodes{{{0.04691007703066800, 0.11846344252809454}
 constexpr double kOvershoot_deg = 10;
 constexpr double kScalarResolution_nT = 1e-3;
 constexpr double kPathStep_s = 0.25;  ///< of the recorded path
+
+/// Sensors 2 to 4 get the rows of other poses, each in an order of its own.
+void turn_apart(PoseTable& table, std::uint64_t seed) {
+  for (std::size_t i = 1; i < 4; ++i) {
+    std::mt19937_64 random = noise_stream(seed, static_cast<std::uint32_t>(32 + i));
+    std::vector<std::size_t> order(table.poses.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::shuffle(order.begin(), order.end(), random);
+    const std::vector<Pose> from = table.poses;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      table.poses[k].y_nT.at(i) = from[order[k]].y_nT.at(i);
+      table.poses[k].sd_nT.at(i) = from[order[k]].sd_nT.at(i);
+      table.poses[k].T_degC.at(i) = from[order[k]].T_degC.at(i);
+    }
+  }
+}
+
+void spoil(PoseTable& table, const GrossReading& gross, const Scenario& scenario) {
+  const double rail_nT = 1000 * scenario.uT_full_scale;
+  for (std::size_t k = gross.pose - 1; k < std::min(table.poses.size(), gross.pose - 1 + gross.poses); ++k) {
+    for (AxisContext c; c.sensor < 4; ++c.sensor) {
+      for (c.axis = 0; c.axis < 3; ++c.axis) {
+        if (!gross.where.covers(c)) continue;
+        const auto i = static_cast<std::size_t>(c.sensor);
+        double& y_nT = table.poses[k].y_nT.at(i)[c.axis];
+        auto& sd_nT = table.poses[k].sd_nT.at(i).at(static_cast<std::size_t>(c.axis));
+        if (gross.kind == Gross::off) y_nT += gross.nT;
+        if (gross.kind == Gross::stuck && k > 0) y_nT = table.poses[k - 1].y_nT.at(i)[c.axis];
+        if (gross.kind == Gross::saturated) y_nT = y_nT < 0 ? -rail_nT : rail_nT;
+        if (gross.kind != Gross::off && sd_nT) sd_nT = 0;
+      }
+    }
+  }
+}
+
+void round_means(PoseTable& table, double step_nT) {
+  for (Pose& pose : table.poses)
+    for (Eigen::Vector3d& y_nT : pose.y_nT) y_nT = step_nT * (y_nT / step_nT).array().round().matrix();
+}
 
 class Surveyor {
  public:
@@ -138,7 +179,10 @@ void Surveyor::measure(const PlannedPose& planned, Pose& pose) {
   const double middle_s = now_s_ + planned.dwell_s / 2;
   const int n = std::max(1, static_cast<int>(std::lround(planned.dwell_s * scenario().rate_hz)));
   for (int i = 0; i < kSensors; ++i) {
-    if (sampling_ == Sampling::means) {
+    if (i > 0 && scenario().copied > 0) {
+      pose.y_nT.at(static_cast<std::size_t>(i)) = pose.y_nT[0];
+      pose.sd_nT.at(static_cast<std::size_t>(i)) = pose.sd_nT[0];
+    } else if (sampling_ == Sampling::means) {
       by_means(i, planned, n, pose);
     } else {
       by_samples(i, n, pose);
@@ -153,7 +197,8 @@ void Surveyor::measure(const PlannedPose& planned, Pose& pose) {
   pose.t_s = middle_s;
   pose.n = n;
   const double rho = scenario().noise.ar1_rho;
-  if (rho != 0 && n > 1) pose.n_eff = std::max(1.0, n * (1 - rho) / (1 + rho));
+  if (rho != 0 && n > 1 && scenario().noise.tells_n_eff)
+    pose.n_eff = std::max(1.0, n * (1 - rho) / (1 + rho));
   if (const int sense = world_.axis(azimuth).sense(); sense != 0) pose.sense = sense;
   pose.dwell_s = planned.dwell_s;
   pose.since_stop_s = design_.settle_s + planned.dwell_s / 2;
@@ -178,8 +223,9 @@ PoseTable Surveyor::survey() {
     now_s_ += planned.dwell_s;
     out.poses.push_back(std::move(pose));
   }
-  for (const Outlier& o : design_.outliers)
-    out.poses.at(o.pose).y_nT.at(static_cast<std::size_t>(o.sensor))[o.axis] += o.nT;
+  if (scenario().apart) turn_apart(out, scenario().seed);
+  for (const GrossReading& gross : scenario().gross) spoil(out, gross, scenario());
+  if (scenario().noise.mean_step_nT > 0) round_means(out, scenario().noise.mean_step_nT);
   out.path = std::move(path_);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,19 +27,11 @@ struct PlannedPose {
   double pause_s{0};  ///< waited before the table sets off
 };
 
-/// A reading that went wrong, on top of everything else.
-struct Outlier {
-  std::size_t pose{0};  ///< index
-  int sensor{0}, axis{0};
-  double nT{0};
-};
-
 struct Design {
   std::vector<PlannedPose> poses;
   /// How the array is put on the table: table frame to platform frame. The recorded angles are those of the
   /// platform, mounting included.
   std::vector<Eigen::Matrix3d> mounts{Eigen::Matrix3d::Identity()};
-  std::vector<Outlier> outliers;
   double settle_s{1};      ///< from the stop to the dwell
   bool record_path{true};  ///< where the table was while it moved, as a run file keeps it
 };
@@ -51,6 +44,8 @@ struct DesignOptions {
   double tilt_limit_deg{180};
   bool senses{false};  ///< random approach sense; else the short way
   double pause_s{0};
+  /// Only attitudes that show this direction (site frame) to the platform between its positive axes.
+  std::optional<Eigen::Vector3d> octant{};
 };
 
 /// 36 level azimuths, 18 out in steps of 20 degrees and 18 back between them, then attitudes uniform over the

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "tests/rig/scenario.h"
 
 namespace mgtd::rig {
@@ -19,6 +21,34 @@ nlohmann::json covariate_json(const Covariate& c) {
           {"recorded", c.recorded}};
 }
 
+nlohmann::json vehicle_json(const Vehicle& v) {
+  return {{"at_s", v.at_s},
+          {"nearest_m", v.nearest_m},
+          {"speed_m_per_s", v.speed_m_per_s},
+          {"stands_s", v.stands_s},
+          {"moment_Am2", v.moment_Am2}};
+}
+
+nlohmann::json magnet_json(const DroppedMagnet& m) {
+  nlohmann::json out{{"at_s", m.at_s}, {"moment_Am2", m.moment_Am2}, {"at_m", m.at_m}};
+  if (std::isfinite(m.until_s)) out["until_s"] = m.until_s;
+  return out;
+}
+
+nlohmann::json gross_json(const GrossReading& g) {
+  nlohmann::json out{{"pose", g.pose}, {"poses", g.poses}, {"where", g.where.text()}};
+  out["do"] = g.kind == Gross::off ? "off" : g.kind == Gross::stuck ? "stuck" : "saturated";
+  if (g.kind == Gross::off) out["nT"] = g.nT;
+  return out;
+}
+
+template <class Items, class ToJson>
+nlohmann::json list(const Items& items, ToJson to_json) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const auto& item : items) out.push_back(to_json(item));
+  return out;
+}
+
 nlohmann::json sensor_json(SensorTruth truth) {
   nlohmann::json out;
   for (const auto& [name, value] : named_parameters(truth)) out[name] = *value;
@@ -29,11 +59,6 @@ nlohmann::json sensor_json(SensorTruth truth) {
 }  // namespace
 
 nlohmann::json truth_json(const Scenario& s) {
-  nlohmann::json sensors = nlohmann::json::array(), effects = nlohmann::json::array();
-  for (const SensorTruth& truth : s.truth) sensors.push_back(sensor_json(truth));
-  nlohmann::json covariates = nlohmann::json::array();
-  for (const Covariate& c : s.covariates) covariates.push_back(covariate_json(c));
-  for (const auto& effect : s.effects) effects.push_back(effect->truth());
   return {{"schema", "mgt-rig.truth/1"},
           {"scenario", s.name},
           {"rig", s.rig},
@@ -51,6 +76,9 @@ nlohmann::json truth_json(const Scenario& s) {
            {{"ar1_rho", s.noise.ar1_rho},
             {"slow_nT", s.noise.slow_nT},
             {"slow_tau_s", s.noise.slow_tau_s},
+            {"walk_nT_per_sqrt_h", s.noise.walk_nT_per_sqrt_h},
+            {"flicker_nT_per_sqrt_hz", s.noise.flicker_nT_per_sqrt_hz},
+            {"mean_step_nT", s.noise.mean_step_nT},
             {"spike_share", s.noise.spike_share},
             {"spike_nT", s.noise.spike_nT},
             {"lsb_nT", s.noise.lsb_nT}}},
@@ -59,14 +87,22 @@ nlohmann::json truth_json(const Scenario& s) {
             {"noise_nT", s.visit.noise_nT},
             {"rho", s.visit.rho},
             {"outlier_share", s.visit.outlier_share},
-            {"outlier_nT", s.visit.outlier_nT}}},
+            {"outlier_nT", s.visit.outlier_nT},
+            {"cycle_nT", s.visit.cycle_nT},
+            {"cycle_visits", s.visit.cycle_visits},
+            {"cycle_where", s.visit.cycle_where.text()}}},
           {"wiring", s.wiring},
+          {"copied", s.copied},
+          {"apart", s.apart},
           {"table_accuracy_deg", s.table_accuracy_deg},
           {"temperature",
            {{"start_degC", s.temperature.start_degC}, {"ramp_degC_per_h", s.temperature.ramp_degC_per_h}}},
-          {"sensors", sensors},
-          {"covariates", covariates},
-          {"effects", effects}};
+          {"sensors", list(s.truth, &sensor_json)},
+          {"covariates", list(s.covariates, &covariate_json)},
+          {"effects", list(s.effects, [](const auto& effect) { return effect->truth(); })},
+          {"vehicles", list(s.vehicles, &vehicle_json)},
+          {"magnets", list(s.magnets, &magnet_json)},
+          {"gross", list(s.gross, &gross_json)}};
 }
 
 }  // namespace mgtd::rig

@@ -39,9 +39,7 @@ World::World(Scenario scenario)
     matrix_.at(i) = scenario_.truth.at(i).matrix();
     noise_.emplace_back(scenario_.noise, scenario_.visit, scenario_.seed, static_cast<std::uint32_t>(i));
   }
-  const double inclination = scenario_.inclination_deg * kDeg, declination = scenario_.declination_deg * kDeg;
-  direction_ = {std::cos(inclination) * std::cos(declination), std::cos(inclination) * std::sin(declination),
-                std::sin(inclination)};
+  direction_ = scenario_.field_direction();
 }
 
 void World::moved() {
@@ -141,6 +139,7 @@ Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const 
   const double f_nT = scenario_.f_nT + scenario_.field_drift_nT_per_h * hours + scenario_.diurnal_nT * day;
   Eigen::Vector3d B = f_nT * direction_;
   for (const auto& effect : effects_) B += effect->site_nT(t_s, x_m);
+  for (const DroppedMagnet& magnet : scenario_.magnets) B += magnet.field_nT(t_s, x_m);
   return B + vehicles_nT(t_s, x_m);
 }
 

@@ -80,6 +80,7 @@ class World {
   [[nodiscard]] AxisContext context(int i, double t_s) const;
   [[nodiscard]] double temperature(int sensor, double t_s) const;
   [[nodiscard]] std::size_t sensor_at(int connector) const {
+    if (scenario_.copied > 0) return scenario_.copied - 1;
     return static_cast<std::size_t>(scenario_.wiring.at(static_cast<std::size_t>(connector)) - 1);
   }
   /// Shows what sensor i saw on the way up to t to the effects that remember.

@@ -126,6 +126,14 @@ constexpr std::array kKinds{
                                    {nearest[0] + along[0], nearest[1] + along[1], nearest[2]})
                      .site_nT(t_s, x_m);
                }},
+    EffectKind{.name = "hidden.neighbour",  // what the next sensor sees along x, to some power, couples in
+               .scope = Scope::sensor,
+               .keys = {{{"nT_at_F0", 3, 5}, {"power", 1, 0, 0, 0, 2}}},
+               .unnamed = true,
+               .platform = [](const PlatformContext& c, const Numbers& n) -> Eigen::Vector3d {
+                 const auto next = static_cast<std::size_t>((c.sensor + 1) % 4);
+                 return std::pow(c.b_nT.at(next)[0] / kF0_nT, n[3]) * n.vector();
+               }},
     EffectKind{.name = "hidden.beat",  // two excitation frequencies nearly alike
                .scope = Scope::axis,
                .keys = {{{"nT", 1, 5}, {"period_s", 1, 0, 15, 60, 37}}},

@@ -45,6 +45,7 @@ std::vector<Row> rows() {
       {"gravity_offset", {"hidden.gravity-offset", "s4.x", {1, -1, 2}}},
       {"cable_twist", {"hidden.cable-twist", "s1.x", {1}}},
       {"passing_iron", {"hidden.passing-iron", "all", {1, -1, 2, 2, 1, 0.5, 0.03, 900}}},
+      {"neighbour", {"hidden.neighbour", "s2", {1, -1, 2, 2}}},
       {"beat", {"hidden.beat", "s2.x", {1, 37}}},
   };
 }
