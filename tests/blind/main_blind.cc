@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <optional>
 
 #include "tests/blind/page.h"
 
@@ -18,10 +19,15 @@ struct Section {
   const char* name;
   std::string (*write)(const Sizes&);
 };
-constexpr std::array kSections{Section{"clean", &clean_page},         Section{"naming", &naming_page},
-                               Section{"one-field", &one_field_page}, Section{"two", &two_page},
-                               Section{"open", &open_page},           Section{"oracle", &oracle_page},
-                               Section{"paper", &paper_page}};
+constexpr std::array kSections{Section{"clean", &clean_page},
+                               Section{"naming", &naming_page},
+                               Section{"one-field", &one_field_page},
+                               Section{"two", &two_page},
+                               Section{"open", &open_page},
+                               Section{"oracle", &oracle_page},
+                               Section{"paper", &paper_page},
+                               Section{"real-noise", &real_noise_page},
+                               Section{"site", &site_page}};
 
 std::string page(const Sizes& n, const std::vector<std::string>& only, const std::string& command) {
   std::string out = fmt::format(
@@ -50,9 +56,16 @@ int main(int argc, char** argv) {
   std::string output = "docs/blind-benchmark.md";
   app.add_option("-o,--output", output)->capture_default_str();
   app.add_option("--clean", sizes.clean, "clean runs of each kind of noise")->capture_default_str();
-  app.add_option("--runs", sizes.runs, "runs of each cell")->capture_default_str();
-  app.add_option("--only", only, "sections: clean naming one-field two open oracle paper")->delimiter(',');
+  std::optional<int> runs;
+  app.add_option("--runs", runs, "runs of each cell [60; 200 of real-noise and site]");
+  app.add_option("--only", only, "sections: clean naming one-field two open oracle paper real-noise site")
+      ->delimiter(',');
+  app.add_option("--kind", sizes.kinds, "kinds of real-noise and site; 'walk' also stands for walk-1")
+      ->delimiter(',');
+  app.add_option("--first-seed", sizes.first_seed, "of real-noise and site")->capture_default_str();
+  app.add_option("--keep", sizes.keep, "folder for the pose tables of runs that went wrong there");
   CLI11_PARSE(app, argc, argv);
+  if (runs) sizes.runs = sizes.real = *runs;
   const std::string command =
       fmt::format("blind --clean {} --runs {}{}{} -o docs/blind-benchmark.md", sizes.clean, sizes.runs,
                   only.empty() ? "" : " --only ", fmt::join(only, ","));

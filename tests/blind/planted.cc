@@ -64,6 +64,11 @@ Stage remounted_stage(std::uint64_t seed) {
   return {scenario(), rig::remounted_turns(mounts, 18, seed)};
 }
 
+std::shared_ptr<const rig::Effect> make_planted(const Planted& effect) {
+  return rig::make_effect(kind_named(effect.kind), rig::Where::parse(effect.where).value(),
+                          {.value = effect.numbers}, effect.of);
+}
+
 Planted scaled(Planted effect, double factor) {
   const rig::EffectKind& kind = kind_named(effect.kind);
   std::size_t next = 0;
@@ -78,9 +83,7 @@ Planted scaled(Planted effect, double factor) {
 
 PoseTable planted_run(const Stage& stage, const std::vector<Planted>& effects, std::uint64_t seed) {
   rig::Scenario scenario = stage.scenario;
-  for (const Planted& e : effects)
-    scenario.effects.push_back(
-        rig::make_effect(kind_named(e.kind), rig::Where::parse(e.where).value(), {.value = e.numbers}, e.of));
+  for (const Planted& effect : effects) scenario.effects.push_back(make_planted(effect));
   return rig::simulated_table(std::move(scenario), stage.design, seed);
 }
 

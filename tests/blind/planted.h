@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,8 +33,10 @@ struct Stage {
 /// A table with one axis: an array mounted in five ways, eighteen azimuths each.
 [[nodiscard]] Stage remounted_stage(std::uint64_t seed);
 
+/// As a scenario holds it. Throws where the rig knows no such effect.
+[[nodiscard]] std::shared_ptr<const rig::Effect> make_planted(const Planted& effect);
+
 [[nodiscard]] Planted scaled(Planted effect, double factor);
-/// Throws where the rig knows no such effect.
 [[nodiscard]] PoseTable planted_run(const Stage& stage, const std::vector<Planted>& effects,
                                     std::uint64_t seed);
 

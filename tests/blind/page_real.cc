@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "calib/chi_square.h"
+#include "tests/accuracy/markdown.h"
+#include "tests/blind/page.h"
+#include "tests/blind/real_answer.h"
+#include "tests/rig/pose_writer.h"
+
+namespace mgtd::calib::testing {
+namespace {
+
+using mgtd::testing::MarkdownTable;
+using Answers = std::vector<RealAnswer>;
+
+/// Of runs that are all of the same length, on stderr.
+class Progress {
+ public:
+  explicit Progress(int runs) : runs_(runs) {}
+  void done(const std::string& what) {
+    ++done_;
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin_;
+    if (since.count() < next_s_ && done_ < runs_) return;
+    next_s_ = since.count() + 10;
+    fmt::print(stderr, "real noise: {} of {} ({}), {:.0f} s left\n", done_, runs_, what,
+               since.count() / done_ * (runs_ - done_));
+  }
+
+ private:
+  int runs_, done_{0};
+  double next_s_{0};
+  std::chrono::steady_clock::time_point begin_{std::chrono::steady_clock::now()};
+};
+
+void keep(const std::string& folder, const std::string& name, const PoseTable& table) {
+  if (folder.empty()) return;
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/" + name + ".csv") << rig::pose_table_csv(table);
+}
+
+Answers ask(const RealKind& kind, const Sizes& n, Progress& progress) {
+  Answers out;
+  for (int i = 0; i < n.real; ++i) {
+    const std::uint64_t seed = n.first_seed + static_cast<std::uint64_t>(i);
+    const RealRun run = kind.make(seed);
+    out.push_back(answer_to(run, kind.parameters));
+    if (!out.back().good(kind)) {
+      fmt::print(stderr, "{} seed {}: {}\n", kind.name, seed, told(out.back()));
+      keep(n.keep, fmt::format("{}-{}", kind.name, seed), run.table);
+    }
+    progress.done(kind.name);
+  }
+  return out;
+}
+
+template <class Is>
+int count(const Answers& answers, Is is) {
+  return static_cast<int>(std::count_if(answers.begin(), answers.end(), is));
+}
+
+template <class Value>
+std::vector<double> values(const Answers& answers, Value value) {
+  std::vector<double> out;
+  for (const RealAnswer& a : answers)
+    if (const std::optional<double> v = value(a)) out.push_back(*v);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string median(const std::vector<double>& sorted) {
+  return sorted.empty() ? "-" : fmt::format("{:.3g}", sorted[sorted.size() / 2]);
+}
+
+/// Mean over the runs, and where 95 % of such means lie when the covariance is the real one.
+std::string nees(const std::vector<double>& of, double dof) {
+  if (of.empty()) return "-";
+  const auto n = static_cast<double>(of.size());
+  double mean = 0;
+  for (const double v : of) mean += v / n;
+  return fmt::format("{:.1f} ({:.1f}-{:.1f})", mean, chi_square_limit(0.975, n * dof) / n,
+                     chi_square_limit(0.025, n * dof) / n);
+}
+
+std::string verdicts(const Answers& answers) {
+  std::string out;
+  const auto add = [&](int n, std::string_view what) {
+    if (n > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", what, n);
+  };
+  for (const Finding f : {Finding::pass, Finding::explained, Finding::ambiguous, Finding::partial,
+                          Finding::unknown, Finding::bad_data})
+    add(count(answers, [f](const RealAnswer& a) { return !a.explain_refused && a.finding == f; }),
+        to_string(f));
+  add(count(answers, [](const RealAnswer& a) { return a.explain_refused; }), "refused");
+  return out;
+}
+
+std::string must_text(const RealKind& kind) {
+  switch (kind.must) {
+    case Must::pass:
+      return "PASS";
+    case Must::name:
+      return "name";
+    case Must::open:
+      return "open";
+    case Must::set_aside:
+      return "set aside";
+    case Must::refuse:
+      return "refuse";
+    case Must::agree:
+      return "agree";
+  }
+  return "";
+}
+
+std::vector<std::string> noise_line(const RealKind& kind, const Answers& all) {
+  const int runs = static_cast<int>(all.size());
+  const auto over = values(all, [&](const RealAnswer& a) -> std::optional<double> {
+    if (!kind.tensor || !a.error_after_nT_per_m || !a.plain_nT_per_m) return std::nullopt;
+    return a.over_plain();
+  });
+  double cpu_s = 0;
+  for (const RealAnswer& a : all) cpu_s += a.cpu_s / runs;
+  return {kind.what,
+          must_text(kind),
+          percent(count(all, [&](const RealAnswer& a) { return a.good(kind); }), runs),
+          verdicts(all),
+          percent(count(all, [&](const RealAnswer& a) { return a.wrong_name(kind); }), runs),
+          percent(count(all, [&](const RealAnswer& a) { return a.wrong_single(kind); }), runs),
+          percent(count(all, [](const RealAnswer& a) { return a.accepted; }), runs),
+          kind.tensor ? median(values(all, [](const RealAnswer& a) { return a.error_nT_per_m; })) : "-",
+          median(over),
+          over.empty() ? "-" : fmt::format("{:.3g}", over.back()),
+          nees(values(all, [](const RealAnswer& a) { return a.nees_scales; }), kScales),
+          nees(values(all, [](const RealAnswer& a) { return a.nees_offsets; }), kOffsets),
+          fmt::format("{:.2f}", cpu_s)};
+}
+
+std::vector<std::string> site_line(const RealKind& kind, const Answers& all) {
+  const int runs = static_cast<int>(all.size());
+  const auto said = [](const RealAnswer& a) { return !a.explain_refused && a.finding != Finding::pass; };
+  const int detected = count(all, said);
+  const auto right = [&](const std::vector<std::string>& names) {
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return std::find(kind.right.begin(), kind.right.end(), name) != kind.right.end();
+    });
+  };
+  return {kind.what,
+          fmt::format("{:.0f}", kind.d),
+          percent(detected, runs),
+          percent(count(all,
+                        [&](const RealAnswer& a) {
+                          return said(a) && a.named_any() && right({a.named.front()});
+                        }),
+                  detected),
+          percent(count(all, [&](const RealAnswer& a) { return said(a) && right(a.declared); }), detected),
+          percent(count(all, [&](const RealAnswer& a) { return a.wrong_single(kind); }), runs),
+          verdicts(all)};
+}
+
+std::vector<RealKind> chosen(const std::vector<RealKind>& all, const std::vector<std::string>& names) {
+  std::vector<RealKind> out;
+  for (const RealKind& kind : all) {
+    // "walk" stands for walk-0.3, walk-1 ...
+    const bool wanted = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return kind.name == name || kind.name.starts_with(name + "-");
+    });
+    if (names.empty() || wanted) out.push_back(kind);
+  }
+  return out;
+}
+
+template <class Line>
+std::string table_of(const std::vector<std::string>& header, const std::vector<RealKind>& kinds,
+                     const Sizes& n, Line line) {
+  if (kinds.empty()) return "";
+  MarkdownTable table(header);
+  Progress progress(n.real * static_cast<int>(kinds.size()));
+  for (const RealKind& kind : kinds) {
+    const auto cells = line(kind, ask(kind, n, progress));
+    fmt::print(stderr, "{}: {}\n", kind.name, fmt::join(cells, " | "));
+    table.line(cells);
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string real_noise_page(const Sizes& n) {
+  const std::string table =
+      table_of({"run", "must", "as it must be, %", "verdicts", "a wrong name, %", "wrong single name, %",
+                "accepted, %", "tensor, nT/m", "over the plain rig", "worst", "NEES of 36 scales and angles",
+                "of 12 offsets", "CPU, s"},
+               chosen(real_kinds(), n.kinds), n, &noise_line);
+  if (table.empty()) return "";
+  return fmt::format(
+             "## Real noise\n\nWhat happens outside the laboratory, {} runs of each kind from the simulated "
+             "rig "
+             "(`tests/rig`), whose physics shares no code with the estimator: samples at 50 Hz with 0.3 nT "
+             "of noise, "
+             "dwells of 4 and 8 s, "
+             "table angles to 0.1 degrees, temperatures up and down by 3 degrees, a switched motor and a "
+             "battery "
+             "beside the table. Each run is fitted and explained, and told nothing. `must`: PASS without a "
+             "name; a "
+             "right name (EXPLAINED, or AMBIGUOUS with it in the set); open, something is there and no wrong "
+             "name is "
+             "given; set aside, the disturbed poses cost nothing and no wrong name is given; refuse, not "
+             "accepted by "
+             "fit and BAD-DATA or refused by explain; agree, accepted and PASS, or neither. `tensor`: median "
+             "error of the calibrated tensor of a "
+             "uniform "
+             "field of 50 000 nT over all attitudes, as fitted; `over the plain rig`: median and worst of "
+             "that error "
+             "after explain over the error from the same run with white noise and nothing hidden. NEES: mean "
+             "normalised error squared by the stated covariance, with the band where 95 % of such means lie "
+             "when it "
+             "is the real one. CPU: fit and explain, mean of a run. Aim: a wrong name in less than 2 % of "
+             "every "
+             "kind, a wrong single name in less than 1 %.\n\n",
+             n.real) +
+         table;
+}
+
+std::string site_page(const Sizes& n) {
+  const std::string table = table_of({"at the site", "d", "detected, %", "right name first, %",
+                                      "right name in the set, %", "wrong single name, %", "verdicts"},
+                                     chosen(site_kinds(), n.kinds), n, &site_line);
+  if (table.empty()) return "";
+  return fmt::format(
+             "## Effects of the site\n\nA gradient, a curvature, a dipole of 1 to 2 m away, a gradient that "
+             "steps, "
+             "and iron that passes at 3 cm/s 2 to 3 m away, of random direction, each as large as `d` of its "
+             "own "
+             "Cramér-Rao uncertainties; {} runs of each from the simulated rig. Right names of the step: "
+             "site.step and site.gradient-drift; of the passing iron: site.transient and site.dipole.\n\n",
+             n.real) +
+         table;
+}
+
+}  // namespace mgtd::calib::testing

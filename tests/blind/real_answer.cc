@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/blind/real_answer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <random>
+
+#include "proto/units.h"
+
+namespace mgtd::calib::testing {
+namespace {
+
+using Sensors = std::array<SensorModel, kSensors>;
+constexpr double kField_nT = 50'000, kBaseline_m = 0.4;
+constexpr double kAsGood = 1.2;  ///< times the plain rig's error
+
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Fields of one strength uniformly over the sphere, always the same.
+std::vector<Eigen::Vector3d> fields() {
+  constexpr int kCount = 300;
+  std::mt19937_64 random(4242);
+  std::normal_distribution<double> normal;
+  std::vector<Eigen::Vector3d> out;
+  for (int k = 0; k < kCount; ++k)
+    out.push_back(kField_nT * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized());
+  return out;
+}
+
+double tensor_error(const Sensors& estimate, const rig::RigTruth& truth) {
+  static const std::vector<Eigen::Vector3d> kFields = fields();
+  double sum = 0;
+  for (const Eigen::Vector3d& field : kFields) {
+    std::array<Eigen::Vector3d, 4> b;
+    for (std::size_t i = 0; i < b.size(); ++i)
+      b[i] = estimate[i].correct(truth[i].matrix() * field + truth[i].offset_nT);
+    const Eigen::Vector3d x = (b[0] - b[2]) / kBaseline_m, y = (b[1] - b[3]) / kBaseline_m;
+    const double xy = (x[1] + y[0]) / 2, zz = x[0] + y[1];
+    sum += (x[0] * x[0] + y[1] * y[1] + zz * zz + xy * xy + x[2] * x[2] + y[2] * y[2]) / 6;
+  }
+  return std::sqrt(sum / static_cast<double>(kFields.size()));
+}
+
+ParameterVector parameters_of(const rig::SensorTruth& t) {
+  ParameterVector out;
+  out << to_rad(t.theta_deg), to_rad(t.phi_deg), to_rad(t.psi_deg), t.scale, t.offset_nT, to_rad(t.alpha_deg),
+      to_rad(t.beta_deg), to_rad(t.gamma_deg);
+  return out;
+}
+
+void judge_covariance(const Calibration& calibration, const rig::RigTruth& truth, RealAnswer& out) {
+  Eigen::VectorXd error(kArrayParameters);
+  std::vector<Eigen::Index> scales, offsets;
+  for (int i = 0; i < kSensors; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    error.segment<kSensorParameters>(i * kSensorParameters) =
+        calibration.sensors[s].parameters() - parameters_of(truth[s]);
+    for (int p = 0; p < kSensorParameters; ++p)
+      (p >= ix && p <= iz ? offsets : scales).push_back(i * kSensorParameters + p);
+  }
+  const auto nees = [&](const std::vector<Eigen::Index>& which) {
+    const Eigen::VectorXd e = error(which);
+    const Eigen::MatrixXd C = calibration.covariance(which, which);
+    return e.dot(C.ldlt().solve(e));
+  };
+  out.nees_scales = nees(scales);
+  out.nees_offsets = nees(offsets);
+}
+
+void read(const ExplainReport& report, const rig::RigTruth& truth, RealAnswer& out) {
+  out.finding = report.finding;
+  out.named = out.declared = report.named;
+  for (const Round& round : report.rounds)
+    out.declared.insert(out.declared.end(), round.possible.begin(), round.possible.end());
+  if (!report.rounds.empty() && report.rounds.back().fit)
+    out.error_after_nT_per_m = tensor_error(report.rounds.back().fit->state.sensors, truth);
+}
+
+bool right_names(const RealAnswer& a, const RealKind& kind) {
+  if (a.finding != Finding::explained && a.finding != Finding::ambiguous) return false;
+  if (a.finding == Finding::explained && a.wrong_name(kind)) return false;
+  // Several laws at once: each of them. Several names of one thing: one of them.
+  const auto found = [&](const std::string& name) { return holds(a.declared, name); };
+  return kind.name == "two-laws" ? std::all_of(kind.right.begin(), kind.right.end(), found)
+                                 : std::any_of(kind.right.begin(), kind.right.end(), found);
+}
+
+}  // namespace
+
+bool RealAnswer::wrong_name(const RealKind& kind) const {
+  return std::any_of(named.begin(), named.end(), [&](const auto& name) { return !holds(kind.right, name); });
+}
+
+bool RealAnswer::wrong_single(const RealKind& kind) const {
+  return finding == Finding::explained && named.size() == 1 && wrong_name(kind);
+}
+
+bool RealAnswer::good(const RealKind& kind) const {
+  const bool said = !fit_refused && !explain_refused;
+  switch (kind.must) {
+    case Must::pass:
+      return said && accepted && finding == Finding::pass && named.empty();
+    case Must::name:
+      return said && right_names(*this, kind);
+    case Must::open:
+      return said && finding != Finding::pass && !wrong_name(kind);
+    case Must::set_aside:
+      return said && accepted && !wrong_name(kind) && over_plain() <= kAsGood;
+    case Must::refuse:
+      return !accepted && (explain_refused || finding == Finding::bad_data);
+    case Must::agree:
+      return said && accepted == (finding == Finding::pass) && named.empty();
+  }
+  return false;
+}
+
+RealAnswer answer_to(const RealRun& run, bool parameters) {
+  RealAnswer out;
+  const std::clock_t begin = std::clock();
+  const auto fitted = fit(run.table, {});
+  const auto explained = explain(run.table, {});
+  out.cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  out.fit_refused = !fitted;
+  out.explain_refused = !explained;
+  if (fitted) {
+    const Calibration& calibration = fitted->calibration;
+    out.accepted = calibration.accepted_by_checks;
+    out.error_nT_per_m = out.error_after_nT_per_m = tensor_error(calibration.sensors, run.truth);
+    if (parameters) judge_covariance(calibration, run.truth, out);
+  }
+  if (explained) read(*explained, run.truth, out);
+  if (const auto plain = fit_joint(run.plain, {}))
+    out.plain_nT_per_m = tensor_error(plain->state.sensors, run.plain_truth);
+  return out;
+}
+
+std::string told(const RealAnswer& a) {
+  std::string out = a.explain_refused ? "explain refuses" : std::string(to_string(a.finding));
+  out += fmt::format(" {}", fmt::join(a.named, " "));
+  if (a.fit_refused) return out + ", fit refuses";
+  if (!a.accepted) out += ", not accepted";
+  if (a.error_nT_per_m)
+    out += fmt::format(", {:.3f} nT/m, after explain {:.3f}", *a.error_nT_per_m, *a.error_after_nT_per_m);
+  if (a.plain_nT_per_m) out += fmt::format(", plain {:.3f}", *a.plain_nT_per_m);
+  return out;
+}
+
+}  // namespace mgtd::calib::testing
