@@ -18,9 +18,21 @@ using Random = std::mt19937_64;
 
 /// Changes what the plain rig is; `plain` is its run, for the times of the poses.
 using Change = std::function<void(Stage&, const PoseTable& plain, Random&)>;
+/// Where the poses of both are.
+using Poses = rig::Design (*)(const Scenario&, std::uint64_t seed);
 
-RealRun run_of(const Change& change, std::uint64_t seed) {
+rig::Design usual(const Scenario&, std::uint64_t seed) { return rig::run_of_157({.senses = true}, seed); }
+rig::Design none_again(const Scenario&, std::uint64_t seed) {
+  return rig::run_of_157({.revisits = 0, .senses = true}, seed);
+}
+rig::Design one_octant(const Scenario& s, std::uint64_t seed) {
+  return rig::run_of_157({.standard = false, .random = 157, .senses = true, .octant = s.field_direction()},
+                         seed);
+}
+
+RealRun run_of(Poses poses, const Change& change, std::uint64_t seed) {
   Stage stage = full_stage(seed);
+  stage.design = poses(stage.scenario, seed);
   RealRun out{.plain = planted_run(stage, {}, seed), .plain_truth = stage.scenario.truth};
   Random random(seed ^ 0x2545f4914f6cdd1dU);
   change(stage, out.plain, random);
@@ -30,15 +42,16 @@ RealRun run_of(const Change& change, std::uint64_t seed) {
 }
 
 RealKind kind(std::string name, std::string what, Must must, std::vector<std::string> right, bool parameters,
-              const Change& change) {
+              const Change& change, Poses poses = &usual) {
   return {std::move(name),  std::move(what), must,
-          std::move(right), parameters,      [change](std::uint64_t seed) { return run_of(change, seed); }};
+          std::move(right), parameters,      [=](std::uint64_t seed) { return run_of(poses, change, seed); }};
 }
 
 /// Only the noise is another.
-RealKind noise(std::string name, std::string what, void (*change)(Scenario&)) {
-  return kind(std::move(name), std::move(what), Must::pass, {}, true,
-              [change](Stage& stage, const PoseTable&, Random&) { change(stage.scenario); });
+RealKind noise(std::string name, std::string what, void (*change)(Scenario&), Poses poses = &usual) {
+  return kind(
+      std::move(name), std::move(what), Must::pass, {}, true,
+      [change](Stage& stage, const PoseTable&, Random&) { change(stage.scenario); }, poses);
 }
 
 double between(Random& random, double low, double high) {
@@ -70,11 +83,6 @@ std::string axis_at_random(Random& random) {
 
 void plant(Scenario& scenario, const Planted& effect) { scenario.effects.push_back(make_planted(effect)); }
 
-void only_in_one_octant(Stage& stage, std::uint64_t seed) {
-  stage.design = rig::run_of_157(
-      {.standard = false, .random = 157, .senses = true, .octant = stage.scenario.field_direction()}, seed);
-}
-
 std::vector<RealKind> noises() {
   return {
       noise("white", "white", [](Scenario&) {}),
@@ -85,6 +93,12 @@ std::vector<RealKind> noises() {
             [](Scenario& s) { s.noise.ar1_rho = 0.5, s.noise.tells_n_eff = false; }),
       noise("ar-0.9", "correlated 0.9, not told",
             [](Scenario& s) { s.noise.ar1_rho = 0.9, s.noise.tells_n_eff = false; }),
+      noise(
+          "ar-0.5-once", "correlated 0.5, not told, no pose visited again",
+          [](Scenario& s) { s.noise.ar1_rho = 0.5, s.noise.tells_n_eff = false; }, &none_again),
+      noise(
+          "ar-0.9-once", "correlated 0.9, not told, no pose visited again",
+          [](Scenario& s) { s.noise.ar1_rho = 0.9, s.noise.tells_n_eff = false; }, &none_again),
       noise("visit", "0.05 nT that a revisit does not reproduce",
             [](Scenario& s) { s.visit.noise_nT = 0.05; }),
       noise("visit-student", "the same with heavy tails (Student t, 3 degrees of freedom)",
@@ -93,6 +107,9 @@ std::vector<RealKind> noises() {
             [](Scenario& s) { s.noise.walk_nT_per_sqrt_h = 0.3; }),
       noise("walk-1", "offsets walk at random, 1 nT/sqrt(h)",
             [](Scenario& s) { s.noise.walk_nT_per_sqrt_h = 1; }),
+      noise(
+          "walk-1-once", "the same, no pose visited again",
+          [](Scenario& s) { s.noise.walk_nT_per_sqrt_h = 1; }, &none_again),
       kind("walk-one-sensor", "offsets of one sensor walk, 1 nT/sqrt(h)", Must::pass, {}, true,
            [](Stage& stage, const PoseTable&, Random& random) {
              plant(stage.scenario, {"hidden.offset-walk", sensor_at_random(random), {1}});
@@ -103,6 +120,12 @@ std::vector<RealKind> noises() {
             [](Scenario& s) { s.noise.flicker_nT_per_sqrt_hz = 0.02; }),
       noise("quantised-0.1", "means in steps of 0.1 nT", [](Scenario& s) { s.noise.mean_step_nT = 0.1; }),
       noise("quantised-1", "means in steps of 1 nT", [](Scenario& s) { s.noise.mean_step_nT = 1; }),
+      noise(
+          "quantised-0.1-once", "steps of 0.1 nT, no pose visited again",
+          [](Scenario& s) { s.noise.mean_step_nT = 0.1; }, &none_again),
+      noise(
+          "quantised-1-once", "steps of 1 nT, no pose visited again",
+          [](Scenario& s) { s.noise.mean_step_nT = 1; }, &none_again),
       noise("samples-1", "samples in steps of 1 nT, 0.3 nT of noise on them",
             [](Scenario& s) { s.noise.lsb_nT = 1; }),
   };
@@ -110,30 +133,19 @@ std::vector<RealKind> noises() {
 
 std::vector<RealKind> designs() {
   return {
-      {"octant",
-       "poses in one octant only",
-       Must::pass,
-       {},
-       true,
-       [](std::uint64_t seed) {
-         Stage stage = full_stage(seed);
-         only_in_one_octant(stage, seed);
-         const PoseTable run = planted_run(stage, {}, seed);
-         return RealRun{run, run, stage.scenario.truth, stage.scenario.truth};
-       }},
+      noise(
+          "octant", "poses in one octant only", [](Scenario&) {}, &one_octant),
       noise("hand-table", "table set by hand, 2 degrees", [](Scenario& s) { s.table_accuracy_deg = 2; }),
-      kind("all-of-it",
-           "correlated 0.9 (not told), walk 1 nT/sqrt(h), steps of 0.1 nT, one octant, 2 degrees", Must::pass,
-           {}, true,
-           [](Stage& stage, const PoseTable&, Random&) {
-             only_in_one_octant(stage, stage.scenario.seed);
-             Scenario& s = stage.scenario;
-             s.noise.ar1_rho = 0.9;
-             s.noise.tells_n_eff = false;
-             s.noise.walk_nT_per_sqrt_h = 1;
-             s.noise.mean_step_nT = 0.1;
-             s.table_accuracy_deg = 2;
-           }),
+      noise(
+          "all-of-it", "correlated 0.9 (not told), walk 1 nT/sqrt(h), steps of 0.1 nT, one octant, 2 degrees",
+          [](Scenario& s) {
+            s.noise.ar1_rho = 0.9;
+            s.noise.tells_n_eff = false;
+            s.noise.walk_nT_per_sqrt_h = 1;
+            s.noise.mean_step_nT = 0.1;
+            s.table_accuracy_deg = 2;
+          },
+          &one_octant),
   };
 }
 
@@ -221,7 +233,7 @@ RealKind law(std::string name, std::string what, const std::string& effect, doub
 }
 
 std::vector<RealKind> laws() {
-  return {
+  std::vector<RealKind> out{
       kind("gradient-3000", "field gradient of 3000 nT/m", Must::name, {"site.gradient"}, false,
            [](Stage& stage, const PoseTable&, Random& random) {
              plant(stage.scenario, {"site.gradient", "all", direction(random, 5, 3000)});
@@ -255,6 +267,8 @@ std::vector<RealKind> laws() {
              stage.scenario.noise.flicker_nT_per_sqrt_hz = 0.02;
            }),
   };
+  for (RealKind& kind : out) kind.tensor = kind.name != "motor";
+  return out;
 }
 
 std::vector<RealKind> in_no_library() {
@@ -288,7 +302,8 @@ std::vector<RealKind> in_no_library() {
              plant(stage.scenario, {"platform.current", where, direction(random, 3, 2), "motor_A"});
            }),
   };
-  for (RealKind& kind : out) kind.tensor = !kind.name.starts_with("neighbour");
+  for (RealKind& kind : out)
+    kind.tensor = !kind.name.starts_with("neighbour") && !kind.name.starts_with("motor");
   return out;
 }
 
@@ -311,7 +326,7 @@ std::vector<RealKind> mistakes() {
        Must::refuse,
        {},
        false,
-       [=](std::uint64_t seed) { return without_angles(run_of(apart, seed)); }},
+       [=](std::uint64_t seed) { return without_angles(run_of(&usual, apart, seed)); }},
       kind("copied", "one sensor copied four times", Must::refuse, {}, false,
            [](Stage& stage, const PoseTable&, Random& random) { stage.scenario.copied = 1 + random() % 4; }),
   };

@@ -37,8 +37,8 @@ struct RealKind {
   std::vector<std::string> right{};  ///< names that are right
   bool parameters{true};  ///< the twelve of each sensor are what they were: the covariance can be judged
   std::function<RealRun(std::uint64_t seed)> make{};
-  /// A uniform field shows what the calibration is worth: nothing that the matrix of a sensor takes for its
-  /// own.
+  /// A uniform field shows what the calibration is worth: no part of what is hidden goes into matrix or
+  /// offset, as a neighbour's field and the mean of a current do.
   bool tensor{true};
   double d{0};  ///< size in units of its own uncertainty, where that was given
 };

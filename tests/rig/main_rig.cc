@@ -157,6 +157,11 @@ DesignOptions options_of(const std::string& poses, const Scenario& s) {
 
 int table(const Arguments& args, Scenario s) {
   const bool grid = args.poses == "grid5832";
+  if (args.poses == "octant157" && s.tilt_limit_deg < 90) {
+    fmt::print(stderr, "mgt-rig: octant157 tilts the array by up to 90 degrees; tilt_limit_deg = {}\n",
+               s.tilt_limit_deg);
+    return 2;
+  }
   if (grid) s.table_accuracy_deg = 0;
   const Design design = grid ? grid_of_5832() : run_of_157(options_of(args.poses, s), s.seed);
   const std::uint64_t seed = s.seed;

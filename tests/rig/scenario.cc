@@ -8,25 +8,17 @@
 #include <cmath>
 #include <set>
 
+#include "tests/rig/disturbance_section.h"
 #include "tests/rig/effect_list.h"
 #include "tests/rig/effects/site_record.h"
 #include "tests/rig/effects/temperature_law.h"
 #include "tests/rig/fault.h"
+#include "tests/rig/noise_section.h"
 #include "tests/rig/rotations.h"
 #include "tests/rig/section.h"
 
 namespace mgtd::rig {
 namespace {
-
-void read_kind(Section& section, NoiseKind& kind) {
-  std::string text = "gaussian";
-  section.read("noise", text);
-  if (text != "gaussian" && text != "uniform" && text != "student")
-    section.complain("noise", "noise must be gaussian, uniform or student");
-  kind = text == "uniform"   ? NoiseKind::uniform
-         : text == "student" ? NoiseKind::student
-                             : NoiseKind::gaussian;
-}
 
 void read_wave(Section& section, Wave& wave) {
   std::string text = "toggle";
@@ -34,27 +26,6 @@ void read_wave(Section& section, Wave& wave) {
   if (text != "toggle" && text != "sine" && text != "ramp")
     section.complain("wave", "wave must be toggle, sine or ramp");
   wave = text == "sine" ? Wave::sine : text == "ramp" ? Wave::ramp : Wave::toggle;
-}
-
-/// What a word for noise stands for where no key beside it says otherwise.
-void read_noise_word(Section& sensors, SampleNoise& noise) {
-  std::string text = "gaussian";
-  sensors.read("noise", text);
-  if (text == "uniform") {
-    noise.kind = NoiseKind::uniform;
-  } else if (text == "student") {
-    noise.kind = NoiseKind::student;
-  } else if (text == "ar") {
-    noise.ar1_rho = 0.9;
-  } else if (text == "walk") {
-    noise.walk_nT_per_sqrt_h = 1;
-  } else if (text == "flicker") {
-    noise.flicker_nT_per_sqrt_hz = 0.02;  // 20 pT/sqrt(Hz) at 1 Hz: a basic fluxgate
-  } else if (text == "quantised") {
-    noise.mean_step_nT = 0.1;
-  } else if (text != "gaussian") {
-    sensors.complain("noise", "noise must be gaussian, uniform, student, ar, walk, flicker or quantised");
-  }
 }
 
 class Reader {
@@ -73,17 +44,12 @@ class Reader {
   void read_record(Section& site, Scenario& s);
   void read_temperature(Scenario& s);
   void read_sensors(Scenario& s);
-  void read_noise(Section& sensors, SampleNoise& noise);
   void read_wiring(Section& sensors, Scenario& s);
-  void read_visit(Scenario& s);
   void read_table(Scenario& s);
   void read_scalar(Scenario& s);
   void read_covariates(Scenario& s);
   void read_effects(Scenario& s);
   void read_faults(Scenario& s);
-  void read_vehicles(Scenario& s);
-  void read_magnets(Scenario& s);
-  void read_gross(Scenario& s);
   template <class Body>
   void for_each(std::string_view name, Body body);
 
@@ -186,7 +152,7 @@ void Reader::read_temperature(Scenario& s) {
 
 void Reader::read_sensors(Scenario& s) {
   Section sensors = section("sensors");
-  read_noise(sensors, s.noise);
+  read_sample_noise(sensors, s.noise);
   read_wiring(sensors, s);
   sensors.read("copied", s.copied);
   if (s.copied > 4) sensors.complain("copied", "copied must be 1 .. 4, or 0 for none");
@@ -203,22 +169,6 @@ void Reader::read_sensors(Scenario& s) {
   sensors.refuse_rest();
 }
 
-void Reader::read_noise(Section& sensors, SampleNoise& noise) {
-  read_noise_word(sensors, noise);
-  sensors.read("noise_nT", noise.noise_nT, {0, 1e5});
-  sensors.read("student_dof", noise.student_dof, {2.1, 1000});
-  sensors.read("ar1_rho", noise.ar1_rho, {-0.999, 0.999});
-  sensors.read("slow_nT", noise.slow_nT, {0, 1e5});
-  sensors.read("slow_tau_s", noise.slow_tau_s, {0.01, 1e6});
-  sensors.read("spike_share", noise.spike_share, {0, 1});
-  sensors.read("spike_nT", noise.spike_nT, {0, 1e6});
-  sensors.read("walk_nT_per_sqrt_h", noise.walk_nT_per_sqrt_h, {0, 1e5});
-  sensors.read("flicker_nT_per_sqrt_hz", noise.flicker_nT_per_sqrt_hz, {0, 1e5});
-  sensors.read("lsb_nT", noise.lsb_nT, {0, 1e5});
-  sensors.read("mean_step_nT", noise.mean_step_nT, {0, 1e5});
-  sensors.read("tells_n_eff", noise.tells_n_eff);
-}
-
 void Reader::read_wiring(Section& sensors, Scenario& s) {
   std::array<double, 4> wiring{1, 2, 3, 4};
   sensors.read("wiring", wiring);
@@ -226,20 +176,6 @@ void Reader::read_wiring(Section& sensors, Scenario& s) {
   if (seen != std::set<double>{1, 2, 3, 4}) sensors.complain("wiring", "wiring must be 1 to 4 in some order");
   std::transform(wiring.begin(), wiring.end(), s.wiring.begin(),
                  [](double w) { return static_cast<int>(w); });
-}
-
-void Reader::read_visit(Scenario& s) {
-  Section visit = section("visit");
-  read_kind(visit, s.visit.kind);
-  visit.read("noise_nT", s.visit.noise_nT, {0, 1e5});
-  visit.read("student_dof", s.visit.student_dof, {2.1, 1000});
-  visit.read("rho", s.visit.rho, {-0.999, 0.999});
-  visit.read("outlier_share", s.visit.outlier_share, {0, 1});
-  visit.read("outlier_nT", s.visit.outlier_nT, {0, 1e6});
-  visit.read("cycle_nT", s.visit.cycle_nT, {-1e6, 1e6});
-  visit.read("cycle_visits", s.visit.cycle_visits, {2, 1e6});
-  s.visit.cycle_where = visit.where("cycle_where");
-  visit.refuse_rest();
 }
 
 void Reader::read_table(Scenario& s) {
@@ -318,55 +254,6 @@ void Reader::read_faults(Scenario& s) {
                    [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
 }
 
-void Reader::read_vehicles(Scenario& s) {
-  for_each("vehicle", [&](Section& section) {
-    Vehicle v;
-    section.read("at_s", v.at_s, {0, 1e9});
-    section.read("nearest_m", v.nearest_m, {2, 1e4});
-    section.read("speed_m_per_s", v.speed_m_per_s, {0.1, 100});
-    section.read("stands_s", v.stands_s, {0, 1e9});
-    section.read("moment_Am2", v.moment_Am2, {-1e6, 1e6});
-    s.vehicles.push_back(v);
-  });
-}
-
-void Reader::read_magnets(Scenario& s) {
-  for_each("magnet", [&](Section& section) {
-    DroppedMagnet m;
-    section.read("at_s", m.at_s, {0, 1e9});
-    section.read("until_s", m.until_s, {0, 1e9});
-    section.read("moment_Am2", m.moment_Am2);
-    section.read("at_m", m.at_m);
-    const double away_m = Eigen::Vector3d(m.at_m.data()).norm();
-    if (away_m < s.baseline_m)
-      section.complain("at_m", fmt::format("at_m is {} m from the centre of the array and must be {} m or "
-                                           "more, so that the magnet lies outside of it",
-                                           away_m, s.baseline_m));
-    s.magnets.push_back(m);
-  });
-}
-
-void Reader::read_gross(Scenario& s) {
-  for_each("gross", [&](Section& section) {
-    GrossReading g;
-    std::string what = "off";
-    section.read("do", what);
-    section.read("pose", g.pose);
-    section.read("poses", g.poses);
-    section.read("nT", g.nT, {-1e6, 1e6});
-    g.where = section.where();
-    if (g.pose == 0) section.complain("pose", "poses are counted from 1");
-    if (what == "stuck") {
-      g.kind = Gross::stuck;
-    } else if (what == "saturated") {
-      g.kind = Gross::saturated;
-    } else if (what != "off") {
-      section.complain("do", fmt::format("do = '{}' must be off, stuck or saturated", what));
-    }
-    s.gross.push_back(g);
-  });
-}
-
 Scenario Reader::read() {
   Scenario scenario;
   refuse_unknown_sections();
@@ -374,15 +261,18 @@ Scenario Reader::read() {
   read_site(scenario);
   read_temperature(scenario);
   read_sensors(scenario);
-  read_visit(scenario);
+  Section visit = section("visit");
+  read_visit_noise(visit, scenario.visit);
+  visit.refuse_rest();
   read_table(scenario);
   read_scalar(scenario);
   read_covariates(scenario);
   read_effects(scenario);
   read_faults(scenario);
-  read_vehicles(scenario);
-  read_magnets(scenario);
-  read_gross(scenario);
+  for_each("vehicle", [&](Section& section) { scenario.vehicles.push_back(read_vehicle(section)); });
+  for_each("magnet",
+           [&](Section& section) { scenario.magnets.push_back(read_magnet(section, scenario.baseline_m)); });
+  for_each("gross", [&](Section& section) { scenario.gross.push_back(read_gross(section)); });
   return scenario;
 }
 

@@ -44,7 +44,8 @@ struct DesignOptions {
   double tilt_limit_deg{180};
   bool senses{false};  ///< random approach sense; else the short way
   double pause_s{0};
-  /// Only attitudes that show this direction (site frame) to the platform between its positive axes.
+  /// Only attitudes that show this direction (site frame) to the platform between its positive axes;
+  /// tilts of 90 degrees or more must be allowed.
   std::optional<Eigen::Vector3d> octant{};
 };
 

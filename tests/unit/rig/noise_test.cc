@@ -63,5 +63,16 @@ TEST(Noise, AVisitKeepsItsOffsetUntilTheTableMoves) {
   EXPECT_NEAR(correlation(visits, 1), 0.5, 0.03);
 }
 
+TEST(Noise, ACycleComesBackAfterItsVisitsOnItsAxisOnly) {
+  SensorNoise source({.noise_nT = 0},
+                     {.cycle_nT = 2, .cycle_visits = 7, .cycle_where = *Where::parse("s2.y")}, 1, 1);
+  for (int k = 0; k < 21; ++k) {
+    source.visit();
+    const Eigen::Vector3d y_nT = source.sample({0, 0, 0}, k);
+    EXPECT_NEAR(y_nT[1], 2 * std::cos(2 * M_PI * k / 7), 1e-12);
+    EXPECT_EQ(y_nT[0], 0);
+  }
+}
+
 }  // namespace
 }  // namespace mgtd::rig
