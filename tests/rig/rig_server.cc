@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/read_until.hpp>
@@ -29,8 +30,9 @@ namespace {
 namespace asio = boost::asio;
 using local = asio::local::stream_protocol;
 constexpr auto kTick = std::chrono::milliseconds(1);
-/// What a host that does not read may leave in the cable before bytes are lost, as on a real one.
-constexpr std::size_t kMaxBacklog = 16384;
+/// What a host that does not read may leave in the cable before bytes are lost, as on a real one, in real
+/// time.
+constexpr double kMaxBacklog = 16384;
 
 double utc_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -150,7 +152,9 @@ void Server::serve_port(std::size_t i, double now) {
   }
   waiting += rig_.read(i, now);
   waiting.erase(0, pty.write(waiting));
-  if (waiting.size() > kMaxBacklog) waiting.erase(0, waiting.size() - kMaxBacklog);
+  // A pause of the host holds as many more bytes as time runs faster.
+  const auto limit = static_cast<std::size_t>(kMaxBacklog * std::max(1.0, options_.speed_up));
+  if (waiting.size() > limit) waiting.erase(0, waiting.size() - limit);
 }
 
 void Server::accept() {

@@ -3,8 +3,10 @@
 
 real_run.py --build DIR --source DIR --programs DIR
 
-A systemd is booted as process 1 of namespaces of its own (unshare), with nothing but the units under test; /etc and
-/var/lib are copies. Needs root. Exit code 77: not possible on this machine, and why.
+A systemd is booted as process 1 of namespaces of its own (unshare), with nothing but the units under test; /etc,
+/var/lib and the programs are copies. The sandbox of the service hides /tmp and every home directory, and a build may
+stand below one of them: the copies of the programs in /run are seen from everywhere. Needs root. Exit code 77: not
+possible on this machine, and why.
 """
 import argparse
 import os
@@ -19,23 +21,25 @@ import time
 
 SKIPPED = 77
 SYSTEMD = "/usr/lib/systemd/systemd"
+PROGRAMS = "/run/programs"  # in the namespaces of the test
 BOOT = r"""
 set -e
 mount --make-rprivate /
 mount -t proc proc /proc
 mount -t tmpfs tmpfs /run
+install -D -m 755 -t {inside} "{programs}/mgtd" "{programs}/mgt" "{programs}/mgt-rig"
 cp -a /etc /run/etc && mount --bind /run/etc /etc
 mount -t tmpfs tmpfs /var/lib
 ip link set lo up
 mkdir -p /run/systemd /etc/mgtd
-systemd-sysusers {source}/systemd/mgtd.sysusers.conf
-{programs}/mgt-rig run --dir /run/rig --rig table6 > /run/rig.log 2>&1 &
+systemd-sysusers "{source}/systemd/mgtd.sysusers.conf"
+{inside}/mgt-rig run --dir /run/rig --rig table6 > /run/rig.log 2>&1 &
 for i in $(seq 200); do [ -s /run/rig/ready ] && break; sleep 0.1; done
 chgrp dialout /run/rig/* -L 2>/dev/null || true
 for port in /run/rig/*; do
   [ -c "$port" ] && chgrp dialout "$(readlink -f "$port")" && chmod 660 "$(readlink -f "$port")"
 done
-{programs}/mgt-rig config --dir /run/rig --rig table6 --state /var/lib/mgtd --tcp 127.0.0.1:7450 |
+{inside}/mgt-rig config --dir /run/rig --rig table6 --state /var/lib/mgtd --tcp 127.0.0.1:7450 |
   sed 's|unix = "/var/lib/mgtd/|unix = "/run/mgtd/|' > /etc/mgtd/mgtd.toml
 chmod 644 /etc/mgtd/mgtd.toml
 export container=test SYSTEMD_UNIT_PATH={units}
@@ -70,14 +74,15 @@ class Machine:
             self.unit(f"{target}.target", f"[Unit]\nDescription={target}\nDefaultDependencies=no\n")
         self.unit("under-test.target", "[Unit]\nDefaultDependencies=no\nWants=mgtd.socket mgtd.service\n")
         text = (options.build / "systemd/mgtd.service").read_text()
-        text = re.sub(r"^ExecStart=\S+ --config \S+", f"ExecStart={options.programs}/mgtd --config /etc/mgtd/mgtd.toml",
+        text = re.sub(r"^ExecStart=\S+ --config \S+", f"ExecStart={PROGRAMS}/mgtd --config /etc/mgtd/mgtd.toml",
                       text, flags=re.M)
         text = re.sub(r"^(Wants|After)=modprobe.*\n", "", text, flags=re.M)  # nothing to load for ptys
         self.unit("mgtd.service", text)
         shutil.copy(options.source / "systemd/mgtd.socket", self.units)
         self.unit("mgtd.service.d/test.conf", DROP_IN)
         boot = scratch / "boot.sh"
-        boot.write_text(BOOT.format(source=options.source, programs=options.programs, units=self.units, systemd=SYSTEMD))
+        boot.write_text(BOOT.format(source=options.source, programs=options.programs, inside=PROGRAMS, units=self.units,
+                                    systemd=SYSTEMD))
         self.log = scratch / "console.log"
         self.process = subprocess.Popen(
             ["unshare", "--fork", "--kill-child", "--pid", "--mount", "--uts", "--ipc", "--cgroup", "--net", "bash", str(boot)],
@@ -111,7 +116,7 @@ class Machine:
         return self.show("ActiveState") == "active"
 
     def mgt(self, *words):
-        return self.inside(self.options.programs / "mgt", "--socket", "/run/mgtd/control.sock", *words)
+        return self.inside(f"{PROGRAMS}/mgt", "--socket", "/run/mgtd/control.sock", *words)
 
     def daemon_log(self):
         return self.inside("cat", "/run/mgtd.log").stdout + self.log.read_text()[-1500:]
