@@ -19,6 +19,33 @@ namespace {
 using mgtd::testing::MarkdownTable;
 using Answers = std::vector<RealAnswer>;
 
+constexpr const char* kAboutRealNoise = R"(## Real noise
+
+What happens outside the laboratory, {0} runs of each kind, written by
+
+    blind --only real-noise --runs {0} -o page.md
+
+The runs come from the simulated rig (`tests/rig`), whose physics shares no code with the estimator: samples at 50 Hz with 0.3 nT of noise, dwells of 4 and 8 s, 24 of 157 poses visited again, table angles to 0.1 degrees, temperatures up and down by 3 degrees, a switched motor and a battery beside the table. Each is fitted and explained, and told nothing.
+
+- `must`. PASS: accepted, PASS and no name. name: EXPLAINED by right names, or AMBIGUOUS with one among the possible. open: something is there, and no wrong name is given. set aside: accepted, no wrong name, and the disturbed poses cost the calibration less than 20 %. refuse: not accepted by fit, and BAD-DATA or refused by explain. agree: accepted and PASS, or neither.
+- `tensor`: median error of the calibrated tensor of a uniform field of 50 000 nT over all attitudes, as fitted, at 0.4 m. `over the plain rig`: median and worst of that error after explain, over the error from the same run with white noise and nothing hidden.
+- NEES: mean normalised error squared by the covariance that fit states, and the band where 95 % of such means lie when it is the real one.
+- CPU: fit and explain, mean of a run; the only column that is another each time.
+
+Sizes: 1/f noise of 6 pT/sqrt(Hz) at 1 Hz is that of a good fluxgate (5 is reported of a single-board one, J. Appl. Phys. 135, 034501, 2024), 20 the upper end of basic ones; the temperature laws are those measured of the four fluxgates 687 to 690 of the AUV Sentry (`tests/rig/data/README.md`); 0.3 and 1 nT/sqrt(h) spread by the 0.1 to 5 nT in an hour that offsets are said to drift. Aim: a wrong name in less than 2 % of every kind, a wrong single name in less than 1 %.
+
+)";
+
+constexpr const char* kAboutSite = R"(## Effects of the site
+
+A gradient, a curvature, a dipole 1 to 2 m away, a gradient that steps, and iron that passes 2 to 3 m away at 3 cm/s, of random direction, each as large as `d` of its own Cramér-Rao uncertainties; {0} runs of each from the simulated rig, written by
+
+    blind --only site --runs {0} -o page.md
+
+Right names of the step: site.step and site.gradient-drift, which may be a step; of the passing iron: site.transient and site.dipole.
+
+)";
+
 /// Of runs that are all of the same length, on stderr.
 class Progress {
  public:
@@ -198,33 +225,7 @@ std::string real_noise_page(const Sizes& n) {
                 "of 12 offsets", "CPU, s"},
                chosen(real_kinds(), n.kinds), n, &noise_line);
   if (table.empty()) return "";
-  return fmt::format(
-             "## Real noise\n\nWhat happens outside the laboratory, {} runs of each kind from the simulated "
-             "rig "
-             "(`tests/rig`), whose physics shares no code with the estimator: samples at 50 Hz with 0.3 nT "
-             "of noise, "
-             "dwells of 4 and 8 s, "
-             "table angles to 0.1 degrees, temperatures up and down by 3 degrees, a switched motor and a "
-             "battery "
-             "beside the table. Each run is fitted and explained, and told nothing. `must`: PASS without a "
-             "name; a "
-             "right name (EXPLAINED, or AMBIGUOUS with it in the set); open, something is there and no wrong "
-             "name is "
-             "given; set aside, the disturbed poses cost nothing and no wrong name is given; refuse, not "
-             "accepted by "
-             "fit and BAD-DATA or refused by explain; agree, accepted and PASS, or neither. `tensor`: median "
-             "error of the calibrated tensor of a "
-             "uniform "
-             "field of 50 000 nT over all attitudes, as fitted; `over the plain rig`: median and worst of "
-             "that error "
-             "after explain over the error from the same run with white noise and nothing hidden. NEES: mean "
-             "normalised error squared by the stated covariance, with the band where 95 % of such means lie "
-             "when it "
-             "is the real one. CPU: fit and explain, mean of a run. Aim: a wrong name in less than 2 % of "
-             "every "
-             "kind, a wrong single name in less than 1 %.\n\n",
-             n.real) +
-         table;
+  return fmt::format(kAboutRealNoise, n.real) + table;
 }
 
 std::string site_page(const Sizes& n) {
@@ -232,15 +233,7 @@ std::string site_page(const Sizes& n) {
                                       "right name in the set, %", "wrong single name, %", "verdicts"},
                                      chosen(site_kinds(), n.kinds), n, &site_line);
   if (table.empty()) return "";
-  return fmt::format(
-             "## Effects of the site\n\nA gradient, a curvature, a dipole of 1 to 2 m away, a gradient that "
-             "steps, "
-             "and iron that passes at 3 cm/s 2 to 3 m away, of random direction, each as large as `d` of its "
-             "own "
-             "Cramér-Rao uncertainties; {} runs of each from the simulated rig. Right names of the step: "
-             "site.step and site.gradient-drift; of the passing iron: site.transient and site.dipole.\n\n",
-             n.real) +
-         table;
+  return fmt::format(kAboutSite, n.real) + table;
 }
 
 }  // namespace mgtd::calib::testing
