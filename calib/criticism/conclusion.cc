@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calib/criticism/rest.h"
+#include "calib/fit/joint_verdict.h"
 #include "calib/probability.h"
 
 namespace mgtd::calib {
@@ -21,7 +22,8 @@ constexpr double kEnoughShare = 0.5;
 /// Of the poses. A fit leaves out as many readings as a tenth of them at the most (outliers.h); noise with
 /// heavy tails, Student's t with three degrees of freedom, makes two or three.
 constexpr double kMaxContradicted = 0.06;
-const double kTable_rad = to_rad(2);  ///< of error of the table a pose
+/// Of error of the table a pose, where nothing was told: scales read by hand are good to 2 degrees.
+const double kByHand_rad = to_rad(5);
 constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
 constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
 constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
@@ -95,19 +97,27 @@ bool one_law(const std::vector<Round>& rounds) {
 }
 
 /// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
-std::string wrong_wiring(const JointFit& fit) {
-  for (std::size_t i = 0; i < fit.state.sensors.size(); ++i) {
-    if (fit.state.sensors[i].mounting.determinant() > 0) continue;
-    return fmt::format(
-        "sensor {} is mirrored: its axes form a left-handed triad, two leads are swapped or one is inverted",
-        i + 1);
-  }
-  if (fit.table_sd_rad > kTable_rad)
+std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
+  std::vector<std::size_t> mirrored;
+  for (std::size_t i = 0; i < fit.state.sensors.size(); ++i)
+    if (fit.state.sensors[i].mounting.determinant() < 0) mirrored.push_back(i + 1);
+  if (!mirrored.empty()) return mirrored_text(mirrored);
+  const double limit = std::max(table_limit_rad(table_sd_rad), kByHand_rad);
+  if (fit.table_sd_rad > limit)
     return fmt::format(
         "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
         "or order of the angles, or a mounting written down wrongly",
-        to_deg(fit.table_sd_rad), to_deg(kTable_rad));
+        to_deg(fit.table_sd_rad), to_deg(limit));
   return {};
+}
+
+/// A table much worse than was told; empty when it is not.
+std::string rough_table(const JointFit& fit, double table_sd_rad) {
+  if (fit.table_sd_rad <= table_limit_rad(table_sd_rad)) return {};
+  return fmt::format(
+      "the table angles are good to {0:.2g} deg a pose, estimated, where {1:.2g} deg was told: --table-sd "
+      "{0:.2g} tells it",
+      to_deg(fit.table_sd_rad), to_deg(table_sd_rad));
 }
 
 }  // namespace
@@ -132,11 +142,12 @@ Finding conclude(const ExplainReport& report, const Asked& first, const Criticis
   return Finding::partial;
 }
 
-bool bad_data(const JointFit& fit, const Criticism& c, std::vector<std::string>& notes) {
-  if (std::string why = wrong_wiring(fit); !why.empty()) {
+bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std::vector<std::string>& notes) {
+  if (std::string why = wrong_wiring(fit, table_sd_rad); !why.empty()) {
     notes.push_back(std::move(why));
     return true;
   }
+  if (std::string rough = rough_table(fit, table_sd_rad); !rough.empty()) notes.push_back(std::move(rough));
   if (const double share = contradicted(fit); share > kMaxContradicted) {
     notes.push_back(
         fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",

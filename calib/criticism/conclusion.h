@@ -18,11 +18,13 @@ struct Asked {
                                std::vector<std::string>& notes);
 
 /// Data that no effect stands for: wiring, poses that contradict the rest, noise that is told wrongly. Says
-/// which in `notes`.
-[[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, std::vector<std::string>& notes);
+/// which in `notes`, and there too when the table is worse than `table_sd_rad`, what was told of it.
+[[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, double table_sd_rad,
+                            std::vector<std::string>& notes);
 
-/// Where the dwells do not say how large the noise is, the excess that the candidates share is what the rounds took away: the residual at
-/// their end stands for the noise. Nothing to share where nothing was added.
+/// Where the dwells do not say how large the noise is, the excess that the candidates share is what the
+/// rounds took away: the residual at their end stands for the noise. Nothing to share where nothing was
+/// added.
 void share_what_fell(ExplainReport& report);
 
 }  // namespace mgtd::calib

@@ -18,6 +18,7 @@
 #include "calib/criticism/sentence.h"
 #include "calib/fit/joint_report.h"
 #include "calib/fit/pose_residuals.h"
+#include "calib/fit/tune.h"
 
 namespace mgtd::calib {
 namespace {
@@ -328,6 +329,9 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
       .table = table, .joint = joint_options(options.fit), .suspects = {}, .seed = options.fit.seed};
   search.suspects = options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table);
   search.suspects.testable.insert(search.suspects.testable.end(), options.also.begin(), options.also.end());
+  auto tuned = tune(table, search.joint);
+  if (!tuned) return tl::unexpected(tuned.error());
+  search.joint.effects = *std::move(tuned);
   auto fit = fit_joint_at_size(table, search.joint);
   if (!fit) return tl::unexpected(fit.error());
   ExplainReport out;
@@ -341,7 +345,8 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   search.slow =
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
   const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
-  if (bad_data(*fit, criticism, out.notes) || !add_rounds(options.rounds, search, *fit, criticism, out)) {
+  if (bad_data(*fit, criticism, search.joint.table_sd_rad, out.notes) ||
+      !add_rounds(options.rounds, search, *fit, criticism, out)) {
     out.finding = Finding::bad_data;
     return out;
   }

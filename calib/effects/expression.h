@@ -8,8 +8,8 @@
 #include "proto/error.h"
 
 /// An arithmetic expression of named numbers (muParser): + - * / ^, comparisons, && || and ?:, sin cos tan
-/// asin acos atan sinh cosh tanh exp ln log2 log10 sqrt abs sign rint min max, pi. One value; no assignment,
-/// no text, no access to anything.
+/// of radians, sind cosd tand of degrees, asin acos atan sinh cosh tanh exp ln log2 log10 sqrt abs sign rint
+/// min max, pi. One value; no assignment, no text, no access to anything.
 namespace mgtd::calib {
 
 class Expression {

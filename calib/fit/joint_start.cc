@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "calib/fit/data_faults.h"
 #include "calib/fit/joint_solver.h"
 #include "calib/fit/orientation.h"
 #include "calib/fit/sensor_start.h"
@@ -60,6 +61,7 @@ Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
     out.to_first[i] = nearest_orthogonal(b_S_nT[0] * b_S_nT[i].transpose(), false);
     sum += out.to_first[i] * b_S_nT[i] / kSensors;
   }
+  if (const auto ok = check_turned_together(b_S_nT, out.to_first); !ok) return tl::unexpected(ok.error());
   for (Eigen::Index k = 0; k < poses; ++k) out.u.emplace_back(sum.col(k));
   return out;
 }
@@ -208,6 +210,8 @@ JointState joint_state(const JointProblem& problem, const std::array<SensorModel
 }
 
 Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
+  if (const auto ok = check_units(problem, f_nT); !ok) return tl::unexpected(ok.error());
+  if (const auto ok = check_copies(problem); !ok) return tl::unexpected(ok.error());
   auto aligned = align_sensors(problem, f_nT);
   if (!aligned) return tl::unexpected(aligned.error());
   const double hand = handedness(*aligned);

@@ -55,28 +55,29 @@ Check condition_check(const Identifiability& known) {
 Check mounting_check(const FitReport& r) {
   double worst = 0;
   std::size_t which = 0;
-  int mirrored = 0;
+  std::vector<std::size_t> mirrored;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const SensorModel& s = r.calibration.sensors[i];
     const Eigen::Matrix3d turn = s.R_PS() * s.mounting.transpose();
     const double angle = std::acos(std::clamp((turn.trace() - 1) / 2, -1.0, 1.0));
     if (angle > worst) worst = angle, which = i;
-    mirrored += s.mounting.determinant() < 0 ? 1 : 0;
+    if (s.mounting.determinant() < 0) mirrored.push_back(i + 1);
   }
-  const bool tie = 2 * mirrored == kSensors;
+  const bool tie = 2 * mirrored.size() == kSensors;
   return {
-      "mounting", worst <= kMaxTurn_rad && !tie,
+      "mounting", worst <= kMaxTurn_rad && mirrored.empty(),
       tie ? fmt::format("two sensors are mirror images of the other two: which are right-handed cannot be "
                         "told from the field")
-          : fmt::format("s{} stands {:.1f} deg from the nearest whole quarter turns", which + 1,
-                        to_deg(worst)),
-      fmt::format("{:.0f} deg, and fewer than two mirrored sensors", to_deg(kMaxTurn_rad)),
-      tie ? "check the wiring of each sensor with a magnet"
-          : "mount the sensor square to the platform, or check that it sat still"};
+      : !mirrored.empty() ? mirrored_text(mirrored)
+                          : fmt::format("s{} stands {:.1f} deg from the nearest whole quarter turns",
+                                        which + 1, to_deg(worst)),
+      fmt::format("{:.0f} deg, and no mirrored sensor", to_deg(kMaxTurn_rad)),
+      !mirrored.empty() ? "check the wiring of each sensor with a magnet, mend it and measure again"
+                        : "mount the sensor square to the platform, or check that it sat still"};
 }
 
 Check table_check(const FitReport& r, const FitOptions& options) {
-  const double limit = kMaxTableSigmas * options.table_sd_rad;
+  const double limit = table_limit_rad(options.table_sd_rad);
   return {"table angles", r.table_sd_rad <= limit,
           fmt::format("the sensors put the attitudes {:.3f} deg rms from the table's angles",
                       to_deg(r.table_sd_rad)),
@@ -103,6 +104,17 @@ Check direction_check(const char* name, double found, double sd, double given, d
 }
 
 }  // namespace
+
+double table_limit_rad(double table_sd_rad) {
+  // A fit estimates 10 degrees at the most: what is nearer to that may be anything.
+  return std::min(kMaxTableSigmas * table_sd_rad, to_rad(9));
+}
+
+std::string mirrored_text(const std::vector<std::size_t>& sensors) {
+  return fmt::format("sensor {} mirrored: left-handed axes, two leads are swapped or one is inverted",
+                     sensors.size() == 1 ? fmt::format("{} is", sensors.front())
+                                         : fmt::format("{} are", fmt::join(sensors, ", ")));
+}
 
 std::vector<Check> joint_verdict(const FitReport& r, const Identifiability& known,
                                  const FitOptions& options) {

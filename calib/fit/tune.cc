@@ -174,6 +174,42 @@ class Search {
   double best_cost_{std::numeric_limits<double>::infinity()};
 };
 
+/// Puts back, weighed as the others of their channel, the readings that a fit left out. False: there are
+/// none.
+bool bring_back(JointProblem& problem) {
+  Channels heaviest = Channels::Zero();
+  for (const JointPose& pose : problem.poses) heaviest = heaviest.cwiseMax(pose.weight);
+  bool any = false;
+  for (JointPose& pose : problem.poses) {
+    const auto left_out = (pose.weight.array() == 0).eval();
+    any = any || left_out.any();
+    pose.weight = left_out.select(heaviest, pose.weight);
+  }
+  return any;
+}
+
+/// What a model leaves, each reading that its fit leaves out counted as five standard deviations.
+double price_of(const PoseTable& table, JointOptions options, std::size_t slot, const EffectPtr& effect) {
+  constexpr double kLeftOut = 25;
+  if (!effect) return std::numeric_limits<double>::infinity();
+  options.effects[slot] = effect;
+  const auto fit = fit_joint_at_size(table, options);
+  return fit ? fit->chi2 + kLeftOut * static_cast<double>(fit->outliers.size())
+             : std::numeric_limits<double>::infinity();
+}
+
+/// The effect in `slot` with its number; null when none could be fitted.
+EffectPtr searched(const PoseTable& table, const JointOptions& options, Fitted fitted,
+                   const EffectContext& context, std::size_t slot, const OpenNumber& number) {
+  Fitted all = fitted;
+  EffectPtr best = Search(std::move(fitted), context, slot, number).best();
+  // Beside a wrong moment the fit leaves out the poses between it and the right one, which alone tell.
+  if (number.range != Scan::Range::run || !bring_back(all.problem)) return best;
+  EffectPtr other = Search(std::move(all), context, slot, number).best();
+  const bool better = price_of(table, options, slot, other) < price_of(table, options, slot, best);
+  return better ? other : best;
+}
+
 }  // namespace
 
 Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& options) {
@@ -191,7 +227,7 @@ Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& 
       auto fitted =
           number.range == Scan::Range::index ? fit_around(table, others, slot) : fit_with(table, others);
       if (!fitted) return tl::unexpected(fitted.error());
-      if (EffectPtr best = Search(std::move(*fitted), context, slot, number).best())
+      if (EffectPtr best = searched(table, others, std::move(*fitted), context, slot, number))
         tuned.effects[slot] = std::move(best);
     }
   }

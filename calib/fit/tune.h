@@ -10,7 +10,9 @@
 ///
 /// One fit sets weights and outlier nodes; then the scanned values are tried with these held, all other
 /// unknowns refitted, and a smooth number is refined between the neighbours of the best by golden section.
-/// Several searched effects take turns, twice.
+/// Several searched effects take turns, twice. A time is also searched with the readings that the first fit
+/// left out back in: the value counts whose fit leaves least, each reading left out as five standard
+/// deviations.
 namespace mgtd::calib {
 
 /// The effects of `options` with their numbers. Refuses what a fit refuses.

@@ -36,12 +36,12 @@ std::vector<Row> rows() {
        [](PoseTable& run) {
          for (Pose& pose : run.poses) *pose.azimuth_rad *= -1;
        },
-       {"the table angles contradict the readings", "2 is the limit"}},
+       {"the table angles contradict the readings", "5 is the limit"}},
       {"pitch_and_roll_exchanged",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) std::swap(pose.pitch_rad, pose.roll_rad);
        },
-       {"the table angles contradict the readings", "2 is the limit"}},
+       {"the table angles contradict the readings", "5 is the limit"}},
       {"one_reading_in_forty_is_of_something_else",
        [](PoseTable& run) {
          for (std::size_t k = 0; k < run.poses.size() * 12; k += 41)

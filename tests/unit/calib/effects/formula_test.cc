@@ -5,7 +5,9 @@
 
 #include "calib/calibration.h"
 #include "calib/criticism/resemblance.h"
+#include "calib/effects/angle_unit.h"
 #include "calib/effects/derivative_check.h"
+#include "calib/effects/expression.h"
 #include "calib/fit/fit.h"
 #include "tests/blind/hidden_run.h"
 
@@ -112,6 +114,24 @@ TEST(Formula, AColumnThatNoPoseHasIsNamedWithThoseThereAre) {
   EXPECT_THAT(wrong.error().message, HasSubstr("column 3: no pose has a 'lampA'"));
   EXPECT_THAT(wrong.error().remedy, HasSubstr("lamp_A"));
   EXPECT_TRUE(check_columns(*EffectSpec::parse("a,expr=2*lamp_A"), table));
+}
+
+TEST(Formula, DegreesHaveFunctionsOfTheirOwn) {
+  EXPECT_NEAR((*Expression::parse("sind(30) + cosd(60) + tand(45)"))({}), 2.0, 1e-12);
+}
+
+TEST(Formula, AnAngleColumnInAFunctionOfRadiansIsAskedAbout) {
+  const auto asked = check_angles("k1*t_h + k2*sin( 3*azimuth_deg)");
+  ASSERT_FALSE(asked);
+  EXPECT_THAT(asked.error().message,
+              HasSubstr("column 13: azimuth_deg is in degrees, and sin takes radians"));
+  EXPECT_THAT(asked.error().remedy, HasSubstr("sind( 3*azimuth_deg)"));
+  EXPECT_FALSE(check_angles("exp(cos((pitch_deg + 10)*2))"));
+  EXPECT_FALSE(check_angles("sind(azimuth_deg) + tan(stage_deg)"));
+  for (const char* fine : {"sind(3*azimuth_deg)", "sin(azimuth_deg*pi/180)", "cos(0.0174533*azimuth_deg)",
+                           "sin(azimuth_deg/57.29578)", "sin(T_degC)", "asin(azimuth_deg/360)",
+                           "azimuth_deg*sin(t_h)", "sin(2*pi*t_h)*cosd(roll_deg)"})
+    EXPECT_TRUE(check_angles(fine)) << fine;
 }
 
 TEST(Formula, ARowWithoutItsColumnIsNotFed) {
