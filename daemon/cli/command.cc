@@ -7,7 +7,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -33,24 +35,41 @@ Result<std::string> read_file(const std::string& path) {
   return text.str();
 }
 
+namespace {
+
+tl::unexpected<Error> cannot_write(const std::string& path, int os_error) {
+  return fail(ErrorCode::io, fmt::format("{} cannot be written: {}", path, std::strerror(os_error)),
+              "choose another place with -o");
+}
+
+/// Empty when all went well, else errno.
+std::optional<int> put(const std::string& path, const std::string& content) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  if (out << content << std::flush) return std::nullopt;
+  return errno;
+}
+
+/// A device, a FIFO or a symbolic link: what stands under that name is written to and stays what it is.
+bool stays(const std::string& path) {
+  std::error_code ignored;
+  const auto own = std::filesystem::symlink_status(path, ignored);
+  return std::filesystem::exists(own) && !std::filesystem::is_regular_file(own);
+}
+
+}  // namespace
+
 Result<void> write_file(const std::string& path, const std::string& content) {
+  if (stays(path)) {
+    if (const auto failed = put(path, content)) return cannot_write(path, *failed);
+    return {};
+  }
   const std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    if (!(out << content << std::flush)) {
-      const std::string why = std::strerror(errno);
-      std::remove(temporary.c_str());
-      return fail(ErrorCode::io, fmt::format("{} cannot be written: {}", path, why),
-                  "choose another place with -o");
-    }
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string why = std::strerror(errno);
-    std::remove(temporary.c_str());
-    return fail(ErrorCode::io, fmt::format("{} cannot be written: {}", path, why),
-                "choose another place with -o");
-  }
-  return {};
+  auto failed = put(temporary, content);
+  if (!failed && std::rename(temporary.c_str(), path.c_str()) != 0) failed = errno;
+  if (!failed) return {};
+  std::remove(temporary.c_str());
+  return cannot_write(path, *failed);
 }
 
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,

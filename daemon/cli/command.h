@@ -25,7 +25,8 @@ int report(const Session& session, const Error& error);
 /// One JSON object on stdout.
 void print_json(const nlohmann::json& object);
 
-/// Writes a whole file by way of a temporary one, so that a failure leaves the old file untouched.
+/// Writes a whole file by way of a temporary one, so that a failure leaves the old file untouched. A device,
+/// a FIFO or a symbolic link is written to directly and stays what it is.
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::string& content);
 [[nodiscard]] Result<std::string> read_file(const std::string& path);
 

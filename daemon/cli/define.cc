@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/resemblance.h"
+#include "calib/effects/angle_unit.h"
 #include "calib/effects/effect_family.h"
 #include "calib/effects/formula.h"
 #include "calib/pose_table.h"
@@ -30,7 +31,8 @@ constexpr const char* kHelp =
 k, k1, k2, k3 are coefficients, which must come in linearly; without one the whole is multiplied by one. Other
 names: every column of the run; t_h (hours); T_degC (the sensor's own); at level axis u, ux, uy, uz (field term
 of the axis and its sensor, nT); platform b, bx, by, bz (nT), gx, gy, gz (unit gravity); site px, py, pz (m).
-Operators + - * / ^ ?: and comparisons; sin cos tan exp ln sqrt abs sign min max tanh ...
+Operators + - * / ^ ?: and comparisons; sind cosd tand of degrees, as the columns azimuth_deg, pitch_deg and
+roll_deg are; sin cos tan of radians; exp ln sqrt abs sign min max tanh ...
 
 Says how much of it the calibration absorbs already and which effect of the library it resembles. On the run it
 was thought of it stays exploratory; on a second run, --from FIRST.mgtrun confirms it or not.
@@ -200,6 +202,7 @@ int run_define(const Session& session, const Arguments& args) {
   if (args.from.empty()) {
     const auto spec = spec_of(args);
     if (!spec) return report(session, spec.error());
+    if (const auto ok = calib::check_angles(args.expression); !ok) return report(session, ok.error());
     definition = {args.name, spec->text(), here, {}, {}};
   } else {
     auto other = definition_from(args.from, args.name);

@@ -3,14 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "calib/criticism/explain_json.h"
 #include "calib/criticism/explain_text.h"
-#include "calib/criticism/resemblance.h"
-#include "calib/pose_table.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/formulas.h"
 
 namespace mgtd::cli {
 namespace {
@@ -34,23 +34,6 @@ struct Arguments {
   std::shared_ptr<FitFlags> flags;
 };
 
-/// Formulas of the run file that its poses can feed and that are not in the model.
-std::vector<calib::Suspect> formulas_of(const daemon::PoseSource& source, const calib::FitOptions& options) {
-  std::vector<calib::Suspect> out;
-  for (const daemon::Definition& d : source.definitions) {
-    const bool known = std::any_of(options.effects.begin(), options.effects.end(),
-                                   [&](const calib::EffectPtr& e) { return e->name() == d.name; });
-    const auto spec = calib::EffectSpec::parse(d.spec);
-    if (known || !spec) continue;
-    auto suspect = calib::formula_suspect(*spec);
-    if (!suspect || !suspect->variants.front()->check(source.table)) continue;
-    if (d.exploratory() && d.found_on == calib::data_hash(source.table))
-      fmt::print(stderr, "{} was thought of on this run: what is said of it here is exploratory\n", d.name);
-    out.push_back(std::move(*suspect));
-  }
-  return out;
-}
-
 int run_explain(const Session& session, const Arguments& args) {
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
@@ -59,10 +42,15 @@ int run_explain(const Session& session, const Arguments& args) {
   const auto explained =
       calib::explain(source->table, {.fit = *options, .also = formulas_of(*source, *options)});
   if (!explained) return report(session, explained.error());
+  const auto doubts = doubts_of(args.run, *source, *options);
+  if (!doubts) return report(session, doubts.error());
   if (session.json) {
-    print_json(calib::to_json(*explained));
+    nlohmann::json out = calib::to_json(*explained);
+    out["chosen_in_doubt"] = doubts_json(*doubts);
+    print_json(out);
   } else {
     fmt::print("{}", calib::to_text(*explained));
+    if (!doubts->empty()) fmt::print("\nopen since it was chosen:\n{}", doubts_text(*doubts));
   }
   return explained->finding == calib::Finding::pass ? 0 : 1;
 }

@@ -6,9 +6,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "calib/criticism/choice.h"
 #include "calib/criticism/model_change.h"
 #include "calib/criticism/waterfall.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/formulas.h"
 #include "daemon/cli/kept_run.h"
 
 namespace mgtd::cli {
@@ -19,7 +21,10 @@ using nlohmann::json;
 constexpr const char* kAddHelp =
     "Fits everything again with the effect, says what it bought and what it costs, and keeps it in the run\n"
     "file: fit, compare, explain, improve and apply of that file use the kept model from then on\n"
-    "(--with none leaves it). An effect is not kept, unless --force, that makes poses left out worse by\n"
+    "(--with none leaves it). Numbers that were searched (the time of a step, the place of a dipole) are "
+    "kept\n"
+    "as they were found, and so is what else could have stood in its place: explain, next and report say so\n"
+    "until other poses settle it. An effect is not kept, unless --force, that makes poses left out worse by\n"
     "more than 1 %, that chance alone would bring in more than one run of twenty, or that makes a standard\n"
     "deviation of the calibration more than 100 times larger.\n\n"
     "  mgt explain run.mgtrun\n"
@@ -44,23 +49,26 @@ std::string model_text(const std::vector<std::string>& specs) {
   return specs.empty() ? "no effects" : fmt::format("{}", fmt::join(specs, ", "));
 }
 
-/// Keeps the change or says why not, and prints it.
+/// Keeps the change or says why not, and prints it. `choice`: what the poses said of an effect that is added.
 int conclude(const Session& session, const Arguments& args, KeptRun& run, const calib::ModelChange& change,
-             const std::string& spec, const calib::FitOptions& options) {
+             const std::string& spec, const calib::FitOptions& options, const calib::Choice& choice) {
   const bool keep = args.force || !change.vetoed();
+  json made = to_json(change);
+  if (!choice.spec.empty()) made["choice"] = to_json(choice);
   if (keep) {
-    if (auto ok = keep_step(run, change.adding ? "add" : "drop", spec, to_json(change)); !ok)
+    if (auto ok = keep_step(run, change.adding ? "add" : "drop", spec, made); !ok)
       return report(session, ok.error());
   }
   const auto steps = waterfall_of(run, options);
   if (session.json) {
-    json out = to_json(change);
+    json out = std::move(made);
     out["kept"] = keep;
     out["waterfall"] = steps ? to_json(*steps) : json();
     print_json(out);
   } else {
     fmt::print("{}", to_text(change));
     if (steps) fmt::print("\n{}", to_text(*steps));
+    if (choice.open()) fmt::print("\n{}\n", to_text(choice));
     if (keep) fmt::print("\nkept in {}; mgt undo takes it back\n", args.run);
   }
   if (!keep) {
@@ -78,9 +86,15 @@ int run_add(const Session& session, const Arguments& args) {
   if (!effect) return report(session, effect.error());
   const auto change = calib::add_effect(run->source.table, run->options, *effect);
   if (!change) return report(session, change.error());
+  const auto found = calib::make_effect(change->spec);
+  if (!found) return report(session, found.error());
+  calib::Choice choice;
+  if (const auto before = calib::explain(
+          run->source.table, {.fit = run->options, .also = formulas_of(run->source, run->options)}))
+    choice = calib::choice_of(*before, run->source.table, *found);
   calib::FitOptions options = run->options;
-  options.effects.push_back(*effect);
-  return conclude(session, args, *run, *change, (*effect)->spec(), options);
+  options.effects.push_back(*found);
+  return conclude(session, args, *run, *change, change->spec, options, choice);
 }
 
 /// The place of an effect in the kept model, by its name or by its whole spec.
@@ -102,7 +116,7 @@ int run_drop(const Session& session, const Arguments& args) {
   if (!change) return report(session, change.error());
   calib::FitOptions options = run->options;
   options.effects.erase(options.effects.begin() + static_cast<std::ptrdiff_t>(*place));
-  return conclude(session, args, *run, *change, run->source.model[*place], options);
+  return conclude(session, args, *run, *change, run->source.model[*place], options, {});
 }
 
 int run_undo(const Session& session, const Arguments& args) {

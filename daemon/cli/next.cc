@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/next_pair.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 
 namespace mgtd::cli {
@@ -26,6 +28,22 @@ struct Arguments {
   std::shared_ptr<FitFlags> flags;
 };
 
+/// Where the verdict leaves nothing open: an effect of the model against the first that could stand in its
+/// place, both asked about beside the others of the model.
+Result<calib::NextReport> next_about(const PoseTable& table, calib::FitOptions options,
+                                     const std::vector<calib::Choice>& doubts, calib::NextReport otherwise) {
+  const auto open = std::find_if(doubts.begin(), doubts.end(),
+                                 [](const calib::Choice& choice) { return !choice.rivals.empty(); });
+  if (open == doubts.end()) {
+    if (!doubts.empty()) otherwise.text.clear();
+    return otherwise;
+  }
+  std::erase_if(options.effects, [&](const calib::EffectPtr& e) { return e->spec() == open->spec; });
+  return calib::next_of(table, {.fit = options},
+                        std::pair{std::string(calib::family_name(open->spec)),
+                                  std::string(calib::family_name(open->rivals.front()))});
+}
+
 int run_next(const Session& session, const Arguments& args) {
   if (args.pair.size() == 1)
     return report(session,
@@ -42,7 +60,11 @@ int run_next(const Session& session, const Arguments& args) {
   if (!options) return report(session, options.error());
   std::optional<std::pair<std::string, std::string>> pair;
   if (args.pair.size() == 2) pair = {args.pair[0], args.pair[1]};
-  const auto next = calib::next_of(source->table, {.fit = *options}, pair);
+  const auto doubts = doubts_of(args.run, *source, *options);
+  if (!doubts) return report(session, doubts.error());
+  auto next = calib::next_of(source->table, {.fit = *options}, pair);
+  if (next && !pair && next->effect.empty())
+    next = next_about(source->table, *options, *doubts, std::move(*next));
   if (!next) return report(session, next.error());
   if (!args.output.empty() && !next->steps.empty()) {
     const calib::NextStep& best = next->steps.front();
@@ -52,9 +74,11 @@ int run_next(const Session& session, const Arguments& args) {
                best.measurement.action);
   }
   if (session.json) {
-    print_json(to_json(*next));
+    nlohmann::json out = to_json(*next);
+    out["chosen_in_doubt"] = doubts_json(*doubts);
+    print_json(out);
   } else {
-    fmt::print("{}", to_text(*next));
+    fmt::print("{}{}", doubts_text(*doubts), to_text(*next));
   }
   return next->steps.empty() && !next->effect.empty() ? 1 : 0;
 }

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/command.h"
+#include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/report_page.h"
-#include "daemon/run_file.h"
 
 namespace mgtd::cli {
 namespace {
@@ -26,13 +26,6 @@ struct Arguments {
   std::shared_ptr<FitFlags> flags;
 };
 
-Result<std::vector<daemon::ModelStep>> history_of(const std::string& path, const daemon::PoseSource& source) {
-  if (!source.header) return std::vector<daemon::ModelStep>{};
-  const auto file = daemon::RunFile::open(path, daemon::Access::read_only);
-  if (!file) return tl::unexpected(file.error());
-  return file->model_steps();
-}
-
 Result<ReportContent> content_of(const Arguments& args) {
   auto source = read_source(args.run, *args.flags);
   if (!source) return tl::unexpected(source.error());
@@ -46,6 +39,8 @@ Result<ReportContent> content_of(const Arguments& args) {
   if (!explained) return tl::unexpected(explained.error());
   auto history = history_of(args.run, *source);
   if (!history) return tl::unexpected(history.error());
+  auto doubts = doubts_of(args.run, *source, *options);
+  if (!doubts) return tl::unexpected(doubts.error());
   const std::string name = std::filesystem::path(args.run).filename().string();
   ReportContent out{.run = name,
                     .source = std::move(*source),
@@ -54,6 +49,7 @@ Result<ReportContent> content_of(const Arguments& args) {
                     .explained = std::move(*explained),
                     .waterfall = {},
                     .history = std::move(*history),
+                    .doubts = std::move(*doubts),
                     .command = fmt::format("mgt report {} -o {}", name, args.output)};
   // The model that explain ended with: what the verdict names shows what adding it would take out.
   if (!out.explained.model.empty()) {

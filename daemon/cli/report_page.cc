@@ -84,6 +84,8 @@ std::string verdict_section(const ReportContent& c) {
   std::string text = calib::sentence(c.explained);
   std::string out = fmt::format("<div class=\"{}\"><strong>{}</strong>{}</div>",
                                 banner_class(c.explained.finding), word, escaped(text));
+  for (const calib::Choice& choice : c.doubts)
+    out += "<p><strong>Open since it was chosen:</strong> " + escaped(calib::to_text(choice)) + ".</p>";
   Rows rows;
   std::set<std::size_t> failed;
   for (const Check& check : c.fit.calibration.verdict) {

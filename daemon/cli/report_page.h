@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/criticism/choice.h"
 #include "calib/criticism/comparison.h"
 #include "calib/criticism/explain.h"
 #include "calib/criticism/waterfall.h"
@@ -22,7 +23,8 @@ struct ReportContent {
   calib::ExplainReport explained;
   std::optional<calib::Waterfall> waterfall;  ///< of a model with effects
   std::vector<daemon::ModelStep> history;
-  std::string command;  ///< that makes this report again
+  std::vector<calib::Choice> doubts;  ///< what is open about effects of the kept model
+  std::string command;                ///< that makes this report again
 };
 
 [[nodiscard]] std::string report_page(const ReportContent& content);

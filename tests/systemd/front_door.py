@@ -10,12 +10,17 @@ front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
   commands    every command and option of the programs is in the manual pages, and nothing else is
   links       every file and heading that README.md and docs/ point to is there
   completion  bash completes subcommands and options of the programs
+  outputs     an output path that is a device, a FIFO or a symbolic link is written to and stays what it is
+  kept        what `add` found is kept: every command tells the same residual of that run file
 Exit code 77: the tool needed for the check is not on this machine.
 """
 import argparse
+import json
+import os
 import pathlib
 import re
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
@@ -231,6 +236,81 @@ def check_completion(options, root):
                           (("mgtd", "--ver"), "--version")):
         if wanted not in complete(*words):
             raise Failure(f"{' '.join(words)}: {wanted} not offered, but {complete(*words)}")
+
+
+def poses_of(options, root, *scenario):
+    table = root / "poses.csv"
+    demand(run(options.programs / "mgt-rig", "table", *scenario, "-o", table), "mgt-rig table")
+    return table
+
+
+def check_outputs(options, root):
+    table = poses_of(options, root, "--rig", "table6")
+    plain, target, link, fifo = (root / name for name in ("plain.json", "target.json", "link.json", "fifo"))
+    link.symlink_to(target.name)
+    os.mkfifo(fifo)
+
+    def fit(output):
+        demand(run(options.programs / "mgt", "fit", table, "-o", output), f"mgt fit -o {output}")
+
+    fit(plain)
+    text = plain.read_text()
+    for what in ("made by", "replacing what stands at the end of"):
+        fit(link)
+        if not link.is_symlink() or target.read_text() != text:
+            raise Failure(f"{what} a symbolic link: it is {'still one' if link.is_symlink() else 'gone'}")
+        target.write_text("old and longer than the new one" * len(text))
+    reader = subprocess.Popen(["cat", fifo], text=True, stdout=subprocess.PIPE)
+    fit(fifo)
+    if reader.communicate(timeout=60)[0] != text or not fifo.is_fifo():
+        raise Failure("a FIFO did not get the calibration, or is none any more")
+    device = root / "null"
+    if os.geteuid() == 0:
+        os.mknod(device, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+        fit(device)
+        if not device.is_char_device():
+            raise Failure("a device was replaced by a file")
+    left = sorted(p.name for p in root.iterdir() if p.suffix == ".tmp")
+    if left:
+        raise Failure(f"left behind: {left}")
+
+
+def check_kept(options, root):
+    mgt, kept = options.programs / "mgt", root / "run.mgtrun"
+    scenario = root / "step.toml"
+    scenario.write_text("""[rig]
+name = "step"
+parameters = "table6"
+seed = 4
+[[effect]]
+name = "axis.offset.step"
+where = "s4.y"
+nT = 6.0
+at_s = 1100.0
+""")
+    table = poses_of(options, root, "--scenario", scenario)
+    demand(run(mgt, "import", table, "-o", kept), "mgt import")
+    demand(run(mgt, "add", "axis.offset.step@s4.y", kept), "mgt add")
+
+    def said(*words):
+        done = subprocess.run([mgt, *words, kept, "--json"], text=True, stdout=subprocess.PIPE)
+        return json.loads(done.stdout)
+
+    model = said("model")
+    if ",ts=" not in model["model"][0]:
+        raise Failure(f"the time that was found is not in the kept model: {model['model']}")
+    if model["history"][0]["result"]["choice"]["rivals"] is None:
+        raise Failure("what could have stood in its place is not kept")
+    residuals = {"fit": said("fit")["residual_nT"], "compare": said("compare")["residual_nT"],
+                 "explain": said("explain")["residual_nT"], "improve": said("improve")["fit"]["residual_nT"],
+                 "add": model["history"][0]["result"]["rms_after_nT"]}
+    if len({f"{value:.3g}" for value in residuals.values()}) != 1:
+        raise Failure(f"the commands disagree about the residual: {residuals}")
+    page = root / "report.html"
+    demand(run(mgt, "report", kept, "-o", page), "mgt report")
+    wanted = f"Residual {residuals['fit']:.3g} nT"
+    if wanted not in page.read_text():
+        raise Failure(f"the report does not say '{wanted}'")
 
 
 CHECKS = {name[6:]: function for name, function in list(globals().items()) if name.startswith("check_")}

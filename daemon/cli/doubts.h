@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/choice.h"
+#include "daemon/kept_model.h"
+#include "daemon/pose_source.h"
+
+/// What is open about the model that a run file keeps: see calib/criticism/choice.h.
+namespace mgtd::cli {
+
+/// How the model of RUN came to be; empty for a pose table.
+[[nodiscard]] Result<std::vector<daemon::ModelStep>> history_of(const std::string& run,
+                                                                const daemon::PoseSource& source);
+
+/// Of the effects in `options` that were added to the model of RUN, those about which something is open on
+/// these poses.
+[[nodiscard]] Result<std::vector<calib::Choice>> doubts_of(const std::string& run,
+                                                           const daemon::PoseSource& source,
+                                                           const calib::FitOptions& options);
+
+/// One paragraph each.
+[[nodiscard]] std::string doubts_text(const std::vector<calib::Choice>& doubts);
+[[nodiscard]] nlohmann::json doubts_json(const std::vector<calib::Choice>& doubts);
+
+}  // namespace mgtd::cli

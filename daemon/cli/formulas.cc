@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/formulas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/criticism/resemblance.h"
+#include "calib/pose_table.h"
+
+namespace mgtd::cli {
+
+std::vector<calib::Suspect> formulas_of(const daemon::PoseSource& source, const calib::FitOptions& options) {
+  std::vector<calib::Suspect> out;
+  for (const daemon::Definition& d : source.definitions) {
+    const bool known = std::any_of(options.effects.begin(), options.effects.end(),
+                                   [&](const calib::EffectPtr& e) { return e->name() == d.name; });
+    const auto spec = calib::EffectSpec::parse(d.spec);
+    if (known || !spec) continue;
+    auto suspect = calib::formula_suspect(*spec);
+    if (!suspect || !suspect->variants.front()->check(source.table)) continue;
+    if (d.exploratory() && d.found_on == calib::data_hash(source.table))
+      fmt::print(stderr, "{} was thought of on this run: what is said of it here is exploratory\n", d.name);
+    out.push_back(std::move(*suspect));
+  }
+  return out;
+}
+
+}  // namespace mgtd::cli
