@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/fit/joint_report.h"
-#include "calib/fit/tune.h"
 #include "calib/pose_table.h"
 
 namespace mgtd::calib {
@@ -47,11 +46,9 @@ bool named(const ExplainReport& before, const std::string& effect) {
 
 /// dof ln(chi-square per degree of freedom, nT2) of a model: comparable also where the weights are estimated.
 std::optional<double> misfit(const PoseTable& table, const FitOptions& options) {
-  JointOptions joint = joint_options(options);
-  auto tuned = tune(table, joint);
-  if (!tuned) return std::nullopt;
-  joint.effects = *std::move(tuned);
-  const auto fit = fit_joint_at_size(table, joint);
+  const auto joint = tuned_options(table, options);
+  if (!joint) return std::nullopt;
+  const auto fit = fit_joint_at_size(table, *joint);
   if (!fit || !(fit->dof > 0)) return std::nullopt;
   return fit->dof * std::log(std::pow(fit->noise_nT(), 2) * fit->chi2 / fit->dof);
 }
@@ -105,9 +102,8 @@ std::string to_text(const Choice& choice) {
                        choice.spec, fmt::join(choice.rivals, ", "));
   if (choice.describes)
     out += fmt::format(
-        "{}{} describes the readings, it does not explain them: when it was added (verdict {}) it was not "
-        "the "
-        "whole of what stood out, and it may stand in for the law that is",
+        "{}{} describes the readings, it does not explain them: when it was added (verdict {}) it was "
+        "not the whole of what stood out, and another law may be the cause",
         out.empty() ? "" : "; ", choice.spec, choice.finding);
   return out;
 }

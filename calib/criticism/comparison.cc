@@ -14,7 +14,6 @@
 #include "calib/f_distribution.h"
 #include "calib/fit/joint_report.h"
 #include "calib/fit/pose_residuals.h"
-#include "calib/fit/tune.h"
 #include "calib/tensor.h"
 
 namespace mgtd::calib {
@@ -218,11 +217,9 @@ std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<
 }  // namespace
 
 Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
-  JointOptions joint = joint_options(options);
-  auto tuned = tune(table, joint);
-  if (!tuned) return tl::unexpected(tuned.error());
-  joint.effects = *std::move(tuned);
-  const auto fit = fit_joint_at_size(table, joint);
+  const auto joint = tuned_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  const auto fit = fit_joint_at_size(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
   Criticism c = criticise(*fit, Suspects{}, options.seed);
   look_at_maps(*fit, c);

@@ -18,7 +18,6 @@
 #include "calib/criticism/sentence.h"
 #include "calib/fit/joint_report.h"
 #include "calib/fit/pose_residuals.h"
-#include "calib/fit/tune.h"
 
 namespace mgtd::calib {
 namespace {
@@ -325,13 +324,11 @@ std::string_view to_string(Finding finding) {
 }
 
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
-  Search search{
-      .table = table, .joint = joint_options(options.fit), .suspects = {}, .seed = options.fit.seed};
+  auto joint = tuned_options(table, options.fit);
+  if (!joint) return tl::unexpected(joint.error());
+  Search search{.table = table, .joint = *std::move(joint), .suspects = {}, .seed = options.fit.seed};
   search.suspects = options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table);
   search.suspects.testable.insert(search.suspects.testable.end(), options.also.begin(), options.also.end());
-  auto tuned = tune(table, search.joint);
-  if (!tuned) return tl::unexpected(tuned.error());
-  search.joint.effects = *std::move(tuned);
   auto fit = fit_joint_at_size(table, search.joint);
   if (!fit) return tl::unexpected(fit.error());
   ExplainReport out;

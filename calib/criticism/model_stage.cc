@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "calib/fit/joint_report.h"
-#include "calib/fit/tune.h"
 
 namespace mgtd::calib {
 namespace {
@@ -23,13 +22,11 @@ void weigh_alike(const JointProblem& from, JointProblem& to) {
 }  // namespace
 
 Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options) {
-  JointOptions joint = joint_options(options);
-  auto tuned = tune(table, joint);
-  if (!tuned) return tl::unexpected(tuned.error());
-  joint.effects = std::move(*tuned);
-  auto fit = fit_joint(table, joint);
+  auto joint = tuned_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  auto fit = fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
-  ModelStage out{.options = std::move(joint), .fit = std::move(*fit), .errors = {}};
+  ModelStage out{.options = *std::move(joint), .fit = std::move(*fit), .errors = {}};
   out.errors = joint_errors(out.fit.problem, out.fit.state, FixedBlock::fitted);
   out.held_out = held_out_errors(out.fit);
   return out;

@@ -148,6 +148,14 @@ JointOptions joint_options(const FitOptions& options) {
   return out;
 }
 
+Result<JointOptions> tuned_options(const PoseTable& table, const FitOptions& options) {
+  JointOptions out = joint_options(options);
+  auto tuned = tune(table, out);
+  if (!tuned) return tl::unexpected(tuned.error());
+  out.effects = *std::move(tuned);
+  return out;
+}
+
 void fill_calibration(const JointFit& fit, Calibration& c) {
   c.sensors = fit.state.sensors;
   c.covariance = fit.covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
@@ -171,11 +179,9 @@ void fill_calibration(const JointFit& fit, Calibration& c) {
 }
 
 Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options) {
-  JointOptions joint = joint_options(options);
-  auto tuned = tune(table, joint);
-  if (!tuned) return tl::unexpected(tuned.error());
-  joint.effects = std::move(*tuned);
-  const auto fit = fit_joint(table, joint);
+  const auto joint = tuned_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  const auto fit = fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
   FitOptions with_field = options;
   if (!with_field.field_nT) with_field.field_nT = fit->state.f_nT;  // used only where a pose has none
@@ -186,7 +192,7 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   fill_calibration(*fit, report.calibration);
   fill_statistics(*fit, report);
   compare_methods(*readings, with_field, *fit, report);
-  report.check_poses = errors_of_check_poses(table, joint, *fit);
+  report.check_poses = errors_of_check_poses(table, *joint, *fit);
   const Eigen::MatrixXd information = reduce(fit->problem, fit->state, 0).S;
   const Identifiability known = identifiability(fit->problem, fit->state, information, report.site.f_nT);
   report.weak = weak_texts(known);

@@ -10,6 +10,9 @@ namespace mgtd::calib {
 [[nodiscard]] Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options);
 
 [[nodiscard]] JointOptions joint_options(const FitOptions& options);
+/// The same, with the numbers that its effects leave open searched on these poses: see tune.h. Fit, compare,
+/// explain and add begin with it, so that all of them speak of one model.
+[[nodiscard]] Result<JointOptions> tuned_options(const PoseTable& table, const FitOptions& options);
 
 /// The 48 parameters, the effects, their covariance and the noise of a fit, into a calibration.
 void fill_calibration(const JointFit& fit, Calibration& calibration);

@@ -299,8 +299,9 @@ at_s = 1100.0
     model = said("model")
     if ",ts=" not in model["model"][0]:
         raise Failure(f"the time that was found is not in the kept model: {model['model']}")
-    if model["history"][0]["result"]["choice"]["rivals"] is None:
-        raise Failure("what could have stood in its place is not kept")
+    choice = model["history"][0]["result"].get("choice", {})
+    if choice.get("spec") != model["model"][0] or not isinstance(choice.get("rivals"), list):
+        raise Failure(f"what could have stood in its place is not kept: {choice}")
     residuals = {"fit": said("fit")["residual_nT"], "compare": said("compare")["residual_nT"],
                  "explain": said("explain")["residual_nT"], "improve": said("improve")["fit"]["residual_nT"],
                  "add": model["history"][0]["result"]["rms_after_nT"]}
