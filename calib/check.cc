@@ -22,6 +22,8 @@ namespace {
 constexpr double kMaxExcess = 1.5;
 constexpr double kLeastNoise_nT = 1e-3;
 constexpr std::size_t kMinPoses = 4;
+/// Of the poses: what more of them contradict is the calibration.
+constexpr double kMostLeftOut = 0.1;
 
 /// The poses as the test wants them: all alike, and without table angles unless an effect needs them.
 PoseTable prepared(const PoseTable& table, bool needs_angles) {
@@ -181,10 +183,8 @@ void explain(ValidityReport& r) {
   if (!r.noise_from_dwells)
     r.reasons.emplace_back(
         "the noise is that of the calibration's own run: the poses have no spreads or counts");
-  for (const OutlierNode& o : r.outliers) {
-    r.reasons.push_back(fmt::format("pose {}, {}: {:.4g} {} off, left out; measure it again", o.pose, o.where,
-                                    o.shift, o.unit));
-  }
+  for (const std::string& text : outlier_texts(r.outliers))
+    r.reasons.push_back(text + "; left out, measure again");
 }
 
 double rms_noise(const JointProblem& problem) {
@@ -215,14 +215,14 @@ Result<Settled> settle(const Calibration& c, const PoseTable& poses, const Froze
   report.noise_from_dwells = weight(c, poses, *problem);
   report.noise_nT = rms_noise(*problem);
   const double f_nT = options.field_nT.value_or(c.reference.f_nT.value_or(start_field_nT(*problem, joint)));
-  Settled out{.problem = std::move(*problem), .placed = {}, .outliers = {}};
+  Settled out{.problem = std::move(*problem), .placed = {}, .outliers = Outliers(kMostLeftOut)};
   out.placed = placed_state(out.problem, c.sensors, f_nT);
   JointState& state = out.placed.state;
   state.coefficients = frozen.coefficients;
   refit_nuisances(out.problem, state);
   do {
     refit_site(out.problem, frozen.nuisance, state);
-  } while (out.outliers.exclude(out.problem, pose_residuals(out.problem, state)));
+  } while (out.outliers.judge(out.problem, state, pose_residuals(out.problem, state)));
   return out;
 }
 

@@ -222,7 +222,7 @@ Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
   const auto fit = fit_joint_at_size(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
   Criticism c = criticise(*fit, Suspects{}, options.seed);
-  look_at_maps(*fit, c);
+  look_at_maps(c);
   const PoseResiduals residuals = pose_residuals(fit->problem, fit->state);
   Comparison out{.noise = c.noise,
                  .noise_nT = fit->noise_nT(),

@@ -145,8 +145,7 @@ std::string to_text(const Comparison& c) {
   fmt::format_to(to, "\n{:<26}  {:<12} {:>3} {:>8}\n", "map of the residual", "where", "k", "p");
   for (const MapScore& m : c.maps)
     fmt::format_to(to, "{:<26}  {:<12} {:>3} {:>8}\n", m.map, m.where, m.k, p_text(m.log10_p));
-  for (const OutlierNode& o : c.outliers)
-    fmt::format_to(to, "left out: pose {}, {}: {:.4g} {} off\n", o.pose, o.where, o.shift, o.unit);
+  for (const std::string& text : outlier_texts(c.outliers)) fmt::format_to(to, "left out: {}\n", text);
   out += c.fits ? "\nthe model fits to the noise\n" : "\nthe model does not fit: mgt explain asks why\n";
   return out;
 }

@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "calib/criticism/rest.h"
@@ -19,8 +18,7 @@ namespace {
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
 /// run of a hundred, and below 0.8 in one of seven.
 constexpr double kEnoughShare = 0.5;
-/// Of the poses. A fit leaves out as many readings as a tenth of them at the most (outliers.h); noise with
-/// heavy tails, Student's t with three degrees of freedom, makes two or three.
+/// Of the poses; noise with heavy tails, Student's t with three degrees of freedom, makes two or three.
 constexpr double kMaxContradicted = 0.06;
 /// Of error of the table a pose, where nothing was told: scales read by hand are good to 2 degrees.
 const double kByHand_rad = to_rad(5);
@@ -28,17 +26,11 @@ constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tail
 constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
 constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
 
-/// Poses with an observation that is left out, of all poses; none where most of these are of one axis, which
-/// speaks of its law.
+/// Poses with an observation that is left out, of all poses. Where a law accounts for them, explain() has
+/// taken them back.
 double contradicted(const JointFit& fit) {
-  std::map<std::string, std::size_t> by_axis;
   std::set<int> poses;
-  for (const OutlierNode& node : fit.outliers) {
-    ++by_axis[node.where];
-    poses.insert(node.pose);
-  }
-  for (const auto& [where, count] : by_axis)
-    if (2 * count > fit.outliers.size()) return 0;
+  for (const OutlierNode& node : fit.outliers) poses.insert(node.pose);
   return static_cast<double>(poses.size()) / static_cast<double>(fit.problem.poses.size());
 }
 
@@ -77,23 +69,39 @@ bool overlap(const Where& a, const Where& b) {
   return false;
 }
 
-/// One name in all rounds, found axis by axis. Two searched numbers on one axis are no one law: a staircase
-/// follows any curve.
-bool one_law(const std::vector<Round>& rounds) {
+std::set<std::string> names_of(const std::vector<Round>& rounds) {
+  std::set<std::string> out;
+  for (const Round& round : rounds) out.insert(round.added.effect);
+  return out;
+}
+
+/// Of several names that together leave only noise, one that itself is little more than that; empty when all
+/// stand out.
+std::string weak_name(const std::vector<Round>& rounds) {
+  constexpr double kSigmas = 8;  // from here on the right law of the library stands first, and alone
+  for (const Round& round : rounds) {
+    if (round.added.d < kSigmas)
+      return fmt::format("{} is {:.1f} sigma large, too little to say that no other law is behind the sum",
+                         round.added.effect, round.added.d);
+  }
+  return {};
+}
+
+/// One law on one axis with two values of its searched number.
+bool staircase(const std::vector<Round>& rounds) {
   std::vector<EffectSpec> seen;
   for (const Round& round : rounds) {
-    if (round.added.effect != rounds.front().added.effect) return false;
     for (const EffectPtr& effect : round.effects) {
       const auto spec = EffectSpec::parse(effect->spec());
-      if (!spec) return false;
+      if (!spec) return true;
       for (const EffectSpec& other : seen) {
         const bool together = !spec->where || !other.where || overlap(*spec->where, *other.where);
-        if (together && spec->parameters != other.parameters) return false;
+        if (spec->name == other.name && together && spec->parameters != other.parameters) return true;
       }
       seen.push_back(*spec);
     }
   }
-  return true;
+  return false;
 }
 
 /// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
@@ -131,12 +139,16 @@ Finding conclude(const ExplainReport& report, const Asked& first, const Criticis
     notes.push_back(std::move(rest));
     return Finding::partial;
   }
-  if (!one_law(report.rounds)) {
-    notes.emplace_back("more than one effect was needed; together they leave nothing that stands out");
+  if (staircase(report.rounds)) {
+    notes.emplace_back(
+        "several steps or thresholds on one axis follow a smooth curve: they are not evidence of steps");
     return Finding::partial;
   }
-  if (!round.possible.empty()) return Finding::ambiguous;
-  std::string why = doubt(round, first);
+  const bool several = names_of(report.rounds).size() > 1;
+  const bool ambiguous = std::any_of(report.rounds.begin(), report.rounds.end(),
+                                     [](const Round& r) { return !r.possible.empty(); });
+  if (several ? ambiguous : !round.possible.empty()) return Finding::ambiguous;
+  std::string why = several ? weak_name(report.rounds) : doubt(round, first);
   if (why.empty()) return Finding::explained;
   notes.push_back(std::move(why));
   return Finding::partial;

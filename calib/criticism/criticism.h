@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct Criticism {
   /// The channel that scatters least for its noise, "s3.z", and the probability of so little, all counted.
   std::string quiet{};
   double quiet_log10_p{0}, quiet_ratio{1};
-  Residual residual;  ///< in units of the noise
+  Residual residual;                         ///< in units of the noise
+  std::shared_ptr<const JointFit> tested{};  ///< the fit, with the weights of the tests
 
   /// Evidence for one of the families, pose by pose.
   [[nodiscard]] std::vector<double> evidence_by_pose(std::size_t family) const;
@@ -38,11 +40,16 @@ struct Criticism {
 /// no p-value is near to its alarm.
 [[nodiscard]] Criticism criticise(const JointFit& fit, const Suspects& suspects, std::uint64_t seed,
                                   const Rates* before = nullptr);
+/// Against offsets that wander at these rates, in nT per root hour where the white noise is that of the
+/// weights. Nothing wanders in `fit` itself.
+[[nodiscard]] Criticism criticise_against_walk(const JointFit& fit, const WanderingRates& nT_per_sqrt_h,
+                                               const Suspects& suspects, std::uint64_t seed,
+                                               const Rates* before);
 /// Chi-square of readings, scalar reference and table angles: readings in units of the noise that the table
 /// tells, its angles in units of `table_sd_rad`. Every fit estimates that anew, and what an effect of the
 /// table explains would be gone with it.
 [[nodiscard]] double chi2_told(const JointFit& fit, const Criticism& c, double table_sd_rad);
 /// The generic maps, which cost as much as everything else: asked where nothing with a name stands out.
-void look_at_maps(const JointFit& fit, Criticism& criticism);
+void look_at_maps(Criticism& criticism);
 
 }  // namespace mgtd::calib

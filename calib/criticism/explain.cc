@@ -13,9 +13,12 @@
 
 #include "calib/criticism/conclusion.h"
 #include "calib/criticism/growth.h"
+#include "calib/criticism/judgement.h"
 #include "calib/criticism/next_measurement.h"
 #include "calib/criticism/numbers.h"
+#include "calib/criticism/second_look.h"
 #include "calib/criticism/sentence.h"
+#include "calib/criticism/stand_ins.h"
 #include "calib/fit/joint_report.h"
 #include "calib/fit/pose_residuals.h"
 
@@ -115,8 +118,9 @@ struct Search {
   std::set<std::string> failed{};  ///< effects that no fit settled with
   /// Effects that would have needed a size beyond what occurs, and that size as last seen.
   std::map<std::string, std::string> absurd{};
-  std::string one_pose{};  ///< said of what rests on one pose
-  bool slow{false};        ///< the residual follows time or temperature: no memory of a turn does
+  std::string one_pose{};           ///< said of what rests on one pose
+  std::set<std::string> unknown{};  ///< axes with a law of no library: no effect is put there any more
+  bool slow{false};                 ///< the residual follows time or temperature: no memory of a turn does
 };
 
 /// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
@@ -174,15 +178,36 @@ void say_where(const Growth& growth, Candidate& added) {
   if (!places.empty()) added.where = fmt::format("{}", fmt::join(places, ", "));
 }
 
-/// Adds family `f` and fits again. False when the fit with it fails.
-bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, ExplainReport& report) {
+std::size_t family_called(const Criticism& criticism, const std::string& name) {
+  const auto found = std::find_if(criticism.families.begin(), criticism.families.end(),
+                                  [&](const ScoredFamily& f) { return f.suspect->name == name; });
+  return static_cast<std::size_t>(found - criticism.families.begin());
+}
+
+bool possible_in(const std::vector<Rival>& rivals, const std::string& effect) {
+  return std::any_of(rivals.begin(), rivals.end(),
+                     [&](const Rival& rival) { return rival.possible && rival.effect == effect; });
+}
+
+/// Rivals that a second look does not find possible any more.
+void strike(const std::vector<Rival>& again, Round& round) {
+  for (Rival& rival : round.added.rivals) {
+    if (!rival.possible || possible_in(again, rival.effect)) continue;
+    rival.possible = false;
+    std::erase(round.possible, rival.effect);
+  }
+}
+
+/// Adds family `f` and fits again. False when the fit with it fails. A `first_choice` gives way where a
+/// second look prefers one of its rivals.
+bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, ExplainReport& report,
+         bool first_choice = true) {
   const ScoredFamily& best = criticism.families[f];
   Round round{.added = candidate_of(best, criticism, fit.worse)};
   weigh_poses(fit, criticism.evidence_by_pose(f), round.added);
   round.added.rivals = rivals_of(criticism.families, f, search.seed);
   for (const Rival& rival : round.added.rivals)
     if (rival.possible) round.possible.push_back(rival.effect);
-  keep_memory_possible(search, criticism, round);
   auto growth = grown(search.joint.effects, best, criticism.residual);
   if (!growth) {
     search.failed.insert(round.added.effect);
@@ -202,6 +227,12 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
     return false;
   }
   refine_numbers(search.table, kept(search.given, wider.effects), wider, *refit);
+  const auto again = second_look(search.table, search.joint, criticism, f, round.added.rivals, fit.worse,
+                                 *refit, search.seed);
+  if (again && again->better && first_choice)
+    return add(search, family_called(criticism, *again->better), fit, criticism, report, false);
+  if (again && !again->better) strike(again->rivals, round);
+  keep_memory_possible(search, criticism, round);
   if (report.rounds.empty()) {
     report.next = next_measurements(search.table, fit, search.joint, round.added).steps;
     report.candidates[f].rivals = round.added.rivals;
@@ -210,9 +241,10 @@ bool add(Search& search, std::size_t f, JointFit& fit, Criticism& criticism, Exp
   round.chi2_before = chi2_told(fit, criticism, table_sd_rad), round.rms_before_nT = residual_of(fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;
-  fit = std::move(*refit);
   const Rates rates = std::move(criticism.rates);
-  criticism = criticise(fit, search.suspects, search.seed, &rates);
+  Judgement judged = judge(*refit, search.suspects, search.seed, &rates);
+  fit = std::move(judged.fit);
+  criticism = std::move(judged.criticism);
   round.fit = std::make_shared<const JointFit>(fit);
   round.chi2_after = chi2_told(fit, criticism, table_sd_rad), round.rms_after_nT = residual_of(fit);
   report.rounds.push_back(std::move(round));
@@ -228,20 +260,35 @@ std::string one_pose_text(const JointFit& fit, const Criticism& c, std::size_t f
                      c.families[f].suspect->name);
 }
 
+/// A size beyond what occurs is a sign that something else is there; but a law that leaves only noise is
+/// right whatever its size.
+bool accounts_for_all(const Candidate& candidate, const Criticism& criticism) {
+  constexpr double kNearlyAll = 0.9;
+  constexpr double kMost = 0.6;  // of all chi-square, where the noise in it is not known
+  if (!std::isnan(candidate.share)) return candidate.share >= kNearlyAll;
+  return candidate.d * candidate.d >= kMost * criticism.residual.chi2();
+}
+
 /// Adds the best family that can be fitted; those that cannot are noted, as is the first that rests on one
 /// pose.
 bool add_winner(Search& search, JointFit& fit, Criticism& criticism, ExplainReport& report) {
   for (std::size_t f = 0; f < criticism.families.size() && criticism.rejects_named(f); ++f) {
     if (search.failed.contains(criticism.families[f].suspect->name)) continue;
+    if (search.unknown.contains(criticism.families[f].where().where)) continue;
     if (std::string one = one_pose_text(fit, criticism, f); !one.empty()) {
       if (search.one_pose.empty()) search.one_pose = std::move(one);
       continue;
     }
-    if (const Candidate c = candidate_of(criticism.families[f], criticism, fit.worse); !c.plausible) {
+    const Candidate c = candidate_of(criticism.families[f], criticism, fit.worse);
+    if (!c.plausible && !accounts_for_all(c, criticism)) {
       search.absurd[c.effect] = size_text(c);
       continue;  // for now: beside what is still missing a size may be absurd that later is none
     }
-    if (add(search, f, fit, criticism, report)) return true;
+    if (!add(search, f, fit, criticism, report)) continue;
+    if (!c.plausible)
+      report.notes.push_back(
+          fmt::format("the size of {}, {}, is larger than is usual", c.effect, size_text(c)));
+    return true;
   }
   return false;
 }
@@ -288,20 +335,75 @@ bool add_rounds(int most, Search& search, JointFit& fit, Criticism& criticism, E
   return !report.rounds.empty();
 }
 
+/// What an axis misfits becomes part of its noise, so that it does not bend what others know.
+void loosen(const JointFit& fit, const std::string& axis, JointOptions& options) {
+  const auto where = Where::parse(axis);
+  if (!where) return;
+  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  const double residual_nT =
+      fit.pose_noise_nT(where->sensor, where->axis) * ratio(where->sensor, where->axis);
+  options.more_nT2[3 * where->sensor + where->axis] += residual_nT * residual_nT;
+}
+
+/// Takes the rounds from `first` on back, and closes the axis to names.
+void take_back(const StandIns& found, Search& search, JointFit& fit, Criticism& criticism,
+               ExplainReport& report) {
+  search.unknown.insert(found.axis);
+  std::set<std::string> names;
+  for (std::size_t i = found.first; i < report.rounds.size(); ++i)
+    names.insert(report.rounds[i].added.effect);
+  report.notes.push_back(
+      fmt::format("{} follows something that is in no library: {} {} it together and {} not its cause, so "
+                  "none of them is named or added",
+                  found.axis, fmt::join(names, ", "), names.size() == 1 ? "describes" : "describe",
+                  names.size() == 1 ? "is" : "are"));
+  search.joint.effects = found.first == 0 ? search.given : report.rounds[found.first - 1].model;
+  report.rounds.resize(found.first);
+  auto before = fit_joint_at_size(search.table, search.joint);
+  if (!before) return;
+  loosen(*before, found.axis, search.joint);
+  const JointState near = before->state;
+  before = fit_joint_at_size(search.table, search.joint, &near);
+  if (!before) return;
+  const Rates rates = std::move(criticism.rates);
+  Judgement judged = judge(*before, search.suspects, search.seed, &rates);
+  fit = std::move(judged.fit);
+  criticism = std::move(judged.criticism);
+}
+
+/// Whether a memory of the cores may be what was found, of which these data do not have the way.
+bool memory_may_be_it(const Search& search, const ExplainReport& report) {
+  const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
+  return search.table.path.empty() &&
+         std::any_of(report.rounds.begin(), report.rounds.end(), [&](const Round& r) {
+           return memory(r.added.effect) ||
+                  (!search.slow && std::any_of(r.possible.begin(), r.possible.end(), memory));
+         });
+}
+
 /// A memory follows the way of the table, which may not be in the data.
 void say_way_unknown(const Search& search, ExplainReport& report) {
-  const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
-  const bool remembers = std::any_of(report.rounds.begin(), report.rounds.end(), [&](const Round& r) {
-    return memory(r.added.effect) ||
-           (!search.slow && std::any_of(r.possible.begin(), r.possible.end(), memory));
-  });
-  if (!remembers || !search.table.path.empty()) return;
+  if (!memory_may_be_it(search, report)) return;
   report.notes.emplace_back(
       "the way of the table between its poses is not in these data: a memory of the cores is followed from "
       "dwell to dwell only, its size and its width are rough, and another name may stand in its place. To "
       "settle it: measure with the daemon, whose run file keeps the angles of the table on the way, or go "
       "to a dozen of the poses from both sides");
 }
+
+/// Whether what the fit left out may be what a law does to some of the poses: a step, a current that is
+/// switched. One that does more than a hundredth of the field is no law of a working rig.
+bool may_be_a_law(const JointFit& fit) {
+  constexpr double kPoses = 4, kOfField = 0.01;
+  if (fit.contradicting * static_cast<double>(fit.problem.poses.size()) < kPoses) return false;
+  return std::all_of(fit.outliers.begin(), fit.outliers.end(), [&](const OutlierNode& node) {
+    const JointPose& pose = fit.problem.poses.at(node.place);
+    const double f_nT = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
+    return node.unit != "nT" || std::abs(node.shift) < kOfField * f_nT;
+  });
+}
+
+Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out);
 
 }  // namespace
 
@@ -323,9 +425,22 @@ std::string_view to_string(Finding finding) {
   return "";
 }
 
+/// A law that accounts for everything outranks leaving out what it does.
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
+  auto out = explained(table, options, JointOptions().most_left_out);
+  if (!out || !may_be_a_law(*out->fit)) return out;
+  auto with_all = explained(table, options, 0);
+  const bool accounts =
+      with_all && (with_all->finding == Finding::explained || with_all->finding == Finding::ambiguous);
+  return accounts ? with_all : out;
+}
+
+namespace {
+
+Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out) {
   auto joint = tuned_options(table, options.fit);
   if (!joint) return tl::unexpected(joint.error());
+  joint->most_left_out = most_left_out;
   Search search{.table = table, .joint = *std::move(joint), .suspects = {}, .seed = options.fit.seed};
   search.suspects = options.suspects ? Suspects{*options.suspects, {}} : library_suspects(table);
   search.suspects.testable.insert(search.suspects.testable.end(), options.also.begin(), options.also.end());
@@ -334,10 +449,12 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   ExplainReport out;
   out.untestable = search.suspects.untestable;
   out.untestable.push_back(swapped_sensors());
-  out.fit = std::make_shared<const JointFit>(*fit);
   search.given = search.joint.effects;
-  Criticism criticism = criticise(*fit, search.suspects, search.seed);
-  look_at_maps(*fit, criticism);
+  Judgement judged = judge(*fit, search.suspects, search.seed);
+  *fit = std::move(judged.fit);
+  Criticism criticism = std::move(judged.criticism);
+  if (criticism.maps.empty()) look_at_maps(criticism);
+  out.fit = std::make_shared<const JointFit>(*fit);
   describe(*fit, criticism, out);
   search.slow =
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
@@ -347,21 +464,28 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
     out.finding = Finding::bad_data;
     return out;
   }
+  for (int axis = 0; axis < kChannels; ++axis) {
+    if (criticism.maps.empty()) look_at_maps(criticism);
+    const StandIns found = stand_ins(out, criticism);
+    if (!found.any() || memory_may_be_it(search, out)) break;
+    take_back(found, search, *fit, criticism, out);
+    add_rounds(options.rounds, search, *fit, criticism, out);
+  }
   say_absurd(search, criticism, out);
   say_way_unknown(search, out);
-  if (!out.rounds.empty()) {
-    look_at_maps(*fit, criticism);
-    out.detectable = detectable(criticism);
-  }
+  if (!out.rounds.empty()) out.detectable = detectable(criticism);
   share_what_fell(out);
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;
-  out.left = !criticism.rejects()        ? Finding::pass
-             : criticism.rejects_named() ? Finding::partial
-                                         : Finding::unknown;
+  out.left = !criticism.rejects() && search.unknown.empty() ? Finding::pass
+             : criticism.rejects_named()                    ? Finding::partial
+                                                            : Finding::unknown;
   out.finding = conclude(out, first, criticism, out.notes);
+  if (!search.unknown.empty()) out.finding = out.rounds.empty() ? Finding::unknown : Finding::partial;
   name(out);
   return out;
 }
+
+}  // namespace
 
 }  // namespace mgtd::calib

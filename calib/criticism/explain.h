@@ -23,9 +23,9 @@
 /// winner is added, everything is fitted again, and the rest is judged anew, until nothing stands out.
 ///
 ///     PASS       nothing stands out; the smallest effects that would have been seen stand beside it
-///     EXPLAINED  one effect accounts for all of it, and no other could
+///     EXPLAINED  what is named, one effect or several, accounts for all of it, and no other could
 ///     AMBIGUOUS  several could, and these poses do not tell them apart
-///     PARTIAL    effects were found and something remains, or more than one was needed
+///     PARTIAL    effects were found and something remains
 ///     UNKNOWN    something is there, and nothing in the library looks like it
 ///     BAD-DATA   too many poses that contradict the rest, or a residual smaller than its noise
 ///

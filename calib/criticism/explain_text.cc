@@ -68,9 +68,7 @@ std::string to_text(const ExplainReport& r) {
     fmt::format_to(to, "  {:.3f} -> {:.3f}  {:>3.0f} min  {}\n", n.p_right_before, n.p_right_after, n.minutes,
                    n.action);
   }
-  for (const OutlierNode& o : r.outliers) {
-    fmt::format_to(to, "left out: pose {}, {}: {:.4g} {} off\n", o.pose, o.where, o.shift, o.unit);
-  }
+  for (const std::string& text : outlier_texts(r.outliers)) fmt::format_to(to, "left out: {}\n", text);
   return out;
 }
 

@@ -94,7 +94,9 @@ Result<Growth> grown(const std::vector<EffectPtr>& model, const ScoredFamily& wi
       return fail(ErrorCode::refused,
                   winner.suspect->name + " of " + winner.where().where + " is in the model already");
     }
-    auto added = suspect.make(&winner.where(), suspect.values[winner.winner().variant]);
+    const std::size_t variant = winner.winner().variant;
+    auto added = suspect.dipole_at ? Result<EffectPtr>(suspect.variants[variant])
+                                   : suspect.make(&winner.where(), suspect.values[variant]);
     if (!added) return tl::unexpected(added.error());
     out.added.push_back(*std::move(added));
   }

@@ -4,6 +4,8 @@
 
 #include "calib/criticism/suspect.h"
 #include "calib/effects/effect_family.h"
+#include "calib/effects/site_dipole.h"
+#include "calib/effects/site_step.h"
 
 namespace mgtd::calib {
 namespace {
@@ -48,6 +50,19 @@ std::function<std::optional<double>(double, double)> between(const EffectFamily&
   };
 }
 
+/// The form of a law of the site that is a dipole.
+decltype(Suspect::dipole_at) dipole_of(const EffectFamily& family) {
+  if (family.name == SiteDipole::kName)
+    return [](const Eigen::Vector3d& place_S_m, const std::optional<double>&) -> Result<EffectPtr> {
+      return std::make_shared<const SiteDipole>(place_S_m);
+    };
+  if (family.name == SiteStep::kName)
+    return [](const Eigen::Vector3d& place_S_m, const std::optional<double>& ts_h) -> Result<EffectPtr> {
+      return std::make_shared<const SiteStepDipole>(ts_h.value_or(0), place_S_m);
+    };
+  return {};
+}
+
 Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
   Suspect out{.name = std::string(family.name),
               .level = family.level,
@@ -67,6 +82,7 @@ Suspect suspect_of(const EffectFamily& family, const EffectContext& context) {
     return make(family, h == nullptr ? std::nullopt : where_of(*h), value, context);
   };
   out.between = between(family, context);
+  out.dipole_at = dipole_of(family);
   return out;
 }
 

@@ -211,10 +211,11 @@ NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
                  .revisits = pure_error(fit, residual.chi2(), residual.dof()),
                  .reference = {.dof = residual.dof()}};
   out.told = fit.sample_noise_nT.has_value();
+  out.quantisation_nT = fit.quantisation.step_nT;
   NoiseReference& n = out.reference;
   // What lasts from one pose to the next is not seen within a dwell, and what a model far off leaves is no
   // noise: its size is that of the residual.
-  const bool lasting = out.correlated() || fit.worse > 1;
+  const bool lasting = out.correlated() || fit.worse > 1 || residual.whitener().wanders();
   n.known = out.told && !lasting;
   n.by_channel = !out.told;
   if (lasting) n.scale2 = residual.chi2() / residual.dof();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "calib/criticism/score.h"
+#include "calib/fit/wandering_estimate.h"
 
 /// What the noise is before anything is said about the model.
 ///
@@ -34,6 +35,11 @@ struct NoiseModel {
   std::optional<PureError> revisits{};
   NoiseReference reference;
   bool told{true};  ///< the noise of a pose mean, by the spreads within the dwells
+  /// Residual over the noise that the dwells tell, where it is larger and no law, no map and no revisit says
+  /// that the model is at fault; else one.
+  double beyond_dwells{1};
+  double quantisation_nT{0};      ///< step of the digitiser, where readings stand on its grid
+  WanderingEstimate wandering{};  ///< of the offsets, where the tests stand against it
 
   [[nodiscard]] bool correlated() const { return rho > kCorrelated; }
 };

@@ -5,10 +5,35 @@
 
 #include <cmath>
 
+#include "calib/fit/wandering_text.h"
+
 namespace mgtd::calib {
+
+namespace {
+
+std::string beyond_dwells_text(double factor) {
+  if (!(factor > 1)) return {};
+  return fmt::format(
+      "the noise is {:.2g} times what the spread within the dwells says, in most channels and without a "
+      "shape: successive samples are correlated (as if there were {:.2g} times fewer), or it arises between "
+      "the dwells. Give n_eff, or revisit some attitudes to measure it",
+      factor, factor * factor);
+}
+
+}  // namespace
 
 std::string noise_of_tests(const NoiseModel& noise) {
   const NoiseReference& n = noise.reference;
+  if (noise.wandering.any()) {
+    return fmt::format(
+        "{}, is part of the noise{}: a law is named only where it fits better than that",
+        wandering_text(noise.wandering),
+        noise.beyond_dwells > 1
+            ? fmt::format(", beside white noise {:.2g} times what the spread within the dwells says",
+                          noise.beyond_dwells)
+            : "");
+  }
+  if (noise.beyond_dwells > 1) return beyond_dwells_text(noise.beyond_dwells);
   if (!noise.told)
     return "a misfit shows by its shape alone: the noise is the residual's own, channel by channel";
   if (noise.correlated()) {

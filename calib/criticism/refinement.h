@@ -12,4 +12,9 @@ namespace mgtd::calib {
 void refine(const JointProblem& problem, const JointState& state, const Residual& residual,
             const NoiseReference& noise, ScoredFamily& family);
 
+/// Adds the dipole at its best place to a family that has one. It is scored with moment and place as six
+/// numbers (dipole_search.h): every gradient is that of some dipole far away, and the sixth number must pay.
+void refine_place(const JointProblem& problem, const JointState& state, const Residual& residual,
+                  const NoiseReference& noise, ScoredFamily& family);
+
 }  // namespace mgtd::calib

@@ -20,11 +20,14 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
 
 }  // namespace
 
-Residual::Residual(const JointProblem& problem, const JointState& state, double rho)
-    : Residual(problem, state, linear_rows(problem, state), rho) {}
+Residual::Residual(const JointProblem& problem, const JointState& state, double rho,
+                   const WanderingRates& nT_per_sqrt_h)
+    : Residual(problem, state, linear_rows(problem, state), rho, nT_per_sqrt_h) {}
 
-Residual::Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho)
-    : whitener_(problem, rows.nuisance, rho), poses_(static_cast<Eigen::Index>(problem.poses.size())) {
+Residual::Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho,
+                   const WanderingRates& nT_per_sqrt_h)
+    : whitener_(problem, rows.nuisance, rho, nT_per_sqrt_h),
+      poses_(static_cast<Eigen::Index>(problem.poses.size())) {
   const PriorRows priors = prior_rows(problem, state);
   Eigen::MatrixXd all(rows.fixed.rows(), rows.fixed.cols() + 1);
   all << rows.fixed, rows.residual;

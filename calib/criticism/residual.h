@@ -12,7 +12,8 @@ namespace mgtd::calib {
 
 class Residual {
  public:
-  Residual(const JointProblem& problem, const JointState& state, double rho);
+  Residual(const JointProblem& problem, const JointState& state, double rho,
+           const WanderingRates& nT_per_sqrt_h = WanderingRates::Zero());
 
   /// Twelve rows a pose, then the priors.
   [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
@@ -35,7 +36,8 @@ class Residual {
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
  private:
-  Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho);
+  Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho,
+           const WanderingRates& nT_per_sqrt_h);
 
   Whitener whitener_;
   Eigen::Index poses_;

@@ -39,7 +39,9 @@ Rival compare(const Contenders& contenders, const std::vector<ScoredFamily>& fam
   out.alike = share_inside(v_b, lambda_ba);
   const Hypothesis& won = families[a.family].suspect->hypotheses[a.score->hypothesis];
   if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
-  out.form_only = out.alike > kAlike && family.suspect->reads == families[a.family].suspect->reads;
+  // Of two fields of the site what a dipole has beyond its gradient is as exact as the gradient.
+  const bool exact = family.suspect->level == Level::site && families[a.family].suspect->level == Level::site;
+  out.form_only = !exact && out.alike > kAlike && family.suspect->reads == families[a.family].suspect->reads;
   out.p_right = told_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
   if (drawn && a.L - b.L < kGone) out.p_behind = contenders.behind(b);
   out.possible = out.p_behind >= kLost || out.form_only;

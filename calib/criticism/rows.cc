@@ -52,15 +52,21 @@ LinearRows linear_rows(const JointProblem& problem, const JointState& state) {
 }
 
 Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state, const EffectPtr& effect) {
+  return effect_rows(problem, state, effect,
+                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect->coefficients().size())));
+}
+
+Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state, const EffectPtr& effect,
+                            const Eigen::VectorXd& coefficients) {
   JointProblem wider;
   wider.geometry = problem.geometry;
   wider.effects = problem.effects;
   wider.common_field = problem.common_field;
   wider.effects.push_back(effect);
-  const auto added = static_cast<Eigen::Index>(effect->coefficients().size());
+  const Eigen::Index added = coefficients.size();
   JointState at = state;
   at.coefficients.conservativeResize(state.coefficients.size() + added);
-  at.coefficients.tail(added).setZero();
+  at.coefficients.tail(added) = coefficients;
   const PoseModel model(wider, at);
   PoseLinear linear;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(row_of(problem.poses.size()), added);

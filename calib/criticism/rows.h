@@ -23,6 +23,9 @@ struct LinearRows {
 /// By the coefficients of an effect that is not in the model, at zero. Poses that cannot feed it get zeros.
 [[nodiscard]] Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state,
                                           const EffectPtr& effect);
+/// The same at `coefficients`: the shift of a dipole shows only where it has a moment.
+[[nodiscard]] Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state,
+                                          const EffectPtr& effect, const Eigen::VectorXd& coefficients);
 
 /// The priors and gauge constraints of the fixed block, as rows.
 struct PriorRows {

@@ -70,6 +70,8 @@ Score score_one(const Signature& s, const Hypothesis& h) {
 void ScoredFamily::score_last(const NoiseReference& noise) {
   for (std::size_t h = 0; h < suspect->hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = suspect->hypotheses[h];
+    if (hypothesis.combine.rows() != signatures.back().columns.cols())
+      continue;  // of another form of the law
     Score score = score_one(signatures.back(), hypothesis);
     if (score.k == 0) continue;
     score.hypothesis = h;

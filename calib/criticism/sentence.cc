@@ -33,6 +33,9 @@ std::string noise_text(const ExplainReport& r) {
     out += fmt::format(" where the noise of a pose mean is {:.3g} nT, {}", r.noise_nT,
                        noise_source(r.noise.told));
   if (const std::string tests = noise_of_tests(r.noise); !tests.empty()) out += "; " + tests;
+  if (r.noise.quantisation_nT > 0)
+    out += fmt::format("; readings stand in steps of {:.3g} nT, which is part of the noise",
+                       r.noise.quantisation_nT);
   return out + ".";
 }
 
@@ -91,22 +94,6 @@ std::string round_text(const Round& round, const JointFit* before) {
                      fall_text(round, before), size_text(as_fitted(round)));
 }
 
-/// The one axis that three effects or more were spent on; empty when there is none.
-std::string heap(const ExplainReport& r) {
-  constexpr int kHeap = 3;
-  std::map<std::string, int> effects;
-  for (const Round& round : r.rounds) {
-    std::set<std::string> places;
-    for (const EffectPtr& effect : round.effects) {
-      const auto spec = EffectSpec::parse(effect->spec());
-      if (spec && spec->where && spec->where->scale == Where::Scale::axis) places.insert(spec->where->text());
-    }
-    for (const std::string& place : places)
-      if (++effects[place] == kHeap) return place;
-  }
-  return {};
-}
-
 /// Where what was found is the lesser part of what is there.
 std::string lesser_part_text(const ExplainReport& r) {
   constexpr double kHalf = 0.5;
@@ -118,15 +105,6 @@ std::string lesser_part_text(const ExplainReport& r) {
       "What is named below takes away only {:.0f} % of what is beyond the noise: most of it is something "
       "else.",
       100 * std::max(0.0, 1 - after / before));
-}
-
-std::string heap_text(const ExplainReport& r) {
-  const std::string axis = heap(r);
-  if (axis.empty()) return {};
-  return fmt::format(
-      "{} follows something that is probably in no library: the names below describe it together, none is "
-      "its cause.",
-      axis);
 }
 
 std::string rivals_text(const Round& round) {
@@ -145,6 +123,25 @@ std::string left_text(const std::vector<MapScore>& maps) {
   if (maps.empty()) return "";
   const MapScore& m = maps.front();
   return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where, p_phrase(m.log10_p));
+}
+
+/// What an operator can do about a residual that no effect of the library stands for.
+std::string next_step_text(const std::vector<MapScore>& maps) {
+  if (maps.empty() || maps.front().log10_p > -2)
+    return "What to do next: measure a second run with the poses in another order and record what may switch "
+           "or change between poses (supplies, motors, temperatures); nothing that was recorded orders this "
+           "residual.";
+  const MapScore& m = maps.front();
+  static const std::map<std::string, std::string> kTry{
+      {"time", "sin(2*_pi*t_h/0.5)"},       {"azimuth", "cosd(3*azimuth_deg)"},
+      {"temperature", "max(0, T_degC-24)"}, {"own reading", "(u/50000)^4"},
+      {"direction", "ux*uy/50000^2"},       {"previous pose", "exp(-since_stop_s/20)"},
+  };
+  const auto formula = kTry.find(m.map);
+  return fmt::format(
+      "What to do next: look at the residual of {} over {} (mgt report draws it). If its shape suggests a "
+      "law, write it down and try it: mgt define RUN my.law '{}' --scale {}, then mgt explain again.",
+      m.where, m.map, formula == kTry.end() ? m.map : formula->second, m.where);
 }
 
 /// As many decimals as show two digits of the standard deviation, without an exponent where that stays short.
@@ -197,13 +194,12 @@ std::string size_text(const Candidate& c) {
 }
 
 std::string sentence(const ExplainReport& r) {
-  const std::string lesser_part = lesser_part_text(r), heap = heap_text(r);
-  std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part, heap};
-  const bool stand_ins = !lesser_part.empty() || !heap.empty();
+  const std::string lesser_part = lesser_part_text(r);
+  std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part};
   const JointFit* before = r.fit.get();
   for (const Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
-    if (!stand_ins) parts.push_back(rivals_text(round));
+    if (lesser_part.empty()) parts.push_back(rivals_text(round));
     before = round.fit.get();
   }
   switch (r.finding) {
@@ -216,9 +212,12 @@ std::string sentence(const ExplainReport& r) {
     case Finding::unknown:
       parts.emplace_back("Something is there, and no effect of the library looks like it.");
       parts.push_back(left_text(r.maps));
+      parts.push_back(next_step_text(r.maps));
       break;
     case Finding::partial:
-      if (r.left != Finding::pass) parts.push_back(left_text(r.maps_left));
+      if (r.left == Finding::pass) break;
+      parts.push_back(left_text(r.maps_left));
+      parts.push_back(next_step_text(r.maps_left));
       break;
     case Finding::ambiguous:
       if (!r.next.empty()) {

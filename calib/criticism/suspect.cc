@@ -109,6 +109,7 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
 }
 
 std::string spec_of(const Suspect& suspect, const Hypothesis& hypothesis, std::size_t variant) {
+  if (suspect.dipole_at) return suspect.variants[variant]->spec();
   std::string out = suspect.name;
   const auto where = Where::parse(hypothesis.where);
   if (where && where->scale != Where::Scale::own) out += "@" + hypothesis.where;

@@ -38,6 +38,10 @@ struct Suspect {
   std::function<Result<EffectPtr>(const Hypothesis*, const std::optional<double>& value)> make{};
   /// A value of the searched number between two others; empty where there is none. See refinement.h.
   std::function<std::optional<double>(double lower, double upper)> between{};
+  /// A dipole at a place (site frame, m), with the searched number of one of the variants: coefficients
+  /// moment, then shift. Empty for a law that has none. See dipole_search.h.
+  std::function<Result<EffectPtr>(const Eigen::Vector3d& place_S_m, const std::optional<double>& value)>
+      dipole_at{};
 };
 
 /// What cannot be tested at all, and why.

@@ -21,9 +21,7 @@ SiteDipole::SiteDipole(std::optional<Eigen::Vector3d> place_S_m)
 
 std::string SiteDipole::spec() const {
   EffectSpec out{.name = std::string(kName), .where = {}, .parameters = {}};
-  if (given_) {
-    for (int i = 0; i < 3; ++i) out.set(std::string(1, "xyz"[i]), start_S_m_[i]);
-  }
+  if (given_) set_dipole_place(start_S_m_, out);
   return out.text();
 }
 

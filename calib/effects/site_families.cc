@@ -5,6 +5,7 @@
 #include "calib/effects/site_dipole.h"
 #include "calib/effects/site_drift.h"
 #include "calib/effects/site_gradient.h"
+#include "calib/effects/site_step.h"
 
 namespace mgtd::calib {
 namespace {
@@ -18,18 +19,21 @@ Result<EffectPtr> dipole(const EffectSpec& spec) {
     return std::make_shared<const SiteDipole>(dipole_place_S_m(static_cast<int>(*place)));
   }
   if (spec.parameters.empty()) return std::make_shared<const SiteDipole>(std::nullopt);
-  Eigen::Vector3d at;
-  for (int i = 0; i < 3; ++i) {
-    const auto value = spec.number(std::string(1, "xyz"[i]), 0, -1000, 1000);
-    if (!value) return tl::unexpected(value.error());
-    at[i] = *value;
-  }
-  constexpr double kInsideArray_m = 0.05;
-  if (at.norm() < kInsideArray_m) {
-    return fail(ErrorCode::usage, "site.dipole: its place is the centre of the array",
-                "give x, y, z in metres, site frame, at least 0.05 m away");
-  }
-  return std::make_shared<const SiteDipole>(at);
+  const auto at = dipole_place_S_m(spec);
+  if (!at) return tl::unexpected(at.error());
+  return std::make_shared<const SiteDipole>(*at);
+}
+
+Result<EffectPtr> step(const EffectSpec& spec) {
+  if (const auto ok = spec.only({"ts", "x", "y", "z"}); !ok) return tl::unexpected(ok.error());
+  if (const auto where = where_of(spec, kOwnScale); !where) return tl::unexpected(where.error());
+  const auto ts_h = spec.number("ts", 0, -1e6, 1e6);
+  if (!ts_h) return tl::unexpected(ts_h.error());
+  if (spec.find("x") == nullptr && spec.find("y") == nullptr && spec.find("z") == nullptr)
+    return std::make_shared<const SiteStep>(*ts_h);
+  const auto at = dipole_place_S_m(spec);
+  if (!at) return tl::unexpected(at.error());
+  return std::make_shared<const SiteStepDipole>(*ts_h, *at);
 }
 
 /// An effect with one optional number.
@@ -62,6 +66,9 @@ constexpr std::array kFieldDriftConfusions{
     Confusion{"axis.offset.drift", "a change of the site is the same in all sensors"}};
 constexpr std::array kGradientDriftConfusions{Confusion{
     "axis.offset.drift", "many attitudes at each time: a gradient turns with the array, an offset does not"}};
+constexpr std::array kStepConfusions{
+    Confusion{"site.gradient-drift", "poses that follow each other quickly about the moment"},
+    Confusion{"axis.offset.step", "a step of the site is seen by all four sensors and turns with the array"}};
 constexpr std::array kReferenceConfusions{Confusion{
     "axis.gain.drift", "a second scalar reference; an error that never changes is the scale of all axes"}};
 
@@ -147,26 +154,45 @@ constexpr std::array kFamilies{
     EffectFamily{.name = "site.gradient-drift",
                  .level = Level::site,
                  .title = "the gradient of the site changes during the run",
-                 .cause = "a parked car, a lift, a door of steel; with ts: it came or went at once",
+                 .cause = "iron that moves slowly: a store that fills, a crane, a machine that warms up",
                  .equation = "G += G' (t - t0); with ts: G += dG [t >= ts]",
                  .coefficients = "Gxx, Gyy, Gxy, Gxz, Gyz, nT/m/h; with ts nT/m",
                  .typical = 10,
                  .bound = 2000,
                  .source = "a car at 10 m: some nT/m (estimate)",
                  .scales = kOwnScale,
-                 .scan = Scan{.parameter = "ts",
-                              .unit = "h",
-                              .from = 0.05,
-                              .to = 0.95,
-                              .steps = 19,
-                              .range = Scan::Range::run,
-                              .optional = true},
+                 .scan = {},
                  .needs = "t_s",
-                 .signature = "a gradient that grows with time or appears at ts",
+                 .signature = "a gradient that grows with time",
                  .confusions = kGradientDriftConfusions,
                  .untestable = {},
                  .experiment = {},
                  .from_spec = &gradient_drift},
+    EffectFamily{
+        .name = "site.step",
+        .level = Level::site,
+        .title = "something magnetic came to the site or left it",
+        .cause = "a parked car, a tool put down, a door of steel, a crane",
+        .equation = "B(x) += dB + dG x from ts on; with x, y, z a dipole from ts on",
+        .coefficients =
+            "Bx, By, Bz, nT; Gxx, Gyy, Gxy, Gxz, Gyz, nT/m; or mx, my, mz, A m^2, and dx, dy, dz, m",
+        .typical = 20,
+        .bound = 5000,
+        .source = "a car at 10 m: some nT and some nT/m; a magnet of 1 A m^2 at 1 m: 200 nT and 600 nT/m",
+        .scales = kOwnScale,
+        .scan = Scan{.parameter = "ts",
+                     .unit = "h",
+                     .from = 0.05,
+                     .to = 0.95,
+                     .steps = 19,
+                     .range = Scan::Range::run},
+        .needs = "t_s",
+        .signature = "a gradient that appears at one moment in all sensors. With a scalar reference the "
+                     "strength of the field is measured pose by pose and only its turn is left to tell",
+        .confusions = kStepConfusions,
+        .untestable = {},
+        .experiment = {},
+        .from_spec = &step},
     EffectFamily{
         .name = "site.reference-error",
         .level = Level::reference,

@@ -81,6 +81,8 @@ struct FitReport {
   double residual_nT{0};                       ///< as PoseResiduals tells it
   std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
   std::vector<OutlierNode> outliers;
+  /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
+  double contradicting{0};
   /// What the poses do not tell, with the standard deviation it leaves in the field.
   std::vector<std::string> weak;
   Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, rms over all attitudes

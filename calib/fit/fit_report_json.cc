@@ -74,9 +74,8 @@ json effects_json(const std::vector<CalibratedEffect>& effects) {
     for (const EffectCoefficient& c : e.coefficients) {
       coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
     }
-    out.push_back({{"effect", family_name(e.effect)},
-                   {"spec", e.effect},
-                   {"coefficients", std::move(coefficients)}});
+    out.push_back(
+        {{"effect", family_name(e.effect)}, {"spec", e.effect}, {"coefficients", std::move(coefficients)}});
   }
   return out;
 }
@@ -86,6 +85,7 @@ json outliers_json(const std::vector<OutlierNode>& outliers) {
   for (const OutlierNode& o : outliers) {
     out.push_back(
         {{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}, {"sigmas", o.sigmas}});
+    if (!o.cause.empty()) out.back()["cause"] = o.cause;
   }
   return out;
 }

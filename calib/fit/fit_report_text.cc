@@ -143,7 +143,9 @@ std::string rows_text(const FitReport& report) {
       "site that are in the model taken out";
   std::vector<std::string> readings;
   for (const OutlierNode& o : report.outliers)
-    if (o.where != "angles") readings.push_back(fmt::format("{} of pose {}", o.where, o.pose));
+    if (o.where != "angles")
+      readings.push_back(o.where == "pose" ? fmt::format("all of pose {}", o.pose)
+                                           : fmt::format("{} of pose {}", o.where, o.pose));
   if (!readings.empty()) {
     out += fmt::format("; no row counts {} that the fit left out: {}",
                        readings.size() == 1 ? "the reading" : fmt::format("the {} readings", readings.size()),

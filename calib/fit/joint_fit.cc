@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "calib/fit/consensus.h"
 
 namespace mgtd::calib {
 namespace {
@@ -25,11 +29,14 @@ struct Noise {
   std::optional<AxisNoise> sample_nT;
   double table_sd_rad{0};
   double worse{1};
+  /// Beside the dwells' own: of the digitiser's step, and what JointOptions adds.
+  Channels more_nT2{Channels::Zero()};
 };
 
 void apply(const Noise& noise, JointProblem& problem) {
   if (noise.sample_nT) {
     weight_by_samples(problem, *noise.sample_nT * noise.worse);
+    add_variance(problem, noise.more_nT2 * noise.worse * noise.worse);
   } else {
     weight_by_pose(problem, noise.pose_nT);
   }
@@ -84,7 +91,8 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
                     (problem.has_angles && problem.known_inclination_rad ? 1 : 0) +
                     (problem.has_angles && problem.known_declination_rad ? 1 : 0);
   for (const JointPose& pose : problem.poses) {
-    unknowns += pose.has_angles ? 4 : 3;
+    // Of a pose without angles and without readings only the size of its field is asked.
+    unknowns += pose.has_angles ? 4 : pose.weight.isZero(0) ? 1 : 3;
     observed += (pose.has_angles ? 3 : 0) + (problem.common_field ? 1 : 0);
   }
   fit.dof = observed - unknowns - fit.dof_table;
@@ -162,37 +170,151 @@ struct Weighed {
   JointSolution solution;
   PoseResiduals residuals;
   Outliers outliers;
+  Noise noise;
+  int iterations{0};
 };
 
 /// Fits, weighs anew and leaves out in turn until nothing moves. `unsettled` tells that no more than that
 /// went wrong.
-Result<Weighed> weighed(JointState state, JointFit& fit, Noise& noise, bool& unsettled) {
+Result<Weighed> weighed(JointProblem& problem, JointState state, const Noise& start, Outliers outliers,
+                        bool& unsettled) {
   Weighed out;
+  out.outliers = std::move(outliers);
+  out.noise = start;
+  Noise& noise = out.noise;
   // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
   double enough = kWeightsUnknown;
   for (int round = 1;; ++round) {
-    apply(noise, fit.problem);
-    auto solution = solve(fit.problem, std::move(state), enough);
+    out.outliers.restore(problem);
+    apply(noise, problem);
+    out.outliers.leave_out(problem);
+    auto solution = solve(problem, std::move(state), enough);
     unsettled = !solution;
     if (!solution) return tl::unexpected(solution.error());
     if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
-    fit.iterations += solution->iterations;
+    out.iterations += solution->iterations;
     out.solution = *std::move(solution);
     JointState& found = out.solution.state;
-    out.residuals = pose_residuals(fit.problem, found);
+    out.residuals = pose_residuals(problem, found);
     if (round > kMaxRounds) return out;
-    const bool excluded = out.outliers.exclude(fit.problem, out.residuals);
-    const bool moved = update(out.residuals, fit.problem, noise);
-    if (moved && !excluded) {
-      settle(fit.problem, found, noise);
+    const bool judged = out.outliers.judge(problem, found, out.residuals);
+    const bool moved = update(out.residuals, problem, noise);
+    if (moved && !judged) {
+      settle(problem, found, noise);
       enough = kConverged;
     }
-    if ((!excluded && !moved && !out.outliers.restore(fit.problem, found)) || round == kMaxRounds) {
+    if ((!judged && !moved) || round == kMaxRounds) {
       if (enough == kConverged) return out;
       enough = kConverged;
     }
     state = std::move(found);
   }
+}
+
+/// Readings and scalar reference of all poses, for the search of those that agree.
+struct AllReadings {
+  ReadingTable y_nT;
+  Eigen::VectorXd f_nT;
+};
+
+AllReadings all_readings(const JointProblem& problem, double f_nT) {
+  const auto n = static_cast<Eigen::Index>(problem.poses.size());
+  AllReadings out{ReadingTable(kChannels, n), Eigen::VectorXd::Constant(n, f_nT)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    out.y_nT.col(k) = pose.y_nT;
+    if (!problem.common_field) out.f_nT[k] = pose.f_nT;
+  }
+  return out;
+}
+
+/// The fit that starts from the poses that agree with each other; empty where they cannot be told or where
+/// nothing comes of it.
+std::optional<Weighed> from_agreeing(JointProblem& problem, const AllReadings& all, double f_nT,
+                                     const Noise& noise, double most_left_out) {
+  const auto agreeing = agreeing_poses(all.y_nT, all.f_nT);
+  if (!agreeing) return std::nullopt;
+  JointProblem some = problem;
+  some.poses.clear();
+  for (const Eigen::Index k : *agreeing) some.poses.push_back(problem.poses[static_cast<std::size_t>(k)]);
+  auto start = joint_start(some, f_nT);
+  if (!start) return std::nullopt;
+  bool unsettled = false;
+  const auto first = weighed(some, *std::move(start), noise, Outliers(most_left_out), unsettled);
+  if (!first) return std::nullopt;
+  const JointState& known = first->solution.state;
+  apply(first->noise, problem);
+  JointState state = joint_state(problem, known.sensors, known.direction, known.f_nT);
+  state.coefficients = known.coefficients;
+  refit_nuisances(problem, state);
+  Outliers outliers(most_left_out);
+  outliers.judge(problem, state, pose_residuals(problem, state));
+  auto out = weighed(problem, std::move(state), first->noise, std::move(outliers), unsettled);
+  if (!out) return std::nullopt;
+  out->iterations += first->iterations;
+  return *std::move(out);
+}
+
+/// What two fits of the same readings are compared by: minus the logarithm of their likelihood with the
+/// spread that the median of each axis tells, a reading left out priced as one three spreads away.
+double cost(const JointProblem& problem, const Weighed& fit) {
+  constexpr double kMadToSd = 1.4826, kLeftOut = 3 * 3 / 2.0;
+  double sum = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> misfits;
+    double squares = 0, left_out = 0;
+    for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+      const double weight = problem.poses[k].weight[c];
+      const double t = static_cast<double>(fit.residuals.t(c, static_cast<Eigen::Index>(k)));
+      misfits.push_back(weight > 0 ? t / weight : std::numeric_limits<double>::infinity());
+      if (weight > 0) {
+        squares += std::pow(misfits.back(), 2);
+      } else {
+        ++left_out;
+      }
+    }
+    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
+    std::nth_element(misfits.begin(), middle, misfits.end());
+    const double spread = std::max(kMadToSd * *middle, kNoiseFloor_nT);
+    sum += static_cast<double>(misfits.size()) * std::log(spread) + squares / (2 * spread * spread) +
+           kLeftOut * left_out;
+  }
+  return sum;
+}
+
+/// Of few poses only single ones can be told from the others.
+double most_left_out(const JointProblem& problem, const JointOptions& options) {
+  constexpr std::size_t kFewPoses = 20;
+  constexpr double kOfFew = 0.1;
+  return problem.poses.size() < kFewPoses ? std::min(kOfFew, options.most_left_out) : options.most_left_out;
+}
+
+/// From the end of a fit of these readings: what contradicts there is left out before anything moves.
+Result<Weighed> from_near(JointProblem& problem, JointState near, const Noise& noise, double most_left_out,
+                          bool& unsettled) {
+  Outliers outliers(most_left_out);
+  apply(noise, problem);
+  refit_nuisances(problem, near);
+  outliers.judge(problem, near, pose_residuals(problem, near));
+  return weighed(problem, std::move(near), noise, std::move(outliers), unsettled);
+}
+
+/// Least squares from all poses; where that, or the readings alone, show that some poses are far from the
+/// others, also from those that agree; the more likely of the two.
+Result<Weighed> robust(JointProblem& problem, Result<JointState> start, double f_nT, const Noise& noise,
+                       double most_left_out, bool& unsettled) {
+  const AllReadings all = all_readings(problem, f_nT);
+  JointProblem other = problem;
+  Result<Weighed> plain = tl::unexpected(start ? Error{} : start.error());
+  if (start) plain = weighed(problem, *std::move(start), noise, Outliers(most_left_out), unsettled);
+  const bool suspicious = !plain || plain->outliers.any() || plain->outliers.too_many() > 0;
+  if (most_left_out <= 0 || (!suspicious && !looks_spoilt(all.y_nT))) return plain;
+  auto agreed = from_agreeing(other, all, f_nT, noise, most_left_out);
+  if (!agreed) return plain;
+  if (plain && cost(problem, *plain) <= cost(other, *agreed)) return plain;
+  problem = std::move(other);
+  unsettled = false;
+  return *std::move(agreed);
 }
 
 Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near,
@@ -206,19 +328,25 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   Result<JointState> state = near != nullptr
                                  ? joint_state(fit.problem, near->sensors, near->direction, near->f_nT)
                                  : joint_start(fit.problem, f_nT);
-  if (!state) return tl::unexpected(state.error());
-  if (near != nullptr && near->coefficients.size() == state->coefficients.size())
+  if (state && near != nullptr && near->coefficients.size() == state->coefficients.size())
     state->coefficients = near->coefficients;
 
   Noise noise;
   noise.sample_nT = sample_noise(table);
   noise.table_sd_rad = options.table_sd_rad;
+  fit.quantisation = quantisation_of(table);
+  noise.more_nT2 = options.more_nT2 + fit.quantisation.variance_nT2.reshaped<Eigen::RowMajor>().matrix();
   fit.worse = noise.worse = noise.sample_nT ? options.worse : 1;
   for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.worse;
-  auto found = weighed(*std::move(state), fit, noise, unsettled);
+  const double most = most_left_out(fit.problem, options);
+  auto found = near != nullptr ? from_near(fit.problem, *std::move(state), noise, most, unsettled)
+                               : robust(fit.problem, std::move(state), f_nT, noise, most, unsettled);
   if (!found) return tl::unexpected(found.error());
+  noise = found->noise;
+  fit.iterations = found->iterations;
   fit.state = std::move(found->solution.state);
   fit.outliers = found->outliers.nodes(fit.problem, fit.state);
+  fit.contradicting = std::max(found->outliers.share(), found->outliers.too_many());
   fit.pose_noise_nT = assumed_noise(fit.problem) / fit.worse;
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
@@ -233,7 +361,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
 
 /// Again until the readings are as much worse as the residual says; as the table says where that is little.
 Result<JointFit> sized(const PoseTable& table, JointOptions options, const JointState* near, JointFit fit) {
-  constexpr int kMost = 3;
+  constexpr int kMost = 10;  // where a law accounts for nearly all, the size falls by orders of magnitude
   for (int i = 0; i < kMost; ++i) {
     const double wanted = std::sqrt(fit.chi2 / std::max(fit.dof, 1.0));
     options.worse = wanted > (fit.worse > 1 ? kNearAgain : kFarOff) ? wanted : 1;

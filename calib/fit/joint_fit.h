@@ -8,14 +8,16 @@
 #include "calib/fit/joint_setup.h"
 #include "calib/fit/joint_solver.h"
 #include "calib/fit/outliers.h"
+#include "calib/fit/quantisation.h"
 
 /// Joint maximum likelihood over all poses and sensors (method, section 5).
 ///
 /// Noise: from the spreads within the dwells where every pose has them, else from the residuals, iterated;
 /// pooled per axis either way. The standard deviation of the table angles is estimated. Observations that the
-/// rest contradicts become outlier nodes. Trivial solutions cannot win: residuals are those of raw readings,
-/// in nT, and a sensor whose gain collapses or explodes is refused by its determinant. Does not decide
-/// whether a calibration is acceptable.
+/// rest contradicts become outlier nodes (outliers.h); where some do, the fit starts anew from the poses that
+/// agree with each other (consensus.h), so that up to a third of gross poses of any size hide nothing.
+/// Trivial solutions cannot win: residuals are those of raw readings, in nT, and a sensor whose gain
+/// collapses or explodes is refused by its determinant. Does not decide whether a calibration is acceptable.
 namespace mgtd::calib {
 
 /// Stands in the gauge's text of a fit that knew no field.
@@ -28,6 +30,7 @@ struct JointFit {
   Eigen::MatrixXd covariance;
   AxisNoise pose_noise_nT{AxisNoise::Zero()};
   std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
+  Quantisation quantisation;                 ///< in the weights, where they come from the dwells
   double worse{1};                           ///< JointOptions::worse: in the weights, not in what follows
   double table_sd_rad{0};                    ///< estimated; 0 without angles
   double chi2{0}, dof{0};                    ///< readings and scalar reference
@@ -37,6 +40,8 @@ struct JointFit {
   Gauge gauge;
   std::string gauge_text;
   std::vector<OutlierNode> outliers;
+  /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
+  double contradicting{0};
 
   [[nodiscard]] double noise_nT() const;  ///< rms of a pose mean over the axes
 };

@@ -120,7 +120,8 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
     out.g.head<3>() -= w2 * state.nuisances[k].head<3>();
     out.cost.attitude = w2 * state.nuisances[k].head<3>().squaredNorm();
   } else {
-    out.H(3, 3) += 1;  // the idle slot
+    out.H(3, 3) += 1;                                                    // the idle slot
+    if (pose.weight.isZero(0)) out.H.diagonal().head<3>().array() += 1;  // nothing tells its field
   }
   if (!with_border) return;
   const Eigen::Index globals = out.linear.d_global.cols();

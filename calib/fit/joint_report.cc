@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "calib/array_model.h"
+#include "calib/fit/agreement.h"
 #include "calib/fit/error_summary.h"
 #include "calib/fit/joint_errors.h"
 #include "calib/fit/joint_verdict.h"
@@ -14,6 +15,7 @@
 #include "calib/fit/tensor_uncertainty.h"
 #include "calib/fit/tune.h"
 #include "calib/fit/two_step.h"
+#include "calib/fit/wandering_text.h"
 
 namespace mgtd::calib {
 namespace {
@@ -43,6 +45,16 @@ SiteField site_of(const JointFit& fit) {
   return out;
 }
 
+/// Poses of which the fit left nothing out.
+std::vector<Eigen::Index> untouched(const JointFit& fit) {
+  std::vector<bool> touched(fit.problem.poses.size(), false);
+  for (const OutlierNode& node : fit.outliers) touched.at(node.place) = true;
+  std::vector<Eigen::Index> out;
+  for (std::size_t k = 0; k < touched.size(); ++k)
+    if (!touched[k]) out.push_back(static_cast<Eigen::Index>(k));
+  return out;
+}
+
 /// Errors of the other methods on the same readings, where those methods can answer.
 void compare_methods(const Readings& readings, const FitOptions& options, const JointFit& fit,
                      FitReport& report) {
@@ -51,8 +63,9 @@ void compare_methods(const Readings& readings, const FitOptions& options, const 
   };
   report.before = errors(raw_fields(readings));
   FieldTable b = raw_fields(readings);
+  const Readings kept = readings.subset(untouched(fit));
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const auto step1 = scalar_calibration(readings.y_nT[i], readings.f_nT);
+    const auto step1 = scalar_calibration(kept.y_nT[i], kept.f_nT);
     if (!step1) continue;  // the row then shows this sensor as it was read
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         fit.state.sensors[i].mounting * step1->correct(readings.y_nT[i]);
@@ -61,7 +74,7 @@ void compare_methods(const Readings& readings, const FitOptions& options, const 
   FitOptions other = options;
   for (const Method method : {Method::two_step, Method::simplified}) {
     other.method = method;
-    const auto fitted = two_step(readings, other);
+    const auto fitted = two_step(kept, other);
     if (!fitted) continue;
     auto& row = method == Method::two_step ? report.two_step : report.simplified;
     row = errors(corrected_fields(readings, fitted->sensors));
@@ -102,6 +115,7 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
   report.dof_table = fit.dof_table;
   report.table_sd_rad = fit.table_sd_rad;
   report.outliers = fit.outliers;
+  report.contradicting = fit.contradicting;
   report.site = site_of(fit);
   report.tensor_sd_nT_per_m =
       calibration_tensor_sd(fit.state.sensors, fit.problem.geometry, fit.covariance, report.site.f_nT);
@@ -181,8 +195,13 @@ void fill_calibration(const JointFit& fit, Calibration& c) {
 Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options) {
   const auto joint = tuned_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
-  const auto fit = fit_joint(table, *joint);
+  auto fit = fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
+  const WanderingEstimate wandering = wandering_of(*fit);
+  if (wandering.any()) {
+    if (auto covariance = covariance_with_wandering(*fit, wandering))
+      fit->covariance = *std::move(covariance);
+  }
   FitOptions with_field = options;
   if (!with_field.field_nT) with_field.field_nT = fit->state.f_nT;  // used only where a pose has none
   const auto readings = readings_of(table, with_field);
@@ -197,7 +216,16 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   const Identifiability known = identifiability(fit->problem, fit->state, information, report.site.f_nT);
   report.weak = weak_texts(known);
   report.calibration.verdict = joint_verdict(report, known, options);
-  conclude(report, joint_remarks(report, known, fit->spread));
+  report.calibration.verdict.push_back(
+      agreement_check(agreement(*fit, report.residual_nT, report.held_out_residual_nT)));
+  std::vector<std::string> said = joint_remarks(report, known, fit->spread);
+  if (wandering.any())
+    said.push_back(wandering_text(wandering) +
+                   ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it");
+  if (fit->quantisation.seen())
+    said.push_back(fmt::format("readings stand in steps of {:.3g} nT: the uncertainties contain it",
+                               fit->quantisation.step_nT));
+  conclude(report, std::move(said));
   return report;
 }
 

@@ -22,9 +22,15 @@ struct JointOptions {
   std::optional<double> field_sd_nT;
   std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
   double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
+  /// Variance of a pose mean beside what the dwells tell, by channel: of an axis that follows a law which the
+  /// model lacks, so that its misfit is not pressed into what other axes know.
+  Channels more_nT2{Channels::Zero()};
   /// Readings and scalar reference are taken as so much worse than the table says: for a model that is known
   /// to be far off, whose misfit would else be pressed into what is weakly known.
   double worse{1};
+  /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
+  /// is.
+  double most_left_out{1.0 / 3};
 };
 
 /// Spread of the true field from pose to pose that is allowed for when no scalar reference follows it.
@@ -57,6 +63,8 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
 /// alike. Keeps zero weights.
 void weight_by_samples(JointProblem& problem, const AxisNoise& sample);
 void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean);
+/// Adds a variance to that of every reading, by channel.
+void add_variance(JointProblem& problem, const Channels& nT2);
 
 /// Field to start from: mean scalar reference, or the given field, or the mean size of the readings'
 /// variation.

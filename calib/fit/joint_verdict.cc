@@ -15,7 +15,6 @@ namespace mgtd::calib {
 namespace {
 
 constexpr double kMaxTableSigmas = 5;  ///< of the uncertainty the operator gives the table
-constexpr double kMaxOutlierShare = 0.1;
 constexpr double kMaxDirectionSigmas = 5;
 constexpr double kMaxCondition = 1e6;  ///< its square is what double precision has left of ten digits
 constexpr double kMaxTurn_rad = to_rad(35);
@@ -86,14 +85,6 @@ Check table_check(const FitReport& r, const FitOptions& options) {
           "check the sense and the zero of every table axis, or give its real uncertainty with --table-sd"};
 }
 
-Check outlier_check(const FitReport& r) {
-  const double share = static_cast<double>(r.outliers.size()) / std::max(1, r.calibration.poses);
-  return {"bad poses", share <= kMaxOutlierShare,
-          fmt::format("{} observations left out in {} poses", r.outliers.size(), r.calibration.poses),
-          fmt::format("{:.0f} % of the poses", 100 * kMaxOutlierShare),
-          "look at the listed poses; measure them again"};
-}
-
 Check direction_check(const char* name, double found, double sd, double given, double table_sd) {
   const double limit = kMaxDirectionSigmas * std::hypot(sd, table_sd);
   return {name, std::abs(std::remainder(found - given, 2 * std::numbers::pi)) <= limit,
@@ -134,7 +125,7 @@ std::vector<Check> joint_verdict(const FitReport& r, const Identifiability& know
                                     *options.declination_rad, options.table_sd_rad));
     }
   }
-  out.push_back(outlier_check(r));
+  out.push_back(bad_poses_check(r));
   return out;
 }
 
@@ -151,11 +142,6 @@ std::vector<std::string> joint_remarks(const FitReport& report, const Identifiab
         fmt::format("no field is known, so {}: fields and gradients are in units of the mean scale "
                     "factor; give the field of the site with --field, or measure it",
                     kScaleIsFree));
-  }
-  for (const OutlierNode& node : report.outliers) {
-    out.push_back(
-        fmt::format("pose {}, {}: {:.4g} {} off by {:.0f} times what the others allow; left out of the fit",
-                    node.pose, node.where, node.shift, node.unit, node.sigmas));
   }
   for (const std::string& weak : report.weak) out.push_back("weakly known: " + weak);
   if (!known.add.empty())

@@ -36,4 +36,12 @@ void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean) {
   }
 }
 
+void add_variance(JointProblem& problem, const Channels& nT2) {
+  for (JointPose& pose : problem.poses) {
+    for (int c = 0; c < kChannels; ++c) {
+      if (nT2[c] > 0) set_weight(pose.weight[c], std::sqrt(nT2[c] + 1 / std::pow(pose.weight[c], 2)));
+    }
+  }
+}
+
 }  // namespace mgtd::calib

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace mgtd::calib {
 
-/// An observation that the rest of the data contradicts: still in the table, left out of the sums, listed
-/// with the shift that would reconcile it.
+/// Observations that the rest of the data contradicts: still in the table, left out of the sums, listed
+/// with the shift that would reconcile them.
 struct OutlierNode {
   int pose{0};        ///< number in the table
-  std::string where;  ///< "s3.z", "scalar" or "angles"
-  double shift{0};    ///< observed minus predicted
-  std::string unit;   ///< "nT", or "deg" for angles
-  double sigmas{0};   ///< of the shift, when it was found
+  std::string where;  ///< "s3.z", "s3" for all three of it, "pose" for all twelve, "scalar" or "angles"
+  /// Observed minus predicted; of several readings the root of the mean square.
+  double shift{0};
+  std::string unit;      ///< "nT", or "deg" for angles
+  double sigmas{0};      ///< of the shift, when it was found
+  std::size_t place{0};  ///< of the pose among those fitted
+  std::string cause{};   ///< "saturated", "stuck", or empty
 };
+
+/// Whether the node speaks of this reading.
+[[nodiscard]] bool covers(const OutlierNode& node, int sensor, int axis);
+
+/// One line for what is left out of one pose, or of consecutive poses at the same place: "pose 17, s3.z: 300
+/// nT off by 60 times what the others allow", "poses 41-45 disturbed: all sensors contradict the rest, by 37
+/// nT (rms)".
+[[nodiscard]] std::vector<std::string> outlier_texts(const std::vector<OutlierNode>& nodes);
 
 }  // namespace mgtd::calib

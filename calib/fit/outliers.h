@@ -3,43 +3,61 @@
 #include <vector>
 
 #include "calib/fit/outlier_node.h"
+#include "calib/fit/pose_blame.h"
 #include "calib/fit/pose_residuals.h"
 
 /// Observations that the rest of the data contradicts. Each stays in the table, is left out of the sums, and
 /// is listed with the shift that would reconcile it (mean-shift outlier model). Nothing is ever dropped
-/// silently.
+/// silently, and what fits after all comes back.
+///
+/// A law that the model misses is not cured by leaving out where it is largest: limits go by the spread of
+/// each axis over all poses, and an axis that loses many readings keeps them all where no gap parts them from
+/// the others.
 namespace mgtd::calib {
 
-/// The set of observations left out, grown from the worst downwards and checked again at the end.
+/// The set of observations left out.
 class Outliers {
  public:
-  /// Leaves out the worst observation of each pose that stands out, worst poses first; returns whether any
-  /// was. A tenth of the poses at most: more is a model that fails, not bad poses.
-  bool exclude(JointProblem& problem, const PoseResiduals& residuals);
-  /// Takes back, once each, what fits after all now that worse ones are gone; returns whether any was. Of a
-  /// pose that lost several: all but the one without which the others agree, where there is one. A reading
-  /// that is far off bends attitude and field of its pose, and the poses' own parameters of its axis with
-  /// them: then good ones look worse than it does.
-  bool restore(JointProblem& problem, const JointState& state);
+  explicit Outliers(double most = 1.0 / 3) : most_(most) {}
+  /// Judges every pose afresh against this state (pose_blame.h) and leaves out what it is to blame for;
+  /// returns whether the set changed. No more than the given share of the poses: where more of them
+  /// contradict, it is the model that fails, and nothing is left out.
+  bool judge(JointProblem& problem, const JointState& state, const PoseResiduals& residuals);
+  /// Gives every observation its weight back, for a while: between this and leave_out() weights may be set.
+  void restore(JointProblem& problem) const;
+  void leave_out(JointProblem& problem);
+
+  [[nodiscard]] bool any() const { return share() > 0; }
+  /// Poses of which something is left out, of all poses.
+  [[nodiscard]] double share() const;
+  /// Poses that contradicted when there were too many of them to be left out, of all poses; else zero.
+  [[nodiscard]] double too_many() const { return too_many_; }
+  [[nodiscard]] const std::vector<Rows>& rows() const { return left_out_; }
   [[nodiscard]] std::vector<OutlierNode> nodes(const JointProblem& problem, const JointState& state) const;
 
  private:
-  struct Suspect {
-    std::size_t pose{0};
-    int row{0};  ///< channel, kScalarRow or kAttitudeRow
-    double t{0};
-    double weight{0};  ///< it had, to give back
+  struct Weights {
+    Channels readings;
+    double scalar{0}, attitude{0};
   };
-  using Spreads = Eigen::Array<double, kObservations, 1>;
+  [[nodiscard]] OutlierNode node(const JointProblem& whole, const JointState& state, std::size_t k,
+                                 int row) const;
+  [[nodiscard]] std::vector<Rows> blamed(const JointProblem& whole, const JointState& state,
+                                         const BlameLimits& limits, const std::vector<std::size_t>& suspects);
+  [[nodiscard]] bool spare_tails(const PoseResiduals& residuals, const std::vector<Rows>& found,
+                                 BlameLimits& limits);
+  void widen_tails(const PoseResiduals& residuals, BlameLimits& limits) const;
+  void fill_stretches();
+  void fill_saturated(const JointProblem& problem);
 
-  [[nodiscard]] std::vector<Suspect> find(const PoseResiduals& residuals) const;
-  [[nodiscard]] bool restore_all_but_one(JointProblem& problem, const JointState& state);
-  [[nodiscard]] double worst_without(const JointProblem& problem, const JointState& state,
-                                     const Suspect& culprit) const;
-  void take_back(JointProblem& problem, std::vector<Suspect>::iterator from);
-
-  Spreads spread_{Spreads::Ones()};  ///< of t over the poses, as last seen
-  std::vector<Suspect> left_out_, taken_back_;
+  double most_;
+  std::vector<Rows> left_out_;    ///< by pose
+  std::vector<Weights> weight_;   ///< of every pose, before anything was left out
+  std::vector<int> changed_;      ///< how often the judgement of the pose did
+  std::vector<double> sigmas_;    ///< worst misfit of the pose when it was judged
+  std::bitset<kChannels> tails_;  ///< channels whose misfit has no gap: a law, not gross readings
+  double too_many_{0};
+  int given_up_{0};  ///< how often there were too many
 };
 
 }  // namespace mgtd::calib

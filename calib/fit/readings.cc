@@ -3,21 +3,46 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace mgtd::calib {
 namespace {
 
 constexpr auto kCount = static_cast<std::size_t>(kSensors);
 
-/// Mean square over poses of sd^2 / weight(pose), per axis; zero where nothing is known.
+/// Times the median spread of the axis. A dwell that is above it was disturbed and tells nothing of the
+/// noise.
+constexpr double kDisturbed = 5;
+
+AxisNoise median_spread(const PoseTable& table) {
+  AxisNoise out = AxisNoise::Zero();
+  for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::vector<double> values;
+      for (const Pose& pose : table.poses)
+        if (pose.sd_nT[i][a]) values.push_back(*pose.sd_nT[i][a]);
+      if (values.empty()) continue;
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = *middle;
+    }
+  }
+  return out;
+}
+
+/// Mean square over quiet poses of sd^2 / weight(pose), per axis; zero where nothing is known.
 template <class Weight>
 AxisNoise pooled(const PoseTable& table, Weight weight) {
   AxisNoise sum = AxisNoise::Zero(), count = AxisNoise::Zero();
+  const AxisNoise usual = median_spread(table);
   for (const Pose& pose : table.poses) {
     for (std::size_t i = 0; i < kCount; ++i) {
       for (std::size_t a = 0; a < 3; ++a) {
         const auto& sd = pose.sd_nT[i][a];
         if (!sd) continue;
         const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(a);
+        if (usual(row, column) > 0 && *sd > kDisturbed * usual(row, column)) continue;
         sum(row, column) += *sd * *sd / weight(pose);
         count(row, column) += 1;
       }
@@ -41,6 +66,7 @@ Readings Readings::subset(const std::vector<Eigen::Index>& which) const {
   for (const Eigen::Index k : which) {
     out.angles.push_back(angles[static_cast<std::size_t>(k)]);
     out.standard.push_back(standard[static_cast<std::size_t>(k)]);
+    out.number.push_back(number[static_cast<std::size_t>(k)]);
   }
   return out;
 }
@@ -75,6 +101,7 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
     }
     for (std::size_t i = 0; i < kCount; ++i) out.y_nT[i].col(k) = pose.y_nT[i];
     out.standard.push_back(pose.set == "standard");
+    out.number.push_back(pose.number);
     out.angles.push_back(pose.angles());
     // A table with one axis reports no tilt: the standard set is level by definition.
     if (out.standard.back() && pose.azimuth_rad && !out.angles.back())

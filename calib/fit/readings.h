@@ -16,6 +16,7 @@ struct Readings {
   Eigen::VectorXd f_sd_nT;
   std::vector<std::optional<TableAngles>> angles;
   std::vector<bool> standard;
+  std::vector<int> number;                     ///< of the pose in the table
   AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< of a pose mean; zero when the table has no spreads
 
   [[nodiscard]] Eigen::Index poses() const { return f_nT.size(); }
@@ -36,8 +37,8 @@ enum class PoseUse { fit, check };
 [[nodiscard]] Result<Readings> readings_of(const PoseTable& table, const FitOptions& options,
                                            PoseUse use = PoseUse::fit);
 
-/// Noise of one sample per axis, pooled over the poses (root mean square of their spreads); zero where no
-/// pose tells.
+/// Noise of one sample per axis, pooled over the poses (root mean square of their spreads, without those
+/// above five times the median: something moved there); zero where no pose tells.
 [[nodiscard]] AxisNoise pooled_sample_noise(const PoseTable& table);
 
 }  // namespace mgtd::calib

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/agreeing_readings.h"
 #include "calib/fit/error_summary.h"
 #include "calib/fit/influence.h"
 #include "calib/fit/orientation.h"
@@ -152,8 +153,10 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
 }  // namespace
 
 Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& options) {
-  const auto readings = readings_of(table, options);
-  if (!readings) return tl::unexpected(readings.error());
+  const auto all = readings_of(table, options);
+  if (!all) return tl::unexpected(all.error());
+  const AgreeingReadings agreeing = agreeing_readings(*all);
+  const Readings* const readings = &agreeing.kept;
   const auto fitted = two_step(*readings, options);
   if (!fitted) return tl::unexpected(fitted.error());
   FitReport report;
@@ -176,6 +179,8 @@ Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& opti
   }
   report.held_out = hold_out(*readings, options, c.geometry);
   report.halves = compare_halves(*readings, *fitted, c.geometry);
+  report.outliers = left_out_nodes(*all, agreeing, *fitted);
+  report.contradicting = static_cast<double>(agreeing.left_out.size()) / static_cast<double>(all->poses());
   c.verdict = verdict(report, *fitted, options);
   conclude(report, remarks(report));
   return report;

@@ -99,7 +99,20 @@ Check halves_check(const FitReport& r, const FitOptions& options) {
       "something changed between the way out and the way back: backlash, drift or a passing vehicle");
 }
 
+/// Of the poses: a robust start finds the others while a third is wrong; this is what it is trusted with.
+constexpr double kMaxBadPoses = 0.25;
+
 }  // namespace
+
+Check bad_poses_check(const FitReport& r) {
+  return check("bad poses", r.contradicting <= kMaxBadPoses,
+               fmt::format("{:.0f} % of the poses contradict the others", 100 * r.contradicting),
+               fmt::format("{:.0f} % of the poses", 100 * kMaxBadPoses),
+               r.outliers.empty()
+                   ? "so many contradict that none was left out: look for a disturbance, a loose "
+                     "cable or a change during the run, and measure again"
+                   : "look at the listed poses; measure them again");
+}
 
 std::vector<Check> common_checks(const FitReport& report) {
   const Calibration& c = report.calibration;
@@ -111,6 +124,7 @@ std::vector<Check> verdict(const FitReport& report, const TwoStep& fitted, const
   if (fitted.origin.misfit_rad > 0) out.push_back(table_check(fitted, options));
   if (options.inclination_rad) out.push_back(inclination_check(report, options));
   if (report.halves) out.push_back(halves_check(report, options));
+  if (!report.outliers.empty()) out.push_back(bad_poses_check(report));
   return out;
 }
 
@@ -133,6 +147,8 @@ std::vector<std::string> remarks(const FitReport& report) {
         mirrored ? "mirrored (an axis wired backwards, or two swapped)" : "mounted turned", axes));
   }
   if (std::string left = left_over(report); !left.empty()) out.push_back(std::move(left));
+  for (const std::string& text : outlier_texts(report.outliers))
+    out.push_back(text + "; left out of the fit");
   return out;
 }
 

@@ -12,6 +12,8 @@ namespace mgtd::calib {
 
 /// The checks that hold for every method: scale factors, angles, volume, residual.
 [[nodiscard]] std::vector<Check> common_checks(const FitReport& report);
+/// Poses that contradict the others: of too many of them none can be trusted.
+[[nodiscard]] Check bad_poses_check(const FitReport& report);
 
 /// Sentences about what was recognised: turned and mirrored sensors, gauge, residual against the noise.
 [[nodiscard]] std::vector<std::string> remarks(const FitReport& report);

@@ -16,10 +16,10 @@ namespace mgtd::cli {
 namespace {
 
 constexpr const char* kHelp =
-    "Verdicts: PASS nothing stands out; EXPLAINED one effect accounts for it; AMBIGUOUS several could;\n"
-    "PARTIAL effects were found and more is there, or it takes more than one; UNKNOWN something that is in "
-    "no\n"
-    "library; BAD-DATA.\n"
+    "Verdicts: PASS nothing stands out; EXPLAINED what is named, one effect or several, accounts for it;\n"
+    "AMBIGUOUS several could; PARTIAL effects were found and more is there; UNKNOWN something that is in no\n"
+    "library; BAD-DATA. Offsets that wander and noise that is larger than the dwells say are noise, not "
+    "laws.\n"
     "One clean run in a hundred is called something other than PASS.\n\n"
     "Columns: k coefficients; d and p how far beyond chance; share the part of the excess of chi-square "
     "that\n"

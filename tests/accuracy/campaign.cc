@@ -124,6 +124,10 @@ PoseTable Scene::run(std::uint64_t seed) const {
   return table;
 }
 
+Components tensor_mean_square(const std::array<SensorModel, 4>& estimate, const Scene& scene) {
+  return mean_square(estimate, scene, clean_fields(scene.site.f_nT));
+}
+
 TensorErrors tensor_errors(const Scene& scene, int seeds) {
   constexpr int kBoundEvery = 10;
   const auto fields = clean_fields(scene.site.f_nT);

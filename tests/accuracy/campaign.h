@@ -32,6 +32,9 @@ struct TensorErrors {
   int seeds{0};
 };
 [[nodiscard]] TensorErrors tensor_errors(const Scene& scene, int seeds);
+/// Of one calibration: mean square over the same clean attitudes.
+[[nodiscard]] Components tensor_mean_square(const std::array<calib::SensorModel, 4>& estimate,
+                                            const Scene& scene);
 
 /// Reported covariance against real errors.
 struct Consistency {

@@ -32,7 +32,7 @@ TEST(Refinement, AnInstantBetweenThoseThatAreTriedFirstIsFoundToThePose) {
   EXPECT_EQ(report->rounds.size(), 1U);
 }
 
-// A drift whose own entry is taken out: three steps follow it to the noise, and that is no explanation.
+// A drift whose own entry is taken out: three steps follow it to the noise, and none of them is its cause.
 TEST(Refinement, AStaircaseIsNotOneLaw) {
   const HiddenLaw& drift = law("axis.offset.drift");
   const PoseTable table = hidden_run({.hidden = hide(drift, 0, 0, 20 * crb_of(drift, 0, 0, 74'004))}, 74'004);
@@ -41,8 +41,8 @@ TEST(Refinement, AStaircaseIsNotOneLaw) {
   std::erase_if(*options.suspects, [](const Suspect& s) { return s.name == "axis.offset.drift"; });
   const auto report = explain(table, options);
   ASSERT_TRUE(report.has_value());
-  EXPECT_EQ(report->named.front(), "axis.offset.step");
-  EXPECT_EQ(report->finding, Finding::partial);
+  EXPECT_TRUE(report->named.empty()) << report->named.front();
+  EXPECT_NE(report->finding, Finding::explained);
 }
 
 }  // namespace

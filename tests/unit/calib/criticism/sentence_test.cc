@@ -70,9 +70,9 @@ TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
 
 TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
   const auto told = [](double before_nT, double after_nT) {
-    Round round{.added = {.effect = "site.gradient-drift", .where = "site"}};
+    Round round{.added = {.effect = "site.step", .where = "site"}};
     round.rms_before_nT = before_nT, round.rms_after_nT = after_nT;
-    round.model = {*make_effect("axis.offset.step@s1.y,ts=0.5"), *make_effect("site.gradient-drift,ts=0.25")};
+    round.model = {*make_effect("axis.offset.step@s1.y,ts=0.5"), *make_effect("site.step,ts=0.25")};
     ExplainReport report;
     report.rounds = {round};
     return sentence(report);

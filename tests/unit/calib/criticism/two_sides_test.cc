@@ -200,6 +200,13 @@ std::vector<Expected> five(const std::array<double, 5>& g, const std::string& un
           {"Gyz", g[4], unit}};
 }
 
+/// A gradient that comes, and no field.
+std::vector<Expected> step_of(const std::array<double, 5>& g) {
+  std::vector<Expected> out{{"Bx", 0, "nT"}, {"By", 0, "nT"}, {"Bz", 0, "nT"}};
+  for (Expected& e : five(g, "nT/m")) out.push_back(std::move(e));
+  return out;
+}
+
 /// t in D cos(k pi t/D): - 4 D/pi^2 (cos 1 + cos 3/9 + cos 5/25 ...) and a constant, which is the field's.
 std::vector<Expected> straight_line(const Eigen::Vector3d& nT_per_h) {
   const PoseTable run = testing::planted_run(testing::full_stage(kSeed), {}, kSeed);
@@ -220,15 +227,15 @@ std::vector<Row> site() {
        {"site.gradient", "all", {20, -15, 10, -5, 8}},
        "site.gradient",
        five({20, -15, 10, -5, 8}, "nT/m"),
-       {"site.gradient-drift"}},  // one that came in the first minutes
+       {"site.step", "site.dipole"}},  // one that came in the first minutes; a magnet three metres away
       {"gradient_drift",
        {"site.gradient-drift", "all", {20, -15, 10, -5, 8}},
        "site.gradient-drift",
        five({20, -15, 10, -5, 8}, "nT/m/h")},
       {"gradient_step",
        {"site.gradient-step", "all", {20, -15, 10, -5, 8, 900}},
-       "site.gradient-drift,ts=0.25",
-       five({20, -15, 10, -5, 8}, "nT/m")},
+       "site.step,ts=0.25",
+       step_of({20, -15, 10, -5, 8})},
       {"curvature",
        {"site.curvature", "all", {100, -50, 80, 40, -60, 30, 70}},
        "site.curvature",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rig can do and no library has: forty Cramer-Rao sigmas of each, and none may pass or be explained
-// by a single name. No law of the library describes any of them.
+// What the rig can do and no library has: forty Cramer-Rao sigmas of each, and none may be explained by a
+// name or pass unseen. No law of the library describes any of them. Those that are slow may be offsets that
+// wander, for all that one run can tell: these are said to be that, with their size, and nothing else. Where
+// a few poses in a row are disturbed, these are left out and listed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,6 +24,7 @@ struct Row {
   std::string title;
   Planted planted;
   bool reference{true};  ///< a scalar reference stands beside the table
+  bool slow{false};      ///< an offset moves smoothly over the run, or a few poses in a row are disturbed
 };
 
 void PrintTo(const Row& row, std::ostream* out) { *out << row.title; }
@@ -30,8 +33,8 @@ std::vector<Row> rows() {
   return {
       {"azimuth_harmonic", {"hidden.azimuth-harmonic", "s2.x", {1, 3, 40}}},
       {"lamp", {"hidden.lamp", "s3", {1, -2, 1, 45, 11}}},
-      {"battery_squared", {"hidden.battery-squared", "s1.z", {1, 12.6}, "battery_V"}},
-      {"offset_walk", {"hidden.offset-walk", "s4.y", {1}}},
+      {"battery_squared", {"hidden.battery-squared", "s1.z", {1, 12.6}, "battery_V"}, true, true},
+      {"offset_walk", {"hidden.offset-walk", "s4.y", {1}}, true, true},
       {"site_oscillation",
        {"hidden.site-oscillation", "all", {1, 2, -1, 500}},
        false},  // with one its strength is no mystery
@@ -39,12 +42,12 @@ std::vector<Row> rows() {
       {"quartic", {"hidden.quartic", "s3.x", {1}}},
       {"cross_cubic", {"hidden.cross-cubic", "s2.z", {-1}}},
       {"soft_limit", {"hidden.soft-limit", "s4.z", {1, 0.6}}},
-      {"warm_up", {"hidden.warm-up", "s1.y", {1, 400}}},
-      {"thermometer_lag", {"hidden.thermometer-lag", "s2.y", {1, 600}}},
+      {"warm_up", {"hidden.warm-up", "s1.y", {1, 400}}, true, true},
+      {"thermometer_lag", {"hidden.thermometer-lag", "s2.y", {1, 600}}, true, true},
       {"slip", {"hidden.slip", "s3", {5, -3, 8, 900}}},
       {"gravity_offset", {"hidden.gravity-offset", "s4.x", {1, -1, 2}}},
       {"cable_twist", {"hidden.cable-twist", "s1.x", {1}}},
-      {"passing_iron", {"hidden.passing-iron", "all", {1, -1, 2, 2, 1, 0.5, 0.03, 900}}},
+      {"passing_iron", {"hidden.passing-iron", "all", {1, -1, 2, 2, 1, 0.5, 0.03, 900}}, true, true},
       {"neighbour", {"hidden.neighbour", "s2", {1, -1, 2, 2}}},
       {"beat", {"hidden.beat", "s2.x", {1, 37}}},
   };
@@ -71,36 +74,38 @@ TEST_P(NotListed, IsNotGivenASingleName) {
   const PoseTable run = testing::planted_run(stage, {planted.effect}, kSeed);
   const auto r = explain(run, options);
   ASSERT_TRUE(r) << r.error().text();
-  EXPECT_NE(r->finding, Finding::pass);
+  EXPECT_TRUE(r->finding != Finding::pass || (row.slow && (r->noise.wandering.any() || !r->outliers.empty())))
+      << sentence(*r);
   EXPECT_NE(r->finding, Finding::bad_data) << sentence(*r);
   EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
 }
 
-/// Twice what is believed of an offset that follows temperature: the same shape, but of something else.
-TEST(Unlisted, ASizeThatDoesNotOccurIsNotNamed) {
+/// Twice what is usual of an offset that follows temperature, and nothing else: it is named, with its size.
+TEST(Unlisted, ALawThatLeavesOnlyNoiseIsNamedAtAnySize) {
   const Planted hot{"axis.offset.temperature", "s1.y", {40}, {}};
   const PoseTable run = testing::planted_run(testing::full_stage(kSeed), {hot}, kSeed);
   const auto r = explain(run, {});
   ASSERT_TRUE(r) << r.error().text();
   ASSERT_EQ(r->candidates.front().effect, hot.kind);
   EXPECT_FALSE(r->candidates.front().plausible);
-  EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
-  EXPECT_NE(r->finding, Finding::pass);
-  EXPECT_EQ(std::count(r->named.begin(), r->named.end(), hot.kind), 0) << sentence(*r);
-  EXPECT_NE(sentence(*r).find("is beyond what occurs: it is not named"), std::string::npos) << sentence(*r);
+  EXPECT_EQ(r->finding, Finding::explained) << sentence(*r);
+  EXPECT_EQ(r->named, std::vector<std::string>{hot.kind}) << sentence(*r);
+  EXPECT_NE(sentence(*r).find("is larger than is usual"), std::string::npos) << sentence(*r);
 }
 
 /// An exponential of the time, in a table of poses without the way between them.
-TEST(Unlisted, ManyNamesOnOneAxisAreToldToBeNoCauses) {
+TEST(Unlisted, WhatManyNamesWouldDescribeGetsNone) {
   const testing::Stage stage = testing::full_stage(kSeed);
   const testing::Sized planted = testing::sized(stage, {"hidden.warm-up", "s1.y", {1, 400}, {}}, 80, kSeed);
   PoseTable run = testing::planted_run(stage, {planted.effect}, kSeed);
   run.path.clear();
   const auto r = explain(run, {});
   ASSERT_TRUE(r) << r.error().text();
-  ASSERT_GE(r->rounds.size(), 3U) << sentence(*r);
+  EXPECT_EQ(r->finding, Finding::unknown) << sentence(*r);
+  EXPECT_TRUE(r->named.empty());
   const std::string text = sentence(*r);
-  EXPECT_NE(text.find("s1.y follows something that is probably in no library"), std::string::npos) << text;
+  EXPECT_NE(text.find("no effect of the library looks like it"), std::string::npos) << text;
+  EXPECT_NE(text.find("s1.y"), std::string::npos) << text;
   EXPECT_EQ(text.find("Nothing else in the library looks like it"), std::string::npos) << text;
   EXPECT_EQ(text.find("way of the table"), std::string::npos) << text;
 }

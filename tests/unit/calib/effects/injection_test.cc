@@ -237,6 +237,21 @@ std::vector<Case> site_cases() {
   // Without a scalar reference the drift along the field is seen too.
   Scene alone;
   alone.with_f = false;
+  out.push_back({"site.step,ts=1.01",
+                 {.site = [](double t, const Vector3d& x) -> Vector3d {
+                   if (t <= 1.01) return Vector3d::Zero();
+                   return Vector3d(40, -30, 25) + 0.4 * testing::gradient_50() * x;
+                 }},
+                 {40, -30, 25, 12, -18, -8, 20, 4},
+                 alone});
+  out.push_back({"site.step,ts=1.01,x=1,y=0,z=0.6",
+                 {.site = [=](double t, const Vector3d& x) -> Vector3d {
+                   const Vector3d d = x - place;
+                   const double r = d.norm();
+                   if (t <= 1.01) return Vector3d::Zero();
+                   return 100 * (3 * moment.dot(d) * d / std::pow(r, 5) - moment / std::pow(r, 3));
+                 }},
+                 {0.2, -0.1, 0.3, -0.1, 0.1, -0.1}});
   out.push_back({"site.field-drift",
                  {.site = [](double t, const Vector3d&) -> Vector3d {
                    const double phase = 3.14159265358979 * t / (156.0 / 60);
@@ -259,6 +274,33 @@ JointOptions with(const std::string& spec, const Scene& scene) {
   options.table_sd_rad = to_rad(0.02);
   if (!spec.empty()) options.effects = {*make_effect(spec)};
   return options;
+}
+
+/// With a scalar reference the part of a step along the field is in each pose's own strength: the turn of the
+/// field and the gradient are found as well as without it, and what is absorbed stays at zero within its
+/// prior.
+TEST(SiteStep, BesideAScalarReferenceTellsWhatLiesAcrossTheField) {
+  const Scene scene;
+  const Vector3d step(40, -30, 25), along = scene.direction * scene.direction.dot(step);
+  const PoseTable table = testing::run_with({.site = [&](double t, const Vector3d& x) -> Vector3d {
+                                              if (t <= 1.01) return Vector3d::Zero();
+                                              return step + 0.4 * testing::gradient_50() * x;
+                                            }},
+                                            scene, 1);
+  const auto fit = fit_joint(table, with("site.step,ts=1.01", scene));
+  ASSERT_TRUE(fit) << fit.error().text();
+  EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof));
+  const Vector3d found = fit->state.coefficients.head<3>();
+  const Eigen::Matrix3d C = fit->covariance.block<3, 3>(kEffectSlot, kEffectSlot);
+  const Vector3d n = scene.direction;
+  EXPECT_GT(std::sqrt(n.dot(C * n)), 900) << "along the field only the prior of 1000 nT is known";
+  EXPECT_LT(std::abs(n.dot(found)), 1);
+  const Vector3d across = found - n * n.dot(found) - (step - along);
+  for (const Vector3d& e : {Vector3d(0, 1, 0), Vector3d(n.cross(Vector3d(0, 1, 0)))}) {
+    const double sd = std::sqrt(e.dot(C * e));
+    EXPECT_LT(sd, 10);
+    EXPECT_LT(std::abs(e.dot(across)), 4 * sd);
+  }
 }
 
 class Injected : public ::testing::TestWithParam<Case> {};

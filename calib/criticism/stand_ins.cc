@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/stand_ins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "calib/criticism/rest.h"
+#include "calib/effects/effect_spec.h"
+#include "calib/fit/pose_residuals.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kAlways = 3, kWithRest = 2;
+/// Of the excess of chi-square before it: an effect that leaves more is not what is there.
+constexpr double kMost = 0.5;
+/// Of all that is beyond the noise: an axis with less is not where the unknown law acts.
+constexpr double kHere = 0.5;
+
+/// Of the largest fall of chi-square on an axis: what takes less away tidies up after the law that is there.
+constexpr double kPart = 0.01;
+
+/// Rounds that put an effect on one axis.
+using OnAxis = std::vector<std::size_t>;
+
+double fall(const Round& round) { return round.chi2_before - round.chi2_after; }
+
+/// Rounds that took away a part that counts.
+int parts(const ExplainReport& report, const OnAxis& rounds) {
+  double largest = 0;
+  for (const std::size_t i : rounds) largest = std::max(largest, fall(report.rounds[i]));
+  return static_cast<int>(std::count_if(
+      rounds.begin(), rounds.end(), [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; }));
+}
+
+/// Axes that single effects were put on.
+std::set<std::string> axes_of(const Round& round) {
+  std::set<std::string> out;
+  for (const EffectPtr& effect : round.effects) {
+    const auto spec = EffectSpec::parse(effect->spec());
+    if (spec && spec->where && spec->where->scale == Where::Scale::axis) out.insert(spec->where->text());
+  }
+  return out;
+}
+
+/// The first round after which most of what is beyond the noise is still there.
+std::optional<std::size_t> lesser_part(const ExplainReport& report) {
+  if (!report.noise.told) return std::nullopt;
+  const auto beyond = [&](double rms_nT) {
+    return std::max(0.0, rms_nT * rms_nT - report.noise_nT * report.noise_nT);
+  };
+  const double last = beyond(report.rounds.back().rms_after_nT);
+  for (std::size_t i = 0; i < report.rounds.size(); ++i)
+    if (last > kMost * beyond(report.rounds[i].rms_before_nT)) return i;
+  return std::nullopt;
+}
+
+/// Whether what is left is left on this axis, where it is enough to tell.
+bool left_here(const Criticism& last, const std::string& axis) {
+  if (rest_log10_p(last, axis) >= std::log10(kRestAlarm)) return false;
+  if (!last.rejects_omnibus()) return true;
+  const auto where = Where::parse(axis);
+  const AxisNoise ratio = pose_residuals(last.tested->problem, last.tested->state).noise_ratio;
+  const auto excess = (ratio.array().square() - 1).max(0);
+  return where && excess(where->sensor, where->axis) > kHere * excess.sum();
+}
+
+/// The one axis on which what is left shows; empty where it is not one.
+std::string axis_left(const Criticism& last) {
+  if (!last.rejects_map()) return {};
+  const auto where = Where::parse(last.maps.front().where);
+  return where && where->scale == Where::Scale::axis ? where->text() : std::string{};
+}
+
+}  // namespace
+
+StandIns stand_ins(const ExplainReport& report, const Criticism& last) {
+  if (report.rounds.empty()) return {};
+  std::map<std::string, OnAxis> axes;
+  for (std::size_t i = 0; i < report.rounds.size(); ++i) {
+    for (const std::string& axis : axes_of(report.rounds[i])) axes[axis].push_back(i);
+  }
+  for (const auto& [axis, there] : axes) {
+    const int effects = parts(report, there);
+    if (effects >= kAlways || (effects >= kWithRest && left_here(last, axis))) return {axis, there.front()};
+  }
+  const std::string axis = axis_left(last);
+  const auto first = axis.empty() ? std::nullopt : lesser_part(report);
+  return first ? StandIns{axis, *first} : StandIns{};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <string>
+
+#include "calib/criticism/criticism.h"
+#include "calib/criticism/explain.h"
+
+/// Effects that describe a law of no library without being its cause. Laws enough follow any curve, so a
+/// search that goes on adds one after the other to the axis on which the unknown law acts, and each looks
+/// significant. The signs of it:
+///
+///   - three effects or more on one axis;
+///   - two on one axis that leave most of what is left there;
+///   - effects, wherever they act, after which most of the misfit is still there, on one axis.
+namespace mgtd::calib {
+
+struct StandIns {
+  std::string axis{};    ///< "s3.z"; empty where there are none
+  std::size_t first{0};  ///< the first round that is one of them
+  [[nodiscard]] bool any() const { return !axis.empty(); }
+};
+
+/// In the rounds of `report`, after which `last` was found.
+[[nodiscard]] StandIns stand_ins(const ExplainReport& report, const Criticism& last);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/calibration.h"
+#include "proto/pose.h"
+
+/// The step of the digitiser, from the grid that the readings themselves stand on.
+///
+/// Where the noise of a sample is small against the step q, all samples of a dwell are the same number, and
+/// their mean is off by up to q/2 however many there are: the spread within the dwell says zero. Readings of
+/// dwells without spread are multiples of q; the largest q that fits them is the step. Its error is uniform,
+/// with variance q^2/12, at the share of the readings that are stuck; a sample that moves by a step or more
+/// within its dwell averages it out.
+namespace mgtd::calib {
+
+struct Quantisation {
+  double step_nT{0};                          ///< 0: no grid is seen
+  AxisNoise variance_nT2{AxisNoise::Zero()};  ///< of a pose mean, by axis
+  [[nodiscard]] bool seen() const { return step_nT > 0; }
+};
+
+/// Poses of set "check" take part. Nothing is seen where spreads are not recorded.
+[[nodiscard]] Quantisation quantisation_of(const PoseTable& table);
+
+}  // namespace mgtd::calib
