@@ -10,6 +10,7 @@
 
 #include "calib/criticism/rest.h"
 #include "calib/fit/joint_verdict.h"
+#include "calib/fit/verdict.h"
 #include "calib/probability.h"
 
 namespace mgtd::calib {
@@ -18,8 +19,6 @@ namespace {
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
 /// run of a hundred, and below 0.8 in one of seven.
 constexpr double kEnoughShare = 0.5;
-/// Of the poses; noise with heavy tails, Student's t with three degrees of freedom, makes two or three.
-constexpr double kMaxContradicted = 0.06;
 /// Of error of the table a pose, where nothing was told: scales read by hand are good to 2 degrees.
 const double kByHand_rad = to_rad(5);
 constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
@@ -119,6 +118,16 @@ std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
   return {};
 }
 
+/// A residual far above the noise that nothing accounts for, and that has no shape; empty when it is not.
+std::string far_from_noise(const JointFit& fit, const NoiseModel& noise) {
+  if (!(fit.worse > 1) || noise.wandering.any()) return {};
+  return fmt::format(
+      "the residual is {:.2g} times the noise and has no shape: many readings are wrong here and there "
+      "({:.0f} % "
+      "of the poses contradict the others), or the spreads in the table are not those of these readings",
+      fit.worse, 100 * fit.contradicting);
+}
+
 /// A table much worse than was told; empty when it is not.
 std::string rough_table(const JointFit& fit, double table_sd_rad) {
   if (fit.table_sd_rad <= table_limit_rad(table_sd_rad)) return {};
@@ -132,7 +141,13 @@ std::string rough_table(const JointFit& fit, double table_sd_rad) {
 
 Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
                  std::vector<std::string>& notes) {
-  if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
+  if (report.rounds.empty() && last.rejects()) return Finding::unknown;
+  if (report.rounds.empty()) {
+    std::string why = far_from_noise(*report.fit, last.noise);
+    if (why.empty()) return Finding::pass;
+    notes.push_back(std::move(why));
+    return Finding::bad_data;
+  }
   const Round& round = report.rounds.front();
   if (last.rejects()) return Finding::partial;
   if (std::string rest = leaves_something(report, last); !rest.empty()) {
@@ -160,10 +175,10 @@ bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std:
     return true;
   }
   if (std::string rough = rough_table(fit, table_sd_rad); !rough.empty()) notes.push_back(std::move(rough));
-  if (const double share = contradicted(fit); share > kMaxContradicted) {
+  if (const double share = contradicted(fit); share > kMaxBadPoses) {
     notes.push_back(
         fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",
-                    100 * share, 100 * kMaxContradicted));
+                    100 * share, 100 * kMaxBadPoses));
     return true;
   }
   if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {

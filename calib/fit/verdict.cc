@@ -99,9 +99,6 @@ Check halves_check(const FitReport& r, const FitOptions& options) {
       "something changed between the way out and the way back: backlash, drift or a passing vehicle");
 }
 
-/// Of the poses: a robust start finds the others while a third is wrong; this is what it is trusted with.
-constexpr double kMaxBadPoses = 0.25;
-
 }  // namespace
 
 Check bad_poses_check(const FitReport& r) {

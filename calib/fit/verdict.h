@@ -12,6 +12,9 @@ namespace mgtd::calib {
 
 /// The checks that hold for every method: scale factors, angles, volume, residual.
 [[nodiscard]] std::vector<Check> common_checks(const FitReport& report);
+/// Of the poses, that may contradict the others: a robust start finds those while a third is wrong, and this
+/// is what it is trusted with.
+inline constexpr double kMaxBadPoses = 0.25;
 /// Poses that contradict the others: of too many of them none can be trusted.
 [[nodiscard]] Check bad_poses_check(const FitReport& report);
 

@@ -76,6 +76,7 @@ void judge_covariance(const Calibration& calibration, const rig::RigTruth& truth
 
 void read(const ExplainReport& report, const rig::RigTruth& truth, RealAnswer& out) {
   out.finding = report.finding;
+  out.left_out = !report.outliers.empty();
   out.named = out.declared = report.named;
   for (const Round& round : report.rounds)
     out.declared.insert(out.declared.end(), round.possible.begin(), round.possible.end());

@@ -14,6 +14,7 @@ struct RealAnswer {
   bool fit_refused{false}, explain_refused{false};
   bool accepted{false};  ///< by the checks of the fit
   Finding finding{Finding::pass};
+  bool left_out{false};  ///< explain set something aside
   std::vector<std::string> named{};
   std::vector<std::string> declared{};  ///< named, or possible in the place of a name
   /// Of the tensor of a uniform field that turns over all attitudes, rms over the six components, nT/m: the
