@@ -16,6 +16,8 @@ constexpr double kMadToSd = 1.4826;
 /// model misses 2.
 constexpr double kMaxTails = 3;
 constexpr double kMaxHeldOut = 3;
+/// Of fewer poses a tenth left out may leave the others too little to be predicted with.
+constexpr int kEnoughPoses = 40;
 constexpr double kMaxMoved = 1;
 /// In variance, of what the noise of the pose does on average: below, it is the design and not the reading.
 constexpr double kByNoise = 16;
@@ -72,6 +74,7 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
 
 Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT) {
   Agreement out;
+  out.poses = static_cast<int>(fit.problem.poses.size());
   out.fitted_nT = fitted_nT;
   out.held_out_nT = held_out_nT;
   spreads(fit, out);
@@ -81,7 +84,7 @@ Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double>
 
 Check agreement_check(const Agreement& a) {
   const bool tails = a.residual_nT > kMaxTails * a.typical_nT;
-  const bool unseen = a.held_out_nT && *a.held_out_nT > kMaxHeldOut * a.fitted_nT;
+  const bool unseen = a.poses >= kEnoughPoses && a.held_out_nT && *a.held_out_nT > kMaxHeldOut * a.fitted_nT;
   const bool moved = a.moved > kMaxMoved;
   std::string measured =
       fmt::format("residual {:.3g} nT rms, {:.3g} nT by the median", a.residual_nT, a.typical_nT);

@@ -13,7 +13,8 @@ namespace mgtd::calib {
 struct Agreement {
   double residual_nT{0};  ///< of the readings kept, root of the mean square
   double typical_nT{0};   ///< the same from the median of each axis, as Gaussian noise would have it
-  std::optional<double> held_out_nT;  ///< FitReport::held_out_residual_nT
+  int poses{0};
+  std::optional<double> held_out_nT;  ///< FitReport::held_out_residual_nT; of few poses it tells nothing
   double fitted_nT{0};                ///< FitReport::residual_nT, which that is held against
   int pose{0};                        ///< the pose without which the calibration would move most
   /// By so many of its own standard deviations, root of the mean square over the unknowns; counts only where

@@ -23,7 +23,7 @@ constexpr const char* kAboutRealNoise = R"(## Real noise
 
 What happens outside the laboratory, {0} runs of each kind, written by
 
-    blind --only real-noise --runs {0} -o page.md
+    blind --only real-noise --runs {0}{1} -o page.md
 
 The runs come from the simulated rig (`tests/rig`), whose physics shares no code with the estimator: samples at 50 Hz with 0.3 nT of noise, dwells of 4 and 8 s, 24 of 157 poses visited again, table angles to 0.1 degrees, temperatures up and down by 3 degrees, a switched motor and a battery beside the table. Each is fitted and explained, and told nothing.
 
@@ -40,7 +40,7 @@ constexpr const char* kAboutSite = R"(## Effects of the site
 
 A gradient, a curvature, a dipole 1 to 2 m away, a gradient that steps, and iron that passes 2 to 3 m away at 3 cm/s, of random direction, each as large as `d` of its own Cramér-Rao uncertainties; {0} runs of each from the simulated rig, written by
 
-    blind --only site --runs {0} -o page.md
+    blind --only site --runs {0}{1} -o page.md
 
 Right names of the step: site.step and site.gradient-drift, which may be a step; of the passing iron: site.transient and site.dipole, or no name and the disturbed poses left out.
 
@@ -197,6 +197,11 @@ std::vector<std::string> site_line(const RealKind& kind, const Answers& all) {
       verdicts(all)};
 }
 
+/// The option that the page was written with, where it is not the default.
+std::string seeds(const Sizes& n) {
+  return n.first_seed == Sizes{}.first_seed ? "" : fmt::format(" --first-seed {}", n.first_seed);
+}
+
 std::vector<RealKind> chosen(const std::vector<RealKind>& all, const std::vector<std::string>& names) {
   std::vector<RealKind> out;
   for (const RealKind& kind : all) {
@@ -232,7 +237,7 @@ std::string real_noise_page(const Sizes& n) {
                 "of 12 offsets", "CPU, s"},
                chosen(real_kinds(), n.kinds), n, &noise_line);
   if (table.empty()) return "";
-  return fmt::format(kAboutRealNoise, n.real) + table;
+  return fmt::format(kAboutRealNoise, n.real, seeds(n)) + table;
 }
 
 std::string site_page(const Sizes& n) {
@@ -240,7 +245,7 @@ std::string site_page(const Sizes& n) {
                                       "right name in the set, %", "wrong single name, %", "verdicts"},
                                      chosen(site_kinds(), n.kinds), n, &site_line);
   if (table.empty()) return "";
-  return fmt::format(kAboutSite, n.real) + table;
+  return fmt::format(kAboutSite, n.real, seeds(n)) + table;
 }
 
 }  // namespace mgtd::calib::testing
