@@ -118,13 +118,14 @@ std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
   return {};
 }
 
-/// A residual far above the noise that nothing accounts for, and that has no shape; empty when it is not.
+/// Poses that contradict each other, so many that none was left out, in a residual far above the noise that
+/// has no shape; empty when it is not so.
 std::string far_from_noise(const JointFit& fit, const NoiseModel& noise) {
-  if (!(fit.worse > 1) || noise.wandering.any()) return {};
+  if (!(fit.worse > 1) || noise.wandering.any() || fit.contradicting <= kMaxBadPoses) return {};
   return fmt::format(
-      "the residual is {:.2g} times the noise and has no shape: many readings are wrong here and there "
-      "({:.0f} % "
-      "of the poses contradict the others), or the spreads in the table are not those of these readings",
+      "the residual is {:.2g} times the noise and has no shape, and {:.0f} % of the poses contradict the "
+      "others, "
+      "so many that none was left out: look for a loose cable or a disturbance, and measure again",
       fit.worse, 100 * fit.contradicting);
 }
 
