@@ -221,7 +221,8 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   std::vector<std::string> said = joint_remarks(report, known, fit->spread);
   if (wandering.any())
     said.push_back(wandering_text(wandering) +
-                   ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it");
+                   ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it, "
+                   "offsets as at the end of the run");
   if (fit->quantisation.seen())
     said.push_back(fmt::format("readings stand in steps of {:.3g} nT: the uncertainties contain it",
                                fit->quantisation.step_nT));

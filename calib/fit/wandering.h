@@ -26,6 +26,9 @@ class WanderingTerms {
   [[nodiscard]] bool any() const { return length_h_ > 0; }
   /// sd(z_j) sqrt(2) cos(j pi (t - t0) / T), j from 1, nT.
   [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> at(double t_h) const;
+  [[nodiscard]] double to_h() const { return from_h_ + length_h_; }
+  /// Of the walk less its mean over the run, at either end, with all terms: T / 3, nT^2.
+  [[nodiscard]] double variance_at_end() const { return length_h_ / 3; }
 
  private:
   double from_h_, length_h_;

@@ -281,9 +281,17 @@ std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, co
   const WanderingTerms terms = wandering_terms(fit.problem);
   const auto inverse = covariance_of(reduce(fit.problem, fit.state, 0).S);
   if (!inverse || !terms.any()) return std::nullopt;
-  Eigen::MatrixXd X = *inverse * slow_equations(fit.problem, fit.state, terms).by_fixed;
-  for (int c = 0; c < kChannels; ++c) X.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];
-  return Eigen::MatrixXd(w.noise_scale2 * *inverse + X * X.transpose());
+  Eigen::MatrixXd errors = *inverse * slow_equations(fit.problem, fit.state, terms).by_fixed;
+  Eigen::MatrixXd out = w.noise_scale2 * *inverse;
+  const auto at_end = terms.at(terms.to_h());
+  for (int c = 0; c < kChannels; ++c) {
+    const int offset = kSensorParameters * (c / 3) + ix + c % 3;
+    errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
+    errors.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];
+    out(offset, offset) +=
+        std::pow(w.nT_per_sqrt_h[c], 2) * (terms.variance_at_end() - at_end.squaredNorm());
+  }
+  return Eigen::MatrixXd(out + errors * errors.transpose());
 }
 
 }  // namespace mgtd::calib

@@ -71,11 +71,12 @@ inline constexpr double kWanderingEvidence = 9.2;
 /// walk is worth.
 [[nodiscard]] double unequal_noise_evidence(const JointFit& fit);
 
-/// Covariance of the fixed block of an ordinary fit whose offsets wander. The estimates are those of least
-/// squares; with S the information of the fixed block, X its products with the slow terms and D their
-/// variance,
-///     sigma^2 S^-1 + S^-1 X D X' S^-1.
-/// Empty where S is not positive definite.
+/// Covariance of the fixed block of an ordinary fit whose offsets wander, each offset as it is at the end of
+/// the run, where the calibration begins to be used. The estimates are those of least squares; with S the
+/// information of the fixed block, X its products with the slow terms, D their variance and E their values at
+/// the end of the run in the rows of the offsets,
+///     sigma^2 S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms beyond the last add to the offsets.
+/// How much further an offset wanders after the run is not in it. Empty where S is not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit,
                                                                        const WanderingEstimate& wandering);
 
