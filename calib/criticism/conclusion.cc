@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calib/criticism/rest.h"
+#include "calib/fit/agreement.h"
 #include "calib/fit/joint_verdict.h"
 #include "calib/fit/verdict.h"
 #include "calib/probability.h"
@@ -19,8 +20,6 @@ namespace {
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
 /// run of a hundred, and below 0.8 in one of seven.
 constexpr double kEnoughShare = 0.5;
-/// Of error of the table a pose, where nothing was told: scales read by hand are good to 2 degrees.
-const double kByHand_rad = to_rad(5);
 constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
 constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
 constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
@@ -109,7 +108,7 @@ std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
   for (std::size_t i = 0; i < fit.state.sensors.size(); ++i)
     if (fit.state.sensors[i].mounting.determinant() < 0) mirrored.push_back(i + 1);
   if (!mirrored.empty()) return mirrored_text(mirrored);
-  const double limit = std::max(table_limit_rad(table_sd_rad), kByHand_rad);
+  const double limit = table_limit_rad(table_sd_rad);
   if (fit.table_sd_rad > limit)
     return fmt::format(
         "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
@@ -118,34 +117,26 @@ std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
   return {};
 }
 
-/// Poses that contradict each other, so many that none was left out, in a residual far above the noise that
-/// has no shape; empty when it is not so.
-std::string far_from_noise(const JointFit& fit, const NoiseModel& noise) {
-  if (!(fit.worse > 1) || noise.wandering.any() || fit.contradicting <= kMaxBadPoses) return {};
+/// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
+/// or a few readings make it; empty when it is not so.
+std::string gross(const JointFit& fit, const Criticism& last) {
+  if (!(fit.worse > 1) || last.noise.wandering.any()) return {};
+  const Scatter scatter = scatter_of(fit);
+  const bool shapeless = !last.rejects() && fit.contradicting > kMaxBadPoses;
+  if (!shapeless && !scatter.few_far_off()) return {};
   return fmt::format(
-      "the residual is {:.2g} times the noise and has no shape, and {:.0f} % of the poses contradict the "
-      "others, "
-      "so many that none was left out: look for a loose cable or a disturbance, and measure again",
-      fit.worse, 100 * fit.contradicting);
-}
-
-/// A table much worse than was told; empty when it is not.
-std::string rough_table(const JointFit& fit, double table_sd_rad) {
-  if (fit.table_sd_rad <= table_limit_rad(table_sd_rad)) return {};
-  return fmt::format(
-      "the table angles are good to {0:.2g} deg a pose, estimated, where {1:.2g} deg was told: --table-sd "
-      "{0:.2g} tells it",
-      to_deg(fit.table_sd_rad), to_deg(table_sd_rad));
+      "the residual is {:.2g} times the noise, {:.3g} nT rms where its median tells {:.3g} nT, and {:.0f} % "
+      "of the poses contradict the others: look for a loose cable or a disturbance, and measure again",
+      fit.worse, scatter.residual_nT, scatter.typical_nT, 100 * fit.contradicting);
 }
 
 }  // namespace
 
 Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
                  std::vector<std::string>& notes) {
-  if (report.rounds.empty() && last.rejects()) return Finding::unknown;
   if (report.rounds.empty()) {
-    std::string why = far_from_noise(*report.fit, last.noise);
-    if (why.empty()) return Finding::pass;
+    std::string why = gross(*report.fit, last);
+    if (why.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
     notes.push_back(std::move(why));
     return Finding::bad_data;
   }
@@ -175,7 +166,8 @@ bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std:
     notes.push_back(std::move(why));
     return true;
   }
-  if (std::string rough = rough_table(fit, table_sd_rad); !rough.empty()) notes.push_back(std::move(rough));
+  if (std::string rough = rough_table_text(fit.table_sd_rad, table_sd_rad); !rough.empty())
+    notes.push_back(std::move(rough));
   if (const double share = contradicted(fit); share > kMaxBadPoses) {
     notes.push_back(
         fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",

@@ -22,25 +22,6 @@ constexpr double kMaxMoved = 1;
 /// In variance, of what the noise of the pose does on average: below, it is the design and not the reading.
 constexpr double kByNoise = 16;
 
-void spreads(const JointFit& fit, Agreement& out) {
-  const PoseResiduals residuals = pose_residuals(fit.problem, fit.state);
-  double squares = 0, count = 0, typical = 0;
-  for (int c = 0; c < kChannels; ++c) {
-    std::vector<double> misfits;
-    for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
-      const double t = residuals.t(c, static_cast<Eigen::Index>(k));
-      if (t > 0) misfits.push_back(t / fit.problem.poses[k].weight[c]);
-    }
-    if (misfits.empty()) continue;
-    for (const double x : misfits) squares += x * x, ++count;
-    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
-    std::nth_element(misfits.begin(), middle, misfits.end());
-    typical += std::pow(kMadToSd * *middle, 2) / kChannels;
-  }
-  out.residual_nT = std::sqrt(squares / std::max(1.0, count));
-  out.typical_nT = std::sqrt(typical);
-}
-
 /// With S and g of all poses and S_k, g_k of one, the fit without it moves by (S - S_k)^-1 (g - g_k).
 void influence_of_poses(const JointFit& fit, Agreement& out) {
   const Eigen::MatrixXd S = reduce(fit.problem, fit.state, 0).S;
@@ -72,22 +53,45 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
 
 }  // namespace
 
+bool Scatter::few_far_off() const { return residual_nT > kMaxTails * typical_nT; }
+
+Scatter scatter_of(const JointFit& fit) {
+  Scatter out;
+  const PoseResiduals residuals = pose_residuals(fit.problem, fit.state);
+  double squares = 0, count = 0, typical = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> misfits;
+    for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
+      const double t = residuals.t(c, static_cast<Eigen::Index>(k));
+      if (t > 0) misfits.push_back(t / fit.problem.poses[k].weight[c]);
+    }
+    if (misfits.empty()) continue;
+    for (const double x : misfits) squares += x * x, ++count;
+    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
+    std::nth_element(misfits.begin(), middle, misfits.end());
+    typical += std::pow(kMadToSd * *middle, 2) / kChannels;
+  }
+  out.residual_nT = std::sqrt(squares / std::max(1.0, count));
+  out.typical_nT = std::sqrt(typical);
+  return out;
+}
+
 Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT) {
   Agreement out;
   out.poses = static_cast<int>(fit.problem.poses.size());
   out.fitted_nT = fitted_nT;
   out.held_out_nT = held_out_nT;
-  spreads(fit, out);
+  out.scatter = scatter_of(fit);
   influence_of_poses(fit, out);
   return out;
 }
 
 Check agreement_check(const Agreement& a) {
-  const bool tails = a.residual_nT > kMaxTails * a.typical_nT;
+  const bool tails = a.scatter.few_far_off();
   const bool unseen = a.poses >= kEnoughPoses && a.held_out_nT && *a.held_out_nT > kMaxHeldOut * a.fitted_nT;
   const bool moved = a.moved > kMaxMoved;
-  std::string measured =
-      fmt::format("residual {:.3g} nT rms, {:.3g} nT by the median", a.residual_nT, a.typical_nT);
+  std::string measured = fmt::format("residual {:.3g} nT rms, {:.3g} nT by the median", a.scatter.residual_nT,
+                                     a.scatter.typical_nT);
   if (a.held_out_nT) measured += fmt::format("; {:.3g} nT on poses left out", *a.held_out_nT);
   measured += a.pose > 0 ? fmt::format(
                                "; without pose {} the calibration moves by {:.2g} of its standard "

@@ -10,9 +10,18 @@
 /// or poses that were left out and are missed by more than those that were fitted.
 namespace mgtd::calib {
 
-struct Agreement {
-  double residual_nT{0};  ///< of the readings kept, root of the mean square
+/// How far the readings that were kept scatter.
+struct Scatter {
+  double residual_nT{0};  ///< root of the mean square
   double typical_nT{0};   ///< the same from the median of each axis, as Gaussian noise would have it
+  /// A few are far from most, and bend the others.
+  [[nodiscard]] bool few_far_off() const;
+};
+
+[[nodiscard]] Scatter scatter_of(const JointFit& fit);
+
+struct Agreement {
+  Scatter scatter;
   int poses{0};
   std::optional<double> held_out_nT;  ///< FitReport::held_out_residual_nT; of few poses it tells nothing
   double fitted_nT{0};                ///< FitReport::residual_nT, which that is held against

@@ -219,6 +219,8 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   report.calibration.verdict.push_back(
       agreement_check(agreement(*fit, report.residual_nT, report.held_out_residual_nT)));
   std::vector<std::string> said = joint_remarks(report, known, fit->spread);
+  if (std::string rough = rough_table_text(report.table_sd_rad, options.table_sd_rad); !rough.empty())
+    said.push_back(std::move(rough));
   if (wandering.any())
     said.push_back(wandering_text(wandering) +
                    ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it, "

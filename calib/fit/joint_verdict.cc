@@ -15,6 +15,10 @@ namespace mgtd::calib {
 namespace {
 
 constexpr double kMaxTableSigmas = 5;  ///< of the uncertainty the operator gives the table
+/// A fit estimates 10 degrees at the most: what is nearer to that may be anything.
+constexpr double kMaxTable_rad = to_rad(9);
+/// Scales read by hand are good to 2 degrees.
+constexpr double kByHand_rad = to_rad(5);
 constexpr double kMaxDirectionSigmas = 5;
 constexpr double kMaxCondition = 1e6;  ///< its square is what double precision has left of ten digits
 constexpr double kMaxTurn_rad = to_rad(35);
@@ -80,9 +84,10 @@ Check table_check(const FitReport& r, const FitOptions& options) {
   return {"table angles", r.table_sd_rad <= limit,
           fmt::format("the sensors put the attitudes {:.3f} deg rms from the table's angles",
                       to_deg(r.table_sd_rad)),
-          fmt::format("{:.3f} deg, {} times the table's {:.3f} deg", to_deg(limit), kMaxTableSigmas,
-                      to_deg(options.table_sd_rad)),
-          "check the sense and the zero of every table axis, or give its real uncertainty with --table-sd"};
+          limit > kByHand_rad ? fmt::format("{:.3f} deg, {} times the table's {:.3f} deg", to_deg(limit),
+                                            kMaxTableSigmas, to_deg(options.table_sd_rad))
+                              : fmt::format("{:.3f} deg, of scales read by hand", to_deg(limit)),
+          "check the sense, the order and the zero of every table axis"};
 }
 
 Check direction_check(const char* name, double found, double sd, double given, double table_sd) {
@@ -97,8 +102,15 @@ Check direction_check(const char* name, double found, double sd, double given, d
 }  // namespace
 
 double table_limit_rad(double table_sd_rad) {
-  // A fit estimates 10 degrees at the most: what is nearer to that may be anything.
-  return std::min(kMaxTableSigmas * table_sd_rad, to_rad(9));
+  return std::clamp(kMaxTableSigmas * table_sd_rad, kByHand_rad, kMaxTable_rad);
+}
+
+std::string rough_table_text(double estimated_rad, double told_rad) {
+  if (estimated_rad <= kMaxTableSigmas * told_rad) return {};
+  return fmt::format(
+      "the table angles are good to {0:.2g} deg a pose, estimated, where {1:.2g} deg was told: --table-sd "
+      "{0:.2g} tells it; of a table with a motor, check the zero and the sense of each axis",
+      to_deg(estimated_rad), to_deg(told_rad));
 }
 
 std::string mirrored_text(const std::vector<std::size_t>& sensors) {

@@ -5,9 +5,12 @@
 
 namespace mgtd::calib {
 
-/// How far, rms, the sensors may put the attitudes from the table's angles: a few times what the operator
-/// says of them.
+/// How far, rms, the sensors may put the attitudes from the table's angles: what scales read by hand reach
+/// when they are read badly, or a few times what the operator says of them. The fit estimates how good the
+/// angles are, so that only a wrong sense or order has to be refused.
 [[nodiscard]] double table_limit_rad(double table_sd_rad);
+/// What to say of a table that is several times worse than was told; empty where it is not.
+[[nodiscard]] std::string rough_table_text(double estimated_rad, double told_rad);
 /// Which sensors are mirrored, by number, and what that means.
 [[nodiscard]] std::string mirrored_text(const std::vector<std::size_t>& sensors);
 

@@ -177,8 +177,8 @@ std::vector<RealKind> wrong_readings() {
                        }
                      }));
   out.push_back(
-      kind("gross-many", "one reading in ten off by 5 to 1000 nT", Must::pass, {}, true,
-           [](Stage& stage, const PoseTable&, Random& random) {
+      kind("gross-many", "one reading in ten off by 5 to 1000 nT, so in 72 % of the poses", Must::refuse, {},
+           true, [](Stage& stage, const PoseTable&, Random& random) {
              for (std::uint64_t pose = 1; pose <= 157; ++pose) {
                for (int c = 0; c < 12; ++c) {
                  if (random() % 10 != 0) continue;

@@ -113,6 +113,10 @@ TEST(DataFaults, ATableSetByHandPassesAndItsUncertaintyIsTold) {
   ASSERT_TRUE(untold) << untold.error().text();
   EXPECT_EQ(untold->finding, Finding::pass) << sentence(*untold);
   EXPECT_THAT(untold->notes, ::testing::Contains(HasSubstr("the table angles are good to")));
+  const auto untold_fit = fit(run, {});
+  ASSERT_TRUE(untold_fit) << untold_fit.error().text();
+  EXPECT_TRUE(untold_fit->calibration.accepted_by_checks) << untold_fit->reasons.front();
+  EXPECT_THAT(untold_fit->reasons, ::testing::Contains(HasSubstr("the table angles are good to")));
   FitOptions told;
   told.table_sd_rad = to_rad(2);
   const auto fitted = fit(run, told);
