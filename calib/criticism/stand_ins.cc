@@ -24,20 +24,27 @@ constexpr double kHere = 0.5;
 /// Of the largest fall of chi-square on an axis: what takes less away tidies up after the law that is there.
 constexpr double kPart = 0.01;
 
-/// Rounds that put an effect on one axis.
-using OnAxis = std::vector<std::size_t>;
+/// Of the misfit before the first round: what several effects on one sensor leave at least, if they are not
+/// what is there.
+constexpr double kSensorRest = 0.1;
+
+/// Of its standard deviations: a coefficient that says where an effect of all axes acts.
+constexpr double kSeen = 5;
+
+/// Rounds that put an effect on one axis, or on one sensor.
+using Rounds = std::vector<std::size_t>;
 
 double fall(const Round& round) { return round.chi2_before - round.chi2_after; }
 
 /// Rounds that took away a part that counts.
-int parts(const ExplainReport& report, const OnAxis& rounds) {
+int parts(const ExplainReport& report, const Rounds& rounds) {
   double largest = 0;
   for (const std::size_t i : rounds) largest = std::max(largest, fall(report.rounds[i]));
   return static_cast<int>(std::count_if(
       rounds.begin(), rounds.end(), [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; }));
 }
 
-/// Axes that single effects were put on.
+/// Axes that the effects of a round were put on one by one.
 std::set<std::string> axes_of(const Round& round) {
   std::set<std::string> out;
   for (const EffectPtr& effect : round.effects) {
@@ -47,26 +54,60 @@ std::set<std::string> axes_of(const Round& round) {
   return out;
 }
 
+/// Sensors on which what a round added is seen.
+std::set<std::string> sensors_of(const Round& round) {
+  std::set<std::string> out;
+  for (const EffectPtr& effect : round.effects) {
+    const auto spec = EffectSpec::parse(effect->spec());
+    if (spec && spec->where && spec->where->sensor >= 0) out.insert(sensor_name(spec->where->sensor));
+  }
+  for (const EffectCoefficient& c : round.added.coefficients) {
+    const auto where = Where::parse(c.name.substr(0, c.name.find('.')));
+    if (where && where->scale == Where::Scale::sensor && std::abs(c.value) > kSeen * c.sd)
+      out.insert(where->text());
+  }
+  return out;
+}
+
+template <class Places>
+std::map<std::string, Rounds> rounds_by_place(const ExplainReport& report, Places places) {
+  std::map<std::string, Rounds> out;
+  for (std::size_t i = 0; i < report.rounds.size(); ++i)
+    for (const std::string& place : places(report.rounds[i])) out[place].push_back(i);
+  return out;
+}
+
+/// Square of a residual that is beyond the noise, nT^2.
+double beyond_noise(const ExplainReport& report, double rms_nT) {
+  return std::max(0.0, rms_nT * rms_nT - report.noise_nT * report.noise_nT);
+}
+
+/// Whether all names together leave more than a tenth of the misfit.
+bool much_is_left(const ExplainReport& report) {
+  return report.noise.told && beyond_noise(report, report.rounds.back().rms_after_nT) >
+                                  kSensorRest * beyond_noise(report, report.rounds.front().rms_before_nT);
+}
+
 /// The first round after which most of what is beyond the noise is still there.
 std::optional<std::size_t> lesser_part(const ExplainReport& report) {
   if (!report.noise.told) return std::nullopt;
-  const auto beyond = [&](double rms_nT) {
-    return std::max(0.0, rms_nT * rms_nT - report.noise_nT * report.noise_nT);
-  };
+  const auto beyond = [&](double rms_nT) { return beyond_noise(report, rms_nT); };
   const double last = beyond(report.rounds.back().rms_after_nT);
   for (std::size_t i = 0; i < report.rounds.size(); ++i)
     if (last > kMost * beyond(report.rounds[i].rms_before_nT)) return i;
   return std::nullopt;
 }
 
-/// Whether what is left is left on this axis, where it is enough to tell.
-bool left_here(const Criticism& last, const std::string& axis) {
-  if (rest_log10_p(last, axis) >= std::log10(kRestAlarm)) return false;
+/// Whether what is left is left on this axis or sensor, where it is enough to tell.
+bool left_here(const Criticism& last, const std::string& place) {
+  if (rest_log10_p(last, place) >= std::log10(kRestAlarm)) return false;
   if (!last.rejects_omnibus()) return true;
-  const auto where = Where::parse(axis);
+  const auto where = Where::parse(place);
+  if (!where) return false;
   const AxisNoise ratio = pose_residuals(last.tested->problem, last.tested->state).noise_ratio;
-  const auto excess = (ratio.array().square() - 1).max(0);
-  return where && excess(where->sensor, where->axis) > kHere * excess.sum();
+  const auto excess = (ratio.array().square() - 1).max(0).eval();
+  const double here = where->axis >= 0 ? excess(where->sensor, where->axis) : excess.row(where->sensor).sum();
+  return here > kHere * excess.sum();
 }
 
 /// The one axis on which what is left shows; empty where it is not one.
@@ -80,13 +121,14 @@ std::string axis_left(const Criticism& last) {
 
 StandIns stand_ins(const ExplainReport& report, const Criticism& last) {
   if (report.rounds.empty()) return {};
-  std::map<std::string, OnAxis> axes;
-  for (std::size_t i = 0; i < report.rounds.size(); ++i) {
-    for (const std::string& axis : axes_of(report.rounds[i])) axes[axis].push_back(i);
-  }
-  for (const auto& [axis, there] : axes) {
+  for (const auto& [axis, there] : rounds_by_place(report, axes_of)) {
     const int effects = parts(report, there);
     if (effects >= kAlways || (effects >= kWithRest && left_here(last, axis))) return {axis, there.front()};
+  }
+  if (much_is_left(report)) {
+    for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
+      if (parts(report, there) >= kWithRest && left_here(last, sensor)) return {sensor, 0};
+    }
   }
   const std::string axis = axis_left(last);
   const auto first = axis.empty() ? std::nullopt : lesser_part(report);

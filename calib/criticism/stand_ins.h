@@ -4,7 +4,7 @@
 #include <string>
 
 #include "calib/criticism/criticism.h"
-#include "calib/criticism/explain.h"
+#include "calib/criticism/explain_report.h"
 
 /// Effects that describe a law of no library without being its cause. Laws enough follow any curve, so a
 /// search that goes on adds one after the other to the axis on which the unknown law acts, and each looks
@@ -12,13 +12,16 @@
 ///
 ///   - three effects or more on one axis;
 ///   - two on one axis that leave most of what is left there;
+///   - two on one sensor that leave more than a tenth of the misfit, most of it on this sensor: nothing is
+///     then named at all, because what bends a sensor bends the others through the field of the pose;
 ///   - effects, wherever they act, after which most of the misfit is still there, on one axis.
 namespace mgtd::calib {
 
 struct StandIns {
-  std::string axis{};    ///< "s3.z"; empty where there are none
+  std::string where{};   ///< "s3.z" or "s3"; empty where there are none
   std::size_t first{0};  ///< the first round that is one of them
-  [[nodiscard]] bool any() const { return !axis.empty(); }
+  [[nodiscard]] bool any() const { return !where.empty(); }
+  [[nodiscard]] bool whole_sensor() const { return any() && where.find('.') == std::string::npos; }
 };
 
 /// In the rounds of `report`, after which `last` was found.

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "calib/criticism/criticism.h"
+#include "calib/criticism/explain_report.h"
+
+/// A scored family as it is told: its size, its share and the poses that speak for it.
+namespace mgtd::calib {
+
+/// `worse`: of the fit that was judged (JointFit::worse), so that the fall of chi-square is in units of the
+/// noise that the readings tell.
+[[nodiscard]] Candidate candidate_of(const ScoredFamily& family, const Criticism& criticism, double worse);
+
+/// Fills in the poses that carry half of the evidence, the heaviest first; `by_pose` by place in the fit.
+void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candidate& out);
+
+}  // namespace mgtd::calib

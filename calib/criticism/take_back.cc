@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/take_back.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+#include <string>
+
+#include "calib/effects/where.h"
+#include "calib/fit/pose_residuals.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// What an axis, or each axis of a sensor, misfits becomes part of its noise.
+void loosen(const JointFit& fit, const std::string& place, JointOptions& options) {
+  const auto where = Where::parse(place);
+  if (!where) return;
+  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!where->covers(where->sensor, axis)) continue;
+    const double residual_nT = fit.pose_noise_nT(where->sensor, axis) * ratio(where->sensor, axis);
+    options.more_nT2[3 * where->sensor + axis] += residual_nT * residual_nT;
+  }
+}
+
+}  // namespace
+
+void take_back(const StandIns& found, EffectSearch& search, ExplainReport& report) {
+  search.unknown.insert(found.where);
+  std::set<std::string> names;
+  for (std::size_t i = found.first; i < report.rounds.size(); ++i)
+    names.insert(report.rounds[i].added.effect);
+  report.notes.push_back(
+      fmt::format("{} follows something that is in no library: {} {} it together and {} not its cause, so "
+                  "none of them is named or added",
+                  found.where, fmt::join(names, ", "), names.size() == 1 ? "describes" : "describe",
+                  names.size() == 1 ? "is" : "are"));
+  search.joint.effects = found.first == 0 ? search.given : report.rounds[found.first - 1].model;
+  report.rounds.resize(found.first);
+  auto before = fit_joint_at_size(search.table, search.joint);
+  if (!before) return;
+  loosen(*before, found.where, search.joint);
+  const JointState near = before->state;
+  before = fit_joint_at_size(search.table, search.joint, &near);
+  if (!before) return;
+  search.judge_anew(*before);
+}
+
+}  // namespace mgtd::calib
