@@ -288,8 +288,7 @@ std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, co
     const int offset = kSensorParameters * (c / 3) + ix + c % 3;
     errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
     errors.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];
-    out(offset, offset) +=
-        std::pow(w.nT_per_sqrt_h[c], 2) * (terms.variance_at_end() - at_end.squaredNorm());
+    out(offset, offset) += std::pow(w.nT_per_sqrt_h[c], 2) * (terms.variance_at_end() - at_end.squaredNorm());
   }
   return Eigen::MatrixXd(out + errors * errors.transpose());
 }
