@@ -21,9 +21,9 @@ constexpr double kClockStep_s = 3;  ///< leap seconds learnt late
 constexpr double kReplug_s = 1;     ///< from one instrument to another
 constexpr std::size_t kTable = 4;
 constexpr std::array kLasting{
-    FaultKind::stranger, FaultKind::unplug,    FaultKind::torn,  FaultKind::half,     FaultKind::twice,
-    FaultKind::swap,     FaultKind::freeze,    FaultKind::stall, FaultKind::saturate, FaultKind::power,
-    FaultKind::runaway,  FaultKind::backwards, FaultKind::limit};
+    FaultKind::stranger, FaultKind::unplug, FaultKind::torn,    FaultKind::half,      FaultKind::twice,
+    FaultKind::swap,     FaultKind::freeze, FaultKind::stall,   FaultKind::mute,      FaultKind::late,
+    FaultKind::saturate, FaultKind::power,  FaultKind::runaway, FaultKind::backwards, FaultKind::limit};
 
 bool is_of_table(FaultKind kind) {
   return kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit;
@@ -137,6 +137,10 @@ void BenchRig::set(std::size_t port, FaultKind kind, bool on, double now_s) {
       return instrument.set_frozen(on);
     case FaultKind::stall:
       return instrument.set_silent(on);
+    case FaultKind::mute:
+      return instrument.set_mute(on);
+    case FaultKind::late:
+      return wires_[port].set_late(on);
     case FaultKind::saturate:
       return instrument.set_saturated(on);
     case FaultKind::power:

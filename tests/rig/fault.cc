@@ -18,7 +18,7 @@ struct Word {
   bool lasts;
 };
 
-constexpr std::array<Word, 17> kWords{{{"unplug", FaultKind::unplug, true},
+constexpr std::array<Word, 19> kWords{{{"unplug", FaultKind::unplug, true},
                                        {"garbage", FaultKind::garbage, false},
                                        {"torn", FaultKind::torn, true},
                                        {"half", FaultKind::half, true},
@@ -26,6 +26,8 @@ constexpr std::array<Word, 17> kWords{{{"unplug", FaultKind::unplug, true},
                                        {"swap", FaultKind::swap, true},
                                        {"freeze", FaultKind::freeze, true},
                                        {"stall", FaultKind::stall, true},
+                                       {"mute", FaultKind::mute, true},
+                                       {"late", FaultKind::late, true},
                                        {"saturate", FaultKind::saturate, true},
                                        {"clock", FaultKind::clock, false},
                                        {"rate", FaultKind::rate, false},

@@ -15,6 +15,8 @@
 ///   swap PORT [for S]      neighbouring lines change places
 ///   freeze PORT [for S]    the instrument repeats its last value; the table jams
 ///   stall PORT [for S]     the instrument neither speaks nor listens
+///   mute PORT [for S]      it listens and obeys, and says nothing
+///   late PORT [for S]      what it says arrives 0.4 to 2 s late, in its order
 ///   saturate PORT [for S]  the instrument is at the end of its range
 ///   clock PORT             its clock jumps 3 s ahead
 ///   rate PORT              it measures half as often
@@ -39,6 +41,8 @@ enum class FaultKind {
   swap,
   freeze,
   stall,
+  mute,
+  late,
   saturate,
   clock,
   rate,
@@ -59,7 +63,7 @@ struct Fault {
 inline constexpr double kPowerOff_s = 2;  ///< when nothing else is said
 
 inline constexpr const char* kFaultUsage =
-    "unplug|torn|half|twice|swap|freeze|stall|saturate|power|stranger PORT [for SECONDS], "
+    "unplug|torn|half|twice|swap|freeze|stall|mute|late|saturate|power|stranger PORT [for SECONDS], "
     "runaway|backwards|limit table [for SECONDS], or garbage|clock|rate|restore PORT";
 
 [[nodiscard]] tl::expected<Fault, std::string> parse_fault(std::string_view text);

@@ -34,9 +34,10 @@ class Instrument {
     return out;
   }
 
-  /// Faults that the instrument itself can have. A silent one neither speaks nor listens; a frozen one
-  /// repeats its last values; a saturated one is at the end of its range.
+  /// Faults that the instrument itself can have. A silent one neither speaks nor listens; a mute one listens
+  /// and obeys; a frozen one repeats its last values; a saturated one is at the end of its range.
   virtual void set_silent(bool silent) { silent_ = silent; }
+  void set_mute(bool mute) { mute_ = mute; }
   virtual void set_frozen(bool frozen) { frozen_ = frozen; }
   virtual void set_saturated(bool saturated) { saturated_ = saturated; }
   /// Its clock jumps.
@@ -56,7 +57,7 @@ class Instrument {
 
  protected:
   void put(std::string bytes, double at_s) {
-    if (hears()) said_.push_back({at_s, std::move(bytes)});
+    if (hears() && !mute_) said_.push_back({at_s, std::move(bytes)});
   }
   virtual void switched_off(double /*now_s*/) {}
   virtual void switched_on(double /*now_s*/) {}
@@ -66,7 +67,7 @@ class Instrument {
   bool saturated_{false};
 
  private:
-  bool powered_{true};
+  bool powered_{true}, mute_{false};
   std::vector<Utterance> said_;
 };
 

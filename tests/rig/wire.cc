@@ -10,12 +10,14 @@ namespace {
 
 constexpr std::size_t kGarbageBytes = 200;
 constexpr std::uint64_t kTornOneIn = 100;
+constexpr double kLeastLate_s = 0.4, kMostLate_s = 2;
 /// A byte is there when its end is reached to within rounding.
 constexpr double kRounding = 1e-6;
 
 }  // namespace
 
 void Wire::push(Utterance said) {
+  if (late_) said.at_s += std::uniform_real_distribution<double>(kLeastLate_s, kMostLate_s)(random_);
   if (half_ && ++pushed_ % 2 == 0) said.bytes.resize(said.bytes.size() / 2);
   if (swapped_ && held_.empty()) {
     held_ = std::move(said.bytes);

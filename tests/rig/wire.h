@@ -26,6 +26,8 @@ class Wire {
   void set_half(bool half) { half_ = half; }
   /// Every line comes twice.
   void set_twice(bool twice) { twice_ = twice; }
+  /// Every line arrives 0.4 to 2 s late, none before another that was said earlier.
+  void set_late(bool late) { late_ = late; }
   /// A line and the next change places.
   void set_swapped(bool swapped);
   /// Nobody is at the other end: what is on the line is lost.
@@ -43,7 +45,7 @@ class Wire {
   std::mt19937_64 random_;
   std::deque<Burst> bursts_;
   double free_s_{0};  ///< when the line has carried all that was pushed
-  bool torn_{false}, half_{false}, twice_{false}, swapped_{false};
+  bool torn_{false}, half_{false}, twice_{false}, swapped_{false}, late_{false};
   std::uint64_t pushed_{0};
   std::string held_;  ///< waits for the line that goes before it
 };
