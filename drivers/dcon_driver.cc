@@ -12,7 +12,8 @@
 namespace mgtd::drivers::dcon {
 namespace {
 
-constexpr double kAnswer_s = 0.5;
+constexpr double kFirstAnswer_s = 0.5;  ///< an old module has no name
+constexpr double kAnswer_s = 2.5;
 constexpr int kFairTicks = 10;
 constexpr int kMissed = 3;
 constexpr double kReopen_s = 30;
@@ -84,64 +85,97 @@ std::unique_ptr<Device> DconDriver::make(int /*slot*/, Settings& settings) {
 
 void DconDriver::on_open(Stamp now) {
   LineDevice::on_open(now);
-  named_ = false;
+  proved_ = false;
+  has_name_ = true;
   missed_ = 0;
+  strange_.clear();
   next_.clear();
-  ask(fmt::format("${}M", settings_.address), now.mono);
+  ask(Asked::name, kFirstAnswer_s, now.mono);
 }
 
-void DconDriver::ask(std::string_view what, Instant now) {
-  send(command(std::string(what), settings_.checksum));
-  answer_.set(now, kAnswer_s, kFairTicks);
+void DconDriver::ask(Asked what, double patience_s, Instant now) {
+  asked_ = what;
+  const std::string question = what == Asked::name ? "$" + settings_.address + "M" : "#" + settings_.address;
+  send(command(question, settings_.checksum));
+  answer_.set(now, patience_s, kFairTicks);
 }
 
 void DconDriver::on_tick(Stamp now) {
   LineDevice::on_tick(now);
   if (health_.state == LinkState::absent) return;
-  if (answer_.passed(now.mono)) {
-    answer_.clear();
-    unanswered(now);
-  }
-  if (!next_.passed(now.mono)) return;
-  next_.set(now.mono, settings_.every_s, kFairTicks);
-  ask(fmt::format("#{}", settings_.address), now.mono);
+  if (asked_ != Asked::nothing && answer_.passed(now.mono)) unanswered(now);
+  const bool due = next_.passed(now.mono);
+  if (!due || asked_ != Asked::nothing) return;
+  if (proved_) next_.set(now.mono, settings_.every_s, kFairTicks);
+  ask(proved_ ? Asked::values : Asked::name, kAnswer_s, now.mono);
 }
 
 void DconDriver::unanswered(Stamp now) {
-  if (!std::exchange(named_, true)) return next_.set(now.mono, 0, 1);  // an old module has no name
-  if (++missed_ != kMissed) return;
-  set_state(LinkState::silent,
-            fmt::format("{} questions without an answer; check power, the pair A/B of the RS-485, address "
-                        "({}), baud ({}) and whether its checksum is on ({} here)",
-                        kMissed, settings_.address, baud(), settings_.checksum ? "on" : "off"));
+  const bool first = asked_ == Asked::name && !proved_ && missed_ == 0;
+  if (asked_ == Asked::name && first) has_name_ = false;
+  proved_ = asked_ == Asked::name && !has_name_;
+  asked_ = Asked::nothing;
+  next_.set(now.mono, 0, 1);
+  if (first || ++missed_ != kMissed) return;
+  if (strange_.empty()) {
+    set_state(LinkState::silent,
+              fmt::format("{} questions without an answer; check power, the pair A/B of the RS-485, address "
+                          "({}), baud ({}) and whether its checksum is on ({} here)",
+                          kMissed, settings_.address, baud(), settings_.checksum ? "on" : "off"));
+  } else {
+    set_state(LinkState::failed,
+              fmt::format("wrong device on the port? It says '{}', which is no answer of a module with the "
+                          "address {} and its checksum {}; check which device is on this port",
+                          strange_, settings_.address, settings_.checksum ? "on" : "off"));
+  }
   emit(DeviceNote{now, health_.detail});
+}
+
+void DconDriver::answered(Instant now) {
+  if (asked_ == Asked::name) next_.set(now, 0, 1);
+  asked_ = Asked::nothing;
+  proved_ = true;
+  missed_ = 0;
+  strange_.clear();
+}
+
+Verdict DconDriver::unasked() {
+  proved_ = false;
+  return Verdict::resync();
 }
 
 Verdict DconDriver::on_line(std::string_view line, Stamp arrival) {
   const Reply reply = parse_reply(line, settings_.address, settings_.checksum);
-  if (const auto* why = std::get_if<Reject>(&reply)) return Verdict::rejected(*why);
-  answer_.clear();
-  missed_ = 0;
-  if (const auto* name = std::get_if<Name>(&reply)) {
-    health_.identity = name->text;
-    if (!std::exchange(named_, true)) next_.set(arrival.mono, 0, 1);
-    return Verdict::accepted();
+  if (const auto* why = std::get_if<Reject>(&reply)) {
+    strange_ = line;
+    return Verdict::rejected(*why);
   }
+  if (const auto* name = std::get_if<Name>(&reply)) return on_name(*name, arrival);
   if (const auto* values = std::get_if<Values>(&reply)) return on_values(*values, arrival);
   return on_refusal(arrival);
 }
 
+Verdict DconDriver::on_name(const Name& name, Stamp arrival) {
+  if (asked_ != Asked::name) return unasked();
+  health_.identity = name.text;
+  has_name_ = true;
+  answered(arrival.mono);
+  return Verdict::accepted();
+}
+
 Verdict DconDriver::on_refusal(Stamp arrival) {
-  if (!std::exchange(named_, true)) {
-    next_.set(arrival.mono, 0, 1);
-    return Verdict::accepted();
-  }
+  if (asked_ == Asked::nothing) return unasked();
+  const bool of_the_name = asked_ == Asked::name;
+  answered(arrival.mono);
+  if (of_the_name) return Verdict::accepted();
   set_state(LinkState::failed, "the module refuses to be read (?" + settings_.address +
                                    "): it is no analogue input module, or its firmware is another");
   return Verdict::accepted();
 }
 
 Verdict DconDriver::on_values(const Values& values, Stamp arrival) {
+  if (asked_ != Asked::values) return unasked();
+  answered(arrival.mono);
   if (values.channels.size() < settings_.channels.size()) {
     set_state(LinkState::failed,
               fmt::format("the module sends {} channels, {} are configured; shorten 'channels'",

@@ -26,6 +26,10 @@
 /// A column sN_T_degC is the temperature of that sensor (TemperatureReading); every other goes out as
 /// AuxiliaryReading under its own name. What a module calls out of range is not measured: it is left out.
 /// Three questions in a row without an answer make the link silent; it is asked on.
+///
+/// A reply does not say which question it answers. One question is asked at a time, and after one that was
+/// not answered, or a line that nobody asked for, no value is believed until the module has said its name. A
+/// module without a name must have been quiet instead, for as long as an answer may take.
 namespace mgtd::drivers::dcon {
 
 struct Channel {
@@ -58,15 +62,23 @@ class DconDriver final : public LineDevice {
   Verdict on_line(std::string_view line, Stamp arrival) override;
 
  private:
-  void ask(std::string_view what, Instant now);
+  enum class Asked { nothing, name, values };
+
+  void ask(Asked what, double patience_s, Instant now);
   void unanswered(Stamp now);
+  void answered(Instant now);
+  Verdict on_name(const Name& name, Stamp arrival);
   Verdict on_values(const Values& values, Stamp arrival);
   Verdict on_refusal(Stamp arrival);
+  Verdict unasked();
 
   DconSettings settings_;
   Deadline next_, answer_;
-  bool named_{false};  ///< it was asked for its name, and answered or not
-  int missed_{0};      ///< questions in a row
+  Asked asked_{Asked::nothing};
+  bool proved_{false};     ///< what comes next answers what is asked
+  bool has_name_{true};    ///< until it was asked for it in vain
+  int missed_{0};          ///< questions in a row
+  std::string strange_{};  ///< the last line that is none of such a module, since an answer
 };
 
 }  // namespace mgtd::drivers::dcon

@@ -17,11 +17,14 @@ bool matches(std::string_view line, std::string_view expected) {
 void Dialogue::start(Instant now) {
   outcome_ = Outcome::running;
   identity_.clear();
-  heard_.clear();
+  answered_.clear();
+  told_.clear();
   enter(0, now);
 }
 
 void Dialogue::enter(std::size_t at, Instant now) {
+  proving_ = false;
+  heard_.clear();
   if (at >= steps_.size()) {
     outcome_ = Outcome::done;
     return;
@@ -34,7 +37,7 @@ void Dialogue::enter(std::size_t at, Instant now) {
 
 void Dialogue::say(Instant now) {
   ++attempts_;
-  to_send_ += step().send;
+  to_send_ += proving_ ? told_.front().send : step().send;
   resend_.set(now, kResend_s, pace_.quiet_ticks);
   switch (step().kind) {
     case Step::Kind::tell:
@@ -51,14 +54,29 @@ void Dialogue::say(Instant now) {
 
 void Dialogue::on_line(std::string_view line, Instant now) {
   if (outcome_ != Outcome::running || step().kind != Step::Kind::ask) return;
-  if (step().tolerant && !step().refusal.empty() && line == step().refusal) return enter(at_ + 1, now);
-  if (!matches(line, step().reply)) {
-    heard_ = line;
+  if (proving_) {
+    if (line == told_.front().line) enter(at_ + 1, now);
     return;
   }
-  if (step().reply.ends_with('*')) identity_ = line;
-  heard_.clear();
-  enter(at_ + 1, now);
+  const bool refused = step().tolerant && !step().refusal.empty() && line == step().refusal;
+  if (refused || (matches(line, step().reply) && !told_before(line))) return take_reply(line, now);
+  heard_ = line;
+}
+
+bool Dialogue::told_before(std::string_view line) const {
+  return std::any_of(told_.begin(), told_.end(), [&](const Told& told) { return told.line == line; });
+}
+
+void Dialogue::take_reply(std::string_view line, Instant now) {
+  answered_.push_back(step().send);
+  proving_ = attempts_ > 1 && !told_.empty();
+  if (step().reply.ends_with('*') && line != step().refusal) {
+    identity_ = line;
+    told_.push_back({step().send, identity_});
+  }
+  if (!proving_) return enter(at_ + 1, now);
+  attempts_ = 0;
+  say(now);
 }
 
 void Dialogue::on_tick(Instant now, std::uint64_t bytes_in) {

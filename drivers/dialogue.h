@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,10 @@
 ///   tell   send, then let `seconds` pass; what comes in is of no interest
 ///   drain  send, and again every second while bytes still come, until none came for `seconds`
 ///   ask    send, and wait up to `seconds` for the reply; asked `attempts` times
+///
+/// A reply that was waited for in vain may still come: a question that was asked twice may be answered twice.
+/// So after such a one the device is asked who it is, until it says it again, before the next step. A line
+/// that told an identity before is never the reply to another question.
 ///
 /// The owner feeds lines and ticks, sends what take_send() gives, and reads the outcome.
 namespace mgtd::drivers {
@@ -49,6 +54,10 @@ class Dialogue {
   [[nodiscard]] std::string take_send() { return std::exchange(to_send_, {}); }
   /// Where it stands or ended.
   [[nodiscard]] const Step& step() const { return steps_.at(at_); }
+  /// A step that sent this had its reply.
+  [[nodiscard]] bool answered(std::string_view send) const {
+    return std::find(answered_.begin(), answered_.end(), send) != answered_.end();
+  }
   /// The last line that was not the expected one; empty when nothing came.
   [[nodiscard]] const std::string& heard() const { return heard_; }
   /// The last reply to an ask whose reply ends in '*'.
@@ -57,6 +66,8 @@ class Dialogue {
  private:
   void enter(std::size_t at, Instant now);
   void say(Instant now);
+  void take_reply(std::string_view line, Instant now);
+  [[nodiscard]] bool told_before(std::string_view line) const;
   void tick_ask(Instant now);
   void tick_drain(Instant now, std::uint64_t bytes_in);
 
@@ -67,6 +78,12 @@ class Dialogue {
   std::string to_send_, heard_, identity_;
   Deadline deadline_, resend_, limit_;
   int attempts_{0};
+  bool proving_{false};                ///< it has its reply, and is asked who it is
+  std::vector<std::string> answered_;  ///< what was sent
+  struct Told {
+    std::string send, line;
+  };
+  std::vector<Told> told_;  ///< replies to asks whose reply ends in '*'
   std::uint64_t bytes_seen_{0};
 };
 

@@ -20,15 +20,19 @@ constexpr int kNotReferenced = 5;
 Verdict Gcs2Driver::on_line(std::string_view line, Stamp arrival) {
   now_ = arrival;
   if (line.empty()) return Verdict::resync();
-  const Question* const expected = queue_.expecting();
-  if (expected == nullptr) {
-    queue_.disturbed(arrival.mono);
-    return Verdict::resync();
+  const std::string form = form_of(line);
+  const Heard heard = queue_.hear(form, arrival.mono);
+  if (heard == Heard::strange && !form.empty() && form != kReadyForm) strange_ = line;
+  if (heard == Heard::answer) {
+    const Question question = queue_.current();
+    if (!take(question, line)) {
+      queue_.refused(arrival.mono);
+      return Verdict::rejected(Reject::number);
+    }
+    strange_.clear();
   }
-  const Question question = *expected;
-  if (!take(question, line)) return Verdict::rejected(Reject::number);
   if (phase_ != Phase::waiting) pump();
-  return Verdict::accepted();
+  return heard == Heard::answer ? Verdict::accepted() : Verdict::resync();
 }
 
 bool Gcs2Driver::take(const Question& question, std::string_view line) {
@@ -49,10 +53,10 @@ bool Gcs2Driver::take(const Question& question, std::string_view line) {
 bool Gcs2Driver::take_error(const Question& question, std::string_view line) {
   const std::optional<int> error = parse_error(line);
   if (!error) return false;
-  queue_.answered(now_.mono);
+  queue_.answered();
   if (*error == 0) {
     // The table has its time from when it was told, however long the telling took.
-    if (job_ == Job::moving && question.concerning.starts_with("MOV")) job_deadline_.set(now_.mono, move_s_);
+    if (job_ == Job::moving && question.concerning.starts_with("MOV")) limit_job(move_s_);
     return true;
   }
   const ErrorText text = explain(*error);
@@ -63,14 +67,16 @@ bool Gcs2Driver::take_error(const Question& question, std::string_view line) {
   } else {
     fault(fmt::format("'{}': {}", question.concerning, text.what), text.remedy);
     // Its power failed: its velocity is forgotten too, and whether it is referenced is to be asked.
-    if (*error == kNotReferenced) start();
+    if (*error != kNotReferenced) return true;
+    queue_.interrupt(kStop, now_.mono);
+    start();
   }
   return true;
 }
 
 bool Gcs2Driver::take_start_up(const Question& question, std::string_view line) {
   if (question.ask == Ask::identity) {
-    queue_.answered(now_.mono);
+    queue_.answered();
     if (health_.identity != line) emit(DeviceNote{now_, "identified as " + std::string(line)});
     health_.identity = line;
     if (auto wanted = check_serial(settings_.serial, serial_of_idn(line)); !wanted)
@@ -78,14 +84,14 @@ bool Gcs2Driver::take_start_up(const Question& question, std::string_view line) 
     return true;
   }
   if (question.ask == Ask::axes) {
-    queue_.answered(now_.mono);
+    queue_.answered();
     on_axes(parse_axes(line));
     return true;
   }
   Axis& axis = axes_[question.axis];
   const std::optional<double> value = parse_value(line, axis.settings.axis);
   if (!value) return false;
-  queue_.answered(now_.mono);
+  queue_.answered();
   (question.ask == Ask::travel_min ? axis.travel_min_deg : axis.travel_max_deg) = *value;
   if (question.ask == Ask::travel_max) narrow_limits(axis);
   return true;
@@ -96,24 +102,24 @@ bool Gcs2Driver::take_state(const Question& question, std::string_view line) {
   if (question.ask == Ask::moving) {
     const auto mask = parse_moving(line);
     if (mask) moving_mask_ = *mask;
-    if (mask) queue_.answered(now_.mono);
+    if (mask) queue_.answered();
     return mask.has_value();
   }
   if (question.ask == Ask::position) {
     const auto value = parse_value(line, axis.settings.axis);
     if (!value) return false;
     axis.position_deg = *value;
-    queue_.answered(now_.mono);
+    queue_.answered();
     if (question.axis + 1 == axes_.size()) end_of_cycle();
     return true;
   }
   const auto flag = question.ask == Ask::ready ? parse_ready(line) : parse_flag(line, axis.settings.axis);
   if (!flag) return false;
-  queue_.answered(now_.mono);
+  queue_.answered();
   if (question.ask == Ask::on_target) axis.on_target = *flag;
   if (question.ask == Ask::referenced) on_referenced(axis, *flag);
-  if (question.ask == Ask::ready && *flag)
-    ask(Ask::referenced, query("FRF?", axes_[homing_axis_].settings.axis), homing_axis_);
+  if (question.ask == Ask::ready && *flag) ask_value(Ask::referenced, "FRF?", homing_axis_);
+  if (question.ask == Ask::ready && !*flag && asked_overdue_) took_too_long();
   return true;
 }
 
@@ -170,16 +176,25 @@ void Gcs2Driver::fail_start(std::string what, std::string remedy) {
     emit(DeviceFault{now_, std::move(what), std::move(remedy)});
 }
 
-void Gcs2Driver::give_up(const Question& question) {
+void Gcs2Driver::give_up(const std::string& asked) {
   const std::string what = fmt::format("the table controller does not answer '{}' ({} attempts at {} Bd)",
-                                       printable(question.send), QueryQueue<Ask>::kAttempts, baud());
+                                       printable(asked), QueryQueue<Ask>::kAttempts, baud());
   const std::string remedy = "check power, cable and baud";
   phase_ = Phase::waiting;
   queue_.clear();
   send(kStop);
   retry_.set(now_.mono, kRetry_s);
-  set_state(LinkState::silent, what + "; " + remedy);
-  if (std::exchange(job_, Job::none) != Job::none) emit(DeviceFault{now_, what, remedy});
+  if (strange_.empty()) {
+    set_state(LinkState::silent, what + "; " + remedy);
+  } else {
+    set_state(LinkState::failed,
+              fmt::format("wrong device on the port? It says '{}', which answers nothing that it was asked; "
+                          "check which device is on this port and its baud",
+                          printable(strange_)));
+    strange_.clear();
+  }
+  if (std::exchange(job_, Job::none) != Job::none)
+    emit(DeviceFault{now_, what + ": the table cannot be reached and may still move", remedy});
 }
 
 void Gcs2Driver::report(bool moving) {

@@ -26,10 +26,19 @@ double of(const TableAngles& angles, Turns turns) {
   return turns == Turns::pitch ? angles.pitch_rad : angles.roll_rad;
 }
 
+std::vector<Proof> proofs(const Gcs2Settings& settings) {
+  const std::string axis = settings.axes.empty() ? "1" : settings.axes.front().axis;
+  return {{query("*IDN?"), std::string(kIdentityForm)},
+          {query("POS?", axis), form_of_value(axis)},
+          {std::string(kAskMoving), std::string(kPlainForm)}};
+}
+
 }  // namespace
 
 Gcs2Driver::Gcs2Driver(Gcs2Settings settings)
-    : LineBased({Ending::gcs, kLongestReply, settings.baud}), settings_(std::move(settings)) {
+    : LineBased({Ending::gcs, kLongestReply, settings.baud}),
+      settings_(std::move(settings)),
+      queue_(proofs(settings_)) {
   for (const AxisSettings& axis : settings_.axes) {
     axes_.push_back({axis});
     if (axis.limits) travel(limits_, axis.turns) = *axis.limits;
@@ -43,6 +52,8 @@ std::unique_ptr<Device> Gcs2Driver::make(int /*slot*/, Settings& settings) {
 void Gcs2Driver::on_open(Stamp now) {
   LineBased::on_open(now);
   now_ = now;
+  strange_.clear();
+  queue_.open(kStop, now.mono);
   start();
 }
 
@@ -56,8 +67,9 @@ void Gcs2Driver::on_close(Stamp now) {
   arrived_ = false;
   moving_mask_ = 0;
   if (std::exchange(job_, Job::none) != Job::none)
-    emit(DeviceFault{now, "the port of the table was lost while the table moved",
-                     "look at the table before starting again; it is stopped as soon as the port is back"});
+    emit(DeviceFault{
+        now, "the port was lost while the table moved: the table cannot be reached and may still move",
+        "look at the table before starting again; it is stopped as soon as the port is back"});
 }
 
 void Gcs2Driver::on_tick(Stamp now) {
@@ -65,40 +77,42 @@ void Gcs2Driver::on_tick(Stamp now) {
   now_ = now;
   if (phase_ == Phase::closed) return;
   if (phase_ == Phase::waiting) {
-    if (retry_.passed(now.mono)) start();
-    return;
+    if (!retry_.passed(now.mono)) return;
+    queue_.interrupt(kStop, now.mono);
+    return start();
   }
   if (const auto given_up = queue_.on_tick(now.mono)) {
     give_up(*given_up);
     return;
   }
-  if (job_ != Job::none && job_deadline_.passed(now.mono)) {
-    std::string where;
-    for (const Axis& axis : axes_)
-      where +=
-          fmt::format(" {} at {:.3f} deg for {:.3f}", axis.settings.name, axis.position_deg, axis.target_deg);
-    fault(job_ == Job::homing
-              ? fmt::format("the reference move of {} did not end in time", axes_[homing_axis_].settings.name)
-              : fmt::format("the table did not reach its target in time:{}", where),
-          "check that nothing blocks the table and that velocity_deg_per_s is what it reaches");
-    return;
-  }
+  overdue_ = overdue_ || job_deadline_.passed(now.mono);
   pump();
 }
 
+/// A table that answers slowly has its say: only a poll that was begun after the time is over counts.
+void Gcs2Driver::took_too_long() {
+  std::string where;
+  for (const Axis& axis : axes_)
+    where +=
+        fmt::format(" {} at {:.3f} deg for {:.3f}", axis.settings.name, axis.position_deg, axis.target_deg);
+  fault(job_ == Job::homing
+            ? fmt::format("the reference move of {} did not end in time", axes_[homing_axis_].settings.name)
+            : fmt::format("the table did not reach its target in time:{}", where),
+        "check that nothing blocks the table and that velocity_deg_per_s is what it reaches");
+}
+
+/// Begins with what the controller is asked first; the stop went before.
 void Gcs2Driver::start() {
   phase_ = Phase::starting;
   job_ = Job::none;
-  queue_.interrupt(kStop, now_.mono);
-  ask(Ask::stop_error, query("ERR?"));
-  ask(Ask::identity, query("*IDN?"));
-  ask(Ask::axes, query("SAI?"));
+  ask(Ask::stop_error, query("ERR?"), kPlainForm);
+  ask(Ask::identity, query("*IDN?"), kIdentityForm);
+  ask(Ask::axes, query("SAI?"), kPlainForm);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const std::string& axis = axes_[i].settings.axis;
-    ask(Ask::travel_min, query("TMN?", axis), i);
-    ask(Ask::travel_max, query("TMX?", axis), i);
-    set(set_velocity(axis, settings_.velocity_deg_per_s));
-    ask(Ask::referenced, query("FRF?", axis), i);
+    ask_value(Ask::travel_min, "TMN?", i);
+    ask_value(Ask::travel_max, "TMX?", i);
+    set(set_velocity(axes_[i].settings.axis, settings_.velocity_deg_per_s));
+    ask_value(Ask::referenced, "FRF?", i);
   }
   if (settings_.servo_off_in_dwell) servo(false);
   ask_cycle();
@@ -113,14 +127,18 @@ void Gcs2Driver::pump() {
   send(queue_.take_send(now_.mono));
 }
 
-void Gcs2Driver::set(std::string command) {
-  const std::string name = printable(command);
-  queue_.push({Ask::set, std::move(command), 0, "", false});
-  queue_.push({Ask::error, query("ERR?"), 0, name, true});
+/// Asked again, it is told again: what became of it, only the answer says.
+void Gcs2Driver::set(const std::string& command) {
+  queue_.push({Ask::error, command + query("ERR?"), std::string(kPlainForm), 0, printable(command)});
 }
 
-void Gcs2Driver::ask(Ask what, std::string bytes, std::size_t axis) {
-  queue_.push({what, std::move(bytes), axis, "", true});
+void Gcs2Driver::ask(Ask what, std::string bytes, std::string_view form) {
+  queue_.push({what, std::move(bytes), std::string(form)});
+}
+
+void Gcs2Driver::ask_value(Ask what, std::string_view mnemonic, std::size_t axis) {
+  const std::string& name = axes_[axis].settings.axis;
+  queue_.push({what, query(mnemonic, name), form_of_value(name), axis});
 }
 
 void Gcs2Driver::servo(bool on) {
@@ -129,17 +147,18 @@ void Gcs2Driver::servo(bool on) {
 
 void Gcs2Driver::ask_cycle() {
   cycle_is_of_this_move_ = true;
-  ask(Ask::moving, std::string(kAskMoving));
-  for (std::size_t i = 0; job_ == Job::moving && i < axes_.size(); ++i)
-    ask(Ask::on_target, query("ONT?", axes_[i].settings.axis), i);
-  for (std::size_t i = 0; i < axes_.size(); ++i) ask(Ask::position, query("POS?", axes_[i].settings.axis), i);
+  asked_overdue_ = overdue_;
+  ask(Ask::moving, std::string(kAskMoving), kPlainForm);
+  for (std::size_t i = 0; job_ == Job::moving && i < axes_.size(); ++i) ask_value(Ask::on_target, "ONT?", i);
+  for (std::size_t i = 0; i < axes_.size(); ++i) ask_value(Ask::position, "POS?", i);
 }
 
 void Gcs2Driver::poll() {
   if (!queue_.idle() || now_.mono < next_poll_) return;
   next_poll_ = now_.mono + from_seconds(busy() ? kBusyPoll_s : kIdlePoll_s);
   if (job_ == Job::homing) {
-    ask(Ask::ready, std::string(kAskReady));
+    asked_overdue_ = overdue_;
+    ask(Ask::ready, std::string(kAskReady), kReadyForm);
   } else {
     ask_cycle();
   }
@@ -160,6 +179,7 @@ void Gcs2Driver::stop() {
   wanted_.reset();
   if (phase_ == Phase::closed) return;
   if (phase_ == Phase::starting) {
+    queue_.interrupt(kStop, now_.mono);
     start();
   } else if (phase_ == Phase::waiting) {
     send(kStop);
@@ -173,7 +193,7 @@ void Gcs2Driver::halt() {
   job_ = Job::none;
   arrived_ = false;
   queue_.interrupt(kStop, now_.mono);
-  ask(Ask::stop_error, query("ERR?"));
+  ask(Ask::stop_error, query("ERR?"), kPlainForm);
   if (settings_.servo_off_in_dwell) servo(false);
   next_poll_ = now_.mono;
 }
@@ -208,7 +228,7 @@ void Gcs2Driver::reference_next() {
   set(set_servo(axis.settings.axis, true));
   set(reference(axis.settings.axis));
   const double travel_deg = std::min(axis.travel_max_deg - axis.travel_min_deg, kLongestReference_deg);
-  job_deadline_.set(now_.mono, travel_deg / settings_.velocity_deg_per_s * 2 + kReferenceMargin_s);
+  limit_job(travel_deg / settings_.velocity_deg_per_s * 2 + kReferenceMargin_s);
   next_poll_ = now_.mono + from_seconds(kBusyPoll_s);
 }
 
@@ -248,15 +268,19 @@ void Gcs2Driver::begin_move(const TableAngles& target) {
   cycle_is_of_this_move_ = false;
   arrived_ = false;
   move_s_ = longest_deg / settings_.velocity_deg_per_s * 2 + kMoveMargin_s;
-  job_deadline_.set(now_.mono, move_s_);
+  limit_job(move_s_);
   next_poll_ = now_.mono;
   report(true);
+}
+
+void Gcs2Driver::limit_job(double seconds) {
+  job_deadline_.set(now_.mono, seconds);
+  overdue_ = asked_overdue_ = false;
 }
 
 void Gcs2Driver::arrive() {
   arrived_ = job_ == Job::moving;
   job_ = Job::arriving;
-  job_deadline_.set(now_.mono, kMoveMargin_s);
   if (settings_.servo_off_in_dwell) servo(false);
   ask_cycle();
 }
@@ -273,6 +297,7 @@ void Gcs2Driver::end_of_cycle() {
       arrive();
       return;
     }
+    if (asked_overdue_) return took_too_long();
   } else if (job_ == Job::arriving) {
     job_ = Job::none;
   } else if (arrived_) {

@@ -21,6 +21,10 @@
 /// ERR? follows every set command; an error is a DeviceFault in words and stops the table. A move that takes
 /// longer than distance/velocity*2 + 10 s is stopped. limits() is what the controller allows and the
 /// configuration narrows; before the controller was asked, it is the configuration's, or no travel at all.
+/// A controller that stopped answering, or that answers late, is not believed until the line is proved again
+/// (query_queue.h), by *IDN?, POS? and byte 05, whose replies cannot be taken for one another. A command
+/// whose error was not told is sent again.
+///
 /// on_target holds from arrival until the next request (with the servo off the controller no longer says it);
 /// a table that turns meanwhile is a fault.
 ///
@@ -48,7 +52,6 @@ class Gcs2Driver final : public LineBased<Turntable> {
   enum class Phase { closed, starting, ready, waiting };
   enum class Job { none, homing, moving, arriving };
   enum class Ask {
-    set,
     error,
     stop_error,
     identity,
@@ -71,8 +74,9 @@ class Gcs2Driver final : public LineBased<Turntable> {
 
   void start();
   void pump();
-  void set(std::string command);
-  void ask(Ask what, std::string send, std::size_t axis = 0);
+  void set(const std::string& command);
+  void ask(Ask what, std::string send, std::string_view form);
+  void ask_value(Ask what, std::string_view mnemonic, std::size_t axis);
   void servo(bool on);
   void ask_cycle();
   void poll();
@@ -80,9 +84,11 @@ class Gcs2Driver final : public LineBased<Turntable> {
   void begin_home();
   void reference_next();
   void begin_move(const TableAngles& target);
+  void limit_job(double seconds);
   [[nodiscard]] bool refuse_target(const TableAngles& target);
   void arrive();
   void end_of_cycle();
+  void took_too_long();
   void check_dwell();
   void halt();
 
@@ -95,7 +101,7 @@ class Gcs2Driver final : public LineBased<Turntable> {
   void narrow_limits(const Axis& axis);
 
   void fault(std::string what, std::string remedy);
-  void give_up(const Question& question);
+  void give_up(const std::string& asked);
   void fail_start(std::string what, std::string remedy);
   void report(bool moving);
   [[nodiscard]] bool all_referenced() const;
@@ -111,7 +117,9 @@ class Gcs2Driver final : public LineBased<Turntable> {
   Stamp now_;
   Instant next_poll_{};
   Deadline job_deadline_, retry_;
-  double move_s_{0};  ///< longest that the move may take
+  double move_s_{0};           ///< longest that the move may take
+  bool overdue_{false};        ///< it took longer ...
+  bool asked_overdue_{false};  ///< ... and the poll under way was begun after that
   bool wants_home_{false};
   std::optional<TableAngles> wanted_;
   std::size_t homing_axis_{0};
@@ -119,6 +127,7 @@ class Gcs2Driver final : public LineBased<Turntable> {
   bool arrived_{false};
   bool cycle_is_of_this_move_{false};  ///< a poll begun before the move says nothing about it
   std::string last_start_fault_;
+  std::string strange_;  ///< the last line that answered nothing, since an answer came
 };
 
 }  // namespace mgtd::drivers::gcs2

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "proto/number.h"
@@ -68,6 +69,19 @@ std::string printable(std::string_view message) {
   if (message == kAskMoving) return "05";
   if (message == kAskReady) return "07";
   return std::string(trimmed(message.substr(0, message.find('\n'))));
+}
+
+std::string form_of_value(std::string_view axis) { return fmt::format("{}=", axis); }
+
+std::string form_of(std::string_view reply) {
+  if (parse_ready(reply)) return std::string(kReadyForm);
+  const bool printable = std::all_of(reply.begin(), reply.end(),
+                                     [](char c) { return (c >= ' ' && c <= '~') || c == '\n' || c == '\r'; });
+  if (!printable || trimmed(reply).empty()) return {};
+  if (reply.find(',') != std::string_view::npos) return std::string(kIdentityForm);
+  if (const auto equals = reply.find('='); equals != std::string_view::npos)
+    return form_of_value(trimmed(reply.substr(0, equals)));
+  return std::string(kPlainForm);
 }
 
 std::optional<double> parse_value(std::string_view reply, std::string_view axis) {

@@ -45,6 +45,12 @@ inline constexpr int kStoppedByCommand = 10;
 /// A message as an operator may read it.
 [[nodiscard]] std::string printable(std::string_view message);
 
+/// What a reply looks like, which is all that tells which question it may answer: "identity" (commas), "1="
+/// (the value of axis 1), "ready", "plain" (numbers, masks, names of axes). Empty: no reply looks so.
+[[nodiscard]] std::string form_of(std::string_view reply);
+[[nodiscard]] std::string form_of_value(std::string_view axis);
+inline constexpr std::string_view kIdentityForm{"identity"}, kPlainForm{"plain"}, kReadyForm{"ready"};
+
 /// Replies. Empty when the text is not of the form.
 [[nodiscard]] std::optional<double> parse_value(std::string_view reply, std::string_view axis);  ///< "1=2.5"
 [[nodiscard]] std::optional<bool> parse_flag(std::string_view reply, std::string_view axis);     ///< "1=1"

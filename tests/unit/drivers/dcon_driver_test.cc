@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/dcon_driver.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "drivers/registry.h"
@@ -79,6 +80,44 @@ TEST(DconDriver, FewerChannelsThanConfiguredIsAFailureThatSaysSo) {
   EXPECT_EQ(driver.health().state, LinkState::failed);
   EXPECT_THAT(driver.health().detail, HasSubstr("1 channels, 3 are configured"));
   EXPECT_THAT(bench.events<AuxiliaryReading>(), IsEmpty());
+}
+
+/// The values of one second, told in the next, would stand beside other samples than their own.
+TEST(DconDriver, AnAnswerThatComesAfterAllPatienceIsNotTakenForTheNext) {
+  DconDriver driver(three_channels());
+  double deaf_until_s = 0, value = 25;
+  DeviceBench* wire = nullptr;
+  DeviceBench bench(driver, [&](std::string_view sent) -> std::string {
+    if (wire->t_s() < deaf_until_s) return "";
+    return sent == "#01\r" ? fmt::format(">{:+07.2f}+001.00+021.50\r", value) : module(sent);
+  });
+  wire = &bench;
+  bench.open();
+  bench.pass(2.1);
+  ASSERT_EQ(driver.health().state, LinkState::live);
+  deaf_until_s = bench.t_s() + 5.5;
+  bench.pass(5);
+  bench.forget_events();
+  bench.forget_sent();
+  value = 99;
+  bench.feed(">+025.00+001.00+021.50\r");
+  EXPECT_THAT(bench.events<AuxiliaryReading>(), IsEmpty()) << "nobody can tell which question it answers";
+  bench.pass(5);
+  EXPECT_EQ(bench.sent().find("$01M\r"), 0U) << "proved by its name";
+  ASSERT_FALSE(bench.events<AuxiliaryReading>().empty());
+  for (const auto& reading : bench.events<AuxiliaryReading>())
+    EXPECT_NEAR(reading.values.at(0).second, 0.1 * 99 + 0.5, 1e-9);
+}
+
+TEST(DconDriver, WhatTalksAndIsNoModuleIsTheWrongDevice) {
+  DconDriver driver(three_channels());
+  DeviceBench bench(driver);
+  bench.open();
+  ASSERT_TRUE(bench.pass_until([&] {
+    bench.feed("$GPGGA,100000.00,4717.11,N\r");
+    return driver.health().state == LinkState::failed;
+  }));
+  EXPECT_THAT(driver.health().detail, HasSubstr("wrong device on the port?"));
 }
 
 TEST(DconSettingsTest, MistakesAreNamed) {

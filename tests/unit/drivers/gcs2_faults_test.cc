@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <deque>
+#include <functional>
+#include <random>
+
 #include "tests/unit/drivers/gcs2_bench.h"
 
 namespace mgtd::drivers::gcs2 {
@@ -129,7 +133,7 @@ TEST_F(Gcs2DriverTest, ALostReplyIsAskedForAgainAndALateOneIsNotMistaken) {
   controller.mute = "POS?";
   controller.mute_times = 1;
   ASSERT_TRUE(until([&] { return controller.mute_times == 0; }));
-  bench.pass(2.1);           // the reply is overdue: the line must fall quiet now
+  bench.pass(2.6);           // the reply is overdue: the line is being proved
   bench.feed("1=12.345\n");  // ... and here it comes, late
   ASSERT_TRUE(until([&] { return last().on_target; }));
   for (const auto& reading : bench.events<TableReading>())
@@ -137,6 +141,75 @@ TEST_F(Gcs2DriverTest, ALostReplyIsAskedForAgainAndALateOneIsNotMistaken) {
   EXPECT_NEAR(to_deg(last().angles.azimuth_rad), 45, 1e-9);
   EXPECT_TRUE(faults().empty());
   EXPECT_TRUE(driver.health().balanced());
+}
+
+/// Answers 0.4 to 2 s late, stopped at every moment of a move: what comes late is not taken for the answer to
+/// what is asked after the stop ("'SVO 1 0': ... (GCS error 10)").
+TEST_F(Gcs2DriverTest, AStopWhileAnswersAreLateIsNoFault) {
+  controller.axes["1"].referenced = true;
+  std::deque<std::pair<double, std::string>> wire;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> late_s(0.4, 2);
+  double t_s = 1000, free_s = 0;  // where the bench begins
+  Gcs2Driver device(settings());
+  DeviceBench slow(device, [&](std::string_view sent) {
+    const std::string reply = controller(sent);
+    free_s = std::max(free_s, t_s + late_s(random));
+    if (!reply.empty()) wire.emplace_back(free_s, reply);
+    return std::string();
+  });
+  const auto step = [&](double seconds, const std::function<bool()>& done) {
+    for (double end_s = t_s + seconds; t_s < end_s && !done();) {
+      t_s = slow.t_s();
+      controller.advance(t_s);
+      for (; !wire.empty() && wire.front().first <= t_s; wire.pop_front()) slow.feed(wire.front().second);
+      slow.tick();
+    }
+    return done();
+  };
+  const auto rests = [&] {
+    const auto readings = slow.events<TableReading>();
+    return !readings.empty() && !readings.back().moving;
+  };
+  slow.open();
+  ASSERT_TRUE(step(100, [&] { return device.health().state == LinkState::live; }));
+  for (int i = 0; i < 60; ++i) {
+    device.move_to({to_rad(i % 2 == 0 ? 40.0 : -40.0), 0, 0});
+    slow.exchange();
+    step(0.17 * i, [] { return false; });
+    device.stop();
+    slow.exchange();
+    slow.forget_events();
+    ASSERT_TRUE(step(100, rests)) << i;
+    ASSERT_TRUE(slow.events<DeviceFault>().empty()) << i << ": " << slow.events<DeviceFault>()[0].what;
+    ASSERT_EQ(device.health().state, LinkState::live);
+  }
+}
+
+TEST_F(Gcs2DriverTest, ACommandWhoseErrorWasNotHeardIsSentAgain) {
+  home();
+  controller.mute = "ERR?";
+  controller.mute_times = 1;
+  controller.axes["1"].max = 50;
+  move(60);
+  ASSERT_TRUE(until([&] { return !faults().empty(); }));
+  EXPECT_THAT(faults()[0].what, HasSubstr("GCS error 7"));
+}
+
+TEST_F(Gcs2DriverTest, WhatTalksAndIsNoControllerIsTheWrongDevice) {
+  DeviceBench stage(driver);
+  stage.open();
+  double next_s = 0;
+  ASSERT_TRUE(stage.pass_until([&] {
+    if (stage.t_s() > next_s) {
+      next_s = stage.t_s() + 1;
+      stage.feed("$GPGGA,100000.00,4717.11,N\r\n");
+    }
+    return driver.health().state == LinkState::failed;
+  }));
+  EXPECT_THAT(driver.health().detail,
+              HasSubstr("wrong device on the port? It says '$GPGGA,100000.00,4717.11,N'"));
+  EXPECT_TRUE(stage.events<DeviceFault>().empty());
 }
 
 TEST_F(Gcs2DriverTest, AControllerThatStopsAnsweringIsAFaultWhileMoving) {
@@ -147,6 +220,7 @@ TEST_F(Gcs2DriverTest, AControllerThatStopsAnsweringIsAFaultWhileMoving) {
   ASSERT_TRUE(until([&] { return driver.health().state == LinkState::silent; }));
   ASSERT_EQ(faults().size(), 1U);
   EXPECT_THAT(faults()[0].what, HasSubstr("does not answer"));
+  EXPECT_THAT(faults()[0].what, HasSubstr("cannot be reached and may still move"));
   EXPECT_TRUE(bench.sent().ends_with("\x18")) << "it may still listen";
   controller.mute_times = 0;
   ASSERT_TRUE(until([&] { return driver.health().state == LinkState::live; }));
@@ -165,6 +239,7 @@ TEST_F(Gcs2DriverTest, LosingThePortWhileMovingIsAFault) {
   move(90);
   bench.close();
   ASSERT_EQ(faults().size(), 1U);
+  EXPECT_THAT(faults()[0].what, HasSubstr("cannot be reached and may still move"));
   bench.forget_sent();
   open();
   EXPECT_TRUE(bench.sent().starts_with("\x18"));

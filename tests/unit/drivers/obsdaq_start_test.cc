@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a digitiser is found, stopped, told its settings and started; who is refused.
 
+#include <deque>
+
 #include "tests/unit/drivers/obsdaq_bench.h"
 
 namespace mgtd::drivers::obsdaq {
@@ -58,7 +60,8 @@ TEST_F(ObsdaqDriverTest, AnotherDeviceOnThePortIsNamed) {
   instrument.identity = "!017013";
   bench.open();
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::failed; }));
-  EXPECT_THAT(bench.events<DeviceFault>().at(0).what, HasSubstr("'7013', not an ObsDAQ"));
+  EXPECT_THAT(bench.events<DeviceFault>().at(0).what,
+              HasSubstr("wrong device on the port: it calls itself '7013', not an ObsDAQ"));
   EXPECT_THAT(driver.health().detail, HasSubstr("check which device"));
   instrument.identity = "!01<obsDAQ V5.5.7>";  // the operator exchanges the plugs
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
@@ -126,6 +129,39 @@ TEST_F(ObsdaqDriverTest, AReplyLostOnceIsAskedForAgain) {
   stage.open();
   ASSERT_TRUE(stage.pass_until([&] { return driver.health().state == LinkState::live; }));
   EXPECT_EQ(asked, 2);
+}
+
+/// Whatever is late by up to two seconds: echoes of one channel are those of another to the letter.
+TEST_F(ObsdaqDriverTest, LateRepliesAreNotTakenForThoseOfTheNextQuestion) {
+  for (const double late_s : {0.3, 0.45, 0.9, 1.7}) {
+    SCOPED_TRACE(late_s);
+    Instrument slow;
+    ObsdaqSettings stated = settings();
+    stated.serial = "1001";
+    ObsdaqDriver device(0, stated);
+    std::deque<std::pair<double, std::string>> wire;
+    DeviceBench* stage = nullptr;
+    DeviceBench late(device, [&](std::string_view sent) {
+      for (std::size_t at = 0; at < sent.size();) {  // one command after the other
+        const std::size_t end = std::min(sent.find('\r', at), sent.size() - 1);
+        const std::string reply = slow(sent.substr(at, end + 1 - at));
+        if (!reply.empty()) wire.emplace_back(stage->t_s() + late_s, reply);
+        at = end + 1;
+      }
+      return std::string();
+    });
+    stage = &late;
+    late.open();
+    ASSERT_TRUE(late.pass_until(
+        [&] {
+          for (; !wire.empty() && wire.front().first <= late.t_s(); wire.pop_front())
+            late.feed(wire.front().second);
+          return device.health().state == LinkState::live;
+        },
+        200));
+    EXPECT_TRUE(late.events<DeviceFault>().empty());
+    EXPECT_EQ(device.health().identity, "<obsDAQ V5.5.7>, serial 1001");
+  }
 }
 
 }  // namespace
