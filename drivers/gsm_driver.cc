@@ -43,6 +43,7 @@ void GsmDriver::on_open(Stamp now) {
   LineDevice::on_open(now);
   set_state(LinkState::probing, "waiting for the first reading");
   another_.reset();
+  last_text_.clear();
   next_init_ = 0;
   silence_.set(now.mono, settings_.silence_s + kInitPause_s * static_cast<double>(settings_.init.size()));
   send_init(now);
@@ -64,12 +65,17 @@ void GsmDriver::on_tick(Stamp now) {
   }
   if (another_ || !silence_.passed(now.mono)) return;
   silence_.clear();
+  const bool talks_on =
+      !last_text_.empty() && now.mono - last_text_at_ < from_seconds(settings_.silence_s / 3);
+  const std::string heard = last_text_.empty() ? "" : fmt::format(", last heard '{}'", last_text_);
   set_state(
-      LinkState::silent,
-      fmt::format("no reading for {:.0f} s{}; check power, cable, baud ({}) and that the instrument sends "
-                  "in real time (its memory may be full)",
-                  settings_.silence_s, last_text_.empty() ? "" : fmt::format(", last heard '{}'", last_text_),
-                  baud()));
+      talks_on ? LinkState::failed : LinkState::silent,
+      fmt::format(
+          "no reading for {:.0f} s{}; {}", settings_.silence_s, heard,
+          talks_on ? fmt::format("wrong device on the port? Check which device it is, and baud ({})", baud())
+                   : fmt::format("check power, cable, baud ({}) and that the instrument sends in real "
+                                 "time (its memory may be full)",
+                                 baud())));
   emit(DeviceNote{now, health_.detail});
 }
 
@@ -77,6 +83,7 @@ Verdict GsmDriver::on_line(std::string_view line, Stamp arrival) {
   const GsmLine parsed = parse_line(line);
   if (const auto* reading = std::get_if<GsmReading>(&parsed)) return on_reading(*reading, arrival);
   last_text_ = line;
+  last_text_at_ = arrival.mono;
   if (const auto* why = std::get_if<Reject>(&parsed)) return Verdict::rejected(*why);
   if (line.find("z-save") != std::string_view::npos) send("z");
   if (std::get<GsmText>(parsed).header && line.find("GSM") != std::string_view::npos)

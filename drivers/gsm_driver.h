@@ -19,7 +19,8 @@
 ///                                  ["S", "5", "T048.5", "C", "{utc}", "R"], {utc} = time for the clock menu
 ///   serial = ""                    of the instrument; stated: one whose header tells another is refused
 ///   range_nT = [20000, 120000]     a reading outside is rejected
-///   silence_s = 15                 without a reading the link is silent
+///   silence_s = 15                 without a reading the link is silent; failed where something else talks
+///   on
 ///
 /// Its serial number is in the header that it prints when it starts; one that prints none is believed.
 ///
@@ -58,7 +59,8 @@ class GsmDriver final : public LineDevice {
   GsmSettings settings_;
   std::size_t next_init_{0};
   Deadline next_, silence_;
-  std::string last_text_;
+  std::string last_text_;  ///< since the last reading
+  Instant last_text_at_{};
   std::optional<Error> another_;  ///< it is not the instrument that was stated
 };
 

@@ -101,7 +101,7 @@ bool ObsdaqDriver::identified(Stamp now) {
   if (names_itself) {
     model_ = said;
     if (is_obsdaq(said)) return true;
-    refuse(now, fmt::format("the device calls itself '{}', not an ObsDAQ", said),
+    refuse(now, fmt::format("wrong device on the port: it calls itself '{}', not an ObsDAQ", said),
            "check which device is on this port");
     return false;
   }
@@ -124,18 +124,29 @@ void ObsdaqDriver::go_live(Stamp now) {
   phase_ = Phase::streaming;
   if (!health_.identity.starts_with(model_)) identify(now, model_);  // its serial number was not told
   seq_ = 0;
-  any_good_line_ = false;
+  any_good_line_ = without_time_ = false;
   bytes_at_good_line_ = health_.bytes_in;
   last_fault_.clear();
   silence_.set(now.mono, silence_s(), kSilentTicks);
   rate_.restart();
+  // A digitiser without the time-stamper that should be there answers every question and yet is of no use.
+  if (hint_at_palmacq().empty()) show_live();
+}
+
+void ObsdaqDriver::show_live() {
+  if (health_.state == LinkState::live) return;
   set_state(LinkState::live,
             fmt::format("{} at {:.2f} Hz, +-{} V{}", settings_.sensor, settings_.timing.rate_hz(),
                         settings_.range.volts, settings_.palmacq ? ", time-stamped by PalmAcq" : ""));
 }
 
+std::string ObsdaqDriver::hint_at_palmacq() const {
+  if (!settings_.palmacq || dialogue_.answered(connect_through().command)) return {};
+  return "no time-stamper answers: set palmacq = false?";
+}
+
 void ObsdaqDriver::give_up(Stamp now) {
-  const std::string asked = without_cr(dialogue_.step().send);
+  const std::string asked = without_cr(dialogue_.step().send), hint = hint_at_palmacq();
   switch (dialogue_.outcome()) {
     case Dialogue::Outcome::no_answer:
       phase_ = Phase::waiting;
@@ -144,16 +155,20 @@ void ObsdaqDriver::give_up(Stamp now) {
                 fmt::format("no answer to '{}' in {} attempts at {} Bd; check power, cable, baud and address "
                             "{}{}",
                             asked, Pace().attempts, settings_.baud, settings_.address,
-                            settings_.palmacq ? "" : ", and palmacq = true if a PalmAcq stands between"));
+                            !settings_.palmacq ? ", and palmacq = true if a PalmAcq stands between"
+                            : hint.empty()     ? ""
+                                               : "; " + hint));
       return;
     case Dialogue::Outcome::never_silent:
-      refuse(now, fmt::format("bytes keep coming {} s after '{}'", Dialogue::kDrainLimit_s, asked),
-             "check which device is on this port and its baud");
+      refuse(now,
+             fmt::format("{}bytes keep coming {} s after '{}'",
+                         hint.empty() ? "wrong device on the port? " : "", Dialogue::kDrainLimit_s, asked),
+             hint.empty() ? "check which device is on this port and its baud" : hint);
       return;
     default:
       refuse(now,
-             fmt::format("'{}' was answered by '{}' instead of '{}'", asked, dialogue_.heard(),
-                         dialogue_.step().reply),
+             fmt::format("wrong device on the port? '{}' was answered by '{}' instead of '{}'", asked,
+                         dialogue_.heard(), dialogue_.step().reply),
              "check which device is on this port, its address and its firmware");
   }
 }
@@ -183,6 +198,8 @@ void ObsdaqDriver::watch_rate(Stamp now) {
 
 void ObsdaqDriver::watch_silence(Stamp now) {
   if (!silence_.passed(now.mono)) return;
+  if (const std::string hint = hint_at_palmacq(); without_time_ && !any_good_line_ && !hint.empty())
+    return refuse(now, "lines come without the time of a PalmAcq", hint);
   const bool mute = health_.bytes_in == bytes_at_good_line_;
   set_state(LinkState::silent,
             fmt::format("{} for {:.1f} s; starting the digitiser again",
@@ -210,11 +227,12 @@ void ObsdaqDriver::on_damaged_line(std::string_view text) {
 Verdict ObsdaqDriver::on_stream_line(std::string_view line, Stamp arrival) {
   const auto sample = parse_data_line(line);
   if (!sample || sample->time_stamped != settings_.palmacq) {
+    without_time_ = without_time_ || (sample && !sample->time_stamped);
     if (!any_good_line_) return Verdict::resync();
     seq_ += samples_lost(line);
     return Verdict::rejected(sample ? Reject::framing : sample.error());
   }
-  any_good_line_ = true;
+  if (!std::exchange(any_good_line_, true)) show_live();
   bytes_at_good_line_ = health_.bytes_in;
   silence_.set(arrival.mono, silence_s(), kSilentTicks);
   emit_sample(*sample, arrival);

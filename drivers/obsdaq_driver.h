@@ -51,6 +51,8 @@ class ObsdaqDriver final : public LineDevice {
   [[nodiscard]] bool identified(Stamp now);
   void identify(Stamp now, std::string as);
   void go_live(Stamp now);
+  void show_live();
+  [[nodiscard]] std::string hint_at_palmacq() const;
   void give_up(Stamp now);
   void refuse(Stamp now, std::string what, std::string remedy);
   void watch_silence(Stamp now);
@@ -70,6 +72,7 @@ class ObsdaqDriver final : public LineDevice {
   std::uint64_t seq_{0};
   std::uint64_t bytes_at_good_line_{0};
   bool any_good_line_{false};
+  bool without_time_{false};  ///< a line came as one does without a PalmAcq, since the start
   bool impossible_date_noted_{false};
   std::string last_fault_;
 };

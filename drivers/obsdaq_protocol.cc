@@ -138,6 +138,8 @@ Exchange start(std::string_view address) {
   return {fmt::format("#{}CS\r", address), fmt::format("!{}", address)};
 }
 
+Exchange connect_through() { return {"SM:TRP\r", "AM:TRP,001B"}; }
+
 bool Sample::saturated() const {
   return std::any_of(counts.begin(), counts.end(),
                      [](std::int32_t n) { return std::abs(n) >= kNearFullScale; });

@@ -85,6 +85,7 @@ struct Exchange {
 [[nodiscard]] Exchange configure(std::string_view address, int channel, std::string_view range_code,
                                  std::string_view rate_code);
 [[nodiscard]] Exchange start(std::string_view address);
+[[nodiscard]] Exchange connect_through();  ///< of a PalmAcq
 
 struct Supplement {
   double supply_V{0};

@@ -61,7 +61,8 @@ class Conversation {
     drain("SF:-\r");
     tell("SP:R:19200,8,n,1,1\r", w_.long_s);
     tell("ST:R\r", w_.long_s);
-    steps_.push_back({Kind::ask, "SM:TRP\r", "AM:TRP,001B", w_.reply_s, true});
+    const Exchange through = connect_through();
+    steps_.push_back({Kind::ask, through.command, through.reply, w_.reply_s, true});
   }
   void stop_and_identify() {
     drain(quick_stop());

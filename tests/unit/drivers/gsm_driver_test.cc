@@ -91,7 +91,7 @@ TEST(GsmDriver, SilenceSaysWhatWasHeardLast) {
   bench.open();
   bench.feed("Memory full\r\n");
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::silent; }));
-  EXPECT_THAT(driver.health().detail, HasSubstr("last heard 'Memory full'"));
+  EXPECT_THAT(driver.health().detail, HasSubstr("last heard 'Memory full'; check power"));
   EXPECT_EQ(bench.events<DeviceNote>().size(), 1U);
   bench.feed("115014.0  48484.12 99\r\n");
   EXPECT_EQ(driver.health().state, LinkState::live);
@@ -114,6 +114,19 @@ TEST(GsmRegistry, IsAScalarReference) {
   EXPECT_EQ(entry->role, Role::scalar);
   Settings s("[scalar]", 1);
   EXPECT_EQ(entry->make(0, s)->baud(), 115200);
+}
+
+TEST(GsmDriver, SomethingElseThatTalksOnIsTheWrongDevice) {
+  GsmDriver driver(GsmSettings{});
+  DeviceBench bench(driver);
+  bench.open();
+  ASSERT_TRUE(bench.pass_until([&] {
+    bench.feed("$GPGGA,100000.00,4717.11,N\r\n");
+    return driver.health().state == LinkState::failed;
+  }));
+  EXPECT_THAT(driver.health().detail, HasSubstr("'$GPGGA,100000.00,4717.11,N'; wrong device on the port?"));
+  bench.feed("115014.0  48484.12 99\r\n");
+  EXPECT_EQ(driver.health().state, LinkState::live);
 }
 
 }  // namespace

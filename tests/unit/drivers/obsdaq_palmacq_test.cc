@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
 #include "tests/unit/drivers/obsdaq_bench.h"
 
 namespace mgtd::drivers::obsdaq {
@@ -73,6 +75,37 @@ TEST(ObsdaqPalmAcq, ABriskStartWithoutASampleIsFollowedByAPatientOne) {
   const double restarted_s = bench.t_s();
   ASSERT_TRUE(bench.pass_until([&] { return driver.health().state == LinkState::live; }));
   EXPECT_GT(bench.t_s() - restarted_s, 3);
+}
+
+/// `palmacq = true`, and the digitiser is on the port itself: it answers every question of its own.
+TEST(ObsdaqPalmAcq, ADigitiserWithoutTheTimeStamperIsNeverLiveAndSaysWhatToSet) {
+  for (const std::string& mute : {std::string(), std::string("$01M")}) {
+    Instrument direct;
+    direct.mute = mute;
+    ObsdaqDriver driver(0, settings(true));
+    DeviceBench bench(driver, std::ref(direct));
+    bench.open();
+    const bool said = bench.pass_until([&] {
+      if (direct.streaming) bench.feed("*0259FEFFF1BFFFFCEDL\r");
+      EXPECT_NE(driver.health().state, LinkState::live);
+      return driver.health().state == LinkState::failed || driver.health().state == LinkState::silent;
+    });
+    EXPECT_TRUE(said);
+    EXPECT_THAT(driver.health().detail,
+                ::testing::HasSubstr("no time-stamper answers: set palmacq = false?"));
+    EXPECT_TRUE(bench.events<FieldReading>().empty());
+  }
+}
+
+TEST(ObsdaqPalmAcq, ADigitiserThatStreamsWithoutTheTimeStamperSaysWhatToSet) {
+  ObsdaqDriver driver(0, settings(true));
+  DeviceBench bench(driver);
+  bench.open();
+  ASSERT_TRUE(bench.pass_until([&] {
+    bench.feed("*0259FEFFF1BFFFFCEDL\r");
+    return driver.health().state == LinkState::failed;
+  }));
+  EXPECT_THAT(driver.health().detail, ::testing::HasSubstr("no time-stamper answers: set palmacq = false?"));
 }
 
 TEST(ObsdaqPalmAcq, AnUnstampedLineIsRejected) {
