@@ -104,8 +104,12 @@ void RunFsm::follow_settling(const TableReading& reading) {
   changed_ = true;
 }
 
-void RunFsm::on(const LinkSeen& link) {
-  if (phase_ == Phase::preflight) preflight_.add(link.device, link.health);
+void RunFsm::on(const LinkSeen& seen) {
+  if (phase_ == Phase::preflight) preflight_.add(seen.device, seen.health);
+  const auto lost = lost_.find(seen.device);
+  if (lost == lost_.end() || answers(seen.health.state) || lost->second == seen.health.detail) return;
+  lost->second = seen.health.detail;
+  changed_ = true;
 }
 
 void RunFsm::on(const PoseStored& stored) {
@@ -265,7 +269,7 @@ RunStatus RunFsm::status(Instant now) const {
   s.retries = retries_;
   s.elapsed_s = to_seconds(now - run_start_.mono);
   s.remaining_s = phase_ == Phase::ended ? 0 : progress_.remaining_s(now);
-  s.message = message_;
+  s.message = in_status();
   s.goes_on = phase_ == Phase::waiting;
   s.proposed = final_ == RunState::done ? proposed_ : "";
   s.checks = checks_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -37,6 +38,8 @@
 /// - The table does not move between StorePose and its PoseStored.
 /// - A fault of a device, or a pose that cannot be stored, stops the table and pauses. A device that is lost
 ///   stops the table; the pose is repeated when it comes back within lost_max_s, else the run fails.
+///   Meanwhile the run says what the link says. A table that is lost itself is stopped by its driver when it
+///   is back; until then it may still move, and the run says so.
 /// - Abort stops the table in every state; the run is `aborted` once the table was seen at rest, or after
 ///   stop_max_s. Nothing is proposed then.
 /// - The run ends early, with the fit of the poses so far, when the operator says so (finish), or when the
@@ -94,7 +97,7 @@ class RunFsm {
   void on(const ScalarReading& reading);
   void on(const AuxiliaryReading& reading);
   void on(const TableReading& reading);
-  void on(const LinkSeen& link);
+  void on(const LinkSeen& seen);
   void on(const DeviceLost& lost);
   void on(const DeviceBack& back);
   void on(const DeviceFaulted& faulted);
@@ -168,6 +171,7 @@ class RunFsm {
   [[nodiscard]] Result<void> undisturbed(const Pose& pose) const;
   [[nodiscard]] const PlannedPose& planned() const { return plan_.poses[index_]; }
   [[nodiscard]] std::string kept() const;
+  [[nodiscard]] std::string in_status() const;  ///< the message, with what became known since
   [[nodiscard]] RunState state() const;
   void publish();
   void flush_path();
@@ -192,9 +196,9 @@ class RunFsm {
   Preflight preflight_;
   bool preflight_passed_{false};
   bool homed_{false};
-  std::optional<TableReading> table_;  ///< latest
-  std::vector<TableReading> path_;     ///< not yet stored
-  std::set<std::string> lost_;
+  std::optional<TableReading> table_;        ///< latest
+  std::vector<TableReading> path_;           ///< not yet stored
+  std::map<std::string, std::string> lost_;  ///< and why, as their links know it
 
   std::size_t index_{0};      ///< of the pose under way
   int attempt_{0};            ///< failed ones of this pose

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What interrupts a run: the operator, a fault, a device that is lost. Whatever it is, the table stops.
+// What interrupts a run: the operator, a fault, a device that is lost. Whatever it is, the table stops, as
+// soon as it can be reached.
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "daemon/run_fsm.h"
 
 namespace mgtd::daemon {
+namespace {
+
+constexpr std::string_view kUnreachable = "the table cannot be reached and may still move";
+
+}  // namespace
 
 Result<void> RunFsm::possible(Request request) const {
   const auto refuse = [](std::string message, std::string remedy) {
@@ -27,7 +34,8 @@ Result<void> RunFsm::possible(Request request) const {
       if (asks_for_deed()) return {};
       if (phase_ != Phase::paused) return refuse("the run is not paused", "");
       if (!lost_.empty())
-        return refuse(fmt::format("{} is not connected", *lost_.begin()), "reconnect it, then resume");
+        return refuse(fmt::format("{} is not connected: {}", lost_.begin()->first, lost_.begin()->second),
+                      "reconnect it, then resume");
       return {};
     case Request::redo:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
@@ -102,7 +110,9 @@ void RunFsm::advance_stopping() {
   } else if (lost_.contains("table") || timed_out(config_.stop_max_s)) {
     finish(
         RunState::aborted,
-        "aborted by the operator, but the table has not reported that it is at rest: look at it; " + kept());
+        fmt::format("aborted by the operator, but {}: look at it; {}",
+                    lost_.contains("table") ? kUnreachable : "the table has not reported that it is at rest",
+                    kept()));
   }
 }
 
@@ -112,8 +122,10 @@ void RunFsm::on(const DeviceLost& lost) {
     table_.reset();
     rests_.reset();
   }
-  lost_.insert(lost.device);
-  act(Record{fmt::format("{} is lost: {}", lost.device, lost.why)});
+  lost_.insert_or_assign(lost.device, lost.why);
+  changed_ = true;
+  act(Record{fmt::format("{} is lost: {}{}", lost.device, lost.why,
+                         lost.device == "table" ? fmt::format("; {}", kUnreachable) : "")});
   if (phase_ == Phase::preflight) {  // it reports on links itself
     LinkHealth health;
     health.detail = lost.why;
@@ -122,14 +134,26 @@ void RunFsm::on(const DeviceLost& lost) {
   }
   if (!measuring() || phase_ == Phase::waiting) return;
   act(StopTable{});
-  enter(Phase::waiting,
-        fmt::format("{} is lost ({}); the table is stopped, waiting up to {:.0f} s for it, then the "
-                    "pose is measured again",
-                    lost.device, lost.why, config_.lost_max_s));
+  enter(Phase::waiting, "waiting for " + lost.device);
 }
 
 void RunFsm::on(const DeviceBack& back) {
-  if (lost_.erase(back.device) > 0) act(Record{back.device + " is back"});
+  if (lost_.erase(back.device) == 0) return;
+  act(Record{back.device + " is back"});
+  changed_ = true;
+}
+
+std::string RunFsm::in_status() const {
+  const bool unreachable = lost_.contains("table");
+  if (phase_ == Phase::waiting && !lost_.empty()) {
+    std::string who;
+    for (const auto& [device, why] : lost_)
+      who += fmt::format("{}{} is lost ({})", who.empty() ? "" : ", ", device, why);
+    return fmt::format("{}; {}, waiting up to {:.0f} s, then the pose is measured again", who,
+                       unreachable ? kUnreachable : "the table is stopped", config_.lost_max_s);
+  }
+  const bool matters = unreachable && phase_ != Phase::preflight && (measuring() || phase_ == Phase::paused);
+  return matters ? fmt::format("{}; {}", message_, kUnreachable) : message_;
 }
 
 void RunFsm::on(const DeviceFaulted& faulted) {

@@ -138,9 +138,11 @@ void RunFsm::advance() {
     case Phase::waiting:
       if (lost_.empty()) return go_on();
       if (timed_out(config_.lost_max_s))
-        finish(RunState::failed,
-               fmt::format("{} did not come back within {:.0f} s; reconnect it and resume the run: {}",
-                           *lost_.begin(), config_.lost_max_s, kept()));
+        finish(
+            RunState::failed,
+            fmt::format("{} did not come back within {:.0f} s ({}){}; reconnect it and resume the run: {}",
+                        lost_.begin()->first, config_.lost_max_s, lost_.begin()->second,
+                        lost_.contains("table") ? "; it cannot be reached and may still move" : "", kept()));
       return;
     case Phase::solving:
       if (timed_out(config_.solve_max_s)) {

@@ -216,6 +216,7 @@ void PortLink::Impl::deliver() {
   for (bool more = true; more;) {
     const bool sent = send_output();
     std::vector<DeviceEvent> events = device_->take_events();
+    if (!answers(health().state)) report_state();
     more = sent || !events.empty();
     for (const DeviceEvent& event : events) life_.heard(event);
     if (!events.empty() && callbacks_.on_events) callbacks_.on_events(std::move(events));

@@ -40,7 +40,8 @@ struct PortCallbacks {
   /// Every byte as it crossed the port, and every opening, closing and tick before the device is told of it
   /// (without bytes), for the journal: whoever tells a device the same again hears the same of it.
   std::function<void(Direction, std::span<const std::byte>, Stamp)> on_raw;
-  /// State or detail changed. Loss of the port is told before the events it causes, all else after them.
+  /// State or detail changed. That the device no longer answers is told before the events that come with it,
+  /// all else after them.
   std::function<void(const LinkHealth&)> on_state;
 };
 

@@ -138,6 +138,51 @@ TEST(RunFsmInterruption, DeviceThatComesBackCostsOnePose) {
   }
 }
 
+/// Under way to the first pose.
+void move(RunBench& bench) {
+  for (int i = 0; i < 10'000 && !(bench.status && bench.status->state == RunState::moving); ++i) bench.tick();
+  ASSERT_EQ(bench.status->state, RunState::moving);
+}
+
+TEST(RunFsmInterruption, ATableThatIsLostIsNotSaidToBeStopped) {
+  const std::string unreachable = "the table cannot be reached and may still move";
+  RunBench bench(short_plan(), quick_config());
+  move(bench);
+  bench.lose("s2");
+  EXPECT_THAT(bench.status->message, HasSubstr("s2 is lost ("));
+  EXPECT_THAT(bench.status->message, HasSubstr("; the table is stopped, waiting up to 20 s"));
+  bench.lose("table");
+  EXPECT_THAT(bench.status->message, HasSubstr("; " + unreachable + ", waiting up to 20 s"));
+  EXPECT_THAT(bench.status->message, HasSubstr("s2 is lost ("));
+  bench.send(Request::pause);
+  EXPECT_THAT(bench.status->message, HasSubstr("paused by the operator"));
+  EXPECT_THAT(bench.status->message, HasSubstr(unreachable));
+  EXPECT_EQ(bench.fsm.possible(Request::resume).error().code, ErrorCode::state);
+  bench.give_back("table");
+  EXPECT_THAT(bench.status->message, testing::Not(HasSubstr(unreachable)));
+}
+
+TEST(RunFsmInterruption, ATableThatStaysAwayMayStillMoveWhenTheRunHasFailed) {
+  RunBench bench(short_plan(), quick_config());
+  move(bench);
+  bench.lose("table");
+  bench.run(40);
+  ASSERT_TRUE(bench.finished);
+  EXPECT_THAT(bench.finished->message, HasSubstr("it cannot be reached and may still move"));
+}
+
+TEST(RunFsmInterruption, WhileItWaitsTheRunSaysWhatTheLinkSays) {
+  RunBench bench(short_plan(), quick_config());
+  move(bench);
+  bench.lose("s2");
+  LinkHealth link;
+  link.state = LinkState::failed;
+  link.detail = "wrong device on the port: its serial number is 7, not 8";
+  bench.send(LinkSeen{"s2", link});
+  EXPECT_THAT(bench.status->message,
+              HasSubstr("s2 is lost (wrong device on the port: its serial number is 7"));
+}
+
 TEST(RunFsmInterruption, DeviceThatStaysAwayFailsTheRunInLimitedTime) {
   for (const char* device : {"s1", "table", "scalar"}) {
     SCOPED_TRACE(device);

@@ -41,7 +41,7 @@ class Parrot final : public LineDevice {
 
  protected:
   Verdict on_line(std::string_view line, Stamp arrival) override {
-    set_state(LinkState::live, "talking");
+    set_state(line == "mute" ? LinkState::silent : LinkState::live, std::string(line));
     emit(DeviceNote{arrival, std::string(line)});
     return Verdict::accepted();
   }
@@ -148,6 +148,18 @@ TEST_F(PortLinkTest, UnplugAndReplugStartOver) {
   EXPECT_EQ(port->health().opens, 2U);
   master->write("ne\n");
   ASSERT_TRUE(until([&] { return lines_ == (std::vector<std::string>{"alas", "ne"}); }));
+}
+
+/// A run that hears of the fault first waits for its operator instead of for the device.
+TEST_F(PortLinkTest, ThatADeviceNoLongerAnswersIsToldBeforeWhatItSaysAboutIt) {
+  PtyMaster master(path_);
+  auto port = link(path_);
+  port->start();
+  master.write("one\n");
+  ASSERT_TRUE(until([&] { return !states_.empty() && states_.back().state == LinkState::live; }));
+  master.write("mute\n");
+  ASSERT_TRUE(until([&] { return lines_.size() == 2; }));
+  EXPECT_EQ(told_, LinkState::silent);
 }
 
 TEST_F(PortLinkTest, ADeviceThatAsksForItIsOpenedAgain) {
