@@ -46,7 +46,9 @@ Rig::Rig(boost::asio::io_context& io, Config config, CalibrationStore store)
       run_(config_, runs_directory(config_), store_, worker_,
            {.table = [this]() -> drivers::Turntable& { return instruments_.table(); },
             .order = [this](const TableOrder& order) { instruments_.order(order); },
-            .publish = [this](const RunStatus& status) { stream_.publish(status); }}),
+            .publish = [this](const RunStatus& status) { stream_.publish(status); },
+            .warn = [this](std::string_view topic, const std::string& message,
+                           Instant now) { quiet_.warn(topic, message, now); }}),
       disk_sync_(io),
       timer_(io),
       started_(clock_.now()) {}

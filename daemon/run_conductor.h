@@ -27,6 +27,8 @@ struct RunHooks {
   std::function<drivers::Turntable&()> table;
   std::function<void(const TableOrder&)> order;
   std::function<void(const RunStatus&)> publish;
+  /// What repeats is for the owner's QuietLog: topic, message.
+  std::function<void(std::string_view, const std::string&, Instant)> warn;
 };
 
 class RunConductor {
@@ -86,12 +88,12 @@ class RunConductor {
   void act(const DropPoses& action, Stamp);
   void act(const StopTable&, Stamp);
   void act(const StorePose& action, Stamp now);
-  void act(const StorePath& action, Stamp);
-  void act(const StoreChecks& action, Stamp);
+  void act(const StorePath& action, Stamp now);
+  void act(const StoreChecks& action, Stamp now);
   void act(const StartSolve&, Stamp now);
   void act(const CancelSolve&, Stamp) {}
   void act(const ProposeCalibration& action, Stamp now);
-  void act(const PublishStatus& action, Stamp);
+  void act(const PublishStatus& action, Stamp now);
   void act(const Record& action, Stamp now);
   void act(const Finish& action, Stamp);
 

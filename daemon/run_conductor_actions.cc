@@ -67,14 +67,14 @@ void RunConductor::learn_accuracy() {
       });
 }
 
-void RunConductor::act(const StorePath& action, Stamp) {
+void RunConductor::act(const StorePath& action, Stamp now) {
   if (auto stored = file_->append_path(action.readings); !stored)
-    spdlog::warn("table path: {}", stored.error().text());
+    hooks_.warn("table path", stored.error().text(), now.mono);
 }
 
-void RunConductor::act(const StoreChecks& action, Stamp) {
+void RunConductor::act(const StoreChecks& action, Stamp now) {
   if (auto stored = file_->set_checks(action.stage, action.checks); !stored)
-    spdlog::warn("checks: {}", stored.error().text());
+    hooks_.warn("checks", stored.error().text(), now.mono);
 }
 
 void RunConductor::act(const StartSolve&, Stamp) {
@@ -103,12 +103,12 @@ void RunConductor::act(const ProposeCalibration& action, Stamp now) {
   answers_.push_back(CalibrationProposed{std::move(proposed)});
 }
 
-void RunConductor::act(const PublishStatus& action, Stamp) {
+void RunConductor::act(const PublishStatus& action, Stamp now) {
   // The file knows the state it would be found in after a crash.
   if (const auto known = file_->state();
       known && known->state != action.status.state && is_active(action.status.state)) {
     if (auto set = file_->set_state(action.status.state, action.status.message); !set)
-      spdlog::warn("run state: {}", set.error().text());
+      hooks_.warn("run state", set.error().text(), now.mono);
   }
   hooks_.publish(action.status);
 }
@@ -116,7 +116,7 @@ void RunConductor::act(const PublishStatus& action, Stamp) {
 void RunConductor::act(const Record& action, Stamp now) {
   spdlog::info("run: {}", action.what);
   if (auto stored = file_->append_event({now, action.what}); !stored)
-    spdlog::warn("run log: {}", stored.error().text());
+    hooks_.warn("run log", stored.error().text(), now.mono);
 }
 
 void RunConductor::act(const Finish& action, Stamp) {
