@@ -47,7 +47,7 @@ TEST(FaultCampaign, NothingIsLostAndNothingWrongIsSilent) {
 TEST(FaultCampaign, RunsThatOnceFailed) {
   for (const std::uint64_t seed : {77U, 116U, 155U}) {
     SCOPED_TRACE(seed);
-    test::StruckRun run(seed);
+    test::StruckRun run(seed, test::kFirstStrikes);
     EXPECT_GT(run.play(), 10);
   }
 }

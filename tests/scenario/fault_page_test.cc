@@ -21,13 +21,18 @@ struct Fault {
   RunState when;
   const char* said;
 };
-constexpr std::array<Fault, 31> kFaults{{
+constexpr std::array<Fault, 37> kFaults{{
     {"unplug fluxgate2 for 5", RunState::dwelling, "sensor unplugged for 5 s"},
     {"unplug fluxgate1 for 5", RunState::moving, "the same, sensor 1, during a move"},
     {"unplug table for 5", RunState::moving, "table unplugged during a move"},
     {"unplug scalar for 15", RunState::dwelling, "scalar magnetometer unplugged for 15 s"},
     {"stall fluxgate2 for 5", RunState::dwelling, "sensor hangs for 5 s"},
     {"stall table for 15", RunState::moving, "table controller hangs for 15 s"},
+    {"mute table for 15", RunState::moving, "table controller obeys and says nothing for 15 s"},
+    {"late table for 60", RunState::moving, "table answers 0.4 to 2 s late for a minute"},
+    {"late table for 60;unplug fluxgate2 for 5", RunState::moving,
+     "the same, and a sensor is unplugged, so that the table is stopped meanwhile"},
+    {"late scalar for 30", RunState::dwelling, "readings of the scalar magnetometer come 0.4 to 2 s late"},
     {"stall scalar for 30", RunState::dwelling, "scalar magnetometer hangs for 30 s"},
     {"power fluxgate2 for 3", RunState::dwelling,
      "digitiser without power for 3 s; it forgets range and rate"},
@@ -43,6 +48,8 @@ constexpr std::array<Fault, 31> kFaults{{
     {"swap fluxgate2 for 10", RunState::dwelling, "lines of a sensor in the wrong order for 10 s"},
     {"stranger fluxgate2 for 20", RunState::dwelling, "a satellite receiver on a sensor's port for 20 s"},
     {"stranger table for 20", RunState::settling, "a satellite receiver on the table's port for 20 s"},
+    {"stranger scalar for 30", RunState::dwelling,
+     "a satellite receiver on the port of the scalar magnetometer for 30 s"},
     {"freeze fluxgate2 for 6", RunState::dwelling, "sensor repeats its last reading for 6 s"},
     {"saturate fluxgate2 for 6", RunState::dwelling, "sensor at the end of its range for 6 s"},
     {"rate fluxgate2", RunState::dwelling, "digitiser sends half as often"},
@@ -53,6 +60,7 @@ constexpr std::array<Fault, 31> kFaults{{
     {"runaway table for 5", RunState::moving, "the same during a move"},
     {"backwards table for 5", RunState::dwelling, "table turns the wrong way at its next move"},
     {"limit table for 5", RunState::moving, "table meets a limit switch"},
+    {"stand still", RunState::moving, "the whole program stands still for 1.3 s"},
     {"kill", RunState::dwelling, "the daemon is killed (SIGKILL, power failure of the host)"},
     {"terminate", RunState::moving, "the daemon is told to end (SIGTERM)"},
 }};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/scenario/clean_poses.h"
@@ -27,8 +29,8 @@ class FaultTeller {
   static constexpr std::size_t kPoses = 30;
   static constexpr double kPatience_s = 3600;
 
-  /// `words` of the rig, or "kill", "terminate", "the host's clock back by 3600 s"; struck when the run is in
-  /// `when`.
+  /// `words` of the rig, several with a ';' between and a second from one to the next; or "kill",
+  /// "terminate", "stand still", "the host's clock back by 3600 s". Struck when the run is in `when`.
   FaultTeller(const std::string& words, RunState when)
       : daemon_(scenario_of("[rig]\nname = \"page\"\nparameters = \"table6\"\nseed = 11\n"
                             "[sensors]\nautostart = true\n")),
@@ -86,8 +88,18 @@ class FaultTeller {
       resumed_ = true;
     } else if (words_.starts_with("the host's clock")) {
       daemon_.wall_step_s -= 3600;
+    } else if (words_ == "stand still") {
+      daemon_.stand_still(1.3);
     } else {
-      daemon_.fault(words_);
+      strike_rig();
+    }
+  }
+  void strike_rig() {
+    std::istringstream faults(words_);
+    bool first = true;
+    for (std::string fault; std::getline(faults, fault, ';');) {
+      if (!std::exchange(first, false)) daemon_.run(1);
+      daemon_.fault(fault);
     }
   }
   void note_link() {
@@ -106,6 +118,8 @@ class FaultTeller {
       if (status.state != RunState::paused) paused_s = 0;
       if (status.state == RunState::paused) {
         if (pause_.empty()) pause_ = status.message;
+        unreachable_ |= status.message.find("cannot be reached and may still move") != std::string::npos;
+        wrong_device_ |= status.message.find("wrong device") != std::string::npos;
         paused_s += kStep_s;
       }
       if (paused_s > 40 && daemon_.t_s - told_s > 40) {
@@ -121,7 +135,11 @@ class FaultTeller {
     const bool again = daemon_.status->retries > retries_before;
     if (!pause_.empty() && asked_)
       return fmt::format("pauses: \"{}\"; goes on when the operator says so", first_part(pause_));
-    if (!pause_.empty()) return "stops the table and waits; goes on by itself, the pose is measured again";
+    if (!pause_.empty())
+      return fmt::format("{}{}; goes on by itself, the pose is measured again",
+                         unreachable_ ? "waits, and says that the table cannot be reached and may still move"
+                                      : "stops the table and waits",
+                         wrong_device_ ? "; says \"wrong device on the port\"" : "");
     return again ? "the pose is measured again" : "goes on";
   }
   [[nodiscard]] std::string stream_words(std::size_t gaps_before) const {
@@ -156,7 +174,7 @@ class FaultTeller {
   std::string words_, pause_;
   std::size_t port_{0};
   std::vector<std::string> links_;
-  bool asked_{false}, resumed_{false};
+  bool asked_{false}, resumed_{false}, unreachable_{false}, wrong_device_{false};
 };
 
 }  // namespace mgtd::test

@@ -79,6 +79,77 @@ INSTANTIATE_TEST_SUITE_P(Faults, TroubleThatPasses,
                                            "unplug table for 5", "stall table for 5", "freeze table for 8",
                                            "garbage table"));
 
+/// Faults, one a second after the other.
+class TroubleThatNeedsNobody : public ::testing::TestWithParam<std::vector<const char*>> {};
+
+TEST_P(TroubleThatNeedsNobody, TheRunGoesOnByItself) {
+  for (const RunState state : {RunState::moving, RunState::settling, RunState::dwelling}) {
+    for (const double later_s : {0.0, 0.4, 1.1}) {
+      SCOPED_TRACE(fmt::format("{} {}", name(state), later_s));
+      VirtualDaemon daemon(table6());
+      start(daemon, 3);
+      ASSERT_TRUE(run_to(daemon, state));
+      daemon.run(later_s);
+      for (const char* fault : GetParam()) {
+        daemon.fault(fault);
+        daemon.run(1);
+      }
+      ASSERT_TRUE(daemon.run(
+          3600, [&] { return daemon.status->state == RunState::paused && !daemon.status->goes_on; }));
+      ASSERT_TRUE(daemon.finished) << daemon.status->message;
+      EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
+      ASSERT_EQ(daemon.poses.poses.size(), static_cast<std::size_t>(kPoses));
+      expect_clean(daemon);
+    }
+  }
+}
+
+using Faults = std::vector<const char*>;
+INSTANTIATE_TEST_SUITE_P(Faults, TroubleThatNeedsNobody,
+                         ::testing::Values(Faults{"late table for 60"},
+                                           Faults{"late table for 60", "unplug fluxgate2 for 3"},
+                                           Faults{"late table for 2", "stall fluxgate1 for 3"},
+                                           Faults{"mute table for 5"}, Faults{"mute table for 15"},
+                                           Faults{"stall table for 15"}, Faults{"unplug table for 5"}));
+
+TEST(RunFaults, ATableWhoseCableIsPulledMayStillMove) {
+  for (const char* fault : {"unplug table for 5", "mute table for 20", "stall table for 20"}) {
+    VirtualDaemon daemon(table6());
+    start(daemon, 3);
+    ASSERT_TRUE(run_to(daemon, RunState::moving));
+    daemon.run(0.5);
+    daemon.fault(fault);
+    ASSERT_TRUE(run_to(daemon, RunState::paused));
+    EXPECT_THAT(daemon.status->message, HasSubstr("the table cannot be reached and may still move"));
+    EXPECT_THAT(daemon.status->message, testing::Not(HasSubstr("stopped")));
+    ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
+    EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
+  }
+}
+
+TEST(RunFaults, AnotherDeviceOnThePortIsNamedInTheStatusOfTheRun) {
+  for (const char* port : {"fluxgate2", "table", "scalar"}) {
+    SCOPED_TRACE(port);
+    VirtualDaemon daemon(table6());
+    start(daemon, 3);
+    ASSERT_TRUE(run_to(daemon, RunState::dwelling));
+    daemon.fault(fmt::format("stranger {} for 40", port));
+    ASSERT_TRUE(daemon.run(40, [&] {
+      return daemon.status->message.find("wrong device on the port") != std::string::npos;
+    })) << daemon.status->message;
+    ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
+    EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
+  }
+}
+
+TEST(RunFaults, ATimeStamperThatIsNotThereIsNamed) {
+  VirtualDaemon daemon(scenario_of("[rig]\nparameters = \"table6\"\n[sensors]\npalmacq = false\n"),
+                       {"palmacq = false", "palmacq = true"});
+  EXPECT_FALSE(daemon.run(30, [&] { return daemon.shown(0).state == LinkState::live; }));
+  for (std::size_t port = 0; port < kSensors; ++port)
+    EXPECT_THAT(daemon.shown(port).detail, HasSubstr("no time-stamper answers: set palmacq = false?"));
+}
+
 TEST(RunFaults, JammedTableEndsInAPauseThatNamesTheTable) {
   VirtualDaemon daemon(table6());
   start(daemon, 2);

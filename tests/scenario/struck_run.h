@@ -16,11 +16,11 @@ namespace mgtd::test {
 
 /// What can strike a run. Words before the port; `lasts` for a random time, on `ports` of the rig.
 struct Strike {
-  enum class Where { any, sensors, stamped_sensors, table, program } where;
+  enum class Where { any, asked, sensors, stamped_sensors, table, program } where;
   const char* words;
   bool lasts;
 };
-inline constexpr std::array<Strike, 21> kStrikes{{
+inline constexpr std::array<Strike, 26> kStrikes{{
     {Strike::Where::any, "unplug", true},
     {Strike::Where::any, "torn", true},
     {Strike::Where::any, "half", true},
@@ -42,7 +42,14 @@ inline constexpr std::array<Strike, 21> kStrikes{{
     {Strike::Where::program, "set the host's clock", false},
     {Strike::Where::program, "pause", false},
     {Strike::Where::program, "redo", false},
+    {Strike::Where::any, "mute", true},
+    {Strike::Where::asked, "late", true},
+    {Strike::Where::asked, "mute", true},
+    {Strike::Where::program, "stand still", false},
+    {Strike::Where::program, "stand still for long", false},
 }};
+/// Those of the runs that once failed: with more to draw from, a seed is another run.
+inline constexpr std::size_t kFirstStrikes = 21;
 
 /// One run with everything that strikes it, and an operator who looks, waits, and goes on.
 class StruckRun {
@@ -51,8 +58,9 @@ class StruckRun {
   static constexpr double kMeanPause_s = 15;      ///< between faults
   static constexpr double kLongest_s = 4 * 3600;  ///< of a run with its faults; without any, eight minutes
 
-  explicit StruckRun(std::uint64_t seed)
+  explicit StruckRun(std::uint64_t seed, std::size_t strikes = kStrikes.size())
       : random_(seed),
+        strikes_(strikes),
         stamped_(seed % 2 == 0),
         daemon_(scenario_of(fmt::format("[rig]\nname = \"struck\"\nparameters = \"table6\"\nseed = {}\n"
                                         "[sensors]\npalmacq = {}\nautostart = {}\n",
@@ -88,7 +96,7 @@ class StruckRun {
   std::size_t pick(std::size_t n) { return random_() % n; }
 
   void strike() {
-    const Strike& what = kStrikes.at(pick(kStrikes.size()));
+    const Strike& what = kStrikes.at(pick(strikes_));
     const std::string port(daemon_.rig.name(pick(daemon_.rig.ports())));
     const double for_s = std::pow(10.0, 2.0 * static_cast<double>(pick(1000)) / 1000.0 - 0.5);  // 0.3 to 30
     const std::string lasting = what.lasts ? fmt::format(" for {:.2f}", for_s) : "";
@@ -100,6 +108,8 @@ class StruckRun {
         [[fallthrough]];
       case Strike::Where::sensors:
         return fault(fmt::format("{} fluxgate{}{}", what.words, 1 + pick(kSensors), lasting));
+      case Strike::Where::asked:
+        return fault(fmt::format("{} {}{}", what.words, pick(2) == 0 ? "table" : "scalar", lasting));
       case Strike::Where::table:
         return fault(fmt::format("{} table{}", what.words, lasting));
       case Strike::Where::any:
@@ -121,6 +131,8 @@ class StruckRun {
     note(std::string(what));
     if (what == "kill") return come_back([&] { daemon_.restart(); });
     if (what == "terminate") return come_back([&] { daemon_.terminate(); });
+    if (what == "stand still") return daemon_.stand_still(0.1 + 0.02 * static_cast<double>(pick(100)));
+    if (what == "stand still for long") return daemon_.stand_still(static_cast<double>(2 + pick(20)));
     if (what == "pause") return daemon_.tell(Request::pause);
     if (what == "redo") return daemon_.tell(Request::redo);
     static constexpr std::array<double, 4> kSteps_s{-1, 1, -3600, 86'400};
@@ -161,6 +173,7 @@ class StruckRun {
   }
 
   std::mt19937_64 random_;
+  std::size_t strikes_;  ///< to draw from, the first of all
   bool stamped_;
   VirtualDaemon daemon_;
   StreamJudge judge_;

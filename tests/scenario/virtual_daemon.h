@@ -32,8 +32,12 @@ inline constexpr double kTick_s = 0.02;
 
 class VirtualDaemon {
  public:
-  explicit VirtualDaemon(const rig::Scenario& scenario)
-      : rig(scenario, kSwitchedOn_utc_s), config_(read_config(scenario)), sampler_(sampler_config(config_)) {
+  /// `mistake`: what is wrong in the configuration, and what stands there instead.
+  explicit VirtualDaemon(const rig::Scenario& scenario, std::pair<std::string, std::string> mistake = {})
+      : rig(scenario, kSwitchedOn_utc_s),
+        mistake_(std::move(mistake)),
+        config_(read_config(scenario)),
+        sampler_(sampler_config(config_)) {
     add_ports();
   }
 
@@ -110,6 +114,14 @@ class VirtualDaemon {
     pending_.clear();
     answers_.clear();
   }
+  /// The program stands still, as a busy host makes it; what comes in meanwhile waits for it.
+  void stand_still(double seconds) {
+    for (const double end_s = t_s + seconds; t_s < end_s;) {
+      t_s += kStep_s;
+      on_step();
+      rig.run_script(t_s);
+    }
+  }
   void fault(const std::string& line) {
     const auto parsed = rig::parse_fault(line);
     ASSERT_TRUE(parsed) << parsed.error();
@@ -153,9 +165,13 @@ class VirtualDaemon {
     std::uint64_t unplugged{0}, delivered{0};
   };
 
-  static Config read_config(const rig::Scenario& scenario) {
-    auto config =
-        parse_config(rig::config_text(scenario, "/dev", "/nowhere", 1, "127.0.0.1:0"), "virtual.toml");
+  [[nodiscard]] Config read_config(const rig::Scenario& scenario) const {
+    std::string text = rig::config_text(scenario, "/dev", "/nowhere", 1, "127.0.0.1:0");
+    const auto& [right, wrong] = mistake_;
+    for (std::size_t at = 0; !right.empty() && (at = text.find(right, at)) != std::string::npos;
+         at += wrong.size())
+      text.replace(at, right.size(), wrong);
+    auto config = parse_config(text, "virtual.toml");
     if (!config) throw std::invalid_argument(config.error().lines.at(0));
     return *std::move(config);
   }
@@ -200,14 +216,19 @@ class VirtualDaemon {
     port.life.opened();
     port.device->on_open(now());
   }
+  /// That a device no longer answers is told before what it says about it, as PortLink does; all else after.
   void take_events(std::size_t i) {
     Port& port = ports_[i];
-    watch_link(port);
+    if (!is_live(port)) watch_link(port);
     for (const DeviceEvent& event : port.device->take_events()) {
       port.life.heard(event);
       std::visit([&](const auto& e) { on(port, e); }, event);
     }
     deliver();
+    watch_link(port);
+  }
+  static bool is_live(const Port& port) {
+    return port.open && port.device->health().state == LinkState::live;
   }
   void on(const Port&, const FieldReading& reading) { sampler_.push(reading, pending_); }
   void on(const Port&, const TemperatureReading& reading) { sampler_.push(reading); }
@@ -235,14 +256,14 @@ class VirtualDaemon {
   void watch_links() {
     for (Port& port : ports_) {
       watch_link(port);
-      tell(LinkSeen{port.name, port.device->health()});
+      tell(LinkSeen{port.name, port.life.shown(port.device->health())});
     }
   }
   void watch_link(Port& port) {
     const LinkHealth& health = port.device->health();
     EXPECT_TRUE(health.balanced()) << port.name;
     EXPECT_EQ(health.bytes_in, port.delivered) << port.name;
-    const bool live = port.open && health.state == LinkState::live;
+    const bool live = is_live(port);
     if (live) port.life.live();
     if (live == port.was_live) return;
     port.was_live = live;
@@ -251,7 +272,7 @@ class VirtualDaemon {
       tell(DeviceBack{port.name});
     } else {
       notes.push_back(port.name + " lost");
-      tell(DeviceLost{port.name, health.detail});
+      tell(DeviceLost{port.name, port.life.shown(health).detail});
     }
   }
 
@@ -273,6 +294,7 @@ class VirtualDaemon {
   void carry_out(const StoreChecks&) {}
   void carry_out(const CancelSolve&) {}
 
+  std::pair<std::string, std::string> mistake_;
   Config config_;
   Sampler sampler_;
   std::vector<Port> ports_;
