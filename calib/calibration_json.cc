@@ -276,10 +276,12 @@ Result<Calibration> calibration_from_json(const json& object) { return checked(o
 
 std::string content_id(json object) {
   object.erase("id");
-  return "c" + sha256_hex(object.dump()).substr(0, 12);
+  return "c" + sha256_hex(object.dump(-1, ' ', false, json::error_handler_t::replace)).substr(0, 12);
 }
 
-std::string to_json_text(const Calibration& calibration) { return to_json(calibration).dump(1) + "\n"; }
+std::string to_json_text(const Calibration& calibration) {
+  return to_json(calibration).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
 Result<Calibration> calibration_from_json_text(std::string_view text) {
   const auto object = parse_json_text(text, "give a CAL.json written by mgt fit -o");

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "calib/effects/library.h"
 #include "calib/pose_columns.h"
+#include "daemon/durable_file.h"
 #include "daemon/mount_plan.h"
 #include "daemon/tcp_address.h"
 #include "daemon/toml_settings.h"
@@ -139,9 +138,9 @@ void Reader::read_run(const toml::table& root) {
   RunDefaults& r = config_.run;
   r.step_deg = s.number("step_deg", r.step_deg);
   require(s, "step_deg", r.step_deg == 10 || r.step_deg == 20, "10 or 20 deg");
-  r.random = static_cast<int>(s.integer("random", r.random));
+  r.random = s.small_integer("random", r.random);
   require(s, "random", r.random >= 0 && r.random <= 100'000, "0 to 100000 poses");
-  r.revisits = static_cast<int>(s.integer("revisits", r.revisits));
+  r.revisits = s.small_integer("revisits", r.revisits);
   require(s, "revisits", r.revisits >= 0 && 2 * r.revisits <= std::max(r.random, 0),
           "at most half of 'random'");
   const std::vector<double> dwell = s.numbers("dwell_s", 2, {r.dwell_short_s, r.dwell_long_s});
@@ -154,12 +153,14 @@ void Reader::read_run(const toml::table& root) {
           "longer than settle_min_s");
   r.preflight_s = s.number("preflight_s", r.preflight_s);
   require(s, "preflight_s", r.preflight_s >= 1, "1 s or more");
-  r.retries = static_cast<int>(s.integer("retries", r.retries));
+  r.retries = s.small_integer("retries", r.retries);
   require(s, "retries", r.retries >= 0, "0 or more");
   read_disturbance(s, r);
   r.answer_max_s = s.number("answer_max_s", r.answer_max_s);
   require(s, "answer_max_s", r.answer_max_s >= 10, "10 s or more");
-  r.seed = static_cast<std::uint64_t>(s.integer("seed", static_cast<std::int64_t>(r.seed)));
+  const std::int64_t seed = s.integer("seed", static_cast<std::int64_t>(r.seed));
+  require(s, "seed", seed >= 0, "0 or more");
+  r.seed = static_cast<std::uint64_t>(seed);
   close(s);
 }
 
@@ -253,7 +254,7 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
     const auto [where, fresh] = serial_lines_.emplace(serial, s.line_of("serial"));
     if (!fresh) s.object("serial", fmt::format("'{}' is already used in line {}", serial, where->second));
   }
-  device.baud = static_cast<int>(s.integer("baud", 0));
+  device.baud = s.small_integer("baud", 0);
   close(s);
   return device;
 }
@@ -379,14 +380,13 @@ tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_vi
 }
 
 tl::expected<Config, ConfigErrors> load_config(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    return tl::unexpected(ConfigErrors{{fmt::format(
-        "{}: cannot be read; name a configuration with --config (a commented one is systemd/mgtd.toml)",
-        path)}});
+  auto text = read_file(path);
+  if (!text) {
+    return tl::unexpected(
+        ConfigErrors{{text.error().message +
+                      "; name a configuration with --config (a commented one is systemd/mgtd.toml)"}});
   }
-  return parse_config(text.str(), path);
+  return parse_config(*std::move(text), path);
 }
 
 }  // namespace mgtd::daemon

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 namespace mgtd::daemon {
 namespace {
@@ -74,12 +74,16 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     return fail(ErrorCode::bad_input, fmt::format("{} is a directory", path.string()), "name a file in it");
   }
+  errno = 0;
   std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    return fail(ErrorCode::bad_input, fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)),
+  std::ostringstream text;
+  if (in.is_open() && in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
+  if (!in.is_open() || in.bad() || text.bad()) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)),
                 "check path and permissions");
   }
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  return std::move(text).str();
 }
 
 }  // namespace mgtd::daemon

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "proto/nearest_word.h"
 
@@ -51,6 +52,13 @@ std::int64_t Settings::integer(std::string_view key, std::int64_t fallback) {
   if (entry == nullptr) return fallback;
   if (const auto* i = std::get_if<std::int64_t>(&entry->value)) return *i;
   wrong_type(key, "a whole number");
+  return fallback;
+}
+
+int Settings::small_integer(std::string_view key, int fallback) {
+  const std::int64_t value = integer(key, fallback);
+  if (std::in_range<int>(value)) return static_cast<int>(value);
+  object(key, fmt::format("{} is too large", value));
   return fallback;
 }
 

@@ -39,6 +39,8 @@ class Settings {
   /// fallback.
   [[nodiscard]] double number(std::string_view key, double fallback);
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback);
+  /// A whole number that has to fit into an int: larger ones are an error and the fallback.
+  [[nodiscard]] int small_integer(std::string_view key, int fallback);
   [[nodiscard]] bool boolean(std::string_view key, bool fallback);
   [[nodiscard]] std::string text(std::string_view key, std::string_view fallback);
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count,

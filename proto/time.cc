@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdlib>
+#include <limits>
 #include <optional>
 
 namespace mgtd {
@@ -11,6 +13,8 @@ namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kSecondsPerDay = 86'400;
+/// Nanoseconds in 64 bits reach from 1677-09-22 to 2262-04-11.
+constexpr std::int64_t kMostDays = std::numeric_limits<std::int64_t>::max() / kNsPerSecond / kSecondsPerDay;
 
 std::optional<int> digits(std::string_view text, std::size_t at, std::size_t count) {
   int value = 0;
@@ -64,6 +68,7 @@ Result<WallTime> parse_utc(std::string_view text) {
     for (std::size_t i = fraction.size() - 1; i < 9; ++i) ns *= 10;
   }
   const std::int64_t days = std::chrono::sys_days{date}.time_since_epoch().count();
+  if (std::abs(days) >= kMostDays) return bad();
   return WallTime{(days * kSecondsPerDay + *hour * 3600 + *minute * 60 + *second) * kNsPerSecond + ns};
 }
 

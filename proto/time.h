@@ -34,8 +34,8 @@ struct Stamp {
 /// "2026-11-21T10:00:00.123456Z": microseconds, always six digits, always Z.
 [[nodiscard]] std::string format_utc(WallTime t);
 
-/// Accepts the form above with 0 to 9 fractional digits. Anything else, a time zone offset included, is
-/// refused.
+/// Accepts the form above with 0 to 9 fractional digits, in the years 1678 to 2261, which nanoseconds in 64
+/// bits reach. Anything else, a time zone offset included, is refused.
 [[nodiscard]] Result<WallTime> parse_utc(std::string_view text);
 
 }  // namespace mgtd

@@ -12,6 +12,7 @@ double NoiseReference::log10_p(double S, int k, int axes) const {
   if (known) return f_log10_p(S / k, k, nu);
   // The noise of the channels concerned is what they have left once the effect is taken out.
   const double own = by_channel ? dof * axes / kChannels : dof;
+  if (!(own > k)) return 0;  // nothing would be left to tell the noise from
   const double left = own * chi2 / dof - S;
   if (!(left > 0)) return f_log10_p(1e12, k, own - k);
   return f_log10_p(S / k / (left / (own - k)), k, own - k);

@@ -10,11 +10,12 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace mgtd::cli {
-void print_json(const nlohmann::json& object) { fmt::print("{}\n", object.dump()); }
+void print_json(const nlohmann::json& object) {
+  fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
 
 int report(const Session& session, const Error& error) {
   fmt::print(stderr, "mgt: {}\n", error.message);
@@ -24,15 +25,6 @@ int report(const Session& session, const Error& error) {
         {{"error", {{"code", name(error.code)}, {"message", error.message}, {"remedy", error.remedy}}}});
   }
   return exit_code(error.code);
-}
-
-Result<std::string> read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf()))) {
-    return fail(ErrorCode::bad_input, fmt::format("{} cannot be read: {}", path, std::strerror(errno)));
-  }
-  return text.str();
 }
 
 namespace {

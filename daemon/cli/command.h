@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/durable_file.h"
 #include "proto/error.h"
 
 /// What every command of `mgt` shares: the --json switch, the control socket, and how results and errors
@@ -28,7 +29,7 @@ void print_json(const nlohmann::json& object);
 /// Writes a whole file by way of a temporary one, so that a failure leaves the old file untouched. A device,
 /// a FIFO or a symbolic link is written to directly and stays what it is.
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::string& content);
-[[nodiscard]] Result<std::string> read_file(const std::string& path);
+using daemon::read_file;
 
 /// Adds a subcommand whose body runs after parsing; its return value is the exit code.
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,

@@ -49,7 +49,8 @@ Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
 
 Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                        const nlohmann::json& result) {
-  return run.file.append_model_step({now(), who(), action, spec, result.dump()});
+  return run.file.append_model_step(
+      {now(), who(), action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
 }  // namespace mgtd::cli

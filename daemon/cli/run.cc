@@ -111,7 +111,7 @@ Result<nlohmann::json> request_of(const Arguments& args) {
     request.poses = daemon::requested_poses(*list);
   }
   nlohmann::json out = to_json(request);
-  if (out.dump().size() + 100 > kControlLineLimit)
+  if (out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).size() + 100 > kControlLineLimit)
     return fail(ErrorCode::bad_input,
                 fmt::format("{}: {} poses are too many for one run", args.poses_file, request.poses.size()),
                 "split the list");

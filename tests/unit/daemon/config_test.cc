@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <fstream>
+
+#include "tests/unit/daemon/temp_dir.h"
 
 namespace mgtd::daemon {
 namespace {
@@ -132,6 +135,31 @@ TEST(Config, TheCommentedExampleIsAcceptedAndItsDefaultsAreTheDefaults) {
   EXPECT_EQ(config->control_mode, untouched.control_mode);
   EXPECT_EQ(config->log_level, untouched.log_level);
   EXPECT_EQ(config->speed_up, untouched.speed_up);
+}
+
+/// 2^32 + 121 is not 121.
+TEST(Config, AWholeNumberThatIsTooLargeIsRefused) {
+  const auto config = parse_config("[run]\nrandom = 4294967417\n", "rig.toml");
+  ASSERT_FALSE(config);
+  EXPECT_THAT(config.error().lines,
+              Contains(HasSubstr("rig.toml:2: [run]: 'random': 4294967417 is too large")));
+}
+
+TEST(Config, ANegativeSeedIsRefused) {
+  const auto config = parse_config("[run]\nseed = -1\n", "rig.toml");
+  ASSERT_FALSE(config);
+  EXPECT_THAT(config.error().lines, Contains(HasSubstr("rig.toml:2: [run]: 'seed'")));
+}
+
+TEST(Config, AnEmptyFileIsAConfigurationWithoutInstruments) {
+  const test::TempDir dir;
+  const std::filesystem::path path = dir / "empty.toml";
+  std::ofstream{path};
+  const auto from_file = load_config(path), from_text = parse_config("", path.string());
+  ASSERT_EQ(from_file.has_value(), from_text.has_value());
+  if (!from_file) {
+    EXPECT_EQ(from_file.error().lines, from_text.error().lines);
+  }
 }
 
 }  // namespace

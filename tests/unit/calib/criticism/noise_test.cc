@@ -108,5 +108,12 @@ TEST(NoiseText, SaysFromWhatItWasReallyEstimated) {
   EXPECT_THAT(to_text(*far), HasSubstr("p < 1e-30"));
 }
 
+/// A map with as many columns as there are degrees of freedom leaves nothing to tell the noise from.
+TEST(NoiseReference, WithoutDegreesOfFreedomNothingIsImprobable) {
+  const NoiseReference own{.known = false, .by_channel = true, .chi2 = 1200, .dof = 1200};
+  for (const int k : {100, 120}) EXPECT_EQ(own.log10_p(90, k, 1), 0) << k;
+  EXPECT_LT(own.log10_p(90, 10, 1), -10);
+}
+
 }  // namespace
 }  // namespace mgtd::calib
