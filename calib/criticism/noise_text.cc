@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/fit/wandering_text.h"
@@ -11,13 +12,34 @@ namespace mgtd::calib {
 
 namespace {
 
-std::string beyond_dwells_text(double factor) {
-  if (!(factor > 1)) return {};
-  return fmt::format(
+/// Pairs of visits to one attitude that tell noise of `factor` times the dwells' from noise of the dwells by
+/// three standard deviations: a variance from nu degrees of freedom is known to sqrt(2/nu) of itself.
+int revisits_that_tell(double factor) {
+  constexpr double kSigmas = 3, kFreedomOfPair = 8;  // noise.h
+  constexpr int kFewest = 3;
+  const double share = 1 - 1 / (factor * factor);
+  return std::max(kFewest,
+                  static_cast<int>(std::ceil(2 * kSigmas * kSigmas / (share * share) / kFreedomOfPair)));
+}
+
+std::string beyond_dwells_text(const NoiseModel& noise) {
+  const double factor = noise.beyond_dwells;
+  std::string out = fmt::format(
       "the noise is {:.2g} times what the spread within the dwells says, in most channels and without a "
       "shape: successive samples are correlated (as if there were {:.2g} times fewer), or it arises between "
-      "the dwells. Give n_eff, or revisit some attitudes to measure it",
+      "the dwells",
       factor, factor * factor);
+  if (noise.revisits) return out + ". Give n_eff";
+  return out +
+         fmt::format(". Give n_eff, or visit {} attitudes twice, which tells it from a model that is wrong",
+                     revisits_that_tell(factor));
+}
+
+/// A slow law that is in no library makes an offset move as a walk does.
+std::string walk_or_law(const WanderingEstimate& wandering) {
+  if (wandering.where.front() == "all") return {};
+  return ". A slow law that is in no library looks the same in one run: measure again on another day, a law "
+         "of time or temperature comes back, a walk does not";
 }
 
 }  // namespace
@@ -26,14 +48,15 @@ std::string noise_of_tests(const NoiseModel& noise) {
   const NoiseReference& n = noise.reference;
   if (noise.wandering.any()) {
     return fmt::format(
-        "{}, is part of the noise{}: a law is named only where it fits better than that",
+        "{}, is part of the noise{}: a law is named only where it fits better than that{}",
         wandering_text(noise.wandering),
         noise.beyond_dwells > 1
             ? fmt::format(", beside white noise {:.2g} times what the spread within the dwells says",
                           noise.beyond_dwells)
-            : "");
+            : "",
+        walk_or_law(noise.wandering));
   }
-  if (noise.beyond_dwells > 1) return beyond_dwells_text(noise.beyond_dwells);
+  if (noise.beyond_dwells > 1) return beyond_dwells_text(noise);
   if (!noise.told)
     return "a misfit shows by its shape alone: the noise is the residual's own, channel by channel";
   if (noise.correlated()) {

@@ -19,6 +19,7 @@ using ::testing::HasSubstr;
 using testing::hidden_run;
 using testing::HiddenRun;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double kNoise_nT = 0.3;
 
@@ -106,6 +107,27 @@ TEST(NoiseText, SaysFromWhatItWasReallyEstimated) {
   EXPECT_TRUE(far->noise.told);
   EXPECT_THAT(noise_of_tests(far->noise), HasSubstr("far above that noise"));
   EXPECT_THAT(to_text(*far), HasSubstr("p < 1e-30"));
+}
+
+/// Twice the noise, four times its variance: nu = 18 / (1 - 1/4)^2 = 32, four pairs of eight.
+TEST(NoiseText, WithoutRevisitsSaysHowManyWouldTell) {
+  NoiseModel noise;
+  noise.beyond_dwells = 2;
+  EXPECT_THAT(noise_of_tests(noise), HasSubstr("visit 4 attitudes twice"));
+  noise.beyond_dwells = 1.2;
+  EXPECT_THAT(noise_of_tests(noise), HasSubstr("visit 25 attitudes twice"));
+  noise.revisits = PureError{.pairs = 24};
+  EXPECT_THAT(noise_of_tests(noise), Not(HasSubstr("attitudes twice")));
+}
+
+TEST(NoiseText, OneAxisThatWandersMayFollowALawOfNoLibrary) {
+  NoiseModel noise;
+  noise.wandering.evidence = 20;
+  noise.wandering.nT_per_sqrt_h[3] = 1;
+  noise.wandering.where = {"s2.x"};
+  EXPECT_THAT(noise_of_tests(noise), HasSubstr("measure again on another day"));
+  noise.wandering.where = {"all"};
+  EXPECT_THAT(noise_of_tests(noise), Not(HasSubstr("another day")));
 }
 
 /// A map with as many columns as there are degrees of freedom leaves nothing to tell the noise from.
