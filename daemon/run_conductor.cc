@@ -176,7 +176,7 @@ void RunConductor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now
   given_up_.reset();
   config.until_tensor_sd_nT_per_m = file_->header().options.until_tensor_sd_nT_per_m;
   auto stored = file_->poses();
-  poses_ = std::make_shared<PoseTable>(stored ? *std::move(stored) : PoseTable{});
+  poses_ = stored ? *std::move(stored) : PoseTable{};
   near_.reset();
   learning_ = false;
   solved_.reset();

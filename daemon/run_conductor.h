@@ -104,7 +104,7 @@ class RunConductor {
   RunHooks hooks_;
   std::unique_ptr<RunFsm> fsm_;
   std::optional<RunFile> file_;
-  std::shared_ptr<PoseTable> poses_;  ///< stored so far; a new table whenever the worker holds the old one
+  PoseTable poses_;                                ///< stored so far; the worker gets copies
   std::shared_ptr<const calib::JointState> near_;  ///< of the last fit while measuring
   bool learning_{false};                           ///< the worker is at such a fit
   std::optional<calib::Calibration> solved_;

@@ -28,11 +28,9 @@ void RunConductor::act(const DropPoses& action, Stamp) {
     spdlog::error("poses to be measured again could not be taken out: {}", dropped.error().text());
     return;
   }
-  auto left = std::make_shared<PoseTable>(*poses_);
-  std::erase_if(left->poses, [&](const Pose& pose) {
+  std::erase_if(poses_.poses, [&](const Pose& pose) {
     return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
   });
-  poses_ = std::move(left);
 }
 
 void RunConductor::act(const StopTable&, Stamp) { hooks_.order({TableOrder::What::stop, {}}); }
@@ -40,8 +38,7 @@ void RunConductor::act(const StopTable&, Stamp) { hooks_.order({TableOrder::What
 void RunConductor::act(const StorePose& action, Stamp) {
   auto stored = file_->append_pose(action.pose);
   if (stored) {
-    if (poses_.use_count() > 1) poses_ = std::make_shared<PoseTable>(*poses_);
-    poses_->poses.push_back(action.pose);
+    poses_.poses.push_back(action.pose);
     learn_accuracy();
   }
   answers_.push_back(PoseStored{action.pose.number, std::move(stored)});
@@ -52,18 +49,17 @@ void RunConductor::learn_accuracy() {
   if (learning_) return;
   learning_ = true;
   worker_.run(
-      [poses = std::shared_ptr<const PoseTable>(poses_), near = near_,
-       options = fit_options(file_->header().options)](std::stop_token) {
-        return calib::accuracy_so_far(*poses, options, near.get());
+      [poses = poses_, near = near_, options = fit_options(file_->header().options)](std::stop_token) {
+        return calib::accuracy_so_far(poses, options, near.get());
       },
-      [this, generation = generation_, count = poses_->poses.size()](Result<calib::AccuracySoFar> known) {
+      [this, generation = generation_, count = poses_.poses.size()](Result<calib::AccuracySoFar> known) {
         if (generation != generation_ || !active()) return;
         learning_ = false;
         if (known) {
           answers_.push_back(AccuracyKnown{known->poses, known->worst_nT_per_m()});
           near_ = std::make_shared<const calib::JointState>(std::move(known->state));
         }
-        if (poses_->poses.size() != count) learn_accuracy();
+        if (poses_.poses.size() != count) learn_accuracy();
       });
 }
 

@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "daemon/cli/ask.h"
+#include "daemon/cli/interrupt.h"
 
 namespace mgtd::cli {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
 constexpr auto kBetweenSigns = std::chrono::milliseconds(500);
 constexpr double kSilence_s = 10;  // a holder that hangs or is stopped loses control after it
 
@@ -54,14 +54,14 @@ int take_away(const Session& session) {
 
 /// Until Ctrl-C, or until control was taken away.
 int hold(const Session& session, const std::string& why) {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
+  catch_interrupts({SIGINT, SIGTERM});
   auto client = daemon::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   const auto mine = client->request(ControlCommand::control_take, {{"why", why}, {"idle_s", kSilence_s}});
   if (!mine) return report(session, mine.error());
   if (session.json) print_json(*mine);
   fmt::print(stderr, "control is yours until Ctrl-C; others can look, pause and abort\n");
-  while (interrupted == 0) {
+  while (!interrupted()) {
     std::this_thread::sleep_for(kBetweenSigns);
     const auto status = client->request(ControlCommand::status);
     if (!status) return report(session, status.error());

@@ -5,11 +5,10 @@
 #include <thread>
 
 #include "daemon/cli/ask.h"
+#include "daemon/cli/interrupt.h"
 
 namespace mgtd::cli {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
 
 int print_end(const Session& session, const nlohmann::json& status) {
   if (session.json) print_json(status);
@@ -24,14 +23,14 @@ int print_end(const Session& session, const nlohmann::json& status) {
 int run_magnet_test(const Session& session) {
   auto client = daemon::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { interrupted = 1; });
+  catch_interrupts({SIGINT, SIGTERM, SIGHUP});
   auto status = client->request(ControlCommand::magnet_start);
   std::string told;
   while (status && status->at("active") == true) {
     if (const std::string text = status->at("text"); text != told) fmt::print(stderr, "{}\n", text);
     told = status->at("text");
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    status = client->request(interrupted == 0 ? ControlCommand::magnet_status : ControlCommand::magnet_stop);
+    status = client->request(interrupted() ? ControlCommand::magnet_stop : ControlCommand::magnet_status);
   }
   return status ? print_end(session, *status) : report(session, status.error());
 }

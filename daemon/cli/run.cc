@@ -10,6 +10,7 @@
 
 #include "calib/pose_list.h"
 #include "daemon/cli/ask.h"
+#include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
 #include "daemon/listed_plan.h"
@@ -18,8 +19,6 @@
 
 namespace mgtd::cli {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
 
 struct Arguments {
   RunRequest request;
@@ -46,10 +45,12 @@ int print_end(const Session& session, const RunStatus& run) {
 
 /// Asks until something was entered that the daemon takes. False: there is nobody to answer.
 bool answer(const Session& session, daemon::ControlClient& client, const OperatorPrompt& prompt) {
-  while (interrupted == 0) {
+  while (!interrupted()) {
     fmt::print(stderr, "{}", question(prompt));
     std::string line;
-    if (session.json || !std::getline(std::cin, line)) {
+    const bool answered = !session.json && std::getline(std::cin, line);
+    if (interrupted()) return true;
+    if (!answered) {
       fmt::print(stderr, "\nnobody is there to answer; from anywhere: mgt run {}\n",
                  prompt.what == OperatorPrompt::What::note ? "resume" : "enter AZIMUTH PITCH ROLL");
       return false;
@@ -66,12 +67,12 @@ bool answer(const Session& session, daemon::ControlClient& client, const Operato
 /// Shows the run until it ends or waits for the operator. Ctrl-C leaves it running.
 int follow(const Session& session) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  catch_interrupts({SIGINT});
   auto client = daemon::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   std::string last;
   int last_tenth = -1;
-  while (interrupted == 0) {
+  while (!interrupted()) {
     const auto reply = client->request(ControlCommand::run_status);
     if (!reply) return report(session, reply.error());
     const auto run = run_status_from_json(*reply);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real programs against each other: mgt-rig on ptys, mgtd on its ports, mgt as the operator.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -249,6 +252,30 @@ TEST(Programs, ATableTurnedByHandIsCalibratedFromWhatItsScalesSay) {
       bench.dir().path(), std::chrono::seconds(300));
   EXPECT_EQ(hands.exit_code, 0) << hands.out << hands.err << bench.daemon().err();
   EXPECT_EQ(bench.ask({"run", "status"}).at("pose"), 34);
+}
+
+/// Somebody waits at the question and leaves: no line has to be entered first.
+TEST(Programs, CtrlCLeavesTheQuestionOfARunByHand) {
+  Bench bench("30", "[rig]\nname = \"by hand\"\nparameters = \"table6\"\n[table]\nhands = \"table\"\n");
+  bench.start_daemon();
+  std::vector<std::string> start = kShortRun;
+  start.emplace_back("--detach");
+  ASSERT_EQ(bench.mgt(start).exit_code, 0);
+  const std::string keyboard = bench.dir() / "keyboard";
+  ASSERT_EQ(::mkfifo(keyboard.c_str(), 0600), 0);
+  const int hand = ::open(keyboard.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(hand, 0);
+  ChildProcess follow({"/bin/sh", "-c", "exec \"$0\" --socket \"$1\" run follow < \"$2\"", program("mgt"),
+                       bench.dir() / "control.sock", keyboard},
+                      bench.dir().path(), "follow");
+  ASSERT_TRUE(eventually([&] { return follow.err().find("azimuth") != std::string::npos; })) << follow.err();
+  follow.signal(SIGINT);
+  const auto ended = follow.wait();
+  ::close(hand);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->exit_code, 0) << ended->err;
+  EXPECT_THAT(ended->err, HasSubstr("the run goes on"));
+  EXPECT_EQ(bench.ask({"run", "status"}).at("pose"), 0);
 }
 
 TEST(Programs, BadInputIsNamedAndNothingIsWritten) {

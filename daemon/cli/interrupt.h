@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <initializer_list>
+
+namespace mgtd::cli {
+
+/// From now on these signals are remembered instead of ending the program, and a system call that waits
+/// (for a line of the keyboard) ends when one comes: std::signal would have it go on.
+void catch_interrupts(std::initializer_list<int> signals);
+/// Whether one came.
+[[nodiscard]] bool interrupted();
+
+}  // namespace mgtd::cli
