@@ -98,16 +98,25 @@ std::optional<std::size_t> lesser_part(const ExplainReport& report) {
   return std::nullopt;
 }
 
-/// Whether what is left is left on this axis or sensor, where it is enough to tell.
-bool left_here(const Criticism& last, const std::string& place) {
-  if (rest_log10_p(last, place) >= std::log10(kRestAlarm)) return false;
-  if (!last.rejects_omnibus()) return true;
+/// Of all that is beyond the noise, the share on one axis or sensor.
+double share_on(const Criticism& last, const std::string& place) {
   const auto where = Where::parse(place);
-  if (!where) return false;
+  if (!where) return 0;
   const AxisNoise ratio = pose_residuals(last.tested->problem, last.tested->state).noise_ratio;
   const auto excess = (ratio.array().square() - 1).max(0).eval();
   const double here = where->axis >= 0 ? excess(where->sensor, where->axis) : excess.row(where->sensor).sum();
-  return here > kHere * excess.sum();
+  return here / std::max(excess.sum(), 1e-300);
+}
+
+/// Whether what is left is left on this axis or sensor, where it is enough to tell.
+bool left_here(const Criticism& last, const std::string& place) {
+  if (rest_log10_p(last, place) >= std::log10(kRestAlarm)) return false;
+  return !last.rejects_omnibus() || share_on(last, place) > kHere;
+}
+
+bool on_one_axis(const Criticism& last, const std::string& sensor) {
+  return share_on(last, sensor + ".x") > kHere || share_on(last, sensor + ".y") > kHere ||
+         share_on(last, sensor + ".z") > kHere;
 }
 
 /// The one axis on which what is left shows; empty where it is not one.
@@ -117,19 +126,27 @@ std::string axis_left(const Criticism& last) {
   return where && where->scale == Where::Scale::axis ? where->text() : std::string{};
 }
 
+/// Stand-ins on a whole sensor; with `spread` only where no one axis of it holds most of what is left.
+StandIns on_sensor(const ExplainReport& report, const Criticism& last, bool spread) {
+  if (!much_is_left(report)) return {};
+  for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
+    if (parts(report, there) >= kWithRest && left_here(last, sensor) &&
+        !(spread && on_one_axis(last, sensor)))
+      return {sensor, 0};
+  }
+  return {};
+}
+
 }  // namespace
 
 StandIns stand_ins(const ExplainReport& report, const Criticism& last) {
   if (report.rounds.empty()) return {};
+  if (auto found = on_sensor(report, last, true); found.any()) return found;
   for (const auto& [axis, there] : rounds_by_place(report, axes_of)) {
     const int effects = parts(report, there);
     if (effects >= kAlways || (effects >= kWithRest && left_here(last, axis))) return {axis, there.front()};
   }
-  if (much_is_left(report)) {
-    for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
-      if (parts(report, there) >= kWithRest && left_here(last, sensor)) return {sensor, 0};
-    }
-  }
+  if (auto found = on_sensor(report, last, false); found.any()) return found;
   const std::string axis = axis_left(last);
   const auto first = axis.empty() ? std::nullopt : lesser_part(report);
   return first ? StandIns{axis, *first} : StandIns{};
