@@ -127,6 +127,7 @@ void RunFsm::on(const PoseStored& stored) {
     if (stored_) look_at_wiring(*stored_);
     stored_.reset();
     attempt_ = 0;
+    disturbed_since_.reset();
     if (phase_ == Phase::storing) go_on();
   } else if (measuring()) {
     hold(fmt::format("pose {} could not be stored and will be measured again: {}", stored.number,

@@ -213,8 +213,9 @@ class RunFsm {
   std::optional<StillField> still_;  ///< since the table stands; in the preflight, too
   std::size_t judged_{0};            ///< blocks of it
   FieldNoise field_noise_;
-  std::optional<double> level_nT_;  ///< of the scalar reference at the last good pose
-  std::optional<int> unanswered_;   ///< number of the pose whose PoseStored is awaited
+  std::optional<double> level_nT_;          ///< of the scalar reference at the last good pose
+  std::optional<Instant> disturbed_since_;  ///< this pose, by whatever comes and goes
+  std::optional<int> unanswered_;           ///< number of the pose whose PoseStored is awaited
 
   std::optional<OperatorPrompt> prompt_;
   std::optional<int> mounted_;          ///< mounting of the array, by number ...

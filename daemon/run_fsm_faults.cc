@@ -89,7 +89,8 @@ void RunFsm::finish_early() {
 void RunFsm::hold(const std::string& message) {
   act(StopTable{});
   flush_path();
-  level_nT_.reset();   // whoever goes on takes the field as it is
+  level_nT_.reset();  // whoever goes on takes the field as it is
+  disturbed_since_.reset();
   scales_of_.reset();  // a hand may be at the table meanwhile
   enter(Phase::paused, message);
   act(Record{"paused: " + message});

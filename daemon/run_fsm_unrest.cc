@@ -61,6 +61,7 @@ void RunFsm::suspend(const std::string& why) {
   const bool railed = dwell_ && dwell_->quality().saturated > 0;
   dwell_.reset();
   watch_field(now_.mono);
+  if (!disturbed_since_) disturbed_since_ = now_.mono;
   enter(Phase::suspended,
         fmt::format("pose {} is suspended: {}; {}; it is measured again when the field is calm",
                     planned().number, why,
@@ -73,7 +74,7 @@ void RunFsm::suspend(const std::string& why) {
 
 void RunFsm::advance_suspended() {
   if (!homed_) return lost_reference();
-  if (timed_out(config_.calm_max_s)) {
+  if (to_seconds(now_.mono - *disturbed_since_) > config_.calm_max_s) {
     hold(fmt::format(
         "{}; it has not become so within {:.0f} s: look what moves or was put down near the array "
         "and the reference; mgt run resume takes the field as it is",

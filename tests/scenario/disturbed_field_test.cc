@@ -129,6 +129,19 @@ TEST(DisturbedField, WhatStaysPausesTheRunAndTheOperatorMayTakeItAsItIs) {
   EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
 }
 
+/// Each car is gone for long enough that the pose is tried again, and the next comes during that dwell.
+TEST(DisturbedField, WhatReturnsToOnePosePausesTheRun) {
+  std::string cars;
+  for (double t = 200; t < 3000; t += 13)
+    cars += fmt::format("[[vehicle]]\nat_s = {}\nnearest_m = 9\nspeed_m_per_s = 25\nmoment_Am2 = 600\n", t);
+  VirtualDaemon daemon(scenario_of(kRig + cars));
+  ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
+  daemon.start(plan_for(daemon));
+  ASSERT_TRUE(daemon.run(2000, [&] { return daemon.status->state == RunState::paused; }));
+  EXPECT_THAT(daemon.status->message, HasSubstr("has not become so within 600 s"));
+  EXPECT_GE(daemon.status->retries, 10) << "the same pose, again and again";
+}
+
 TEST(DisturbedField, AQuietSiteSuspendsNothing) {
   VirtualDaemon daemon(scenario_of(kRig));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
