@@ -32,11 +32,12 @@ void take_back(const StandIns& found, EffectSearch& search, ExplainReport& repor
   std::set<std::string> names;
   for (std::size_t i = found.first; i < report.rounds.size(); ++i)
     names.insert(report.rounds[i].added.effect);
+  const bool one = names.size() == 1;
   report.notes.push_back(
-      fmt::format("{} follows something that is in no library: {} {} it together and {} not its cause, so "
-                  "none of them is named or added",
-                  found.where, fmt::join(names, ", "), names.size() == 1 ? "describes" : "describe",
-                  names.size() == 1 ? "is" : "are"));
+      fmt::format("{} follows something that is in no library: {} {}, so {} named or added", found.where,
+                  fmt::join(names, ", "),
+                  one ? "describes it and is not its cause" : "describe it together and are not its cause",
+                  one ? "it is not" : "none of them is"));
   search.joint.effects = found.first == 0 ? search.given : report.rounds[found.first - 1].model;
   report.rounds.resize(found.first);
   auto before = fit_joint_at_size(search.table, search.joint);
