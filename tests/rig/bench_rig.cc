@@ -21,12 +21,16 @@ constexpr double kClockStep_s = 3;  ///< leap seconds learnt late
 constexpr double kReplug_s = 1;     ///< from one instrument to another
 constexpr std::size_t kTable = 4;
 constexpr std::array kLasting{
-    FaultKind::stranger, FaultKind::unplug, FaultKind::torn,    FaultKind::half,      FaultKind::twice,
-    FaultKind::swap,     FaultKind::freeze, FaultKind::stall,   FaultKind::mute,      FaultKind::late,
-    FaultKind::saturate, FaultKind::power,  FaultKind::runaway, FaultKind::backwards, FaultKind::limit};
+    FaultKind::stranger, FaultKind::unplug,  FaultKind::torn,      FaultKind::half,
+    FaultKind::twice,    FaultKind::swap,    FaultKind::freeze,    FaultKind::stall,
+    FaultKind::mute,     FaultKind::late,    FaultKind::saturate,  FaultKind::power,
+    FaultKind::turn,     FaultKind::runaway, FaultKind::backwards, FaultKind::limit};
 
-bool is_of_table(FaultKind kind) {
-  return kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit;
+/// Whether what is behind this port can have the fault at all.
+bool can_have(std::size_t port, FaultKind kind) {
+  if (kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit)
+    return port == kTable;
+  return kind != FaultKind::turn || port < kTable;
 }
 
 }  // namespace
@@ -49,6 +53,8 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
   }
   for (std::size_t i = 0; i < instruments_.size(); ++i)
     wires_.emplace_back(instruments_[i]->baud(), world_.scenario().seed + i);
+  for (std::size_t i = 0; i < ports(); ++i)
+    whose_.push_back(i < kTable ? static_cast<std::size_t>(world_.scenario().plugs.at(i) - 1) : i);
   plugged_.assign(ports(), true);
   strange_.assign(ports(), false);
   unplugged_.assign(ports(), 0);
@@ -57,10 +63,10 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
 }
 
 void BenchRig::advance(std::size_t port, double now_s) {
-  instruments_.at(port)->advance(now_s);
+  plugged_in(port).advance(now_s);
   stranger_.at(port)->advance(now_s);
   std::vector<Utterance> words = at_cable(port).take_utterances();
-  static_cast<void>((strange_[port] ? instruments_ : stranger_)[port]->take_utterances());
+  static_cast<void>((strange_[port] ? plugged_in(port) : *stranger_[port]).take_utterances());
   for (Utterance& said : words) {
     if (plugged_[port]) wires_[port].push(std::move(said));
   }
@@ -83,16 +89,38 @@ void BenchRig::drop(std::size_t port, double now_s) {
   wires_[port].clear();
 }
 
+void BenchRig::out_for_a_second(std::size_t port, double now_s) {
+  plug(port, false);
+  forget_endings(port, FaultKind::unplug);
+  endings_.push_back({now_s + kReplug_s, port, FaultKind::unplug});
+}
+
+void BenchRig::exchange(std::size_t port, std::size_t other, double now_s) {
+  std::swap(whose_.at(port), whose_.at(other));
+  out_for_a_second(port, now_s);
+  out_for_a_second(other, now_s);
+}
+
 tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s) {
-  const auto port =
-      static_cast<std::size_t>(std::find(names_.begin(), names_.end(), fault.port) - names_.begin());
+  const auto number = [this](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  };
+  const std::size_t port = number(fault.port);
   if (port >= ports()) return tl::unexpected(fmt::format("this rig has no {}", fault.port));
   for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
   if (fault.kind == FaultKind::restore) {
     for (const FaultKind kind : kLasting) {
-      if (port == kTable || !is_of_table(kind)) set(port, kind, false, now_s);
+      if (can_have(port, kind)) set(port, kind, false, now_s);
       forget_endings(port, kind);
     }
+    const auto own = static_cast<std::size_t>(std::find(whose_.begin(), whose_.end(), port) - whose_.begin());
+    if (own != port) exchange(port, own, now_s);
+    std::erase_if(endings_, [&](const Ending& e) {
+      return e.kind == FaultKind::exchange && (e.port == port || e.other == port);
+    });
+  } else if (fault.kind == FaultKind::exchange) {
+    exchange(port, number(fault.other), now_s);
+    if (fault.for_s) endings_.push_back({now_s + *fault.for_s, port, fault.kind, number(fault.other)});
   } else if (fault.kind == FaultKind::garbage) {
     if (plugged_[port]) wires_[port].garbage(now_s);
   } else if (fault.kind == FaultKind::clock) {
@@ -121,10 +149,9 @@ void BenchRig::set(std::size_t port, FaultKind kind, bool on, double now_s) {
     case FaultKind::stranger:
       if (strange_[port] == on) return;
       strange_[port] = on;
-      plug(port, false);
-      forget_endings(port, FaultKind::unplug);
-      endings_.push_back({now_s + kReplug_s, port, FaultKind::unplug});
-      return;
+      return out_for_a_second(port, now_s);
+    case FaultKind::turn:
+      return world_.set_turned(static_cast<int>(port), on, now_s);
     case FaultKind::torn:
       return wires_[port].set_torn(on);
     case FaultKind::half:
@@ -174,7 +201,12 @@ void BenchRig::run_script(double now_s) {
     if (ending.at_s <= now_s) over.push_back(ending);
     return ending.at_s <= now_s;
   });
-  for (const Ending& ending : over) set(ending.port, ending.kind, false, now_s);
+  for (const Ending& ending : over) {
+    if (ending.kind == FaultKind::exchange)
+      exchange(ending.port, ending.other, now_s);
+    else
+      set(ending.port, ending.kind, false, now_s);
+  }
 }
 
 bool BenchRig::mount(std::string_view line, double now_s) {

@@ -40,6 +40,9 @@ class BenchRig {
   /// The array on the table, by hand: "mount AZIMUTH PITCH ROLL", deg. False: that is something else.
   bool mount(std::string_view line, double now_s);
 
+  /// Whose plug is in the port: of fluxgate2 it may be fluxgate4.
+  [[nodiscard]] std::string_view instrument(std::size_t port) const { return names_.at(whose_.at(port)); }
+
   [[nodiscard]] World& world() { return world_; }
   [[nodiscard]] const World& world() const { return world_; }
 
@@ -48,6 +51,7 @@ class BenchRig {
     double at_s;
     std::size_t port;
     FaultKind kind;
+    std::size_t other{0};  ///< of exchange
   };
   /// Lets a port's instrument speak up to now, onto its cable.
   void advance(std::size_t port, double now_s);
@@ -55,15 +59,21 @@ class BenchRig {
   void plug(std::size_t port, bool in);
   void forget_endings(std::size_t port, FaultKind kind);
 
+  /// Whose plug is in the port, whatever is there for a while.
+  [[nodiscard]] Instrument& plugged_in(std::size_t port) { return *instruments_.at(whose_.at(port)); }
   /// Who is at the end of the cable.
   [[nodiscard]] Instrument& at_cable(std::size_t port) {
-    return strange_.at(port) ? *stranger_.at(port) : *instruments_.at(port);
+    return strange_.at(port) ? *stranger_.at(port) : plugged_in(port);
   }
+  /// Two plugs change places: each is out for a second.
+  void exchange(std::size_t port, std::size_t other, double now_s);
+  void out_for_a_second(std::size_t port, double now_s);
   void set_table(FaultKind kind, bool on, double now_s);
 
   World world_;
   std::vector<std::string_view> names_;
   std::vector<std::unique_ptr<Instrument>> instruments_, stranger_;
+  std::vector<std::size_t> whose_;  ///< number of the instrument whose plug is in a port
   std::vector<Wire> wires_;
   std::vector<bool> plugged_, strange_;
   std::vector<std::uint64_t> unplugged_;

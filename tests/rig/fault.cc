@@ -18,29 +18,24 @@ struct Word {
   bool lasts;
 };
 
-constexpr std::array<Word, 19> kWords{{{"unplug", FaultKind::unplug, true},
-                                       {"garbage", FaultKind::garbage, false},
-                                       {"torn", FaultKind::torn, true},
-                                       {"half", FaultKind::half, true},
-                                       {"twice", FaultKind::twice, true},
-                                       {"swap", FaultKind::swap, true},
-                                       {"freeze", FaultKind::freeze, true},
-                                       {"stall", FaultKind::stall, true},
-                                       {"mute", FaultKind::mute, true},
-                                       {"late", FaultKind::late, true},
-                                       {"saturate", FaultKind::saturate, true},
-                                       {"clock", FaultKind::clock, false},
-                                       {"rate", FaultKind::rate, false},
-                                       {"power", FaultKind::power, true},
-                                       {"stranger", FaultKind::stranger, true},
-                                       {"runaway", FaultKind::runaway, true},
-                                       {"backwards", FaultKind::backwards, true},
-                                       {"limit", FaultKind::limit, true},
-                                       {"restore", FaultKind::restore, false}}};
+constexpr std::array<Word, 21> kWords{
+    {{"unplug", FaultKind::unplug, true},       {"garbage", FaultKind::garbage, false},
+     {"torn", FaultKind::torn, true},           {"half", FaultKind::half, true},
+     {"twice", FaultKind::twice, true},         {"swap", FaultKind::swap, true},
+     {"freeze", FaultKind::freeze, true},       {"stall", FaultKind::stall, true},
+     {"mute", FaultKind::mute, true},           {"late", FaultKind::late, true},
+     {"saturate", FaultKind::saturate, true},   {"clock", FaultKind::clock, false},
+     {"rate", FaultKind::rate, false},          {"power", FaultKind::power, true},
+     {"stranger", FaultKind::stranger, true},   {"exchange", FaultKind::exchange, true},
+     {"turn", FaultKind::turn, true},           {"runaway", FaultKind::runaway, true},
+     {"backwards", FaultKind::backwards, true}, {"limit", FaultKind::limit, true},
+     {"restore", FaultKind::restore, false}}};
 
 bool of_the_table(FaultKind kind) {
   return kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit;
 }
+
+bool of_the_sensors(FaultKind kind) { return kind == FaultKind::exchange || kind == FaultKind::turn; }
 
 std::optional<double> seconds(std::string_view text) {
   double value = 0;
@@ -59,22 +54,28 @@ tl::expected<Fault, std::string> parse_fault(std::string_view text) {
   const auto usage = [](const std::string& what) {
     return tl::unexpected(fmt::format("{}; say: {}", what, kFaultUsage));
   };
-  if (words.size() != 2 && words.size() != 4)
-    return usage(fmt::format("'{}' is not a fault and a port", text));
+  const std::size_t ports = !words.empty() && words[0] == "exchange" ? 2 : 1;
+  if (words.size() != 1 + ports && words.size() != 3 + ports)
+    return usage(fmt::format("'{}' is not a fault and {}", text, ports == 2 ? "two ports" : "a port"));
   const auto* const found =
       std::find_if(kWords.begin(), kWords.end(), [&](const Word& w) { return w.name == words[0]; });
   if (found == kWords.end()) return usage(fmt::format("no fault '{}'", words[0]));
-  if (std::find(kPortNames.begin(), kPortNames.end(), words[1]) == kPortNames.end())
-    return usage(fmt::format("no port '{}'; there are: {}", words[1], fmt::join(kPortNames, ", ")));
-  Fault fault{found->kind, words[1], std::nullopt};
+  for (std::size_t i = 1; i <= ports; ++i) {
+    if (std::find(kPortNames.begin(), kPortNames.end(), words[i]) == kPortNames.end())
+      return usage(fmt::format("no port '{}'; there are: {}", words[i], fmt::join(kPortNames, ", ")));
+    if (of_the_sensors(found->kind) && !words[i].starts_with("fluxgate"))
+      return usage(fmt::format("only a fluxgate has the fault '{}'", found->name));
+  }
+  Fault fault{found->kind, words[1], ports == 2 ? words[2] : "", std::nullopt};
+  if (fault.port == fault.other) return usage("a plug is exchanged with another one");
   if (of_the_table(fault.kind) && fault.port != "table")
     return usage(fmt::format("only the table has the fault '{}'", found->name));
   if (fault.kind == FaultKind::power) fault.for_s = kPowerOff_s;
-  if (words.size() == 2) return fault;
+  if (words.size() == 1 + ports) return fault;
   if (!found->lasts) return usage(fmt::format("{} does not last, so no 'for'", words[0]));
-  fault.for_s = seconds(words[3]);
-  if (words[2] != "for" || !fault.for_s)
-    return usage(fmt::format("'{} {}' is not 'for SECONDS'", words[2], words[3]));
+  fault.for_s = seconds(words.back());
+  if (words[1 + ports] != "for" || !fault.for_s)
+    return usage(fmt::format("'{} {}' is not 'for SECONDS'", words[1 + ports], words.back()));
   return fault;
 }
 

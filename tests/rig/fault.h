@@ -22,10 +22,13 @@
 ///   rate PORT              it measures half as often
 ///   power PORT [for S]     without current, 2 s long when nothing else is said; it forgets what it was told
 ///   stranger PORT [for S]  unplugged, and after a second the cable leads to a satellite receiver
-///   runaway table [for S]  the azimuth turns on and on, whatever it is told
-///   backwards table [for S]  the axes turn the wrong way, and say that they are there
-///   limit table [for S]    every motion ends at a limit switch
-///   restore PORT           all of it ends
+///   exchange PORT PORT [for S]  the plugs of two fluxgates change places; each is out for a second
+///   turn PORT [for S]      the sensor is turned by a quarter about its z, as well as a hand can: 0.7 deg
+///   more runaway table [for S]  the azimuth turns on and on, whatever it is told backwards table [for S] the
+///   axes turn the wrong way, and say that they are there limit table [for S]    every motion ends at a limit
+///   switch restore PORT           all of it ends
+/// A fault of an instrument (freeze, stall, saturate, clock, rate, power, turn) goes with the instrument when
+/// its plug is in another port.
 /// Ports: fluxgate1 .. fluxgate4, table, scalar, auxiliary.
 namespace mgtd::rig {
 
@@ -48,6 +51,8 @@ enum class FaultKind {
   rate,
   power,
   stranger,
+  exchange,
+  turn,
   runaway,
   backwards,
   limit,
@@ -57,13 +62,15 @@ enum class FaultKind {
 struct Fault {
   FaultKind kind{FaultKind::restore};
   std::string port;
+  std::string other{};  ///< of exchange
   std::optional<double> for_s;
 };
 
 inline constexpr double kPowerOff_s = 2;  ///< when nothing else is said
 
 inline constexpr const char* kFaultUsage =
-    "unplug|torn|half|twice|swap|freeze|stall|mute|late|saturate|power|stranger PORT [for SECONDS], "
+    "unplug|torn|half|twice|swap|freeze|stall|mute|late|saturate|power|stranger|turn PORT [for SECONDS], "
+    "exchange PORT PORT [for SECONDS], "
     "runaway|backwards|limit table [for SECONDS], or garbage|clock|rate|restore PORT";
 
 [[nodiscard]] tl::expected<Fault, std::string> parse_fault(std::string_view text);

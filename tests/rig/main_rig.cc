@@ -45,7 +45,8 @@ constexpr const char* kScenarioHelp =
                  walk_nT_per_sqrt_h = 1, flicker_nT_per_sqrt_hz = 0.02, mean_step_nT = 0.1 where the key itself is
                  absent), noise_nT (sd or half width of one sample), student_dof, ar1_rho, tells_n_eff, slow_nT,
                  slow_tau_s, spike_share, spike_nT, lsb_nT (of samples), mean_step_nT (of the means in a table),
-                 wiring = [4], copied = 2 (every connector carries sensor 2), apart (in a table the sensors did
+                 wiring = [4], plugs = [4] (whose plug is in which port: [1, 4, 3, 2] are two exchanged ones),
+                 tells_serial (false: digitisers that do not), copied = 2 (every connector carries sensor 2), apart (in a table the sensors did
                  not share their attitudes), rate_hz, range_V, uT_full_scale, palmacq, common_trigger, autostart,
                  oscillator_ppm
   [visit]        noise, noise_nT, student_dof, rho, outlier_share, outlier_nT, cycle_nT, cycle_visits,

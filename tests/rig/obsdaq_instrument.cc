@@ -156,7 +156,7 @@ std::string ObsdaqInstrument::hash(std::string_view command, double now_s) {
 std::string ObsdaqInstrument::dollar(std::string_view command, double now_s) {
   if (command == "M") return "!01<obsDAQ V5.5.7>";
   if (command == "F") return "!01V5.5.7 2018-06-01";
-  if (command == "SN") return fmt::format("!01SN{:04}", 1001 + slot_);
+  if (command == "SN" && world_.scenario().tells_serial) return fmt::format("!01SN{:04}", 1001 + slot_);
   if (command == "2") return "!0107";
   if (command == "QF") return "!01R98";
   if (command == "IR0") return world_.scenario().autostart ? "!01#01CS" : "!01*ERR";

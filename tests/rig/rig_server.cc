@@ -211,7 +211,9 @@ std::string Server::status() const {
   const double now = now_s();
   nlohmann::json ports;
   for (std::size_t i = 0; i < ports_.size(); ++i)
-    ports[std::string(rig_.name(i))] = {{"plugged", rig_.plugged(i)}, {"listened", ports_[i]->listened()}};
+    ports[std::string(rig_.name(i))] = {{"plugged", rig_.plugged(i)},
+                                        {"instrument", rig_.instrument(i)},
+                                        {"listened", ports_[i]->listened()}};
   nlohmann::json angles;
   for (const TableAxis axis : {azimuth, pitch, roll})
     angles.push_back(rig_.world().axis(axis).indicated_deg(now));

@@ -44,7 +44,7 @@ class Reader {
   void read_record(Section& site, Scenario& s);
   void read_temperature(Scenario& s);
   void read_sensors(Scenario& s);
-  void read_wiring(Section& sensors, Scenario& s);
+  static void read_order(Section& sensors, const char* key, std::array<int, 4>& order);
   void read_table(Scenario& s);
   void read_scalar(Scenario& s);
   void read_covariates(Scenario& s);
@@ -153,7 +153,9 @@ void Reader::read_temperature(Scenario& s) {
 void Reader::read_sensors(Scenario& s) {
   Section sensors = section("sensors");
   read_sample_noise(sensors, s.noise);
-  read_wiring(sensors, s);
+  read_order(sensors, "wiring", s.wiring);
+  read_order(sensors, "plugs", s.plugs);
+  sensors.read("tells_serial", s.tells_serial);
   sensors.read("copied", s.copied);
   if (s.copied > 4) sensors.complain("copied", "copied must be 1 .. 4, or 0 for none");
   sensors.read("apart", s.apart);
@@ -169,13 +171,13 @@ void Reader::read_sensors(Scenario& s) {
   sensors.refuse_rest();
 }
 
-void Reader::read_wiring(Section& sensors, Scenario& s) {
-  std::array<double, 4> wiring{1, 2, 3, 4};
-  sensors.read("wiring", wiring);
-  std::set<double> seen(wiring.begin(), wiring.end());
-  if (seen != std::set<double>{1, 2, 3, 4}) sensors.complain("wiring", "wiring must be 1 to 4 in some order");
-  std::transform(wiring.begin(), wiring.end(), s.wiring.begin(),
-                 [](double w) { return static_cast<int>(w); });
+void Reader::read_order(Section& sensors, const char* key, std::array<int, 4>& order) {
+  std::array<double, 4> read{1, 2, 3, 4};
+  sensors.read(key, read);
+  std::set<double> seen(read.begin(), read.end());
+  if (seen != std::set<double>{1, 2, 3, 4})
+    sensors.complain(key, fmt::format("{} must be 1 to 4 in some order", key));
+  std::transform(read.begin(), read.end(), order.begin(), [](double w) { return static_cast<int>(w); });
 }
 
 void Reader::read_table(Scenario& s) {

@@ -52,6 +52,9 @@ struct Scenario {
   VisitNoise visit;
   /// Whose readings come out of which connector: {2, 1, 3, 4} are two swapped sensors.
   std::array<int, 4> wiring{1, 2, 3, 4};
+  /// Whose plug is in which port: {1, 4, 3, 2} are two exchanged plugs, with all that is behind them.
+  std::array<int, 4> plugs{1, 2, 3, 4};
+  bool tells_serial{true};  ///< an old firmware of the digitisers does not
   /// 1 .. 4: every connector carries the readings of this sensor; 0: each its own.
   std::uint64_t copied{0};
   /// Each sensor was turned by itself: row by row the four did not share their attitudes. Of a table.

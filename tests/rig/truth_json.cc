@@ -92,6 +92,8 @@ nlohmann::json truth_json(const Scenario& s) {
             {"cycle_visits", s.visit.cycle_visits},
             {"cycle_where", s.visit.cycle_where.text()}}},
           {"wiring", s.wiring},
+          {"plugs", s.plugs},
+          {"tells_serial", s.tells_serial},
           {"copied", s.copied},
           {"apart", s.apart},
           {"table_accuracy_deg", s.table_accuracy_deg},
@@ -102,6 +104,10 @@ nlohmann::json truth_json(const Scenario& s) {
           {"effects", list(s.effects, [](const auto& effect) { return effect->truth(); })},
           {"vehicles", list(s.vehicles, &vehicle_json)},
           {"magnets", list(s.magnets, &magnet_json)},
+          {"faults", list(s.faults,
+                          [](const TimedFault& f) {
+                            return nlohmann::json{{"at_s", f.at_s}, {"do", f.text}};
+                          })},
           {"gross", list(s.gross, &gross_json)}};
 }
 

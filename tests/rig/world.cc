@@ -12,6 +12,7 @@ namespace {
 
 /// Longest step of the path that an effect with memory is shown while the table moves.
 constexpr double kPathStep_s = 0.05;
+constexpr double kTurned_deg = 90.7;
 constexpr double kMagnet_Am2 = 1, kMagnetBeyond_m = 0.2;
 
 AxisMotion make_axis(const Scenario& s) {
@@ -74,6 +75,13 @@ void World::set_jammed(bool jammed, double now_s) {
       axis.release(now_s);
     }
   }
+  moved();
+}
+
+void World::set_turned(int i, bool turned, double now_s) {
+  follow_all(now_s);
+  matrix_.at(at(i)) = scenario_.truth.at(at(i)).matrix();
+  if (turned) matrix_.at(at(i)) *= about_z(kTurned_deg);
   moved();
 }
 

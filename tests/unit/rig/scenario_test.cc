@@ -66,6 +66,18 @@ TEST(Scenario, WhatDisturbsIsReadAndStandsInTheTruth) {
   EXPECT_EQ(truth["vehicles"][0]["at_s"], 100);
 }
 
+TEST(Scenario, ExchangedPlugsStandInTheTruth) {
+  const auto scenario = parse_scenario(
+      "[sensors]\nplugs = [1, 4, 3, 2]\ntells_serial = false\n[[fault]]\nat_s = 60\ndo = 'exchange "
+      "fluxgate1 fluxgate3'\n",
+      "s.toml");
+  ASSERT_TRUE(scenario.has_value()) << scenario.error().front();
+  const auto truth = truth_json(*scenario);
+  EXPECT_EQ(truth["plugs"], (std::vector<int>{1, 4, 3, 2}));
+  EXPECT_EQ(truth["tells_serial"], false);
+  EXPECT_EQ(truth["faults"][0]["do"], "exchange fluxgate1 fluxgate3");
+}
+
 TEST(Scenario, DisturbancesThatCannotBeAreNamed) {
   const auto scenario = parse_scenario(
       "[[magnet]]\nat_m = [0.1, 0, 0]\n[[gross]]\npose = 0\n[[gross]]\ndo = 'lost'\n[sensors]\nnoise = "
