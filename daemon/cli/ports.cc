@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "daemon/cli/command.h"
+#include <memory>
+
+#include "daemon/cli/ask.h"
+#include "daemon/cli/serial_lines.h"
+#include "daemon/config.h"
+#include "daemon/durable_file.h"
 #include "drivers/port_list.h"
 
 namespace mgtd::cli {
@@ -46,11 +52,54 @@ int run_ports(const Session& session) {
   return 0;
 }
 
+/// What the instruments of a running daemon told, by place; those that are live.
+std::map<std::string, std::string> serials_of(const nlohmann::json& status) {
+  std::map<std::string, std::string> out;
+  for (const auto& device : status.at("devices")) {
+    if (device.at("state") != "live") continue;
+    const std::string serial = serial_told(device.at("driver").get<std::string>(), device.at("identity"));
+    if (!serial.empty()) out[device.at("name")] = serial;
+  }
+  return out;
+}
+
+/// Fills in the serial numbers of the instruments that answer now.
+int write_serials(const Session& session, const std::string& file) {
+  const auto text = read_file(file);
+  if (!text) return report(session, text.error());
+  const auto status = ask(session, ControlCommand::status);
+  if (!status) return report(session, status.error());
+  const SerialLines done = with_serials(*text, serials_of(*status));
+  if (!done.written.empty()) {
+    if (const auto good = daemon::parse_config(done.text, file); !good) {
+      for (const std::string& line : good.error().lines) fmt::print(stderr, "{}\n", line);
+      fmt::print(stderr, "{} is left as it was\n", file);
+      return 2;
+    }
+    if (auto written = daemon::write_durably(file, done.text); !written)
+      return report(session, written.error());
+  }
+  if (session.json) {
+    print_json({{"schema", "mgt.ports/1"}, {"written", done.written}, {"stated", done.stated}});
+  } else if (done.written.empty()) {
+    fmt::print("no serial number to fill in; {} stated already\n", done.stated.size());
+  } else {
+    fmt::print("{}: serial of {} filled in; it counts when mgtd is started again\n", file,
+               fmt::join(done.written, ", "));
+  }
+  return 0;
+}
+
 }  // namespace
 
 void add_ports(CLI::App& app, Session& session) {
-  add_command(app, session, "ports", "the serial ports of this machine, by the names to configure",
-              [&session] { return run_ports(session); });
+  const auto file = std::make_shared<std::string>();
+  CLI::App* const command = add_command(
+      app, session, "ports", "the serial ports of this machine, by the names to configure",
+      [file, &session] { return file->empty() ? run_ports(session) : write_serials(session, *file); });
+  command->add_option(
+      "--write", *file,
+      "fill the serial numbers of the instruments that the daemon hears into this configuration");
 }
 
 }  // namespace mgtd::cli
