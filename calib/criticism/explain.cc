@@ -8,6 +8,7 @@
 #include "calib/criticism/candidate.h"
 #include "calib/criticism/conclusion.h"
 #include "calib/criticism/effect_search.h"
+#include "calib/criticism/exchange_in_run.h"
 #include "calib/criticism/judgement.h"
 #include "calib/criticism/stand_ins.h"
 #include "calib/criticism/take_back.h"
@@ -131,6 +132,11 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   search.slow =
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
   const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
+  if (const auto exchange = exchange_in_run(table, options.fit.field_nT)) {
+    out.notes.push_back(in_words(*exchange));
+    out.finding = Finding::bad_data;
+    return out;
+  }
   if (bad_data(search.fit, criticism, search.joint.table_sd_rad, out.notes) ||
       !add_rounds(options.rounds, search, out)) {
     out.finding = Finding::bad_data;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kAlarm_log10 = -8;  // 10 000 looks a day at correlated data: far below one false alarm a day
 constexpr double kNear_log10 = -5;   // in two blocks running: one burst of noise is no source
 constexpr double kCalm_log10 = -3;
+constexpr double kBeyond_chi2 = 100;            // of four quantities, of one sample
+constexpr double kBeyondTurn = 5;               // closure over what a turn may add to it
 constexpr int kCalmBlocks = 6, kLookEvery = 6;  // blocks of 10 s
 constexpr double kLeastShare = 0.5,
                  kLeastSwing = 1;  // swing in standard deviations that the calibration states
@@ -54,7 +56,8 @@ std::string described(const Following& f, Follows what, double minutes) {
 }  // namespace
 
 std::string_view to_string(LiveState state) {
-  static constexpr std::array<std::string_view, 5> kNames{"none", "learning", "ok", "suspect", "near source"};
+  static constexpr std::array<std::string_view, 7> kNames{"none",        "learning",  "ok",    "suspect",
+                                                          "near source", "exchanged", "turned"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -70,31 +73,34 @@ LiveCriticism::LiveCriticism(const Calibration& calibration) {
   verdict_.state = LiveState::learning;
 }
 
-bool LiveCriticism::turns_too_fast(const TensorSample& sample) {
+double LiveCriticism::turn_nT(const TensorSample& sample) {
   const double t_s = to_seconds(sample.t.mono.time_since_epoch());
-  bool fast = false;
+  double turn_nT = 0;
   if (last_ && t_s > last_->first) {
     const double rate_nT_per_s = (sample.b_P_nT - last_->second).norm() / (t_s - last_->first);
     // The noise of two samples is no turn.
     const double noise_rate = 4 * judges_->least_noise_nT / (t_s - last_->first);
-    fast = std::max(0.0, rate_nT_per_s - noise_rate) * sample.skew_bound_s > judges_->least_noise_nT / 2;
+    turn_nT = std::max(0.0, rate_nT_per_s - noise_rate) * sample.skew_bound_s;
   }
   last_.emplace(t_s, sample.b_P_nT);
-  return fast;
+  return turn_nT;
 }
 
 bool LiveCriticism::add(const TensorSample& sample, const std::array<double, kSensors>& T_degC) {
-  if (!judges_ || turns_too_fast(sample)) return false;
+  beyond_.reset();
+  if (!judges_) return false;
+  const double turned_nT = turn_nT(sample);
   for (const Flag wrong : {Flag::saturated, Flag::frozen, Flag::incomplete}) {
     if (sample.flags.has(wrong)) return false;
   }
+  const Closure& c = sample.closure;
+  const Eigen::Vector4d closure(c.curl_nT_per_m, c.center_nT[0], c.center_nT[1], c.center_nT[2]);
+  const bool large = c.chi2 > kBeyond_chi2;
+  if (!large || closure.norm() > kBeyondTurn * turned_nT) beyond_ = large;
+  if (turned_nT > judges_->least_noise_nT / 2) return false;
   double sum = 0;
   for (const double T : T_degC) sum += T;
-  const Closure& c = sample.closure;
-  return add({to_seconds(sample.t.mono.time_since_epoch()),
-              {c.curl_nT_per_m, c.center_nT[0], c.center_nT[1], c.center_nT[2]},
-              sample.b_P_nT,
-              sum / kSensors});
+  return add({to_seconds(sample.t.mono.time_since_epoch()), closure, sample.b_P_nT, sum / kSensors});
 }
 
 bool LiveCriticism::add(const ClosureSample& sample) {

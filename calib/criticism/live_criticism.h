@@ -22,18 +22,20 @@
 ///                   running) and follow nothing: something magnetic is so near that its field has
 ///                   curvature across the array. It ends after a minute without.
 ///
+///     beyond        of one sample: ten standard deviations from zero, by the noise and the calibration at
+///                   its field. What it is from is found by what follows; the sample is flagged at once.
 ///
 /// Not judged: samples that are saturated or frozen, that lack an effect of the calibration, or whose field
 /// turns so fast that the skew bound lets it move by more than half the noise. An effect of the calibration
 /// whose coefficient is badly known widens what is stated for the sample but not what is stated here.
 namespace mgtd::calib {
 
-enum class LiveState { none, learning, ok, suspect, near_source };
+enum class LiveState { none, learning, ok, suspect, near_source, exchanged, turned };
 [[nodiscard]] std::string_view to_string(LiveState state);
 
 struct LiveVerdict {
   LiveState state{LiveState::none};
-  std::string measured, limit, remedy;  ///< of suspect and near source
+  std::string measured, limit, remedy;  ///< of suspect, near source, exchanged and turned
 };
 
 class LiveCriticism {
@@ -48,6 +50,9 @@ class LiveCriticism {
   /// The same without a stream around it.
   bool add(const ClosureSample& sample);
   [[nodiscard]] const LiveVerdict& verdict() const { return verdict_; }
+  /// Whether the closure of the last sample is beyond ten standard deviations; nothing where it was not
+  /// judged.
+  [[nodiscard]] std::optional<bool> beyond() const { return beyond_; }
 
  private:
   struct Judges {
@@ -56,7 +61,8 @@ class LiveCriticism {
     double least_noise_nT;  ///< of one sample, in a centre quantity
     LiveWindow hour, day;
   };
-  [[nodiscard]] bool turns_too_fast(const TensorSample& sample);
+  /// What the turn of the field may add to the closure, within the skew of the sensors.
+  [[nodiscard]] double turn_nT(const TensorSample& sample);
   void judge(const LiveWindow& window);
   void judge_nearness(double log10_p);
   [[nodiscard]] LiveState state() const;
@@ -69,6 +75,7 @@ class LiveCriticism {
   bool large_before_{false};   ///< the block before the last was beyond what is possible
   int calm_blocks_{0}, until_look_{0};
   double noise_scale_{1};
+  std::optional<bool> beyond_;
   LiveVerdict verdict_;
 };
 
