@@ -45,6 +45,10 @@ class Instruments {
   [[nodiscard]] drivers::Turntable& table();
   /// Asks the table and sends what it says to that.
   void order(const TableOrder& order);
+  /// Who answers in the place of a sensor, as it told last.
+  [[nodiscard]] const std::string& told(int slot) const {
+    return instruments_.at(static_cast<std::size_t>(slot)).device->health().identity;
+  }
   [[nodiscard]] std::vector<DeviceStatus> status() const;
   [[nodiscard]] std::vector<std::pair<std::string, LinkHealth>> links() const;
 

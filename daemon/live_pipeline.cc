@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/live_pipeline.h"
 
+#include <fmt/format.h>
+
+#include "daemon/calibrated_with.h"
+
 namespace mgtd::daemon {
 namespace {
 
@@ -22,16 +26,30 @@ SamplerConfig sampler_config(const Config& config) {
 }
 
 LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m)
-    : baseline_m_(baseline_m), sampler_(sampler), live_(calib::Geometry{baseline_m}) {}
+    : baseline_m_(baseline_m),
+      sampler_(sampler),
+      live_(calib::Geometry{baseline_m}),
+      raw_(calib::Geometry{baseline_m}) {}
 
 void LivePipeline::use(std::shared_ptr<const calib::Calibration> calibration) {
+  instruments_.want(calibration ? instruments_among(calibration->verdict)
+                                : std::vector<InstrumentIdentity>{});
   if (calibration == nullptr) {
     criticism_ = {};
+    rearranged_ = {};
     live_ = calib::LiveTensor(calib::Geometry{baseline_m_});
     return;
   }
   criticism_ = calib::LiveCriticism(*calibration);
+  rearranged_ = calib::RearrangementWatch(calibration);
   live_ = calib::LiveTensor(calibration);
+}
+
+void LivePipeline::answers(int slot, const std::string& told) {
+  std::string& known = told_.at(static_cast<std::size_t>(slot));
+  if (known == told) return;
+  known = told;
+  instruments_.answers({fmt::format("s{}", slot + 1), told});
 }
 
 void LivePipeline::push(const AuxiliaryReading& reading) {
@@ -53,12 +71,30 @@ calib::LiveConditions LivePipeline::conditions(Instant at) {
 }
 
 TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
-  TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
+  TensorSample sample;
+  if (!instruments_.another()) sample = judged(epoch, verdict_changed);
+  if (instruments_.another() || rearranged_.verdict()) {
+    sample = raw_.apply(epoch);
+    sample.flags |= Flag::identity;
+  } else if (const auto& used = live_.calibration(); used && !used->accepted_by_checks) {
+    sample.flags |= Flag::forced;
+  }
   if (calibrating_) sample.flags |= Flag::calibrating;
-  if (const auto& used = live_.calibration(); used && !used->accepted_by_checks) sample.flags |= Flag::forced;
+  return sample;
+}
+
+/// With the calibration, and what that says of the calibration.
+TensorSample LivePipeline::judged(const Epoch& epoch, bool& verdict_changed) {
+  TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
+  const bool before = rearranged_.verdict().has_value();
   verdict_changed = criticism_.add(sample, epoch.T_degC);
-  if (verdict().state == calib::LiveState::suspect) sample.flags |= Flag::suspect;
-  if (verdict().state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
+  rearranged_.add(epoch, criticism_.beyond());
+  verdict_changed = verdict_changed || before != rearranged_.verdict().has_value();
+  const calib::LiveState state = criticism_.verdict().state;
+  if (state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
+  if (state == calib::LiveState::suspect ||
+      (criticism_.beyond().value_or(false) && state != calib::LiveState::near_source))
+    sample.flags |= Flag::suspect;
   return sample;
 }
 

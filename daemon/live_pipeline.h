@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "calib/criticism/live_criticism.h"
+#include "calib/criticism/rearrangement.h"
 #include "calib/live_tensor.h"
 #include "daemon/config.h"
+#include "daemon/instrument_watch.h"
 #include "daemon/sampler.h"
 
 /// From readings to what is streamed: sampler, tensor with the active calibration, and what the stream says
-/// of that calibration. Pure: the daemon and the replay of a journal run the very same, and from the same
+/// of that calibration. Where a sensor is not the one that was calibrated in its place, by what the devices
+/// tell or by what the readings show, the samples are raw and say `identity`.
+/// Pure: the daemon and the replay of a journal run the very same, and from the same
 /// readings, ticks and orders it makes the same samples to the last bit.
 namespace mgtd::daemon {
 
@@ -29,6 +33,8 @@ class LivePipeline {
   /// A run has the table, or no longer.
   void set_calibrating(bool on) { calibrating_ = on; }
 
+  /// Who answers in the place of a sensor: to be told before its readings, as often as one likes.
+  void answers(int slot, const std::string& told);
   void push(const FieldReading& reading) { sampler_.push(reading, ready_); }
   void push(const TemperatureReading& reading) { sampler_.push(reading); }
   void push(const AuxiliaryReading& reading);
@@ -53,16 +59,25 @@ class LivePipeline {
 
   [[nodiscard]] const Sampler& sampler() const { return sampler_; }
   [[nodiscard]] const calib::LiveTensor& live() const { return live_; }
-  [[nodiscard]] const calib::LiveVerdict& verdict() const { return criticism_.verdict(); }
+  /// A sensor in another place before all that follows from it.
+  [[nodiscard]] const calib::LiveVerdict& verdict() const {
+    return rearranged_.verdict() ? *rearranged_.verdict() : criticism_.verdict();
+  }
+  [[nodiscard]] const InstrumentWatch& instruments() const { return instruments_; }
 
  private:
   [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& verdict_changed);
+  [[nodiscard]] TensorSample judged(const Epoch& epoch, bool& verdict_changed);
   [[nodiscard]] calib::LiveConditions conditions(Instant at);
 
   double baseline_m_;
   Sampler sampler_;
   calib::LiveTensor live_;
+  calib::TensorPipeline raw_;
   calib::LiveCriticism criticism_;
+  calib::RearrangementWatch rearranged_;
+  InstrumentWatch instruments_;
+  std::array<std::string, kSensors> told_;       ///< who answers
   std::optional<TableReading> table_;            ///< the last
   std::map<std::string, double> auxiliary_;      ///< the last of each column
   std::map<std::string, Instant> auxiliary_at_;  ///< its time

@@ -106,6 +106,7 @@ void Replay::take_events(std::size_t device) {
   LivePipeline& pipeline = life_->pipeline;
   for (const DeviceEvent& event : life_->devices[device]->take_events()) {
     if (const auto* reading = std::get_if<FieldReading>(&event)) {
+      pipeline.answers(reading->slot, life_->devices[device]->health().identity);
       pipeline.push(*reading);
       deliver();
     } else if (const auto* temperature = std::get_if<TemperatureReading>(&event)) {

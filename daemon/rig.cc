@@ -20,6 +20,10 @@ StreamConfig stream_config(const Config& config) {
   return out;
 }
 
+bool is_rearranged(calib::LiveState state) {
+  return state == calib::LiveState::exchanged || state == calib::LiveState::turned;
+}
+
 std::filesystem::path runs_directory(const Config& config) {
   return std::filesystem::path(config.store_dir) / "runs";
 }
@@ -110,14 +114,30 @@ void Rig::tell_left_out() {
   told_left_out_ = pipeline_.live().left_out();
 }
 
+void Rig::tell_identity() {
+  const std::string measured = pipeline_.instruments().measured();
+  if (measured == told_identity_) return;
+  told_identity_ = measured;
+  if (measured.empty())
+    spdlog::info("every sensor is the one that was calibrated in its place");
+  else
+    spdlog::warn("the samples are raw: {}; {}", measured, pipeline_.instruments().remedy());
+}
+
 /// On a change of state only.
 void Rig::tell_criticism() {
   const calib::LiveVerdict& verdict = pipeline_.verdict();
+  if (is_rearranged(verdict.state) || !readings_said_.empty()) {
+    readings_said_ = is_rearranged(verdict.state) ? verdict.measured : std::string();
+    run_.feed(ReadingsSay{readings_said_, verdict.remedy}, clock_.now());
+  }
   if (verdict.state == calib::LiveState::suspect) {
     spdlog::warn("the calibration is suspect: {}; limit {}; {}", verdict.measured, verdict.limit,
                  verdict.remedy);
   } else if (verdict.state == calib::LiveState::near_source) {
     spdlog::warn("something magnetic is near: {}; {}", verdict.measured, verdict.remedy);
+  } else if (is_rearranged(verdict.state)) {
+    spdlog::warn("the samples are raw from here on: {}; {}", verdict.measured, verdict.remedy);
   } else {
     spdlog::info("the stream's closure: {}", calib::to_string(verdict.state));
   }
@@ -126,6 +146,7 @@ void Rig::tell_criticism() {
 void Rig::on_event(const std::string& device, const DeviceEvent& event) {
   const Stamp now = clock_.now();
   if (const auto* reading = std::get_if<FieldReading>(&event)) {
+    pipeline_.answers(reading->slot, instruments_.told(reading->slot));
     pipeline_.push(*reading);
     return deliver();
   }
@@ -160,6 +181,7 @@ void Rig::on_link(const std::string& device, const LinkHealth& health) {
       note(ReopenedNote{device[1] - '1'}, now);
       pipeline_.reopened(device[1] - '1');
     }
+    run_.feed(LinkSeen{device, health}, now);  // who it is, before it counts as back
     run_.feed(DeviceBack{device}, now);
   } else if (health.state == LinkState::live) {
     quiet_.info(device, "live again", now.mono);
@@ -197,6 +219,7 @@ void Rig::publish(const Epoch& epoch, const TensorSample& sample) {
 void Rig::watch_links(Stamp now) {
   if (!run_.active()) return;
   for (const auto& [name, health] : instruments_.links()) run_.feed(LinkSeen{name, health}, now);
+  if (!readings_said_.empty()) run_.feed(ReadingsSay{readings_said_, pipeline_.verdict().remedy}, now);
 }
 
 void Rig::tick() {
@@ -247,6 +270,7 @@ void Rig::every_second(Stamp now) {
   watch_links(now);
   guard_reserve();
   tell_left_out();
+  tell_identity();
   const StatusReport status = report();
   tell_drops(status, now.mono);
   quiet_.tick(now.mono);

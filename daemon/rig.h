@@ -51,6 +51,7 @@ class Rig {
   void every_second(Stamp now);
   void use_active_calibration();
   void tell_left_out();
+  void tell_identity();
   void tell_criticism();
   void settle_calibrating(Stamp at);
   void watch_links(Stamp now);
@@ -89,6 +90,7 @@ class Rig {
 
   std::optional<MagnetTest> magnet_;  ///< under way, or the last
   std::vector<calib::LeftOutEffect> told_left_out_;
+  std::string told_identity_, readings_said_;
   Stamp started_;
   std::optional<double> last_skew_s_;
   std::uint64_t published_{0};

@@ -37,6 +37,9 @@ StatusReport Rig::report() const {
   const calib::LiveVerdict& verdict = pipeline_.verdict();
   out.criticism = {std::string(calib::to_string(verdict.state)), verdict.measured, verdict.limit,
                    verdict.remedy};
+  if (const InstrumentWatch& instruments = pipeline_.instruments(); instruments.another())
+    out.criticism = {"identity", instruments.measured(),
+                     "the calibration holds for the sensors that it was made with", instruments.remedy()};
   out.devices = instruments_.status();
   const SamplerHealth sampler = pipeline_.sampler().health();
   out.sampler = {

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "calib/fit/joint_fit.h"
+#include "daemon/calibrated_with.h"
 #include "daemon/listed_plan.h"
 #include "daemon/run_plan_json.h"
 #include "daemon/solver.h"
@@ -127,6 +128,8 @@ RunConfig RunConductor::run_config(const std::string& run_id, const RunRequest& 
        {&out.preflight.wait_s, &out.store_max_s, &out.solve_max_s, &out.stop_max_s, &out.dwell.grace_s}) {
     *limit *= config_.speed_up;
   }
+  if (const auto active = store_.active(); active && *active)
+    out.calibrated = instruments_among((*active)->verdict);
   out.retries = request.retries.value_or(config_.run.retries);
   out.pace = pace();
   out.by_hand = config_.by_hand();
@@ -210,6 +213,7 @@ Result<void> RunConductor::resume_interrupted(Stamp now) {
     earlier.poses.push_back(pose);
     earlier.last_t_s = std::max(earlier.last_t_s, pose.t_s.value_or(0));
   }
+  if (const auto known = file->checks(kInstrumentsStage)) earlier.instruments = instruments_among(*known);
   RunConfig config = run_config(file->header().run_id, {});
   interrupted_.reset();
   begin(*std::move(file), std::move(config), *std::move(plan), now, earlier);

@@ -7,6 +7,7 @@
 
 #include "calib/fit/accuracy_so_far.h"
 #include "calib/fit/verdict.h"
+#include "daemon/calibrated_with.h"
 #include "daemon/run_conductor.h"
 #include "daemon/solver.h"
 #include "drivers/hand_table.h"
@@ -78,6 +79,8 @@ void RunConductor::act(const StartSolve&, Stamp) {
               [this, generation = generation_](Result<calib::FitReport> report) {
                 if (generation != generation_ || !active()) return;
                 SolveDone done{tl::unexpected(Error{})};
+                if (const auto active = store_.active(); report && active && *active)
+                  hold_against(**active, *report);
                 if (report) {
                   const calib::Calibration& c = report->calibration;
                   done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict,

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/approach.h"
 #include "daemon/dwell.h"
@@ -11,6 +12,7 @@
 #include "daemon/settle.h"
 #include "daemon/unrest.h"
 #include "drivers/device.h"
+#include "proto/instrument_identity.h"
 #include "proto/units.h"
 
 /// What a run goes by, beside its plan.
@@ -30,6 +32,9 @@ struct RunConfig {
   int retries{3};                      ///< of one pose, before the run pauses and asks
   double approach_rad{kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
   double reach_rad{to_rad(1)};         ///< a table at rest further from its target has not reached it
+
+  /// That the active calibration was made with; empty: it does not say, or there is none.
+  std::vector<InstrumentIdentity> calibrated{};
 
   bool by_hand{false};       ///< the table is turned by hand: its scales are asked for
   double answer_max_s{900};  ///< wait for the operator's entry, then the run pauses

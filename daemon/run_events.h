@@ -46,6 +46,11 @@ struct LinkSeen {
   LinkHealth health;
 };
 
+/// What the stream concludes from its readings: sensors are exchanged or turned. Empty: no longer.
+struct ReadingsSay {
+  std::string measured, remedy;
+};
+
 /// The answer to StorePose.
 struct PoseStored {
   int number{0};
@@ -75,7 +80,7 @@ struct CalibrationProposed {
 };
 
 using Event = std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, AuxiliaryReading,
-                           TableReading, LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, PoseStored,
-                           AccuracyKnown, SolveDone, CalibrationProposed>;
+                           TableReading, LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, ReadingsSay,
+                           PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
 
 }  // namespace mgtd::daemon

@@ -45,6 +45,8 @@ RunFsm::RunFsm(RunConfig config, RunPlan plan, Stamp now, const std::optional<Ea
       preflight_(config_.preflight, now.mono),
       field_noise_(config_.dwell.scalar_sd_nT) {
   watch_field(now.mono);
+  calibrated_.want(config_.calibrated);
+  if (earlier) own_.want(earlier->instruments);
   for (std::size_t i = 0; earlier && i < plan_.poses.size(); ++i) {
     if (earlier->stored.contains(plan_.poses[i].number)) progress_.set_done(i);
   }
@@ -106,6 +108,7 @@ void RunFsm::follow_settling(const TableReading& reading) {
 
 void RunFsm::on(const LinkSeen& seen) {
   if (phase_ == Phase::preflight) preflight_.add(seen.device, seen.health);
+  if (answers(seen.health.state)) look_at_identity({seen.device, seen.health.identity});
   const auto lost = lost_.find(seen.device);
   if (lost == lost_.end() || answers(seen.health.state) || lost->second == seen.health.detail) return;
   lost->second = seen.health.detail;

@@ -8,6 +8,7 @@
 
 #include "daemon/dwell.h"
 #include "daemon/field_turn.h"
+#include "daemon/instrument_watch.h"
 #include "daemon/preflight.h"
 #include "daemon/run_actions.h"
 #include "daemon/run_config.h"
@@ -40,6 +41,9 @@
 ///   stops the table; the pose is repeated when it comes back within lost_max_s, else the run fails.
 ///   Meanwhile the run says what the link says. A table that is lost itself is stopped by its driver when it
 ///   is back; until then it may still move, and the run says so.
+/// - A sensor that is not the one that the active calibration was made with, by what the devices tell or by
+///   what the stream concludes, pauses the run before its first pose, once: an operator who means it so
+///   resumes. One that is not the one that this run began with pauses it for as long as it is there.
 /// - Abort stops the table in every state; the run is `aborted` once the table was seen at rest, or after
 ///   stop_max_s. Nothing is proposed then.
 /// - The run ends early, with the fit of the poses so far, when the operator says so (finish), or when the
@@ -55,6 +59,7 @@ struct EarlierLife {
   std::set<int> stored;       ///< pose numbers
   double last_t_s{0};         ///< of them; time goes on after it even where the wall clock was set back
   std::vector<Pose> poses{};  ///< the same, where entries are held against the turn of the field
+  std::vector<InstrumentIdentity> instruments{};  ///< that they were measured with
 };
 
 class RunFsm {
@@ -101,6 +106,7 @@ class RunFsm {
   void on(const DeviceLost& lost);
   void on(const DeviceBack& back);
   void on(const DeviceFaulted& faulted);
+  void on(const ReadingsSay& say);
   void on(const PoseStored& stored);
   void on(const AccuracyKnown& known);
   void on(const SolveDone& solved);
@@ -158,6 +164,10 @@ class RunFsm {
   void suspend(const std::string& why);
 
   void look_at_wiring(const Pose& pose);
+  // Who measures.
+  void look_at_identity(const InstrumentIdentity& who);
+  [[nodiscard]] Check identity_check() const;
+  [[nodiscard]] bool identity_settled();  ///< false: the run is held
   void lost_reference();
   void bad_pose(const Error& why);
   void hold(const std::string& message);  ///< stop and ask the operator
@@ -235,6 +245,10 @@ class RunFsm {
   bool enough_{false};  ///< no further pose
   Wiring wiring_;
   std::vector<std::string> wiring_told_;
+  InstrumentWatch own_{kByRun}, calibrated_{kByCalibration};
+  std::vector<InstrumentIdentity> answering_;  ///< by place
+  ReadingsSay readings_say_;
+  std::string confirmed_;  ///< what was said of another sensor before the operator resumed
   std::vector<Check> checks_;
   std::string proposed_, left_over_;
   RunState final_{RunState::idle};

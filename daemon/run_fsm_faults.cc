@@ -33,6 +33,7 @@ Result<void> RunFsm::possible(Request request) const {
     case Request::resume:
       if (asks_for_deed()) return {};
       if (phase_ != Phase::paused) return refuse("the run is not paused", "");
+      if (own_.another()) return refuse(own_.measured(), own_.remedy());
       if (!lost_.empty())
         return refuse(fmt::format("{} is not connected: {}", lost_.begin()->first, lost_.begin()->second),
                       "reconnect it, then resume");

@@ -169,8 +169,10 @@ void RunFsm::advance() {
 void RunFsm::advance_preflight() {
   if (!preflight_.complete(now_.mono)) return;
   checks_ = preflight_.checks(config_.limits, now_.mono);
-  act(StoreChecks{"preflight", checks_});
   preflight_passed_ = all_passed(checks_);
+  checks_.push_back(identity_check());
+  act(StoreChecks{"preflight", checks_});
+  if (preflight_passed_ && !identity_settled()) return;
   if (preflight_passed_) {
     config_.settle.noise_nT = preflight_.noise_nT();
     field_noise_.begin(*still_);

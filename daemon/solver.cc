@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/solver.h"
 
+#include "calib/criticism/exchange_in_run.h"
+#include "daemon/calibrated_with.h"
+
 namespace mgtd::daemon {
 
 calib::FitOptions fit_options(const RunOptions& options) {
@@ -29,7 +32,14 @@ Result<calib::FitReport> solve_run(const std::filesystem::path& run_file) {
   if (!source) return tl::unexpected(source.error());
   const auto options = fit_options(*source);
   if (!options) return tl::unexpected(options.error());
-  return calib::fit(source->table, *options);
+  auto report = calib::fit(source->table, *options);
+  if (!report) return report;
+  name_instruments(report->calibration, run_file);
+  if (report->calibration.accepted_by_checks) return report;
+  // The cause, before what it led to.
+  if (const auto exchange = calib::exchange_in_run(source->table, options->field_nT))
+    report->reasons.insert(report->reasons.begin(), calib::in_words(*exchange));
+  return report;
 }
 
 }  // namespace mgtd::daemon

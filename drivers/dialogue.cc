@@ -64,7 +64,8 @@ void Dialogue::on_line(std::string_view line, Instant now) {
 }
 
 bool Dialogue::told_before(std::string_view line) const {
-  return std::any_of(told_.begin(), told_.end(), [&](const Told& told) { return told.line == line; });
+  return std::any_of(told_.begin(), told_.end(),
+                     [&](const Told& told) { return told.line == line && told.send != step().send; });
 }
 
 void Dialogue::take_reply(std::string_view line, Instant now) {

@@ -61,6 +61,7 @@ void ObsdaqDriver::start(Patience patience, Stamp now) {
   phase_ = Phase::starting;
   patience_ = patience;
   told_.clear();
+  serial_.clear();
   dialogue_ = start_up(settings_, patience);
   dialogue_.start(now.mono);
   send(dialogue_.take_send());
@@ -105,7 +106,18 @@ bool ObsdaqDriver::identified(Stamp now) {
            "check which device is on this port");
     return false;
   }
+  return tells_serial(said, now);
+}
+
+/// Asked for twice, since no checksum guards the answer: a number that was damaged on the line is another one
+/// the second time, and the conversation begins again.
+bool ObsdaqDriver::tells_serial(std::string_view said, Stamp now) {
   const std::string serial = serial_after_sn(said);
+  if (!serial_.empty() && serial != serial_) {
+    start(Patience::patient, now);
+    return false;
+  }
+  serial_ = serial;
   if (auto wanted = check_serial(settings_.serial, serial); !wanted) {
     refuse(now, wanted.error().message, wanted.error().remedy);
     return false;
@@ -122,7 +134,7 @@ void ObsdaqDriver::identify(Stamp now, std::string as) {
 
 void ObsdaqDriver::go_live(Stamp now) {
   phase_ = Phase::streaming;
-  if (!health_.identity.starts_with(model_)) identify(now, model_);  // its serial number was not told
+  if (serial_.empty()) identify(now, model_);  // its serial number was not told
   seq_ = 0;
   any_good_line_ = without_time_ = false;
   bytes_at_good_line_ = health_.bytes_in;

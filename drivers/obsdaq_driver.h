@@ -49,6 +49,7 @@ class ObsdaqDriver final : public LineDevice {
   void start(Patience patience, Stamp now);
   void pump(Stamp now);
   [[nodiscard]] bool identified(Stamp now);
+  [[nodiscard]] bool tells_serial(std::string_view said, Stamp now);
   void identify(Stamp now, std::string as);
   void go_live(Stamp now);
   void show_live();
@@ -67,7 +68,7 @@ class ObsdaqDriver final : public LineDevice {
   Patience patience_{Patience::brisk};
   Dialogue dialogue_;
   Deadline silence_, retry_;
-  std::string told_, model_;  ///< in the conversation under way
+  std::string told_, model_, serial_;  ///< in the conversation under way
   RateWatch rate_;
   std::uint64_t seq_{0};
   std::uint64_t bytes_at_good_line_{0};

@@ -72,6 +72,7 @@ class Conversation {
                 s_.serial.empty() ? w_.optional_reply_s : w_.reply_s};
     serial.tolerant = s_.serial.empty();  // an old firmware that does not know the question
     serial.refusal = fmt::format("?{}", s_.address);
+    steps_.push_back(serial);
     steps_.push_back(std::move(serial));
   }
   void enter_forwarding() {

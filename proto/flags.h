@@ -14,12 +14,13 @@ enum class Flag : std::uint16_t {
   interpolated = 1U << 1U,     ///< a sensor was interpolated to the epoch between two real samples
   calibrating = 1U << 2U,      ///< a calibration run has the table
   uncalibrated = 1U << 3U,     ///< no active calibration: the numbers are raw readings
-  suspect = 1U << 4U,          ///< the closure follows temperature, time or attitude: check the calibration
+  suspect = 1U << 4U,          ///< the closure says that the calibration does not hold here: STATUS says why
   clock_unsettled = 1U << 5U,  ///< the clock model of a device is still being learnt
   incomplete = 1U << 6U,       ///< an effect of the calibration is not removed: its inputs are not measured
   forced = 1U << 7U,           ///< the active calibration failed its checks and was forced
   near_source = 1U << 8U,      ///< the closure is large and follows nothing of the instrument's
   frozen = 1U << 9U,           ///< a sensor repeats its last reading to the bit
+  identity = 1U << 10U,        ///< a sensor is not the one that was calibrated in its place: readings are raw
 };
 
 class Flags {
@@ -40,7 +41,7 @@ class Flags {
   std::uint16_t bits_{0};
 };
 
-inline constexpr std::array<std::pair<Flag, std::string_view>, 10> kFlagNames{{
+inline constexpr std::array<std::pair<Flag, std::string_view>, 11> kFlagNames{{
     {Flag::saturated, "saturated"},
     {Flag::interpolated, "interpolated"},
     {Flag::calibrating, "calibrating"},
@@ -51,6 +52,7 @@ inline constexpr std::array<std::pair<Flag, std::string_view>, 10> kFlagNames{{
     {Flag::forced, "forced"},
     {Flag::near_source, "near_source"},
     {Flag::frozen, "frozen"},
+    {Flag::identity, "identity"},
 }};
 
 /// Calls use(std::string_view) with the name of every flag that is set, in the order of their bits.

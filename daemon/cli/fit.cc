@@ -4,6 +4,7 @@
 #include "calib/calibration.h"
 #include "calib/fit/fit_report_json.h"
 #include "calib/fit/fit_report_text.h"
+#include "daemon/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 
@@ -20,8 +21,9 @@ int run_fit(const Session& session, const Arguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto fitted = calib::fit(source->table, *options);
+  auto fitted = calib::fit(source->table, *options);
   if (!fitted) return report(session, fitted.error());
+  daemon::name_instruments(fitted->calibration, args.run);
   if (!args.output.empty()) {
     if (auto written = write_file(args.output, calib::to_json_text(fitted->calibration)); !written)
       return report(session, written.error());

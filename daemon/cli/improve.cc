@@ -4,6 +4,7 @@
 #include "calib/criticism/improve.h"
 #include "calib/criticism/improve_report.h"
 #include "calib/criticism/waterfall.h"
+#include "daemon/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 
@@ -41,8 +42,9 @@ int run_improve(const Session& session, const Arguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto improved = calib::improve(source->table, *options);
+  auto improved = calib::improve(source->table, *options);
   if (!improved) return report(session, improved.error());
+  daemon::name_instruments(improved->fit.calibration, args.run);
   if (!args.output.empty()) {
     const calib::Calibration& calibration = improved->fit.calibration;
     if (auto written = write_file(args.output, calib::to_json_text(calibration)); !written)

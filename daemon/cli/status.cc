@@ -74,7 +74,7 @@ void print_calibration(const nlohmann::json& s) {
   const std::string state = criticism.at("state");
   if (state == "none") return;
   fmt::print("judged    {}\n", state);
-  if (state != "suspect" && state != "near source") return;
+  if (criticism.at("measured").get<std::string>().empty()) return;
   fmt::print("          {}\n          limit: {}\n          {}\n", criticism.at("measured").get<std::string>(),
              criticism.at("limit").get<std::string>(), criticism.at("remedy").get<std::string>());
 }

@@ -134,7 +134,8 @@ class StreamJudge {
     const auto found = truth_.judge(epoch, t_s, 2 * epoch.skew_bound_s + 1.5 * kStep_s);
     if (!found) return;
     ++judged;
-    if (epoch.flags.has(Flag::saturated) || epoch.flags.has(Flag::frozen)) {
+    if (epoch.flags.has(Flag::saturated) || epoch.flags.has(Flag::frozen) ||
+        epoch.flags.has(Flag::identity)) {
       ++flagged;
       return;
     }

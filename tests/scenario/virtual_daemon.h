@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/calibrated_with.h"
 #include "daemon/config.h"
+#include "daemon/instrument_watch.h"
 #include "daemon/live_pipeline.h"
 #include "daemon/run_fsm.h"
 #include "daemon/sampler.h"
@@ -46,7 +48,8 @@ class VirtualDaemon {
   std::optional<Finish> finished;
   std::optional<RunStatus> status;
   std::vector<std::string> records;
-  std::vector<std::string> notes;  ///< faults and losses, as they came
+  std::vector<std::string> notes;               ///< faults and losses, as they came
+  std::vector<InstrumentIdentity> instruments;  ///< of the run, as its file keeps them
   std::function<Result<Solution>(const PoseTable&)> solver = [](const PoseTable&) {
     return Solution{true, "cal", {}, {}};
   };
@@ -230,7 +233,10 @@ class VirtualDaemon {
   static bool is_live(const Port& port) {
     return port.open && port.device->health().state == LinkState::live;
   }
-  void on(const Port&, const FieldReading& reading) { sampler_.push(reading, pending_); }
+  void on(const Port& port, const FieldReading& reading) {
+    watch_.answers({port.name, port.device->health().identity});
+    sampler_.push(reading, pending_);
+  }
   void on(const Port&, const TemperatureReading& reading) { sampler_.push(reading); }
   void on(const Port&, const ScalarReading& reading) { tell(reading); }
   void on(const Port&, const AuxiliaryReading& reading) { tell(reading); }
@@ -241,7 +247,10 @@ class VirtualDaemon {
   }
   void on(const Port&, const DeviceNote&) {}
   void deliver() {
-    for (const EpochOrGap& item : std::exchange(pending_, {})) {
+    for (EpochOrGap& item : std::exchange(pending_, {})) {
+      // As the pipeline says it of the sensors of a calibration.
+      if (auto* epoch = std::get_if<Epoch>(&item); epoch != nullptr && watch_.another())
+        epoch->flags |= Flag::identity;
       on_item(item);
       if (const auto* gap = std::get_if<Gap>(&item)) {
         gaps += gap->to_seq - gap->from_seq + 1;
@@ -269,6 +278,7 @@ class VirtualDaemon {
     port.was_live = live;
     if (live) {
       if (port.name.size() == 2) sampler_.reopened(port.name[1] - '1');  // s1 .. s4
+      tell(LinkSeen{port.name, health});
       tell(DeviceBack{port.name});
     } else {
       notes.push_back(port.name + " lost");
@@ -291,12 +301,17 @@ class VirtualDaemon {
   void carry_out(const Record& record) { records.push_back(record.what); }
   void carry_out(const Finish& finish) { finished = finish; }
   void carry_out(const StorePath&) {}
-  void carry_out(const StoreChecks&) {}
+  void carry_out(const StoreChecks& store) {
+    if (store.stage != kInstrumentsStage) return;
+    instruments = instruments_among(store.checks);
+    watch_.want(instruments);
+  }
   void carry_out(const CancelSolve&) {}
 
   std::pair<std::string, std::string> mistake_;
   Config config_;
   Sampler sampler_;
+  InstrumentWatch watch_{kByRun};
   std::vector<Port> ports_;
   std::unique_ptr<RunFsm> fsm_;
   std::vector<EpochOrGap> pending_;

@@ -171,6 +171,7 @@ class VirtualStream {
     for (const DeviceEvent& event : port.device->take_events()) {
       port.life.heard(event);
       if (const auto* reading = std::get_if<FieldReading>(&event)) {
+        pipeline_->answers(reading->slot, port.device->health().identity);
         pipeline_->push(*reading);
         deliver();
       } else if (const auto* temperature = std::get_if<TemperatureReading>(&event)) {

@@ -19,6 +19,7 @@ using ::testing::HasSubstr;
 struct Instrument {
   std::string identity{"!01<obsDAQ V5.5.7>"};
   std::string serial{"1001"};  ///< empty: a firmware that does not know the question
+  int damaged_serials{0};      ///< so many answers to the question for it lose a digit
   std::string spoil;           ///< commands that start so are answered by "?01"
   std::string mute;            ///< commands that start so are not answered
   bool palmacq{false};
@@ -59,6 +60,7 @@ struct Instrument {
       return "";
     }
     if (c == "$01M") return identity + "\r";
+    if (c == "$01SN" && damaged_serials-- > 0) return "!01SN101\r";
     if (c == "$01SN" && !serial.empty()) return "!01SN" + serial + "\r";
     if (c.starts_with("#01PP")) return "!01" + c.substr(5) + "\r";
     if (c.size() == 14 && c.substr(4, 2) == "WS") return "!01" + c.substr(6) + "\r";

@@ -11,11 +11,18 @@ namespace {
 TEST_F(ObsdaqDriverTest, StartsAsDocumented) {
   go_live();
   EXPECT_EQ(instrument.commands,
-            (std::vector<std::string>{"#01ST", "$01M", "$01SN", "#01PP00000000", "$010WS02010263",
+            (std::vector<std::string>{"#01ST", "$01M", "$01SN", "$01SN", "#01PP00000000", "$010WS02010263",
                                       "$011WS02010263", "$012WS02010263", "#01PP0C00026E", "#01CS"}));
   EXPECT_TRUE(bench.sent().starts_with("||||||||||||||||||||||||||||||#01ST\r"));
   EXPECT_EQ(driver.health().identity, "<obsDAQ V5.5.7>, serial 1001");
   EXPECT_TRUE(driver.health().balanced());
+}
+
+TEST_F(ObsdaqDriverTest, ASerialNumberThatWasDamagedOnTheLineIsNotBelieved) {
+  instrument.damaged_serials = 1;
+  go_live();
+  EXPECT_EQ(driver.health().identity, "<obsDAQ V5.5.7>, serial 1001");
+  EXPECT_EQ(std::count(instrument.commands.begin(), instrument.commands.end(), "$01M"), 2);
 }
 
 TEST_F(ObsdaqDriverTest, WaitsASecondAfterTheTriggerIsOff) {
