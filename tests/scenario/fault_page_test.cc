@@ -21,7 +21,7 @@ struct Fault {
   RunState when;
   const char* said;
 };
-constexpr std::array<Fault, 37> kFaults{{
+constexpr std::array<Fault, 38> kFaults{{
     {"unplug fluxgate2 for 5", RunState::dwelling, "sensor unplugged for 5 s"},
     {"unplug fluxgate1 for 5", RunState::moving, "the same, sensor 1, during a move"},
     {"unplug table for 5", RunState::moving, "table unplugged during a move"},
@@ -47,6 +47,7 @@ constexpr std::array<Fault, 37> kFaults{{
     {"twice fluxgate2 for 10", RunState::dwelling, "every line of a sensor twice for 10 s"},
     {"swap fluxgate2 for 10", RunState::dwelling, "lines of a sensor in the wrong order for 10 s"},
     {"stranger fluxgate2 for 20", RunState::dwelling, "a satellite receiver on a sensor's port for 20 s"},
+    {"exchange fluxgate2 fluxgate4 for 20", RunState::dwelling, "plugs of two sensors exchanged for 20 s"},
     {"stranger table for 20", RunState::settling, "a satellite receiver on the table's port for 20 s"},
     {"stranger scalar for 30", RunState::dwelling,
      "a satellite receiver on the port of the scalar magnetometer for 30 s"},

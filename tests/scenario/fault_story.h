@@ -117,7 +117,8 @@ class FaultTeller {
       const RunStatus& status = *daemon_.status;
       if (status.state != RunState::paused) paused_s = 0;
       if (status.state == RunState::paused) {
-        if (pause_.empty()) pause_ = status.message;
+        // The last word of the first seconds: two plugs do not come in at once.
+        if (pause_.empty() || (!status.goes_on && paused_s < 5 && !asked_)) pause_ = status.message;
         unreachable_ |= status.message.find("cannot be reached and may still move") != std::string::npos;
         wrong_device_ |= status.message.find("wrong device") != std::string::npos;
         paused_s += kStep_s;

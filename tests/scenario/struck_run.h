@@ -16,11 +16,11 @@ namespace mgtd::test {
 
 /// What can strike a run. Words before the port; `lasts` for a random time, on `ports` of the rig.
 struct Strike {
-  enum class Where { any, asked, sensors, stamped_sensors, table, program } where;
+  enum class Where { any, asked, sensors, stamped_sensors, pairs, table, program } where;
   const char* words;
   bool lasts;
 };
-inline constexpr std::array<Strike, 26> kStrikes{{
+inline constexpr std::array<Strike, 27> kStrikes{{
     {Strike::Where::any, "unplug", true},
     {Strike::Where::any, "torn", true},
     {Strike::Where::any, "half", true},
@@ -47,6 +47,7 @@ inline constexpr std::array<Strike, 26> kStrikes{{
     {Strike::Where::asked, "mute", true},
     {Strike::Where::program, "stand still", false},
     {Strike::Where::program, "stand still for long", false},
+    {Strike::Where::pairs, "exchange", true},
 }};
 /// Those of the runs that once failed: with more to draw from, a seed is another run.
 inline constexpr std::size_t kFirstStrikes = 21;
@@ -62,6 +63,7 @@ class StruckRun {
       : random_(seed),
         strikes_(strikes),
         stamped_(seed % 2 == 0),
+        exchanges_(seed % 3 == 1),
         daemon_(scenario_of(fmt::format("[rig]\nname = \"struck\"\nparameters = \"table6\"\nseed = {}\n"
                                         "[sensors]\npalmacq = {}\nautostart = {}\n",
                                         seed, stamped_, seed % 3 == 0))) {
@@ -96,7 +98,9 @@ class StruckRun {
   std::size_t pick(std::size_t n) { return random_() % n; }
 
   void strike() {
-    const Strike& what = kStrikes.at(pick(strikes_));
+    // Exchanged plugs, the last of all, strike every third run only.
+    const bool with_last = strikes_ < kStrikes.size() || exchanges_;
+    const Strike& what = kStrikes.at(pick(with_last ? strikes_ : strikes_ - 1));
     const std::string port(daemon_.rig.name(pick(daemon_.rig.ports())));
     const double for_s = std::pow(10.0, 2.0 * static_cast<double>(pick(1000)) / 1000.0 - 0.5);  // 0.3 to 30
     const std::string lasting = what.lasts ? fmt::format(" for {:.2f}", for_s) : "";
@@ -110,6 +114,12 @@ class StruckRun {
         return fault(fmt::format("{} fluxgate{}{}", what.words, 1 + pick(kSensors), lasting));
       case Strike::Where::asked:
         return fault(fmt::format("{} {}{}", what.words, pick(2) == 0 ? "table" : "scalar", lasting));
+      case Strike::Where::pairs: {
+        // Before a run knows its instruments, those that are there are its own.
+        if (daemon_.instruments.empty()) return;
+        const std::size_t one = pick(kSensors), other = (one + 1 + pick(kSensors - 1)) % kSensors;
+        return fault(fmt::format("{} fluxgate{} fluxgate{}{}", what.words, 1 + one, 1 + other, lasting));
+      }
       case Strike::Where::table:
         return fault(fmt::format("{} table{}", what.words, lasting));
       case Strike::Where::any:
@@ -141,6 +151,7 @@ class StruckRun {
   template <class End>
   void come_back(const End& end) {
     EarlierLife earlier{daemon_.started_utc(), {}, 0};
+    earlier.instruments = daemon_.instruments;
     for (const Pose& pose : daemon_.poses.poses) {
       earlier.stored.insert(pose.number);
       earlier.last_t_s = std::max(earlier.last_t_s, *pose.t_s);
@@ -174,7 +185,7 @@ class StruckRun {
 
   std::mt19937_64 random_;
   std::size_t strikes_;  ///< to draw from, the first of all
-  bool stamped_;
+  bool stamped_, exchanges_;  ///< exchanges_: plugs, among what strikes
   VirtualDaemon daemon_;
   StreamJudge judge_;
   RunPlan plan_;
