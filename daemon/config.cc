@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "calib/effects/formula_names.h"
 #include "calib/effects/library.h"
 #include "calib/pose_columns.h"
 #include "daemon/durable_file.h"
@@ -25,9 +26,8 @@ using drivers::Settings;
 class Reader {
  public:
   explicit Reader(Config& config) : config_(config) {
-    taken_columns_ = {"pose", "set", "t_utc"};
     for (const calib::PoseColumn& column : calib::pose_columns())
-      if (!column.name.ends_with("_T_degC")) taken_columns_.insert(column.name);
+      if (!drivers::sensor_of(column.name)) fixed_columns_.insert(column.name);
   }
 
   void read(const toml::table& root);
@@ -44,29 +44,33 @@ class Reader {
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
   void read_auxiliary(const toml::table& root);
-  void read_channels(Settings& s);
+  void check_inputs(Settings& s, const DeviceConfig& device);
   void warn_without_field();
   DeviceConfig read_device(Settings settings, std::string name, Role role, int slot);
   void read_port(Settings& s, DeviceConfig& device);
   void read_mounts(Settings& s);
   void refuse_unknown_sections(const toml::table& root);
-  void complain(int line, std::string message) { errors_.push_back({line, std::move(message)}); }
+  void complain(drivers::Place place, std::string message) { errors_.push_back({place, std::move(message)}); }
 
   Config& config_;
   std::vector<drivers::SettingError> errors_;
   std::map<std::string, int> port_lines_, serial_lines_;
-  std::set<std::string, std::less<>> taken_columns_;  ///< of the pose table, by something else than a channel
+  std::set<std::string, std::less<>> fixed_columns_{"pose", "set", "t_utc"};  ///< of every pose table
+  std::map<std::string, std::string> input_columns_;                          ///< and where each is measured
 };
 
 constexpr std::array<std::string_view, 12> kSections{"rig",       "sensor", "table",       "scalar",
                                                      "auxiliary", "site",   "calibration", "run",
                                                      "store",     "stream", "control",     "daemon"};
 
+/// Of formulas.
+constexpr std::array<calib::Level, 3> kLevels{calib::Level::axis, calib::Level::platform, calib::Level::site};
+
 Settings Reader::section(const toml::table& root, std::string_view name) {
   const toml::node* const node = root.get(name);
   if (node == nullptr) return Settings(fmt::format("[{}]", name), 1);
   if (const toml::table* table = node->as_table()) return to_settings(*table, fmt::format("[{}]", name));
-  complain(static_cast<int>(node->source().begin.line), fmt::format("'{0}' must be a section [{0}]", name));
+  complain(place_of(node->source()), fmt::format("'{0}' must be a section [{0}]", name));
   return Settings(fmt::format("[{}]", name), 1);
 }
 
@@ -196,8 +200,9 @@ void Reader::read_service(const toml::table& root) {
   close(control);
   Settings daemon = section(root, "daemon");
   config_.log_level = daemon.text("log_level", config_.log_level);
-  static constexpr std::array<std::string_view, 4> kLevels{"debug", "info", "warn", "error"};
-  require(daemon, "log_level", std::find(kLevels.begin(), kLevels.end(), config_.log_level) != kLevels.end(),
+  static constexpr std::array<std::string_view, 4> kLogLevels{"debug", "info", "warn", "error"};
+  require(daemon, "log_level",
+          std::find(kLogLevels.begin(), kLogLevels.end(), config_.log_level) != kLogLevels.end(),
           "debug, info, warn or error");
   config_.speed_up = daemon.number("speed_up", config_.speed_up);
   require(daemon, "speed_up", config_.speed_up >= 1 && config_.speed_up <= 1000, "1 (real time) to 1000");
@@ -215,7 +220,7 @@ std::string driver_names(Role role) {
 void Reader::read_port(Settings& s, DeviceConfig& device) {
   device.port = s.required_text("port");
   if (device.port.empty()) return;
-  const auto [where, fresh] = port_lines_.emplace(device.port, s.line_of("port"));
+  const auto [where, fresh] = port_lines_.emplace(device.port, s.place_of("port").line);
   if (!fresh) s.object("port", fmt::format("'{}' is already used in line {}", device.port, where->second));
 }
 
@@ -251,10 +256,11 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
   if (role == Role::table) read_mounts(s);
   device.device = entry->make(slot, s);
   if (const std::string serial = s.has("serial") ? s.text("serial", "") : ""; !serial.empty()) {
-    const auto [where, fresh] = serial_lines_.emplace(serial, s.line_of("serial"));
+    const auto [where, fresh] = serial_lines_.emplace(serial, s.place_of("serial").line);
     if (!fresh) s.object("serial", fmt::format("'{}' is already used in line {}", serial, where->second));
   }
   device.baud = s.small_integer("baud", 0);
+  check_inputs(s, device);
   close(s);
   return device;
 }
@@ -263,7 +269,7 @@ void Reader::read_sensors(const toml::table& root) {
   const toml::array* const list = root.get("sensor") == nullptr ? nullptr : root.get("sensor")->as_array();
   const std::size_t count = list == nullptr ? 0 : list->size();
   if (count != kSensors) {
-    complain(list == nullptr ? 1 : static_cast<int>(list->source().begin.line),
+    complain(list == nullptr ? drivers::Place() : place_of(list->source()),
              fmt::format("four [[sensor]] sections are needed, s1 to s4 in this order; found {}", count));
     if (count == 0) return;
   }
@@ -271,27 +277,43 @@ void Reader::read_sensors(const toml::table& root) {
     const toml::table* const table = list->get(i)->as_table();
     const std::string name = fmt::format("s{}", i + 1);
     if (table == nullptr) {
-      complain(static_cast<int>(list->get(i)->source().begin.line), "a [[sensor]] must be a section");
+      complain(place_of(list->get(i)->source()), "a [[sensor]] must be a section");
       continue;
     }
     Settings s = to_settings(*table, "[[sensor]] " + name);
-    if (Settings look = s; look.text("temperature", "none") != "none")
-      taken_columns_.insert(name + "_T_degC");
     config_.sensors.at(i) = read_device(std::move(s), name, Role::sensor, static_cast<int>(i));
   }
 }
 
-/// A channel is a column of the pose table beside those that are there already.
-void Reader::read_channels(Settings& s) {
-  Settings look = s;  // the driver tells of mistakes in the list itself
-  for (const std::string& column : look.texts("channels")) {
-    if (!taken_columns_.contains(column)) continue;
-    s.object("channels",
-             column.ends_with("_T_degC")
-                 ? fmt::format("'{}' is measured by the 'temperature' input of that sensor; leave "
-                               "one of the two out",
-                               column)
-                 : fmt::format("'{}' is a column of the pose table itself; choose another name", column));
+/// A name that stands for something else in formulas of one level or another.
+bool means_something_else(const std::string& column) {
+  return std::any_of(kLevels.begin(), kLevels.end(), [&](calib::Level level) {
+    return calib::formula_name(column, level, std::nullopt, 0).source != calib::FormulaName::Source::column;
+  });
+}
+
+/// An input is a column of the pose table beside those that are there already, and named once.
+void Reader::check_inputs(Settings& s, const DeviceConfig& device) {
+  for (const drivers::InputChannel& input : device.device->inputs()) {
+    const std::string& column = input.column;
+    if (fixed_columns_.contains(column)) {
+      s.object(input.key,
+               fmt::format("'{}' is a column of the pose table itself; choose another name", column));
+    } else if (means_something_else(column)) {
+      s.object(input.key, fmt::format("'{}' means something else in formulas; choose another name", column));
+    }
+    const auto [known, fresh] = input_columns_.try_emplace(
+        column,
+        fmt::format("{}, input {}, in line {}", device.name, input.input, s.place_of(input.key).line));
+    if (!fresh)
+      s.object(input.key, fmt::format("'{}' is already measured ({}); {}", column, known->second,
+                                      drivers::sensor_of(column) ? "leave one of the two out"
+                                                                 : "give one of them another name"));
+    if (input.unit == "A" && !column.ends_with("_A"))
+      config_.warnings.push_back(
+          fmt::format("{}:{}: warning: {}: '{}' is a current whose name does not end in _A: platform.current "
+                      "does not see it",
+                      config_.file, s.place_of(input.key).line, s.section(), column));
   }
 }
 
@@ -300,14 +322,12 @@ void Reader::read_auxiliary(const toml::table& root) {
   if (node == nullptr) return;
   const toml::array* const list = node->as_array();
   if (list == nullptr || !list->is_homogeneous<toml::table>()) {
-    complain(static_cast<int>(node->source().begin.line),
-             "each module is a section of its own: [[auxiliary]]");
+    complain(place_of(node->source()), "each module is a section of its own: [[auxiliary]]");
     return;
   }
   for (const toml::node& module : *list) {
     const std::string name = fmt::format("aux{}", config_.auxiliary.size() + 1);
     Settings s = to_settings(*module.as_table(), "[[auxiliary]] " + name);
-    read_channels(s);
     config_.auxiliary.push_back(read_device(std::move(s), name, Role::auxiliary, 0));
   }
 }
@@ -315,7 +335,7 @@ void Reader::read_auxiliary(const toml::table& root) {
 void Reader::refuse_unknown_sections(const toml::table& root) {
   for (const auto& [key, node] : root) {
     if (std::find(kSections.begin(), kSections.end(), key.str()) == kSections.end()) {
-      complain(static_cast<int>(key.source().begin.line),
+      complain(place_of(key.source()),
                fmt::format("unknown section '{}'; there are: {}", key.str(), fmt::join(kSections, ", ")));
     }
   }
@@ -372,9 +392,8 @@ tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_vi
   Reader reader(config);
   reader.read(root);
   ConfigErrors errors;
-  for (const auto& [line, message] : reader.take_errors()) {
-    errors.lines.push_back(fmt::format("{}:{}: {}", file, line, message));
-  }
+  for (const drivers::SettingError& error : reader.take_errors())
+    errors.lines.push_back(fmt::format("{}:{}:{}: {}", file, error.line, error.column, error.message));
   if (!errors.lines.empty()) return tl::unexpected(std::move(errors));
   return config;
 }

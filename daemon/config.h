@@ -86,7 +86,7 @@ struct Config {
   std::vector<std::string> warnings;
 };
 
-/// All mistakes of a configuration, in the order of their lines, ready to print: "mgtd.toml:12: ...".
+/// All mistakes of a configuration, in the order of their lines, ready to print: "mgtd.toml:12:1: ...".
 struct ConfigErrors {
   std::vector<std::string> lines;
 };

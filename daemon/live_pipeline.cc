@@ -3,13 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "daemon/calibrated_with.h"
+#include "daemon/instruments.h"
 
 namespace mgtd::daemon {
 namespace {
 
 constexpr auto kFreshAngles = std::chrono::seconds(10);
-constexpr auto kFreshInput = std::chrono::seconds(120);  // twice the slowest asking
 
 }  // namespace
 
@@ -25,11 +27,21 @@ SamplerConfig sampler_config(const Config& config) {
   return out;
 }
 
-LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m)
+LatestInputs inputs_of(const Config& config) {
+  std::vector<std::string> columns;
+  for (const DeviceConfig* device : devices_of(config)) {
+    if (device == nullptr) continue;
+    for (const drivers::InputChannel& input : device->device->inputs()) columns.push_back(input.column);
+  }
+  return LatestInputs(std::move(columns));
+}
+
+LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs)
     : baseline_m_(baseline_m),
       sampler_(sampler),
       live_(calib::Geometry{baseline_m}),
-      raw_(calib::Geometry{baseline_m}) {}
+      raw_(calib::Geometry{baseline_m}),
+      inputs_(std::move(inputs)) {}
 
 void LivePipeline::use(std::shared_ptr<const calib::Calibration> calibration) {
   instruments_.want(calibration ? instruments_among(calibration->verdict)
@@ -52,25 +64,17 @@ void LivePipeline::answers(int slot, const std::string& told) {
   instruments_.answers({fmt::format("s{}", slot + 1), told});
 }
 
-void LivePipeline::push(const AuxiliaryReading& reading) {
-  for (const auto& [column, value] : reading.values) {
-    auxiliary_[column] = value;
-    auxiliary_at_[column] = reading.arrival.mono;
-  }
-}
-
-/// Where the array stands is known while a referenced table stands still and says so; an input that has not
-/// been heard of for long is not known any more.
-calib::LiveConditions LivePipeline::conditions(Instant at) {
-  std::erase_if(auxiliary_, [&](const auto& input) { return at - auxiliary_at_[input.first] > kFreshInput; });
+/// Where the array stands is known while a referenced table stands still and says so.
+calib::LiveConditions LivePipeline::conditions(Instant at) const {
   calib::LiveConditions out;
   if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
     out.angles = table_->angles;
-  out.covariates = &auxiliary_;
+  out.covariates = &inputs_.covariates();
   return out;
 }
 
 TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
+  inputs_.advance(epoch.t.mono);
   TensorSample sample;
   if (!instruments_.another()) sample = judged(epoch, verdict_changed);
   if (instruments_.another() || rearranged_.verdict()) {

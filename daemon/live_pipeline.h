@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "calib/live_tensor.h"
 #include "daemon/config.h"
 #include "daemon/instrument_watch.h"
+#include "daemon/latest_inputs.h"
 #include "daemon/sampler.h"
 
 /// From readings to what is streamed: sampler, tensor with the active calibration, and what the stream says
@@ -23,10 +23,12 @@ namespace mgtd::daemon {
 
 /// As the configuration wants it.
 [[nodiscard]] SamplerConfig sampler_config(const Config& config);
+/// The auxiliary inputs and thermometers of all devices, in the order of the configuration.
+[[nodiscard]] LatestInputs inputs_of(const Config& config);
 
 class LivePipeline {
  public:
-  LivePipeline(const SamplerConfig& sampler, double baseline_m);
+  LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs = LatestInputs());
 
   /// From the next epoch on; null: the samples are raw and say so.
   void use(std::shared_ptr<const calib::Calibration> calibration);
@@ -36,8 +38,11 @@ class LivePipeline {
   /// Who answers in the place of a sensor: to be told before its readings, as often as one likes.
   void answers(int slot, const std::string& told);
   void push(const FieldReading& reading) { sampler_.push(reading, ready_); }
-  void push(const TemperatureReading& reading) { sampler_.push(reading); }
-  void push(const AuxiliaryReading& reading);
+  void push(const TemperatureReading& reading) {
+    sampler_.push(reading);
+    inputs_.push(reading);
+  }
+  void push(const AuxiliaryReading& reading) { inputs_.push(reading); }
   void push(const TableReading& reading) { table_ = reading; }
   void reopened(int slot) { sampler_.reopened(slot); }
   void advance(Instant now) { sampler_.advance(now, ready_); }
@@ -58,6 +63,7 @@ class LivePipeline {
   }
 
   [[nodiscard]] const Sampler& sampler() const { return sampler_; }
+  [[nodiscard]] const LatestInputs& inputs() const { return inputs_; }
   [[nodiscard]] const calib::LiveTensor& live() const { return live_; }
   /// A sensor in another place before all that follows from it.
   [[nodiscard]] const calib::LiveVerdict& verdict() const {
@@ -68,7 +74,7 @@ class LivePipeline {
  private:
   [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& verdict_changed);
   [[nodiscard]] TensorSample judged(const Epoch& epoch, bool& verdict_changed);
-  [[nodiscard]] calib::LiveConditions conditions(Instant at);
+  [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
 
   double baseline_m_;
   Sampler sampler_;
@@ -77,10 +83,9 @@ class LivePipeline {
   calib::LiveCriticism criticism_;
   calib::RearrangementWatch rearranged_;
   InstrumentWatch instruments_;
-  std::array<std::string, kSensors> told_;       ///< who answers
-  std::optional<TableReading> table_;            ///< the last
-  std::map<std::string, double> auxiliary_;      ///< the last of each column
-  std::map<std::string, Instant> auxiliary_at_;  ///< its time
+  std::array<std::string, kSensors> told_;  ///< who answers
+  std::optional<TableReading> table_;  ///< the last
+  LatestInputs inputs_;
   bool calibrating_{false};
   std::vector<EpochOrGap> ready_;  ///< reused, so that a sample allocates nothing
 };

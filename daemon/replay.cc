@@ -19,7 +19,8 @@ std::string printable(std::string_view bytes) {
 }  // namespace
 
 struct Replay::Life {
-  explicit Life(Config c) : config(std::move(c)), pipeline(sampler_config(config), config.baseline_m) {
+  explicit Life(Config c)
+      : config(std::move(c)), pipeline(sampler_config(config), config.baseline_m, inputs_of(config)) {
     for (const DeviceConfig* device : devices_of(config)) {
       names.push_back(device != nullptr ? device->name : std::string());
       devices.push_back(device != nullptr ? device->device : nullptr);
@@ -123,7 +124,7 @@ void Replay::deliver() {
   life_->pipeline.deliver(
       [this](const Epoch&, const TensorSample& sample, bool) {
         ++counts_.samples;
-        line_(encoder_.encode(sample));
+        line_(encoder_.encode(sample, life_->pipeline.inputs().values()));
       },
       [this](const Gap& gap) { say(gap); });
 }
@@ -149,7 +150,7 @@ Result<void> Replay::on(const LifeNote& note) {
   life_ = std::make_unique<Life>(*std::move(config));
   SamplerConfig sampler = sampler_config(life_->config);
   sampler.first_seq = note.first_seq;
-  life_->pipeline = LivePipeline(sampler, life_->config.baseline_m);
+  life_->pipeline = LivePipeline(sampler, life_->config.baseline_m, inputs_of(life_->config));
   if (instead_ != nullptr) life_->pipeline.use(instead_);
   if (note.before) say(*note.before);
   return {};

@@ -43,7 +43,7 @@ Rig::Rig(boost::asio::io_context& io, Config config, CalibrationStore store)
                                       const LinkHealth& health) { on_link(device, health); },
                     .on_raw = [this](const RawRecord& record) { on_raw(record); },
                     .on_note = [this](const JournalNote& what, Stamp at) { note(what, at); }}),
-      pipeline_(sampler_config(config_), config_.baseline_m),
+      pipeline_(sampler_config(config_), config_.baseline_m, inputs_of(config_)),
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
@@ -211,7 +211,7 @@ void Rig::deliver() {
 
 void Rig::publish(const Epoch& epoch, const TensorSample& sample) {
   follow_magnet_test(epoch.t.mono, &epoch);
-  stream_.publish(sample);
+  stream_.publish(sample, pipeline_.inputs().values());
   last_skew_s_ = epoch.skew_bound_s;
   run_.feed(epoch, clock_.now());
 }

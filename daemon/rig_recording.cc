@@ -42,7 +42,7 @@ void Rig::start_disk_ring(LifeNote& life) {
   SamplerConfig sampler = sampler_config(config_);
   sampler.first_seq = life.first_seq = disk_ring_->first_seq();
   life.before = disk_ring_->between();
-  pipeline_ = LivePipeline(sampler, config_.baseline_m);
+  pipeline_ = LivePipeline(sampler, config_.baseline_m, inputs_of(config_));
 }
 
 void Rig::on_raw(const RawRecord& record) {

@@ -18,6 +18,26 @@ RecordingStatus recording(const Journal& journal) {
   return out;
 }
 
+/// What every input measures now.
+std::vector<InputStatus> inputs_now(const Config& config, const LatestInputs& latest, Instant now) {
+  std::vector<InputStatus> out;
+  for (const DeviceConfig* device : devices_of(config)) {
+    if (device == nullptr) continue;
+    for (const drivers::InputChannel& input : device->device->inputs()) {
+      const double value = latest.values()[out.size()].value;
+      const std::optional<Instant> heard = latest.heard(input.column);
+      const bool fresh = heard && now - *heard <= kFreshInput;
+      out.push_back({.name = input.column,
+                     .device = device->name,
+                     .input = input.input,
+                     .unit = input.unit,
+                     .value = fresh ? std::optional(value) : std::nullopt,
+                     .heard = heard});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 StatusReport Rig::report() const {
@@ -41,6 +61,7 @@ StatusReport Rig::report() const {
     out.criticism = {"identity", instruments.measured(),
                      "the calibration holds for the sensors that it was made with", instruments.remedy()};
   out.devices = instruments_.status();
+  out.inputs = inputs_now(config_, pipeline_.inputs(), now.mono);
   const SamplerHealth sampler = pipeline_.sampler().health();
   out.sampler = {
       .epochs = sampler.epochs, .gaps = sampler.gaps, .rate_hz = rate_hz_, .skew_bound_s = last_skew_s_};

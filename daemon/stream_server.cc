@@ -51,8 +51,8 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
     ring_ = SampleRing(config_.ring_lines, between ? between->from_seq : disk.first_seq());
     if (between) publish(*between);
   }
-  void publish(const TensorSample& sample) {
-    const std::string_view line = encoder_.encode(sample);
+  void publish(const TensorSample& sample, std::span<const InputValue> inputs) {
+    const std::string_view line = encoder_.encode(sample, inputs);
     ring_.push_sample(sample.seq, sample.t.mono, line);
     if (disk_ != nullptr) disk_->push({RingRecord::Kind::sample, sample.seq, sample.seq, sample.t, line});
     serve_later();
@@ -240,7 +240,9 @@ StreamServer::~StreamServer() { state_->stop(); }
 void StreamServer::keep(DiskRing& disk) { state_->keep(disk); }
 Result<void> StreamServer::start() { return state_->start(); }
 void StreamServer::stop() { state_->stop(); }
-void StreamServer::publish(const TensorSample& sample) { state_->publish(sample); }
+void StreamServer::publish(const TensorSample& sample, std::span<const InputValue> inputs) {
+  state_->publish(sample, inputs);
+}
 void StreamServer::publish(const Gap& gap) { state_->publish(gap); }
 void StreamServer::publish(const StatusReport& report) {
   state_->publish_line(StreamClass::status, encode(report));

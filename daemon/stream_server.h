@@ -5,6 +5,7 @@
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "daemon/request_rate.h"
 #include "proto/epoch.h"
 #include "proto/error.h"
+#include "proto/input_value.h"
 #include "proto/status_report.h"
 #include "proto/stream_class.h"
 #include "proto/stream_codec.h"
@@ -52,7 +54,8 @@ class StreamServer {
   /// Says why to every client, closes, removes the Unix socket.
   void stop();
 
-  void publish(const TensorSample& sample);
+  /// `inputs`: what the rig measures beside the field.
+  void publish(const TensorSample& sample, std::span<const InputValue> inputs = {});
   void publish(const Gap& gap);
   void publish(const StatusReport& report);
   void publish(const RunStatus& run);

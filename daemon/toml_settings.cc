@@ -10,8 +10,6 @@ namespace {
 
 using drivers::Settings;
 
-int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
-
 template <class T>
 std::optional<std::vector<T>> list_of(const toml::array& array) {
   std::vector<T> out;
@@ -43,9 +41,9 @@ void flatten(const toml::table& table, const std::string& prefix, Settings& into
       continue;
     }
     if (auto value = value_of(node)) {
-      into.set(name, *std::move(value), line_of(node));
+      into.set(name, *std::move(value), place_of(key.source()));
     } else {
-      into.set(name, std::string{}, line_of(node));
+      into.set(name, std::string{}, place_of(key.source()));
       into.object(name, "this kind of value has no meaning here");
     }
   }
@@ -53,8 +51,12 @@ void flatten(const toml::table& table, const std::string& prefix, Settings& into
 
 }  // namespace
 
+drivers::Place place_of(const toml::source_region& source) {
+  return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+}
+
 Settings to_settings(const toml::table& table, std::string section) {
-  Settings settings(std::move(section), line_of(table));
+  Settings settings(std::move(section), place_of(table.source()));
   flatten(table, "", settings);
   return settings;
 }

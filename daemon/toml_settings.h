@@ -5,8 +5,10 @@
 
 #include "drivers/settings.h"
 
-/// One TOML table as Settings: nested tables flattened with dots, every value with its line.
+/// One TOML table as Settings: nested tables flattened with dots, every key with its place in the file.
 namespace mgtd::daemon {
+
+[[nodiscard]] drivers::Place place_of(const toml::source_region& source);
 
 /// Values that Settings has no type for (dates, mixed lists, tables in lists) are objected to by name.
 [[nodiscard]] drivers::Settings to_settings(const toml::table& table, std::string section);

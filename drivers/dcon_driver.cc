@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "drivers/baud.h"
@@ -20,44 +19,29 @@ constexpr double kReopen_s = 30;
 constexpr std::size_t kLongestLine = 160;  // 16 channels of 8 characters, with room
 constexpr std::size_t kMaxChannels = 16;
 
-bool is_column(std::string_view name) {
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-  return kLetters.find(name.front()) != std::string_view::npos &&
-         std::all_of(name.begin(), name.end(), [&](char c) {
-           return c == '_' || (c >= '0' && c <= '9') || kLetters.find(c) != std::string_view::npos;
-         });
-}
-
-/// s1_T_degC .. s4_T_degC
-std::optional<int> sensor_of(std::string_view column) {
-  if (column.size() != 9 || column.front() != 's' || column.substr(2) != "_T_degC") return std::nullopt;
-  const int slot = column[1] - '1';
-  return slot >= 0 && slot < kSensors ? std::optional(slot) : std::nullopt;
-}
-
 bool is_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789ABCDEF") == std::string_view::npos;
 }
 
-void read_channels(Settings& s, std::vector<Channel>& out) {
-  std::set<std::string> seen;
-  for (const std::string& column : s.texts("channels")) {
-    if (!column.empty() && !is_column(column))
-      s.object("channels",
-               fmt::format("'{}' is no column's name: letters, digits and _, a letter first", column));
-    if (!column.empty() && !seen.insert(column).second)
-      s.object("channels", fmt::format("'{}' stands there twice", column));
-    out.push_back({column, 1, 0, sensor_of(column)});
-  }
-  if (seen.empty() || out.size() > kMaxChannels) {
+void read_channels(Settings& s, DconSettings& out) {
+  const std::vector<std::string> columns = s.texts("channels");
+  out.inputs = columns.size();
+  if (columns.size() > kMaxChannels ||
+      std::all_of(columns.begin(), columns.end(), [](const std::string& c) { return c.empty(); })) {
     s.object("channels", R"(must name the column of each input, 1 to 16: ["motor_A", "", "s3_T_degC"])");
     return;
   }
-  const std::vector<double> scale = s.numbers("scale", out.size(), std::vector<double>(out.size(), 1.0));
-  const std::vector<double> offset = s.numbers("offset", out.size(), std::vector<double>(out.size(), 0.0));
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i].scale = scale[i];
-    out[i].offset = offset[i];
+  const std::vector<double> scale = s.numbers("scale", out.inputs, std::vector<double>(out.inputs, 1.0));
+  const std::vector<double> offset = s.numbers("offset", out.inputs, std::vector<double>(out.inputs, 0.0));
+  const std::vector<std::string> units = s.texts("units");
+  if (!units.empty() && units.size() != columns.size())
+    s.object("units", fmt::format("must be a list of {} texts, one for each of 'channels'", columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].empty()) continue;
+    InputChannel channel{i, std::to_string(i), "channels", columns[i], {}, scale[i], offset[i]};
+    channel.unit = i < units.size() ? units[i] : std::string(unit_of_name(columns[i]));
+    check_column(channel, s);
+    out.channels.push_back(std::move(channel));
   }
 }
 
@@ -72,7 +56,7 @@ DconSettings read_dcon_settings(Settings& s) {
   out.checksum = s.boolean("checksum", out.checksum);
   out.every_s = s.number("every_s", out.every_s);
   if (!(out.every_s >= 0.2 && out.every_s <= 60)) s.object("every_s", "must be 0.2 to 60 s");
-  read_channels(s, out.channels);
+  read_channels(s, out);
   return out;
 }
 
@@ -176,23 +160,14 @@ Verdict DconDriver::on_refusal(Stamp arrival) {
 Verdict DconDriver::on_values(const Values& values, Stamp arrival) {
   if (asked_ != Asked::values) return unasked();
   answered(arrival.mono);
-  if (values.channels.size() < settings_.channels.size()) {
+  if (values.channels.size() < settings_.inputs) {
     set_state(LinkState::failed,
               fmt::format("the module sends {} channels, {} are configured; shorten 'channels'",
-                          values.channels.size(), settings_.channels.size()));
+                          values.channels.size(), settings_.inputs));
     return Verdict::rejected(Reject::length);
   }
-  AuxiliaryReading auxiliary{arrival, {}};
-  for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
-    const Channel& channel = settings_.channels[i];
-    if (channel.column.empty() || !values.channels[i]) continue;
-    const double value = channel.scale * *values.channels[i] + channel.offset;
-    if (channel.slot)
-      emit(TemperatureReading{*channel.slot, arrival, value, std::nullopt, std::nullopt});
-    else
-      auxiliary.values.emplace_back(channel.column, value);
-  }
-  if (!auxiliary.values.empty()) emit(std::move(auxiliary));
+  report_inputs(settings_.channels, values.channels, arrival,
+                [this](DeviceEvent event) { emit(std::move(event)); });
   if (health_.state != LinkState::live) set_state(LinkState::live, "reading its inputs");
   return Verdict::accepted();
 }

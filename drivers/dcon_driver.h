@@ -2,13 +2,14 @@
 #pragma once
 #include <array>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "drivers/dcon_protocol.h"
 #include "drivers/deadline.h"
+#include "drivers/input_channel.h"
 #include "drivers/line_device.h"
 #include "drivers/settings.h"
 
@@ -19,31 +20,25 @@
 ///   address = "01"               two hexadecimal digits
 ///   checksum = false             as the module is set
 ///   channels = ["motor_A", "", "s3_T_degC"]   column of each input in its order; "" is not used
+///   units = ["A", "", "degC"]    of the columns; when not given, as the ends of their names say
 ///   scale = [0.1, 1, 1]          column = scale * reading + offset; 1 and 0 when not given
 ///   offset = [0, 0, 0]
 ///   every_s = 1
 ///
-/// A column sN_T_degC is the temperature of that sensor (TemperatureReading); every other goes out as
-/// AuxiliaryReading under its own name. What a module calls out of range is not measured: it is left out.
-/// Three questions in a row without an answer make the link silent; it is asked on.
+/// What goes out is in input_channel.h; what a module calls out of range is not measured. Three questions in
+/// a row without an answer make the link silent; it is asked on.
 ///
 /// A reply does not say which question it answers. One question is asked at a time, and after one that was
 /// not answered, or a line that nobody asked for, no value is believed until the module has said its name. A
 /// module without a name must have been quiet instead, for as long as an answer may take.
 namespace mgtd::drivers::dcon {
 
-struct Channel {
-  std::string column;  ///< empty: not used
-  double scale{1};
-  double offset{0};
-  std::optional<int> slot;  ///< of the sensor whose temperature this is
-};
-
 struct DconSettings {
   int baud{kDefaultBaud};
   std::string address{"01"};
   bool checksum{false};
-  std::vector<Channel> channels;
+  std::size_t inputs{0};               ///< those of the module that are listed, used or not
+  std::vector<InputChannel> channels;  ///< those that are used
   double every_s{1};
 };
 
@@ -57,6 +52,7 @@ class DconDriver final : public LineDevice {
 
   void on_open(Stamp now) override;
   void on_tick(Stamp now) override;
+  [[nodiscard]] std::span<const InputChannel> inputs() const override { return settings_.channels; }
 
  protected:
   Verdict on_line(std::string_view line, Stamp arrival) override;

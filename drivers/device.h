@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/input_channel.h"
 #include "proto/health.h"
 #include "proto/reading.h"
 #include "proto/time.h"
@@ -39,6 +40,9 @@ class Device {
   /// Bytes of its shortest line that carries a reading: what the line needs before a reading can arrive. 0
   /// where that does not matter.
   [[nodiscard]] virtual std::size_t line_bytes() const { return 0; }
+
+  /// Its analogue inputs that are columns of the pose table.
+  [[nodiscard]] virtual std::span<const InputChannel> inputs() const { return {}; }
 
   /// True when the device should be closed and opened again (it stopped answering).
   [[nodiscard]] virtual bool wants_reopen() const { return false; }

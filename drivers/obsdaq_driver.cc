@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "drivers/identity.h"
@@ -40,7 +42,7 @@ ObsdaqDriver::ObsdaqDriver(int slot, ObsdaqSettings settings)
     : LineDevice({Ending::cr, kLongestLine, settings.baud}), slot_(slot), settings_(std::move(settings)) {}
 
 std::unique_ptr<Device> ObsdaqDriver::make(int slot, Settings& settings) {
-  return std::make_unique<ObsdaqDriver>(slot, read_obsdaq_settings(settings));
+  return std::make_unique<ObsdaqDriver>(slot, read_obsdaq_settings(settings, slot));
 }
 
 void ObsdaqDriver::on_open(Stamp now) {
@@ -268,12 +270,14 @@ void ObsdaqDriver::emit_sample(const Sample& sample, Stamp arrival) {
   if (sample.time_stamped && !sample.device_time_s && !std::exchange(impossible_date_noted_, true))
     emit(DeviceNote{arrival, "the PalmAcq sends a date that does not exist: samples go without device time"});
   if (!sample.supplement) return;
-  TemperatureReading temperature{slot_, arrival, std::nullopt, sample.supplement->electronics_degC,
-                                 sample.supplement->supply_V};
-  if (const auto& probe = settings_.thermometer)
-    temperature.sensor_degC =
-        sample.supplement->aux_V.at(probe->input) * probe->degC_per_V + probe->degC_at_0V;
-  emit(temperature);
+  emit(TemperatureReading{slot_, arrival, std::nullopt, sample.supplement->electronics_degC,
+                          sample.supplement->supply_V});
+  std::array<std::optional<double>, kInputs> inputs_V;
+  for (std::size_t i = 0; i < kInputs; ++i) {
+    const double volts = sample.supplement->aux_V.at(i);
+    if (std::abs(volts) < kInputEnd_V) inputs_V.at(i) = volts;
+  }
+  report_inputs(settings_.inputs, inputs_V, arrival, [this](DeviceEvent event) { emit(std::move(event)); });
 }
 
 }  // namespace mgtd::drivers::obsdaq

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,7 +16,7 @@
 /// One fluxgate behind an ObsDAQ: started, verified and kept streaming.
 ///
 ///   probing  as obsdaq_start.h: briskly, and patiently when that leads to nothing
-///   live     FieldReading per line, TemperatureReading once a second
+///   live     FieldReading per line; once a second TemperatureReading and what its inputs are used for
 ///   silent   no answer, or no valid line for 1 s (10 periods when slower): started over; the port is opened
 ///            again when nothing at all came for 10 s
 ///   failed   the port answers with something else, or is another one than stated: DeviceFault, tried again
@@ -35,6 +36,7 @@ class ObsdaqDriver final : public LineDevice {
   void on_tick(Stamp now) override;
   void on_close(Stamp now) override;
   void on_shutdown(Stamp now) override;
+  [[nodiscard]] std::span<const InputChannel> inputs() const override { return settings_.inputs; }
   [[nodiscard]] std::size_t line_bytes() const override {
     return kLineBytes + (settings_.palmacq ? kPrefixBytes : 0);
   }

@@ -58,6 +58,9 @@ struct Range {
 };
 inline constexpr std::array<Range, 3> kRanges{{{"02", 10.0}, {"03", 5.0}, {"04", 2.5}}};
 
+inline constexpr std::size_t kInputs = 3;               ///< auxiliary: p, q, r
+inline constexpr double kInputEnd_V = 32'767 / 8000.0;  ///< an input that says so or more is at its end
+
 /// How the internal trigger is set for a sample rate.
 struct Timing {
   std::uint16_t period{0};     ///< eeee
@@ -90,7 +93,7 @@ struct Exchange {
 struct Supplement {
   double supply_V{0};
   double electronics_degC{0};
-  std::array<double, 3> aux_V{};  ///< p, q, r
+  std::array<double, kInputs> aux_V{};  ///< p, q, r
 };
 
 struct Sample {

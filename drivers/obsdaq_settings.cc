@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "drivers/baud.h"
@@ -15,6 +17,7 @@ namespace mgtd::drivers::obsdaq {
 namespace {
 
 constexpr double kProfileVolts = 10.0;
+constexpr std::array<std::string_view, kInputs> kInputNames{"p", "q", "r"};
 constexpr std::array<int, 5> kProfileRanges_uT{70, 100, 250, 500, 1000};
 
 /// "mag-13-100" -> 10000 nT/V
@@ -48,18 +51,55 @@ void read_scale(Settings& s, ObsdaqSettings& out) {
   }
 }
 
-void read_thermometer(Settings& s, ObsdaqSettings& out) {
+/// Its own thermometer.
+void read_thermometer(Settings& s, ObsdaqSettings& out, int slot) {
   const std::string input = s.text("temperature", "none");
   const double slope = s.number("degC_per_V", 0.0);
   const double at_zero = s.number("degC_at_0V", 0.0);
   if (input == "none") return;
-  if (input != "p" && input != "q" && input != "r") {
+  const auto found = std::find(kInputNames.begin(), kInputNames.end(), input);
+  if (found == kInputNames.end()) {
     s.object("temperature", fmt::format("no input '{}'; there are \"p\", \"q\", \"r\" and \"none\"", input));
     return;
   }
   if (slope == 0)
     s.object("temperature", "needs degC_per_V (and degC_at_0V) of the thermometer on that input");
-  out.thermometer = Thermometer{static_cast<std::size_t>(input[0] - 'p'), slope, at_zero};
+  if (s.has_table("inputs." + input))
+    s.object("temperature",
+             fmt::format("inputs.{0} names a column for the same input; leave one of the two out", input));
+  out.inputs.push_back({static_cast<std::size_t>(found - kInputNames.begin()), input, "temperature",
+                        fmt::format("s{}_T_degC", slot + 1), "degC", slope, at_zero});
+}
+
+void read_input(Settings& s, ObsdaqSettings& out, std::size_t index) {
+  const std::string input(kInputNames.at(index));
+  const std::string table = "inputs." + input, name = table + ".name", scale = table + ".scale";
+  InputChannel channel{index,
+                       input,
+                       name,
+                       s.text(name, ""),
+                       s.text(table + ".unit", ""),
+                       s.number(scale, 1.0),
+                       s.number(table + ".offset", 0.0)};
+  if (!s.has_table(table)) return;
+  if (!s.has(name)) {
+    s.object(table, R"(needs a name, of its column in the pose table: name = "motor_A")");
+    return;
+  }
+  check_column(channel, s);
+  if (channel.unit.empty()) s.object(name, R"(needs a unit beside it: unit = "A")");
+  if (!s.has(scale) && !channel.unit.empty() && channel.unit != "V")
+    s.object(name, fmt::format("needs a scale beside it, {0} per V: {1} = scale * volts + offset",
+                               channel.unit, channel.column));
+  if (channel.scale == 0 || !std::isfinite(channel.scale)) s.object(scale, "must be a number other than 0");
+  if (!std::isfinite(channel.offset)) s.object(table + ".offset", "must be a number");
+  out.inputs.push_back(std::move(channel));
+}
+
+void read_inputs(Settings& s, ObsdaqSettings& out, int slot) {
+  read_thermometer(s, out, slot);
+  s.refuse_other_tables("inputs", kInputNames, "an ObsDAQ has the inputs p, q and r");
+  for (std::size_t i = 0; i < kInputNames.size(); ++i) read_input(s, out, i);
 }
 
 void check_rate(Settings& s, ObsdaqSettings& out) {
@@ -90,7 +130,7 @@ void check_rate(Settings& s, ObsdaqSettings& out) {
 
 }  // namespace
 
-ObsdaqSettings read_obsdaq_settings(Settings& s) {
+ObsdaqSettings read_obsdaq_settings(Settings& s, int slot) {
   ObsdaqSettings out;
   out.address = s.text("address", out.address);
   const bool is_hex = out.address.find_first_not_of("0123456789ABCDEF") == std::string::npos;
@@ -108,7 +148,7 @@ ObsdaqSettings read_obsdaq_settings(Settings& s) {
     out.range = *range;
   }
   read_scale(s, out);
-  read_thermometer(s, out);
+  read_inputs(s, out, slot);
   check_rate(s, out);
   return out;
 }

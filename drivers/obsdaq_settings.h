@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "drivers/input_channel.h"
 #include "drivers/obsdaq_protocol.h"
 #include "drivers/settings.h"
 
@@ -17,17 +18,13 @@
 ///   profile = "mag-13-100"      mag-03-R or mag-13-R, R = 70, 100, 250, 500, 1000 uT for +-10 V; or
 ///   scale_nT_per_V = [x, y, z]
 ///   offset_nT = [0, 0, 0]       added after scaling
-///   temperature = "none"        auxiliary input of the sensor's thermometer: "p", "q", "r"
-///   degC_per_V, degC_at_0V = 0  its line; the slope is needed with an input
+///   inputs.q.name = "motor_A"   column of the auxiliary input q (or p, r); sN_T_degC: temperature of sensor
+///   N inputs.q.unit = "A" inputs.q.scale, offset = 0  column = scale * volts + offset; the scale may be left
+///   out where the unit is V temperature = "none"        input of this sensor's own thermometer: "p", "q",
+///   "r". In short for the above degC_per_V, degC_at_0V = 0  its line; the slope is needed with an input
 ///
 /// Profiles are nominal figures of the sensor family; what a sensor really does is the calibration's affair.
 namespace mgtd::drivers::obsdaq {
-
-struct Thermometer {
-  std::size_t input{0};  ///< 0, 1, 2 = p, q, r
-  double degC_per_V{0};
-  double degC_at_0V{0};
-};
 
 struct ObsdaqSettings {
   std::string address{"01"};
@@ -40,10 +37,10 @@ struct ObsdaqSettings {
   std::string sensor;  ///< profile name, or "own scale"
   Eigen::Vector3d scale_nT_per_V{Eigen::Vector3d::Zero()};
   Eigen::Vector3d offset_nT{Eigen::Vector3d::Zero()};
-  std::optional<Thermometer> thermometer;
+  std::vector<InputChannel> inputs;  ///< of p, q, r those that are used; their readings are volts
 };
 
-/// Mistakes are left in `settings`.
-[[nodiscard]] ObsdaqSettings read_obsdaq_settings(Settings& settings);
+/// `slot`: of the sensor behind it. Mistakes are left in `settings`.
+[[nodiscard]] ObsdaqSettings read_obsdaq_settings(Settings& settings, int slot = 0);
 
 }  // namespace mgtd::drivers::obsdaq

@@ -9,9 +9,18 @@
 #include "proto/nearest_word.h"
 
 namespace mgtd::drivers {
-int Settings::line_of(std::string_view key) const {
-  const auto found = entries_.find(key);
-  return found == entries_.end() ? line_ : found->second.line;
+Place Settings::place_of(std::string_view key) const {
+  if (const auto found = entries_.find(key); found != entries_.end()) return found->second.place;
+  const auto inside = first_in(key);
+  return inside == entries_.end() ? begin_ : inside->second.place;
+}
+
+bool Settings::has_table(std::string_view key) const { return first_in(key) != entries_.end(); }
+
+Settings::Entries::const_iterator Settings::first_in(std::string_view table) const {
+  const std::string prefix = std::string(table) + ".";
+  const auto first = entries_.lower_bound(prefix);
+  return first != entries_.end() && first->first.starts_with(prefix) ? first : entries_.end();
 }
 
 Settings::Entry* Settings::find(std::string_view key) {
@@ -23,19 +32,19 @@ Settings::Entry* Settings::find(std::string_view key) {
 }
 
 void Settings::wrong_type(std::string_view key, std::string_view expected) {
-  SettingError error{line_of(key), fmt::format("{}: '{}' must be {}", section_, key, expected)};
+  SettingError error{place_of(key), fmt::format("{}: '{}' must be {}", section_, key, expected)};
   const bool told = std::any_of(errors_.begin(), errors_.end(), [&](const SettingError& before) {
-    return before.line == error.line && before.message == error.message;
+    return before.line == error.line && before.column == error.column && before.message == error.message;
   });
   if (!told) errors_.push_back(std::move(error));  // a key may be read by the driver and by its owner
 }
 
 void Settings::missing(std::string_view key) {
-  errors_.push_back({line_, fmt::format("{}: '{}' is missing", section_, key)});
+  errors_.push_back({begin_, fmt::format("{}: '{}' is missing", section_, key)});
 }
 
 void Settings::object(std::string_view key, std::string message) {
-  errors_.push_back({line_of(key), fmt::format("{}: '{}': {}", section_, key, message)});
+  errors_.push_back({place_of(key), fmt::format("{}: '{}': {}", section_, key, message)});
 }
 
 double Settings::number(std::string_view key, double fallback) {
@@ -109,13 +118,27 @@ std::string Settings::required_text(std::string_view key) {
   return text(key, "");
 }
 
+void Settings::refuse_other_tables(std::string_view key, std::span<const std::string_view> known,
+                                   std::string_view remedy) {
+  const std::string prefix = std::string(key) + ".";
+  std::string told;
+  for (auto& [name, entry] : entries_) {
+    const std::size_t end = name.find('.', prefix.size());
+    if (!name.starts_with(prefix) || end == std::string::npos) continue;
+    const std::string table = name.substr(prefix.size(), end - prefix.size());
+    if (std::find(known.begin(), known.end(), table) != known.end()) continue;
+    entry.used = true;
+    if (std::exchange(told, table) != table) object(name, fmt::format("there is no '{}': {}", table, remedy));
+  }
+}
+
 void Settings::refuse_unknown() {
   for (const auto& [key, entry] : entries_) {
     if (entry.used) continue;
     std::string message = fmt::format("{}: unknown key '{}'", section_, key);
     if (const auto nearest = nearest_word(key, asked_))
       message += fmt::format(", did you mean '{}'?", *nearest);
-    errors_.push_back({entry.line, std::move(message)});
+    errors_.push_back({entry.place, std::move(message)});
   }
 }
 

@@ -45,6 +45,15 @@ Json to_json(const DeviceStatus& device, Instant now) {
           {"last_frame_age_s", h.last_frame ? Json(to_seconds(now - *h.last_frame)) : Json(nullptr)}};
 }
 
+Json to_json(const InputStatus& input, Instant now) {
+  return {{"name", input.name},
+          {"device", input.device},
+          {"input", input.input},
+          {"unit", input.unit.empty() ? Json(nullptr) : Json(input.unit)},
+          {"value", input.value ? number(*input.value) : Json(nullptr)},
+          {"age_s", input.heard ? Json(to_seconds(now - *input.heard)) : Json(nullptr)}};
+}
+
 Json clients(const ClientCounts& counts) {
   Json drops = Json::object();
   for (std::size_t i = 0; i < counts.drops.size(); ++i) drops[std::string(kDropNames[i])] = counts.drops[i];
@@ -167,6 +176,8 @@ Json to_json(const StatusReport& report) {
     left_out.push_back({{"effect", effect}, {"lacks", lacks}});
   Json devices = Json::array();
   for (const DeviceStatus& device : report.devices) devices.push_back(to_json(device, report.at.mono));
+  Json inputs = Json::array();
+  for (const InputStatus& input : report.inputs) inputs.push_back(to_json(input, report.at.mono));
   return {{"t", format_utc(report.at.wall)},
           {"t_ns", report.at.wall.ns},
           {"uptime_s", report.uptime_s},
@@ -181,6 +192,7 @@ Json to_json(const StatusReport& report) {
             {"limit", report.criticism.limit},
             {"remedy", report.criticism.remedy}}},
           {"devices", std::move(devices)},
+          {"inputs", std::move(inputs)},
           {"sampler",
            {{"epochs", report.sampler.epochs},
             {"gaps", report.sampler.gaps},

@@ -17,6 +17,7 @@
 ///          "devices":[{"name","driver","port","state","detail","identity","bytes_in","bytes_in_frames",
 ///                      "bytes_rejected","bytes_resync","bytes_pending","bytes_out","frames",
 ///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s"}],
+///          "inputs":[{"name","device","input","unit","value","age_s"}],
 ///          "sampler":{"epochs","gaps","rate_hz","skew_bound_s"},
 ///          "stream":{"clients","accepted","refused","dropped","dropped_for":{..},"last_drop","gaps"},
 ///          "control":{as stream but gaps, "holder": control_hold.h},

@@ -22,6 +22,16 @@ struct DeviceStatus {
   LinkHealth health;
 };
 
+/// An auxiliary input or a sensor's thermometer.
+struct InputStatus {
+  std::string name;              ///< its column
+  std::string device;            ///< that measures it
+  std::string input;             ///< as that device calls it
+  std::string unit;              ///< empty: not known
+  std::optional<double> value;   ///< empty: not known now
+  std::optional<Instant> heard;  ///< when it was last measured
+};
+
 struct SamplerStatus {
   std::uint64_t epochs{0};
   std::uint64_t gaps{0};  ///< epochs that were not measured
@@ -73,6 +83,7 @@ struct StatusReport {
   CalibrationUse calibration_use;
   CriticismStatus criticism;
   std::vector<DeviceStatus> devices;
+  std::vector<InputStatus> inputs;
   SamplerStatus sampler;
   StreamStatus stream;
   ControlStatus control;

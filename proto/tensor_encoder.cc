@@ -108,6 +108,20 @@ void append_flags(std::string& out, Flags flags) {
   out += ']';
 }
 
+/// Names of columns are letters, digits and _.
+void append_inputs(std::string& out, std::span<const InputValue> inputs) {
+  out += '{';
+  const char* separator = "\"";
+  for (const InputValue& input : inputs) {
+    out += separator;
+    out += input.column;
+    out += "\":";
+    append_number(out, input.value);
+    separator = ",\"";
+  }
+  out += '}';
+}
+
 }  // namespace
 
 void TensorEncoder::append_time(WallTime t) {
@@ -124,7 +138,7 @@ void TensorEncoder::append_time(WallTime t) {
   line_.append(ns.data(), ns.size());
 }
 
-std::string_view TensorEncoder::encode(const TensorSample& sample) {
+std::string_view TensorEncoder::encode(const TensorSample& sample, std::span<const InputValue> inputs) {
   line_.assign(R"({"class":"TENSOR","seq":)");
   append_integer(line_, sample.seq);
   line_ += R"(,"t":")";
@@ -153,6 +167,10 @@ std::string_view TensorEncoder::encode(const TensorSample& sample) {
   append_number(line_, sample.closure.chi2);
   line_ += R"(},"flags":)";
   append_flags(line_, sample.flags);
+  if (!inputs.empty()) {
+    line_ += R"(,"inputs":)";
+    append_inputs(line_, inputs);
+  }
   line_ += '}';
   return line_;
 }

@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "proto/input_value.h"
 #include "proto/tensor.h"
 
 /// A TensorSample as one TENSOR line of the live stream, without the line end:
@@ -12,18 +14,20 @@
 ///   {"class":"TENSOR","seq":123,"t":"2026-11-21T10:00:00.123456Z","t_ns":1795255200123456000,
 ///    "frame":"platform","cal":"c0123456789ab","b_nT":[..3..],"f_nT":..,
 ///    "g_nT_per_m":{"xx":..,"yy":..,"zz":..,"xy":..,"xz":..,"yz":..},"g_sd_nT_per_m":{same keys},
-///    "closure":{"curl_nT_per_m":..,"center_nT":[..3..],"chi2":..},"flags":["interpolated"]}
+///    "closure":{"curl_nT_per_m":..,"center_nT":[..3..],"chi2":..},"flags":["interpolated"],
+///    "inputs":{"motor_A":0.731250}}
 ///
 /// `t` and `t_ns` are the same instant, UTC. What is not a finite number is null; so is `cal` without a
 /// calibration. Numbers carry six decimals, 1 fT and 1 fT/m, far below what any fluxgate resolves; `zz` is
 /// printed as minus the sum of the printed `xx` and `yy`, so that rounding leaves the trace zero.
-/// No allocation once the buffer has grown to a line's length. Not for concurrent use.
+/// `inputs`, what the rig measures beside the field, is there when it has any. No allocation once the buffer
+/// has grown to a line's length. Not for concurrent use.
 namespace mgtd {
 
 class TensorEncoder {
  public:
   /// The view is valid until the next call.
-  [[nodiscard]] std::string_view encode(const TensorSample& sample);
+  [[nodiscard]] std::string_view encode(const TensorSample& sample, std::span<const InputValue> inputs = {});
 
  private:
   void append_time(WallTime t);

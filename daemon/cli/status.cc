@@ -29,6 +29,25 @@ void print_devices(const nlohmann::json& devices) {
   }
 }
 
+/// What the auxiliary inputs and thermometers measure now.
+void print_inputs(const nlohmann::json& inputs) {
+  constexpr double kNow_s = 10;
+  if (inputs.empty()) return;
+  fmt::print("\n{:<12} {:<8} {:>12}\n", "input", "of", "value");
+  for (const auto& input : inputs) {
+    const std::string of =
+        fmt::format("{} {}", input.at("device").get<std::string>(), input.at("input").get<std::string>());
+    const auto &value = input.at("value"), &age = input.at("age_s");
+    const std::string unit = text_or(input, "unit", "");
+    const std::string ago = age.is_null() ? std::string() : duration_text(age.get<double>());
+    const std::string said =
+        !value.is_number() ? fmt::format("{:>12} not measured {}", "--", ago.empty() ? "yet" : "for " + ago)
+        : age.get<double>() > kNow_s ? fmt::format("{:>12.4f} {}, {} ago", value.get<double>(), unit, ago)
+                                     : fmt::format("{:>12.4f} {}", value.get<double>(), unit);
+    fmt::print("{:<12} {:<8} {}\n", input.at("name").get<std::string>(), of, said);
+  }
+}
+
 void print_run(const nlohmann::json& object) {
   const auto run = run_status_from_json(object);
   if (!run || run->run_id.empty()) {
@@ -166,6 +185,7 @@ int run_status(const Session& session, double patience_s) {
   print_recording("samples", s.at("ring"));
   print_clients(s);
   print_devices(s.at("devices"));
+  print_inputs(s.value("inputs", nlohmann::json::array()));
   print_bytes(s.at("devices"));
   print_run(s.at("run"));
   if (const auto magnet = s.find("magnet"); magnet != s.end() && !magnet->is_null())

@@ -2,6 +2,8 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -76,5 +78,15 @@ class Bench {
 inline const std::vector<std::string> kShortRun{"run",           "start", "--step",       "20",
                                                 "--random",      "16",    "--revisits",   "4",
                                                 "--dwell-short", "1",     "--dwell-long", "2"};
+
+/// The raw journals of its daemon, in the order they were written.
+inline std::vector<std::string> journals(const Bench& bench) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(bench.dir() / "runs")) {
+    if (entry.path().extension() == ".raw") out.push_back(entry.path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
 
 }  // namespace mgtd::testing

@@ -68,15 +68,6 @@ std::uint64_t newest(const Bench& bench) {
   return seq.value_or(0);
 }
 
-std::vector<std::string> journals(const Bench& bench) {
-  std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(bench.dir() / "runs")) {
-    if (entry.path().extension() == ".raw") out.push_back(entry.path());
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 std::vector<std::string> lines_of(const std::string& file) {
   std::vector<std::string> out;
   std::ifstream in(file);

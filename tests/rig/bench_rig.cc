@@ -47,7 +47,7 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
     instruments_.push_back(std::make_unique<GsmInstrument>(world_, utc_s));
     names_.push_back("scalar");
   }
-  if (auto inputs = recorded(world_.scenario().covariates); !inputs.empty()) {
+  if (auto inputs = on_module(world_.scenario().covariates); !inputs.empty()) {
     instruments_.push_back(std::make_unique<DconInstrument>(std::move(inputs)));
     names_.push_back("auxiliary");
   }

@@ -19,11 +19,15 @@ std::string sensor_scale(double uT_full_scale) {
   return fmt::format("scale_nT_per_V = [{0}, {0}, {0}]", nT_per_V);
 }
 
-std::string sensor(const Scenario& s, const std::string& port) {
-  return fmt::format(
+std::string sensor(const Scenario& s, int slot, const std::string& port) {
+  std::string out = fmt::format(
       "\n[[sensor]]\ndriver = \"obsdaq\"\nport = \"{}\"\npalmacq = {}\nrate_hz = {}\nrange_V = {}\n{}\n"
       "temperature = \"p\"\ndegC_per_V = 10.0\ndegC_at_0V = 0.0\n",
       port, s.palmacq, s.rate_hz, s.range_V, sensor_scale(s.uT_full_scale));
+  for (const Covariate& c : on_digitiser(s.covariates, slot))
+    out += fmt::format("inputs.{} = {{name = \"{}\", unit = \"{}\", scale = {}, offset = {}}}\n",
+                       c.input->letter, c.name, c.input->unit, c.input->per_V, c.input->at_0V);
+  return out;
 }
 
 std::string table(const Scenario& s, const std::string& dir) {
@@ -55,14 +59,14 @@ std::string config_text(const Scenario& s, const std::string& dir, const std::st
   std::string out =
       fmt::format("# For the simulated rig '{}'.\n[rig]\nname = \"{}\"\nbaseline_m = {}\nrate_hz = {}\n",
                   s.name, s.name, s.baseline_m, s.rate_hz);
-  for (int i = 1; i <= 4; ++i) out += sensor(s, fmt::format("{}/fluxgate{}", dir, i));
+  for (int i = 0; i < 4; ++i) out += sensor(s, i, fmt::format("{}/fluxgate{}", dir, i + 1));
   out += table(s, dir);
   if (s.scalar) {
     out += fmt::format("\n[scalar]\ndriver = \"gsm\"\nport = \"{}/scalar\"\nbaud = 115200\n", dir);
   } else {
     out += fmt::format("\n[site]\nfield_nT = {}\n", s.f_nT);
   }
-  if (const auto inputs = recorded(s.covariates); !inputs.empty()) out += auxiliary(inputs, dir);
+  if (const auto inputs = on_module(s.covariates); !inputs.empty()) out += auxiliary(inputs, dir);
   // Long enough that the host's own pauses, which a fast clock makes long, leave something to look at.
   const double preflight_s = 5 + (speed_up - 1) / 2;
   return out + fmt::format(

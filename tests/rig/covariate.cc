@@ -27,8 +27,13 @@ double Covariate::at(double t_s) const {
   return mean;
 }
 
-std::vector<Covariate> recorded(std::vector<Covariate> all) {
-  std::erase_if(all, [](const Covariate& c) { return !c.recorded; });
+std::vector<Covariate> on_module(std::vector<Covariate> all) {
+  std::erase_if(all, [](const Covariate& c) { return !c.recorded || c.input; });
+  return all;
+}
+
+std::vector<Covariate> on_digitiser(std::vector<Covariate> all, int slot) {
+  std::erase_if(all, [&](const Covariate& c) { return !c.recorded || !c.input || c.input->slot != slot; });
   return all;
 }
 

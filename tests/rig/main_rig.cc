@@ -58,7 +58,8 @@ constexpr const char* kScenarioHelp =
   [[vehicle]]    at_s, nearest_m, speed_m_per_s, stands_s, moment_Am2: passes, or stands for a while
   [[magnet]]     at_s, until_s, moment_Am2 = [3], at_m = [3]: put down near the array; stays without until_s
   [[gross]]      pose, poses, where, do = "off" (by nT), "stuck" or "saturated": readings of a table
-  [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern
+  [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern; input = "s2.q", unit,
+                 per_V, at_0V: on the auxiliary input of a digitiser instead of the input module
   [[effect]]     name and coefficients; where = all, s1 .. s4, s1.x .. s4.z (default all):
 )";
 

@@ -45,7 +45,11 @@ double volts_of_code(std::string_view ccdd) {
 }  // namespace
 
 ObsdaqInstrument::ObsdaqInstrument(World& world, int slot, double utc_s)
-    : world_(world), slot_(slot), utc_s_(utc_s), palmacq_(world.scenario().palmacq) {
+    : world_(world),
+      slot_(slot),
+      utc_s_(utc_s),
+      palmacq_(world.scenario().palmacq),
+      inputs_(on_digitiser(world.scenario().covariates, slot)) {
   // Spread over the allowed range so that no two of the four agree.
   constexpr std::array<double, 4> kShare{-1.0, 0.6, -0.2, 1.0};
   const Scenario& s = world.scenario();
@@ -237,13 +241,20 @@ std::string ObsdaqInstrument::sample_line(double t_s) {
   return line + "L";
 }
 
-/// Supply 12.3 V; electronics 5 degrees warmer than the head; the head on input p at 0.1 V per degree.
+/// Supply 12.3 V; electronics 5 degrees warmer than the head; the head on input p at 0.1 V per degree; on q
+/// and r what the scenario puts there.
 std::string ObsdaqInstrument::supplement(double t_s) const {
   const double head = world_.head_degC(slot_, t_s);
   const auto supply = std::llround((12.3 - 9.15) / 2.6622e-3);
   const auto electronics = std::llround((head + 5) * 128);
-  const auto p = std::clamp<std::int64_t>(std::llround(head * 0.1 * 8000), -32768, 32767);
-  return ":" + hex(supply, 4) + hex(electronics, 4) + hex(p, 4) + "00000000";
+  std::array<double, 3> inputs_V{head * 0.1, 0, 0};
+  for (const Covariate& c : inputs_)
+    inputs_V.at(static_cast<std::size_t>(c.input->letter - 'p')) =
+        (c.at(t_s) - c.input->at_0V) / c.input->per_V;
+  std::string out = ":" + hex(supply, 4) + hex(electronics, 4);
+  for (const double volts : inputs_V)
+    out += hex(std::clamp<std::int64_t>(std::llround(volts * 8000), -32768, 32767), 4);
+  return out;
 }
 
 std::string ObsdaqInstrument::time_prefix(double t_s) const {

@@ -2,7 +2,9 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
+#include "tests/rig/covariate.h"
 #include "tests/rig/instrument.h"
 #include "tests/rig/world.h"
 
@@ -60,7 +62,8 @@ class ObsdaqInstrument final : public Instrument {
   int slot_;
   double utc_s_;
   bool palmacq_;
-  double oscillator_;  ///< length of its second
+  std::vector<Covariate> inputs_;  ///< auxiliary, beside the thermometer
+  double oscillator_;              ///< length of its second
   bool transparent_{false}, forwarding_{false}, escape_{false};
   std::string line_;
   int bars_{0};

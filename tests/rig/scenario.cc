@@ -218,6 +218,27 @@ void Reader::for_each(std::string_view name, Body body) {
   }
 }
 
+/// input = "s2.q", with unit, per_V and at_0V.
+void read_input(Section& section, Covariate& c) {
+  std::string of;
+  CovariateInput input;
+  section.read("input", of);
+  section.read("unit", input.unit);
+  section.read("per_V", input.per_V);
+  section.read("at_0V", input.at_0V);
+  if (of.empty()) return;
+  const bool known = of.size() == 4 && of[0] == 's' && of[1] >= '1' && of[1] <= '4' && of[2] == '.' &&
+                     (of[3] == 'q' || of[3] == 'r');
+  if (!known)
+    section.complain("input",
+                     fmt::format("input = '{}': s1.q, s1.r .. s4.q, s4.r; the thermometer is on p", of));
+  if (input.per_V == 0) section.complain("per_V", "per_V must not be 0");
+  if (!known || input.per_V == 0) return;
+  input.slot = of[1] - '1';
+  input.letter = of[3];
+  c.input = std::move(input);
+}
+
 void Reader::read_covariates(Scenario& s) {
   for_each("covariate", [&](Section& section) {
     Covariate c;
@@ -228,6 +249,12 @@ void Reader::read_covariates(Scenario& s) {
     section.read("every_s", c.every_s, {0.1, 1e6});
     section.read("recorded", c.recorded);
     section.read("pattern", c.pattern);
+    read_input(section, c);
+    for (const Covariate& other : s.covariates) {
+      const bool same = c.input && other.input && other.input->slot == c.input->slot &&
+                        other.input->letter == c.input->letter;
+      if (same) section.complain("input", fmt::format("'{}' is on that input already", other.name));
+    }
     s.covariates.push_back(std::move(c));
   });
 }

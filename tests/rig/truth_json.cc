@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "tests/rig/scenario.h"
@@ -11,14 +13,20 @@ const char* name_of(NoiseKind kind) {
 }
 
 nlohmann::json covariate_json(const Covariate& c) {
-  return {{"name", c.name},
-          {"mean", c.mean},
-          {"amplitude", c.amplitude},
-          {"wave", c.wave == Wave::toggle ? "toggle"
-                   : c.wave == Wave::sine ? "sine"
-                                          : "ramp"},
-          {"every_s", c.every_s},
-          {"recorded", c.recorded}};
+  nlohmann::json out{{"name", c.name},
+                     {"mean", c.mean},
+                     {"amplitude", c.amplitude},
+                     {"wave", c.wave == Wave::toggle ? "toggle"
+                              : c.wave == Wave::sine ? "sine"
+                                                     : "ramp"},
+                     {"every_s", c.every_s},
+                     {"recorded", c.recorded}};
+  if (c.input)
+    out["input"] = {{"of", fmt::format("s{}.{}", c.input->slot + 1, c.input->letter)},
+                    {"unit", c.input->unit},
+                    {"per_V", c.input->per_V},
+                    {"at_0V", c.input->at_0V}};
+  return out;
 }
 
 nlohmann::json vehicle_json(const Vehicle& v) {

@@ -95,5 +95,30 @@ TEST(Auxiliary, ACurrentIsMeasuredFittedAndTakenOutOfTheStream) {
   EXPECT_TRUE(last_of(pipeline, pose, 200).flags.has(Flag::incomplete)) << "what it was 180 s ago is not now";
 }
 
+/// The same current through an input of a digitiser: means of every pose are those of the rig's own truth.
+TEST(Auxiliary, InputsOfTheDigitisersAreColumnsOfEveryPose) {
+  VirtualDaemon daemon(test::scenario_of(
+      "[rig]\nname = 'motor'\nparameters = 'table6'\nseed = 9\n"
+      "[[covariate]]\nname = 'motor_A'\nwave = 'ramp'\namplitude = 1\nevery_s = 3600\n"
+      "input = 's3.q'\nunit = 'A'\nper_V = 2\nat_0V = -0.5\n"
+      "[[covariate]]\nname = 'supply_V'\nmean = 12\namplitude = 0.3\nwave = 'sine'\nevery_s = 4000\n"
+      "input = 's1.r'\nper_V = 5\n"));
+  ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
+  daemon.start(*make_plan({.step_deg = 20, .random = 12, .revisits = 2}, daemon.table().limits()));
+  const double begun_s = daemon.t_s;
+  ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
+  ASSERT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
+  ASSERT_EQ(daemon.poses.poses.size(), 30U);
+  const auto& covariates = daemon.rig.world().scenario().covariates;
+  for (const Pose& pose : daemon.poses.poses) {
+    ASSERT_EQ(pose.covariates.size(), 2U);
+    // Read once a second, at steps of 1/8000 V, within half a second of the middle of the dwell.
+    EXPECT_NEAR(pose.covariates.at("motor_A"), covariates[0].at(begun_s + *pose.t_s),
+                2 / 8000.0 + 0.5 / 3600);
+    EXPECT_NEAR(pose.covariates.at("supply_V"), covariates[1].at(begun_s + *pose.t_s), 5 / 8000.0 + 5e-4);
+    EXPECT_TRUE(pose.T_degC[0]) << "the thermometers are read as before";
+  }
+}
+
 }  // namespace
 }  // namespace mgtd

@@ -77,7 +77,7 @@ class VirtualStream {
     }
     SamplerConfig sampler = sampler_config(config_);
     sampler.first_seq = first_seq;
-    pipeline_.emplace(sampler, config_.baseline_m);
+    pipeline_.emplace(sampler, config_.baseline_m, inputs_of(config_));
     calibrating_ = wants_calibrating_ = false;
     note(LifeNote{"test", text_, first_seq, before});
     if (before) say(*before);
@@ -215,7 +215,8 @@ class VirtualStream {
   void deliver() {
     pipeline_->deliver(
         [this](const Epoch&, const TensorSample& sample, bool) {
-          on_line({RingRecord::Kind::sample, sample.seq, sample.seq, sample.t, encoder_.encode(sample)});
+          on_line({RingRecord::Kind::sample, sample.seq, sample.seq, sample.t,
+                   encoder_.encode(sample, pipeline_->inputs().values())});
         },
         [this](const Gap& gap) { say(gap); });
   }

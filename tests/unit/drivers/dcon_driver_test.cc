@@ -19,7 +19,9 @@ using ::testing::SizeIs;
 
 DconSettings three_channels() {
   DconSettings out;
-  out.channels = {{"motor_A", 0.1, 0.5, std::nullopt}, {"", 1, 0, std::nullopt}, {"s3_T_degC", 1, 0, 2}};
+  out.inputs = 3;
+  out.channels = {{0, "0", "channels", "motor_A", "A", 0.1, 0.5},
+                  {2, "2", "channels", "s3_T_degC", "degC", 1, 0}};
   return out;
 }
 
@@ -125,10 +127,27 @@ TEST(DconSettingsTest, MistakesAreNamed) {
   s.set("baud", std::int64_t{1}, 2);
   s.set("address", std::string("1"), 3);
   s.set("every_s", 0.0, 4);
-  s.set("channels", std::vector<std::string>{"motor A", "x", "x"}, 5);
+  s.set("channels", std::vector<std::string>{"motor A", "x", "y"}, 5);
   s.set("scale", std::vector<double>{1, 2}, 6);
+  s.set("units", std::vector<std::string>{"A"}, 7);
   static_cast<void>(read_dcon_settings(s));
   EXPECT_EQ(s.errors().size(), 6U);
+}
+
+TEST(DconSettingsTest, AUnitIsStatedOrToldByTheName) {
+  Settings s("[[auxiliary]]", 1);
+  s.set("channels", std::vector<std::string>{"motor_A", "", "wind", "s3_T_degC"}, 2);
+  const DconSettings told = read_dcon_settings(s);
+  ASSERT_THAT(told.channels, SizeIs(3));
+  EXPECT_EQ(told.channels[0].unit, "A");
+  EXPECT_EQ(told.channels[1].unit, "");
+  EXPECT_EQ(told.channels[2].unit, "degC");
+  EXPECT_EQ(told.channels[2].index, 3U);
+  s.set("units", std::vector<std::string>{"A", "", "m/s", "K"}, 3);
+  const DconSettings stated = read_dcon_settings(s);
+  EXPECT_EQ(stated.channels[1].unit, "m/s");
+  ASSERT_THAT(s.errors(), SizeIs(1));
+  EXPECT_THAT(s.errors()[0].message, HasSubstr("the end of 's3_T_degC' says degC, the unit is K"));
 }
 
 TEST(DconRegistry, IsAnAuxiliaryModule) {

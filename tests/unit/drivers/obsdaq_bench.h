@@ -73,13 +73,20 @@ struct Instrument {
 };
 
 inline ObsdaqSettings settings(bool palmacq = false) {
-  Settings s("[[sensor]] s1", 1);
+  Settings s("[[sensor]] s3", 1);
   s.set("profile", std::string("mag-13-100"), 2);
   s.set("palmacq", palmacq, 3);
   s.set("temperature", std::string("p"), 4);
   s.set("degC_per_V", 100.0, 5);
   s.set("degC_at_0V", -5.0, 6);
-  ObsdaqSettings out = read_obsdaq_settings(s);
+  s.set("inputs.q.name", std::string("motor_A"), 7);
+  s.set("inputs.q.unit", std::string("A"), 8);
+  s.set("inputs.q.scale", 2.0, 9);
+  s.set("inputs.q.offset", 0.5, 10);
+  s.set("inputs.r.name", std::string("s1_T_degC"), 11);
+  s.set("inputs.r.unit", std::string("degC"), 12);
+  s.set("inputs.r.scale", 10.0, 13);
+  ObsdaqSettings out = read_obsdaq_settings(s, 2);
   EXPECT_TRUE(s.errors().empty());
   return out;
 }

@@ -7,6 +7,12 @@
 namespace mgtd::drivers::obsdaq {
 namespace {
 
+using ::testing::DoubleEq;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+using ::testing::SizeIs;
+
 TEST_F(ObsdaqDriverTest, TurnsLinesIntoReadings) {
   go_live();
   bench.feed("*0259FEFFF1BFFFFCEDL\r*0259FEFFF1BF");
@@ -21,9 +27,35 @@ TEST_F(ObsdaqDriverTest, TurnsLinesIntoReadings) {
   EXPECT_NEAR(readings[0].y_nT.z(), -9.38, 5e-3);
   EXPECT_FALSE(readings[0].flags.any());
   const auto temperatures = bench.events<TemperatureReading>();
-  ASSERT_EQ(temperatures.size(), 1U);
-  EXPECT_NEAR(*temperatures[0].sensor_degC, -4.8625, 1e-9);  // 0.001375 V * 100 - 5
+  ASSERT_EQ(temperatures.size(), 3U);
   EXPECT_NEAR(*temperatures[0].electronics_degC, 35.594, 5e-4);
+  EXPECT_EQ(temperatures[1].slot, 2);
+  EXPECT_NEAR(*temperatures[1].sensor_degC, -4.8625, 1e-9);  // 0.001375 V * 100 - 5
+}
+
+/// Input p is its own thermometer, q a motor's current at 2 A/V, r the thermometer of another sensor.
+TEST_F(ObsdaqDriverTest, ItsInputsAreColumnsAndThermometers) {
+  go_live();
+  bench.feed("*0259FEFFF1BFFFFCEDL:04AC11CC000B1F40E0C0\r");
+  const auto auxiliary = bench.events<AuxiliaryReading>();
+  ASSERT_EQ(auxiliary.size(), 1U);
+  EXPECT_THAT(auxiliary[0].values, ElementsAre(Pair("motor_A", DoubleEq(2.5))));  // 1 V * 2 + 0.5
+  const auto temperatures = bench.events<TemperatureReading>();
+  ASSERT_EQ(temperatures.size(), 3U);
+  EXPECT_EQ(temperatures[2].slot, 0);
+  EXPECT_NEAR(*temperatures[2].sensor_degC, -10, 1e-9);  // -1 V * 10
+  EXPECT_FALSE(temperatures[2].electronics_degC);
+}
+
+TEST_F(ObsdaqDriverTest, AnInputAtItsEndIsNotMeasured) {
+  go_live();
+  bench.feed("*0259FEFFF1BFFFFCEDL:04AC11CC7FFF7FFF8000\r");
+  EXPECT_THAT(bench.events<AuxiliaryReading>(), IsEmpty());
+  const auto temperatures = bench.events<TemperatureReading>();
+  ASSERT_EQ(temperatures.size(), 1U);
+  EXPECT_FALSE(temperatures[0].sensor_degC);
+  bench.feed("*0259FEFFF1BFFFFCEDL:04AC11CC7FFF7FFE8001\r");
+  EXPECT_THAT(bench.events<AuxiliaryReading>(), SizeIs(1));
 }
 
 TEST_F(ObsdaqDriverTest, LinesInOneChunkAreStampedByTheirPlaceOnTheWire) {

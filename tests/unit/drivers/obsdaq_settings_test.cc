@@ -69,6 +69,52 @@ TEST(ObsdaqSettings, MistakesNameTheRemedyAndTheLine) {
   EXPECT_THAT(one({kProfile, {"rate_hz", 1.0}}).line, 3);
 }
 
+TEST(ObsdaqSettings, AnInputIsAColumnWithItsUnitAndScale) {
+  ObsdaqSettings settings;
+  EXPECT_TRUE(mistakes({kProfile,
+                        {"inputs.q.name", std::string("motor_A")},
+                        {"inputs.q.unit", std::string("A")},
+                        {"inputs.q.scale", 2.0},
+                        {"inputs.q.offset", -0.1},
+                        {"inputs.r.name", std::string("supply_V")},
+                        {"inputs.r.unit", std::string("V")},
+                        {"temperature", std::string("p")},
+                        {"degC_per_V", 10.0}},
+                       &settings)
+                  .empty());
+  ASSERT_EQ(settings.inputs.size(), 3U);
+  EXPECT_EQ(settings.inputs[0].column, "s1_T_degC");
+  EXPECT_EQ(settings.inputs[0].index, 0U);
+  EXPECT_EQ(settings.inputs[1].column, "motor_A");
+  EXPECT_EQ(settings.inputs[1].index, 1U);
+  EXPECT_EQ(settings.inputs[1].unit, "A");
+  EXPECT_EQ(settings.inputs[1].scale, 2.0);
+  EXPECT_EQ(settings.inputs[1].offset, -0.1);
+  EXPECT_EQ(settings.inputs[2].scale, 1.0) << "a voltage in volts needs none";
+}
+
+TEST(ObsdaqSettings, AnInputThatIsNotStatedWellIsRefusedAtItsPlace) {
+  const Entry name{"inputs.q.name", std::string("motor_A")}, unit{"inputs.q.unit", std::string("A")},
+      scale{"inputs.q.scale", 2.0};
+  const auto one = [&](std::vector<Entry> entries, int line, const char* what) {
+    entries.insert(entries.begin(), kProfile);  // line 2
+    const auto errors = mistakes(std::move(entries));
+    ASSERT_EQ(errors.size(), 1U) << what;
+    EXPECT_EQ(errors[0].line, line) << errors[0].message;
+    EXPECT_THAT(errors[0].message, HasSubstr(what));
+  };
+  one({unit, scale}, 4, "needs a name");  // the keys of a table are in alphabetical order: its scale is first
+  one({name, scale}, 3, "needs a unit beside it");
+  one({name, unit}, 3, "needs a scale beside it, A per V");
+  one({name, unit, {"inputs.q.scale", 0.0}}, 5, "other than 0");
+  one({{"inputs.q.name", std::string("motor A")}, unit, scale}, 3, "no column's name");
+  one({{"inputs.q.name", std::string("motor_V")}, unit, scale}, 3,
+      "the end of 'motor_V' says V, the unit is A");
+  one({{"inputs.s.name", std::string("motor_A")}}, 3, "there is no 's': an ObsDAQ has the inputs p, q and r");
+  one({name, unit, scale, {"temperature", std::string("q")}, {"degC_per_V", 1.0}}, 6,
+      "leave one of the two out");
+}
+
 TEST(ObsdaqSettings, ARateTheLineCannotCarryIsRefusedWithTheHighestThatFits) {
   EXPECT_TRUE(mistakes({kProfile, {"rate_hz", 50.0}}).empty());
   EXPECT_TRUE(mistakes({kProfile, {"rate_hz", 90.0}}).empty());

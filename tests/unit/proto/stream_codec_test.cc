@@ -117,6 +117,8 @@ TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
   device.health.last_frame = Instant{std::chrono::milliseconds(99'980)};
   report.devices = {device, {"table", "gcs2", "/dev/mgt/table", {}}};
   report.devices[1].health.bytes_in = 1;
+  report.inputs = {{"motor_A", "s2", "q", "A", 0.5, Instant{std::chrono::seconds(99)}},
+                   {"wind", "aux1", "0", "", std::nullopt, std::nullopt}};
   report.sampler = {500, 3, 50.0, 1e-4};
   report.journal = {"stopped", "no space", 4096, 17, 1};
   report.run.remaining_s = std::numeric_limits<double>::quiet_NaN();
@@ -133,13 +135,20 @@ TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
   EXPECT_EQ(status["devices"][0]["last_frame_age_s"], 0.02);
   EXPECT_EQ(status["devices"][1]["balanced"], false);
   EXPECT_TRUE(status["devices"][1]["last_frame_age_s"].is_null());
+  EXPECT_EQ(status["inputs"][0], Json({{"name", "motor_A"},
+                                       {"device", "s2"},
+                                       {"input", "q"},
+                                       {"unit", "A"},
+                                       {"value", 0.5},
+                                       {"age_s", 1.0}}));
+  EXPECT_TRUE(status["inputs"][1]["unit"].is_null());
+  EXPECT_TRUE(status["inputs"][1]["value"].is_null());
+  EXPECT_TRUE(status["inputs"][1]["age_s"].is_null());
   EXPECT_EQ(status["sampler"],
             Json({{"epochs", 500}, {"gaps", 3}, {"rate_hz", 50.0}, {"skew_bound_s", 1e-4}}));
-  EXPECT_EQ(status["journal"], Json({{"state", "stopped"},
-                                     {"why", "no space"},
-                                     {"bytes", 4096},
-                                     {"bytes_lost", 17},
-                                     {"stops", 1}}));
+  EXPECT_EQ(
+      status["journal"],
+      Json({{"state", "stopped"}, {"why", "no space"}, {"bytes", 4096}, {"bytes_lost", 17}, {"stops", 1}}));
   EXPECT_EQ(status["ring"]["state"], "off");
   EXPECT_TRUE(status["disk_free_bytes"].is_null());
   EXPECT_EQ(status["run"]["state"], "idle");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <vector>
 
 namespace mgtd {
 namespace {
@@ -38,6 +39,16 @@ TEST(TensorEncoder, WritesExactlyTheDocumentedKeys) {
       R"("xz":-2.000000,"yz":3.000000},"g_sd_nT_per_m":{"xx":0.250000,"yy":0.250000,"zz":0.500000,)"
       R"("xy":0.125000,"xz":0.125000,"yz":0.125000},"closure":{"curl_nT_per_m":0.500000,)"
       R"("center_nT":[1.000000,2.000000,-3.000000],"chi2":3.875000},"flags":["interpolated","suspect"]})");
+}
+
+TEST(TensorEncoder, InputsStandBehindTheFlagsByTheirColumns) {
+  const std::vector<InputValue> inputs{{"motor_A", 0.5}, {"supply_V", kNaN}};
+  TensorEncoder encoder;
+  const std::string line(encoder.encode(sample(), inputs));
+  EXPECT_TRUE(
+      line.ends_with(R"("flags":["interpolated","suspect"],"inputs":{"motor_A":0.500000,"supply_V":null}})"))
+      << line;
+  EXPECT_TRUE(Json::parse(line)["inputs"]["supply_V"].is_null());
 }
 
 TEST(TensorEncoder, WhatIsNotANumberIsNull) {
