@@ -2,6 +2,7 @@
 #include "daemon/planned_poses.h"
 
 #include <numbers>
+#include <utility>
 
 #include "daemon/approach.h"
 #include "daemon/mounting.h"
@@ -10,13 +11,6 @@
 
 namespace mgtd::daemon {
 namespace {
-
-drivers::TableLimits limits_of(const Config& config) {
-  constexpr double kPi = std::numbers::pi;
-  const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
-  if (table != nullptr) return table->limits();
-  return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
-}
 
 /// Ends at `end_s`.
 Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pace) {
@@ -37,8 +31,28 @@ Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pa
 
 }  // namespace
 
+drivers::TableLimits table_limits(const Config& config) {
+  constexpr double kPi = std::numbers::pi;
+  const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
+  if (table != nullptr) return table->limits();
+  return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
+}
+
+PlanOptions plan_options(const Config& config) {
+  const RunDefaults& d = config.run;
+  return {.step_deg = d.step_deg,
+          .random = d.random,
+          .revisits = d.revisits,
+          .dwell_short_s = d.dwell_short_s,
+          .dwell_long_s = d.dwell_long_s,
+          .seed = d.seed,
+          .mounts = config.mounts,
+          .by_hand = config.by_hand()};
+}
+
 Result<PoseTable> planned_poses(const Config& config) {
-  if (const drivers::TableLimits limits = limits_of(config); limits.azimuth.max_rad <= limits.azimuth.min_rad)
+  const drivers::TableLimits limits = table_limits(config);
+  if (limits.azimuth.max_rad <= limits.azimuth.min_rad)
     return fail(
         ErrorCode::refused,
         config.file +
@@ -46,19 +60,13 @@ Result<PoseTable> planned_poses(const Config& config) {
             "the controller",
         "state limits.azimuth, limits.pitch and limits.roll in [table], or ask the running daemon: mgt "
         "run dry-run");
-  const RunDefaults& d = config.run;
-  const auto plan = make_plan({.step_deg = d.step_deg,
-                               .random = d.random,
-                               .revisits = d.revisits,
-                               .dwell_short_s = d.dwell_short_s,
-                               .dwell_long_s = d.dwell_long_s,
-                               .seed = d.seed,
-                               .mounts = config.mounts,
-                               .by_hand = config.by_hand()},
-                              limits_of(config));
+  return planned_poses(plan_options(config), limits);
+}
+
+Result<PoseTable> planned_poses(const PlanOptions& options, const drivers::TableLimits& limits) {
+  const auto plan = make_plan(options, limits);
   if (!plan) return tl::unexpected(plan.error());
   const Pace pace;
-  const drivers::TableLimits limits = limits_of(config);
   PoseTable out;
   double t_s = 0;
   TableAngles at;
@@ -77,9 +85,21 @@ Result<PoseTable> planned_poses(const Config& config) {
   return out;
 }
 
+void assume(const Config& config, calib::PlanRequest& request) {
+  request.candidates = reachable(config, std::move(request.candidates));
+  request.geometry.baseline_m = config.baseline_m;
+  request.table_sd_rad = to_rad(config.table_sd_deg);
+  request.f_nT = config.field_nT.value_or(request.f_nT);
+  if (!config.scalar) request.scalar_sd_nT = std::nullopt;
+  request.field_known = config.field_nT.has_value();
+  request.field_sd_nT = config.field_sd_nT;
+  if (config.inclination_deg) request.inclination_rad = to_rad(*config.inclination_deg);
+  if (config.declination_deg) request.declination_rad = to_rad(*config.declination_deg);
+}
+
 std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles> attitudes) {
   constexpr double kSlack_rad = 1e-9;
-  const drivers::TableLimits limits = limits_of(config);
+  const drivers::TableLimits limits = table_limits(config);
   // 270 degrees is -90 to a table that ends at 180.
   const auto inside = [](double& angle_rad, const drivers::TableLimits::Range& range) {
     for (const double turns : {0.0, -1.0, 1.0}) {

@@ -117,10 +117,14 @@ Reply Rig::abort_magnet(Stamp now) {
 Reply Rig::dry_run(const RunRequest& request) const {
   const auto plan = run_.plan(request);
   if (!plan) return tl::unexpected(plan.error());
+  const nlohmann::json whole = to_json(*plan);
   return nlohmann::ordered_json{{"poses", plan->poses.size()},
                                 {"minutes", total_s(run_.pace(), *plan) / 60},
                                 {"text", describe(*plan, run_.pace())},
-                                {"list", to_json(*plan)["poses"]}};
+                                {"list", whole["poses"]},
+                                {"options", whole["options"]},
+                                {"limits_deg", to_json(run_.limits())},
+                                {"config", config_.text}};
 }
 
 Reply Rig::answer_calibrations(const ControlRequest& request) {

@@ -10,6 +10,7 @@
 #include "calib/fit/joint_fit.h"
 #include "daemon/calibrated_with.h"
 #include "daemon/listed_plan.h"
+#include "daemon/planned_poses.h"
 #include "daemon/run_plan_json.h"
 #include "daemon/solver.h"
 
@@ -26,16 +27,15 @@ std::string run_id_at(WallTime t) {
 }
 
 PlanOptions plan_options(const Config& config, const RunRequest& r) {
-  const RunDefaults& d = config.run;
-  return {.step_deg = r.step_deg.value_or(d.step_deg),
-          .random = r.random.value_or(d.random),
-          .revisits = r.revisits.value_or(r.random ? std::min(d.revisits, std::max(0, (*r.random - 2) / 2))
-                                                   : d.revisits),
-          .dwell_short_s = r.dwell_short_s.value_or(d.dwell_short_s),
-          .dwell_long_s = r.dwell_long_s.value_or(std::max(d.dwell_long_s, r.dwell_short_s.value_or(0))),
-          .seed = r.seed.value_or(d.seed),
-          .mounts = config.mounts,
-          .by_hand = config.by_hand()};
+  PlanOptions out = plan_options(config);
+  out.step_deg = r.step_deg.value_or(out.step_deg);
+  out.random = r.random.value_or(out.random);
+  out.revisits =
+      r.revisits.value_or(r.random ? std::min(out.revisits, std::max(0, (*r.random - 2) / 2)) : out.revisits);
+  out.dwell_short_s = r.dwell_short_s.value_or(out.dwell_short_s);
+  out.dwell_long_s = r.dwell_long_s.value_or(std::max(out.dwell_long_s, r.dwell_short_s.value_or(0)));
+  out.seed = r.seed.value_or(out.seed);
+  return out;
 }
 
 RunOptions run_options(const Config& c, const RunRequest& r) {

@@ -41,6 +41,8 @@ class RunConductor {
 
   [[nodiscard]] Result<RunPlan> plan(const RunRequest& request) const;
   [[nodiscard]] Pace pace() const;
+  /// As the table knows them by now.
+  [[nodiscard]] const drivers::TableLimits& limits() const { return hooks_.table().limits(); }
   /// Refused while a run is active, or one is waiting to be resumed or aborted.
   [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
   /// Resume and abort also settle an interrupted run; resume takes up the last run when it failed. A new run

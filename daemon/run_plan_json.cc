@@ -114,6 +114,35 @@ json to_json(const RunPlan& plan) {
           {"poses", std::move(poses)}};
 }
 
+json to_json(const drivers::TableLimits& limits) {
+  const auto range = [](const drivers::TableLimits::Range& r) {
+    return json{rounded_deg(r.min_rad), rounded_deg(r.max_rad)};
+  };
+  return {{"azimuth", range(limits.azimuth)}, {"pitch", range(limits.pitch)}, {"roll", range(limits.roll)}};
+}
+
+Result<PlanOptions> plan_options_from_json(const json& options) {
+  try {
+    return options_from(options);
+  } catch (const json::exception& error) {
+    return fail(ErrorCode::protocol, fmt::format("the options of the plan cannot be read: {}", error.what()),
+                "use mgt and mgtd of the same version");
+  }
+}
+
+Result<drivers::TableLimits> table_limits_from_json(const json& limits) {
+  try {
+    const auto range = [&](const char* axis) {
+      return drivers::TableLimits::Range{to_rad(limits.at(axis).at(0).get<double>()),
+                                         to_rad(limits.at(axis).at(1).get<double>())};
+    };
+    return drivers::TableLimits{range("azimuth"), range("pitch"), range("roll")};
+  } catch (const json::exception& error) {
+    return fail(ErrorCode::protocol, fmt::format("the limits of the table cannot be read: {}", error.what()),
+                "use mgt and mgtd of the same version");
+  }
+}
+
 Result<RunPlan> plan_from_json(std::string_view text) {
   const auto refuse = [](std::string_view why) {
     return fail(ErrorCode::bad_input, fmt::format("the run's plan cannot be read: {}", why),

@@ -15,6 +15,12 @@ namespace mgtd::daemon {
 
 [[nodiscard]] nlohmann::json to_json(const RunPlan& plan);
 
+/// {"azimuth":[-180,180],"pitch":[..],"roll":[..]}, in degrees.
+[[nodiscard]] nlohmann::json to_json(const drivers::TableLimits& limits);
+/// Gives back what the two wrote: `options` of a plan, and limits.
+[[nodiscard]] Result<PlanOptions> plan_options_from_json(const nlohmann::json& options);
+[[nodiscard]] Result<drivers::TableLimits> table_limits_from_json(const nlohmann::json& limits);
+
 /// Gives back exactly the plan that was written; anything else is refused with the place of the mistake.
 [[nodiscard]] Result<RunPlan> plan_from_json(std::string_view text);
 

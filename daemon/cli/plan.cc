@@ -8,6 +8,7 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/in_range.h"
+#include "daemon/limits_cost.h"
 #include "daemon/planned_poses.h"
 
 namespace mgtd::cli {
@@ -18,6 +19,7 @@ constexpr const char* kHelp =
 poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg and
 whatever an effect needs; readings are not looked at), or those of the run that a configuration describes, or
 of the default run. With an effect: how well its coefficients would be known, and told from the rest.
+With a configuration whose table does not reach every attitude: what its limits cost, and what to do.
 
 Then, for every effect of the library that is not planned for: the smallest size that the run would show, and
 the pairs of effects that it could not tell apart, with the further measurement that would.
@@ -36,7 +38,17 @@ struct Arguments {
   std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
 };
 
-Result<void> take_config(const Arguments& args, calib::PlanRequest& request) {
+/// The run of a configuration.
+struct LimitedRun {
+  daemon::PlanOptions options;
+  drivers::TableLimits limits;
+};
+struct Wanted {
+  calib::PlanRequest request;
+  std::optional<LimitedRun> run;
+};
+
+Result<void> take_config(const Arguments& args, Wanted& wanted) {
   const auto config = daemon::load_config(args.config);
   if (!config) {
     std::string all;
@@ -45,21 +57,15 @@ Result<void> take_config(const Arguments& args, calib::PlanRequest& request) {
   }
   auto poses = daemon::planned_poses(*config);
   if (!poses) return tl::unexpected(poses.error());
-  request.poses = std::move(*poses);
-  request.candidates = daemon::reachable(*config, std::move(request.candidates));
-  request.geometry.baseline_m = config->baseline_m;
-  request.table_sd_rad = to_rad(config->table_sd_deg);
-  request.f_nT = config->field_nT.value_or(request.f_nT);
-  if (!config->scalar) request.scalar_sd_nT = std::nullopt;
-  request.field_known = config->field_nT.has_value();
-  request.field_sd_nT = config->field_sd_nT;
-  if (config->inclination_deg) request.inclination_rad = to_rad(*config->inclination_deg);
-  if (config->declination_deg) request.declination_rad = to_rad(*config->declination_deg);
+  wanted.request.poses = std::move(*poses);
+  daemon::assume(*config, wanted.request);
+  wanted.run = LimitedRun{daemon::plan_options(*config), daemon::table_limits(*config)};
   return {};
 }
 
-Result<void> take_poses(const Arguments& args, calib::PlanRequest& request) {
-  if (!args.config.empty()) return take_config(args, request);
+Result<void> take_poses(const Arguments& args, Wanted& wanted) {
+  if (!args.config.empty()) return take_config(args, wanted);
+  calib::PlanRequest& request = wanted.request;
   if (args.poses.empty()) {
     auto poses = daemon::planned_poses(daemon::Config{});
     if (!poses) return tl::unexpected(poses.error());
@@ -75,8 +81,9 @@ Result<void> take_poses(const Arguments& args, calib::PlanRequest& request) {
 }
 
 /// What the command line says goes before the configuration, and that before the earlier calibration.
-Result<calib::PlanRequest> request_of(const Arguments& args) {
-  calib::PlanRequest r;
+Result<Wanted> wanted_of(const Arguments& args) {
+  Wanted out;
+  calib::PlanRequest& r = out.request;
   r.scalar_sd_nT = args.scalar_sd_nT;
   r.pose_noise_nT = args.noise_nT;
   r.warming_degC = args.warming_degC;
@@ -87,7 +94,7 @@ Result<calib::PlanRequest> request_of(const Arguments& args) {
     r.geometry = calibration->geometry;
     r.f_nT = calibration->reference.f_nT.value_or(r.f_nT);
   }
-  if (auto taken = take_poses(args, r); !taken) return tl::unexpected(taken.error());
+  if (auto taken = take_poses(args, out); !taken) return tl::unexpected(taken.error());
   for (const std::string& name : args.with) {
     auto effect = calib::make_effect(name);
     if (!effect) return tl::unexpected(effect.error());
@@ -103,18 +110,26 @@ Result<calib::PlanRequest> request_of(const Arguments& args) {
   if (args.inclination_deg) r.inclination_rad = to_rad(*args.inclination_deg);
   if (args.declination_deg) r.declination_rad = to_rad(*args.declination_deg);
   if (args.table_sd_deg) r.table_sd_rad = to_rad(*args.table_sd_deg);
-  return r;
+  return out;
 }
 
 int run_plan(const Session& session, const Arguments& args) {
-  const auto request = request_of(args);
-  if (!request) return report(session, request.error());
-  const auto planned = calib::plan(*request);
+  const auto wanted = wanted_of(args);
+  if (!wanted) return report(session, wanted.error());
+  const auto planned = calib::plan(wanted->request);
   if (!planned) return report(session, planned.error());
+  std::optional<daemon::LimitsCost> limits;
+  if (wanted->run) {
+    auto cost = daemon::limits_cost(wanted->run->options, wanted->run->limits, wanted->request);
+    if (!cost) return report(session, cost.error());
+    limits = *std::move(cost);
+  }
   if (session.json) {
-    print_json(calib::to_json(*planned));
+    nlohmann::json out = calib::to_json(*planned);
+    if (limits) out["limits"] = daemon::to_json(*limits);
+    print_json(out);
   } else {
-    fmt::print("{}", calib::to_text(*planned));
+    fmt::print("{}{}", limits ? daemon::to_text(*limits) + "\n" : "", calib::to_text(*planned));
   }
   return planned->determined ? 0 : 1;
 }

@@ -13,7 +13,10 @@
 #include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
+#include "daemon/limits_cost.h"
 #include "daemon/listed_plan.h"
+#include "daemon/planned_poses.h"
+#include "daemon/run_plan_json.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
 
@@ -129,16 +132,43 @@ int start(const Session& session, const Arguments& args) {
   return 0;
 }
 
+/// What the limits of the daemon's table cost this run. Nothing where there are none, and for a list of
+/// poses: those are meant. An error where the plan by itself calibrates nothing.
+Result<std::optional<daemon::LimitsCost>> cost_of_limits(const nlohmann::json& reply) {
+  for (const char* key : {"options", "limits_deg", "config"})
+    if (!reply.contains(key))
+      return fail(ErrorCode::protocol, fmt::format("the daemon does not say its '{}'", key),
+                  "use mgt and mgtd of the same version");
+  const auto options = daemon::plan_options_from_json(reply.at("options"));
+  if (!options) return tl::unexpected(options.error());
+  if (!options->list.empty()) return std::optional<daemon::LimitsCost>();
+  const auto limits = daemon::table_limits_from_json(reply.at("limits_deg"));
+  if (!limits) return tl::unexpected(limits.error());
+  const auto config =
+      daemon::parse_config(reply.at("config").get<std::string>(), "the daemon's configuration");
+  if (!config)
+    return fail(ErrorCode::protocol, config.error().lines.front(), "use mgt and mgtd of the same version");
+  calib::PlanRequest request;
+  daemon::assume(*config, request);
+  return daemon::limits_cost(*options, *limits, std::move(request));
+}
+
 int dry_run(const Session& session, const Arguments& args) {
   const auto request = request_of(args);
   if (!request) return report(session, request.error());
-  const auto reply = ask(session, ControlCommand::run_dry_run, *request);
+  auto reply = ask(session, ControlCommand::run_dry_run, *request);
   if (!reply) return report(session, reply.error());
+  const auto limits = cost_of_limits(*reply);
+  if (!limits)
+    fmt::print(stderr, "what the limits of the table cost cannot be told: {}\n", limits.error().text());
   if (session.json) {
+    reply->erase("config");
+    if (limits && *limits) (*reply)["limits"] = daemon::to_json(**limits);
     print_json(*reply);
     return 0;
   }
-  fmt::print("{}\nnothing was moved\n", reply->at("text").get<std::string>());
+  fmt::print("{}\n{}nothing was moved\n", reply->at("text").get<std::string>(),
+             limits && *limits ? daemon::to_text(**limits) : "");
   return 0;
 }
 
