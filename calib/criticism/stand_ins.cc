@@ -126,15 +126,22 @@ std::string axis_left(const Criticism& last) {
   return where && where->scale == Where::Scale::axis ? where->text() : std::string{};
 }
 
-/// Stand-ins on a whole sensor; with `spread` only where no one axis of it holds most of what is left.
+/// Stand-ins on a whole sensor, the one with most of what is left; with `spread` only where no one axis of it
+/// holds most of that.
 StandIns on_sensor(const ExplainReport& report, const Criticism& last, bool spread) {
   if (!much_is_left(report)) return {};
+  StandIns found;
+  double most = 0;
   for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
-    if (parts(report, there) >= kWithRest && left_here(last, sensor) &&
-        !(spread && on_one_axis(last, sensor)))
-      return {sensor, 0};
+    if (parts(report, there) < kWithRest || !left_here(last, sensor) || (spread && on_one_axis(last, sensor)))
+      continue;
+    const double share = share_on(last, sensor);
+    if (share > most) {
+      most = share;
+      found = {sensor, 0};
+    }
   }
-  return {};
+  return found;
 }
 
 }  // namespace
