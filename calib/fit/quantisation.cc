@@ -8,7 +8,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr std::size_t kFewest = 12;    ///< stuck readings of all axes together
+constexpr std::size_t kFewest = 12;    ///< different stuck readings of all axes together: a rail is one
 constexpr int kMostSteps = 5000;       ///< between the two stuck readings that are nearest to each other
 constexpr double kOnGrid = 0.02;       ///< of a step: what a table's own digits may be off
 constexpr double kShareOnGrid = 0.95;  ///< of the stuck readings; a grid that does not exist gets 0.04
@@ -25,13 +25,15 @@ double share_on_grid(const std::vector<double>& values, double step) {
   return static_cast<double>(on) / static_cast<double>(values.size());
 }
 
-/// The largest step that the values are multiples of; 0 for none.
+/// The largest step that the values are multiples of; 0 for none, or for too few different ones.
 double step_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() < kFewest) return 0;
   double nearest = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double gap = values[i] - values[i - 1];
-    if (gap > 0 && (nearest == 0 || gap < nearest)) nearest = gap;
+    if (nearest == 0 || gap < nearest) nearest = gap;
   }
   for (int m = 1; nearest > 0 && m <= kMostSteps; ++m)
     if (share_on_grid(values, nearest / m) >= kShareOnGrid) return nearest / m;
@@ -54,7 +56,6 @@ Quantisation quantisation_of(const PoseTable& table) {
       }
     }
   }
-  if (values.size() < kFewest) return out;
   out.step_nT = step_of(std::move(values));
   out.variance_nT2 = count * (out.step_nT * out.step_nT / 12 / static_cast<double>(table.poses.size()));
   return out;

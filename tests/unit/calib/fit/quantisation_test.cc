@@ -41,6 +41,20 @@ TEST(Quantisation, ReadingsThatSpreadWithinTheirDwellsShowNone) {
   EXPECT_FALSE(quantisation_of(testing::hidden_run({.noise_nT = 0.01}, 3)).seen());
 }
 
+/// A sensor at the rail repeats one number, and that is no grid.
+TEST(Quantisation, SaturatedReadingsShowNone) {
+  PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
+  for (std::size_t k = 60; k < 80; ++k) {
+    Pose& pose = table.poses[k];
+    pose.n = 100;
+    for (std::size_t a = 0; a < 3; ++a) {
+      pose.y_nT[0][static_cast<Eigen::Index>(a)] = a == 1 ? -100'000 : 100'000;
+      pose.sd_nT[0][a] = 0;
+    }
+  }
+  EXPECT_FALSE(quantisation_of(table).seen());
+}
+
 TEST(Quantisation, ReadingsWithoutSpreadOnNoGridShowNone) {
   PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
   for (Pose& pose : table.poses) {
