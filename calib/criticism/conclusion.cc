@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calib/criticism/rest.h"
+#include "calib/effects/common_axis.h"
 #include "calib/fit/agreement.h"
 #include "calib/fit/joint_verdict.h"
 #include "calib/fit/verdict.h"
@@ -59,14 +60,6 @@ std::string leaves_something(const ExplainReport& report, const Criticism& last)
   return {};
 }
 
-bool overlap(const Where& a, const Where& b) {
-  for (int s = 0; s < kSensors; ++s) {
-    for (int x = 0; x < 3; ++x)
-      if (a.covers(s, x) && b.covers(s, x)) return true;
-  }
-  return false;
-}
-
 std::set<std::string> names_of(const std::vector<Round>& rounds) {
   std::set<std::string> out;
   for (const Round& round : rounds) out.insert(round.added.effect);
@@ -93,7 +86,7 @@ bool staircase(const std::vector<Round>& rounds) {
       const auto spec = EffectSpec::parse(effect->spec());
       if (!spec) return true;
       for (const EffectSpec& other : seen) {
-        const bool together = !spec->where || !other.where || overlap(*spec->where, *other.where);
+        const bool together = !spec->where || !other.where || share_an_axis(*spec->where, *other.where);
         if (spec->name == other.name && together && spec->parameters != other.parameters) return true;
       }
       seen.push_back(*spec);

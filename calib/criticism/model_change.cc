@@ -9,6 +9,7 @@
 #include "calib/criticism/noise.h"
 #include "calib/criticism/residual.h"
 #include "calib/criticism/score.h"
+#include "calib/effects/common_axis.h"
 
 namespace mgtd::calib {
 namespace {
@@ -88,7 +89,7 @@ std::vector<Veto> ModelChange::vetoes() const {
 
 Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options, const EffectPtr& effect) {
   for (const EffectPtr& known : options.effects) {
-    if (known->name() != effect->name()) continue;
+    if (!same_law_on_a_common_axis(*known, *effect)) continue;
     return fail(ErrorCode::refused, "the model holds " + known->spec() + " already",
                 "drop it first, if it should act elsewhere");
   }

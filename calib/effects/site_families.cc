@@ -30,7 +30,7 @@ Result<EffectPtr> step(const EffectSpec& spec) {
   const auto ts_h = spec.number("ts", 0, -1e6, 1e6);
   if (!ts_h) return tl::unexpected(ts_h.error());
   if (spec.find("x") == nullptr && spec.find("y") == nullptr && spec.find("z") == nullptr)
-    return std::make_shared<const SiteStep>(*ts_h);
+    return std::make_shared<const SiteStep>(spec.find("ts") != nullptr ? std::optional(*ts_h) : std::nullopt);
   const auto at = dipole_place_S_m(spec);
   if (!at) return tl::unexpected(at.error());
   return std::make_shared<const SiteStepDipole>(*ts_h, *at);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/site_step.h"
 
+#include "calib/effects/axis_offset.h"
 #include "calib/run_time.h"
 
 namespace mgtd::calib {
@@ -13,7 +14,7 @@ std::string_view missing_angle_or_time(const Pose& pose) {
 
 }  // namespace
 
-SiteStep::SiteStep(double ts_h) : ts_h_(ts_h) {
+SiteStep::SiteStep(std::optional<double> ts_h) : ts_h_(ts_h) {
   constexpr double kPrior_nT = 1000;
   for (const char* name : {"Bx", "By", "Bz"}) add(name, "nT", 20, kPrior_nT);
   for (const char* name : {"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"}) add(name, "nT/m", 20);
@@ -21,8 +22,14 @@ SiteStep::SiteStep(double ts_h) : ts_h_(ts_h) {
 
 std::string SiteStep::spec() const {
   EffectSpec out{.name = std::string(kName), .where = {}, .parameters = {}};
-  out.set("ts", ts_h_);
+  if (ts_h_) out.set("ts", *ts_h_);
   return out.text();
+}
+
+Result<std::shared_ptr<const Effect>> SiteStep::bound(const EffectContext& context) const {
+  const auto middle = middle_h(context);
+  if (ts_h_ || !middle) return std::shared_ptr<const Effect>();
+  return std::make_shared<const SiteStep>(*middle);
 }
 
 std::string_view SiteStep::missing(const Pose& pose) const { return missing_angle_or_time(pose); }

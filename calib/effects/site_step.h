@@ -23,14 +23,16 @@ namespace mgtd::calib {
 class SiteStep final : public SiteEffect<SiteStep> {
  public:
   static constexpr std::string_view kName = "site.step";
-  explicit SiteStep(double ts_h);
+  /// Not given: the middle of the run it is bound to.
+  explicit SiteStep(std::optional<double> ts_h);
   [[nodiscard]] std::string spec() const override;
+  [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
   [[nodiscard]] std::string_view missing(const Pose& pose) const override;
 
   template <class S>
   void equation(const Conditions& at, int, std::span<const S> x, std::span<const S> c,
                 std::span<S> out) const {
-    const S on(at.t_h >= ts_h_ ? 1.0 : 0.0);
+    const S on(at.t_h >= ts_h_.value_or(0) ? 1.0 : 0.0);
     const std::span<const S> g = c.subspan(3);
     out[0] = on * (c[0] + g[0] * x[0] + g[2] * x[1] + g[3] * x[2]);
     out[1] = on * (c[1] + g[2] * x[0] + g[1] * x[1] + g[4] * x[2]);
@@ -38,7 +40,7 @@ class SiteStep final : public SiteEffect<SiteStep> {
   }
 
  private:
-  double ts_h_;
+  std::optional<double> ts_h_;
 };
 
 class SiteStepDipole final : public SiteEffect<SiteStepDipole> {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/effects/common_axis.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/solver.h"
 #include "proto/units.h"
@@ -59,9 +60,10 @@ bool looks_like_radians(const PoseTable& table) {
   return largest > kTurn / 8 && largest <= kTurn;
 }
 
-/// One effect into a list, in the place of the one of its name.
+/// One effect into a list, in the place of the same law on the same axes.
 void put(std::vector<calib::EffectPtr>& effects, calib::EffectPtr effect) {
-  std::erase_if(effects, [&](const calib::EffectPtr& e) { return e->name() == effect->name(); });
+  std::erase_if(effects,
+                [&](const calib::EffectPtr& e) { return calib::same_law_on_a_common_axis(*e, *effect); });
   effects.push_back(std::move(effect));
 }
 

@@ -7,6 +7,7 @@
 
 #include "calib/criticism/waterfall.h"
 #include "tests/blind/hidden_run.h"
+#include "tests/blind/planted.h"
 
 namespace mgtd::calib {
 namespace {
@@ -50,6 +51,34 @@ TEST(ModelChange, AnEffectThatIsNotThereBuysNothingAndHasItsPrice) {
   EXPECT_GT(change->price.growth, 1.2);
   EXPECT_EQ(change->price.parameter, "s2.cy") << "a cubic hides behind the scale of its own axis";
   EXPECT_THAT(to_text(*change), ::testing::HasSubstr("weak evidence")) << "p = 0.048";
+}
+
+TEST(ModelChange, ALawMayActOnASecondAxisButNotTwiceOnOne) {
+  const PoseTable table = warm_and_bent(1);
+  FitOptions model;
+  model.effects = {effect("axis.offset.temperature@s3.z")};
+  const auto second = add_effect(table, model, effect("axis.offset.temperature@s1.x"));
+  ASSERT_TRUE(second) << second.error().text();
+  EXPECT_EQ(second->model.size(), 2U);
+  const auto again = add_effect(table, model, effect("axis.offset.temperature@s3"));
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().text(), ::testing::HasSubstr("axis.offset.temperature@s3.z already"));
+}
+
+/// Without its moment a step of the site is looked for, as the step of an axis is.
+TEST(ModelChange, TheMomentOfAStepOfTheSiteIsSearched) {
+  testing::Stage stage = testing::full_stage(3);
+  const PoseTable quiet = testing::planted_run(stage, {}, 3);
+  const double at_s = *quiet.poses[70].t_s - 1;
+  const PoseTable table =
+      testing::planted_run(stage, {{"site.gradient-step", "all", {30, -10, 5, 20, -15, at_s}}}, 3);
+  const auto change = add_effect(table, {}, effect("site.step"));
+  ASSERT_TRUE(change) << change.error().text();
+  EXPECT_THAT(change->spec, ::testing::StartsWith("site.step,ts="));
+  const auto spec = EffectSpec::parse(change->spec);
+  ASSERT_TRUE(spec);
+  EXPECT_NEAR(*spec->number("ts", 0, 0, 100), at_s / 3600, 30.0 / 3600) << change->spec;
+  EXPECT_FALSE(change->vetoed());
 }
 
 /// A gradient that nobody knows of leaves fifty times the noise: chi-square falls by hundreds for nothing.

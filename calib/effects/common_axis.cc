@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effects/common_axis.h"
+
+#include "calib/effects/effect_spec.h"
+
+namespace mgtd::calib {
+
+bool share_an_axis(const Where& a, const Where& b) {
+  for (int s = 0; s < kSensors; ++s) {
+    for (int x = 0; x < 3; ++x)
+      if (a.covers(s, x) && b.covers(s, x)) return true;
+  }
+  return false;
+}
+
+bool same_law_on_a_common_axis(const Effect& a, const Effect& b) {
+  if (a.name() != b.name()) return false;
+  const auto spec_a = EffectSpec::parse(a.spec()), spec_b = EffectSpec::parse(b.spec());
+  if (!spec_a || !spec_b || !spec_a->where || !spec_b->where) return true;
+  return share_an_axis(*spec_a->where, *spec_b->where);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/effects/effect.h"
+#include "calib/effects/where.h"
+
+/// Whether two effects would compete for the same readings: a model holds a law once on an axis, but the same
+/// law may act on several axes, each with a coefficient of its own.
+namespace mgtd::calib {
+
+[[nodiscard]] bool share_an_axis(const Where& a, const Where& b);
+
+/// Effects of site, table and platform, which have no axis, are the same law wherever they act.
+[[nodiscard]] bool same_law_on_a_common_axis(const Effect& a, const Effect& b);
+
+}  // namespace mgtd::calib
