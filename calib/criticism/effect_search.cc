@@ -77,6 +77,21 @@ void say_where(const Growth& growth, Candidate& added) {
   if (!places.empty()) added.where = fmt::format("{}", fmt::join(places, ", "));
 }
 
+/// Whether a winner of all axes came down to axes that are closed to names, or is seen most on one of them.
+bool on_closed_axes(const Candidate& winner, const Growth& growth, const std::set<std::string>& closed) {
+  if (closed.empty() || winner.coefficients.empty()) return false;
+  const auto sigmas = [](const EffectCoefficient& c) { return std::abs(c.value) / std::max(c.sd, 1e-300); };
+  const auto seen_most =
+      std::max_element(winner.coefficients.begin(), winner.coefficients.end(),
+                       [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
+  const bool each_axis = winner.where.find("each") != std::string::npos;
+  if (each_axis && closed.contains(seen_most->name.substr(0, std::string_view("s1.x").size()))) return true;
+  return std::all_of(growth.added.begin(), growth.added.end(), [&](const EffectPtr& effect) {
+    const auto spec = EffectSpec::parse(effect->spec());
+    return spec && spec->where && closed.contains(spec->where->text());
+  });
+}
+
 std::size_t family_called(const Criticism& criticism, const std::string& name) {
   const auto found = std::find_if(criticism.families.begin(), criticism.families.end(),
                                   [&](const ScoredFamily& f) { return f.suspect->name == name; });
@@ -107,7 +122,7 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   for (const Rival& rival : round.added.rivals)
     if (rival.possible) round.possible.push_back(rival.effect);
   auto growth = grown(search.joint.effects, best, search.criticism.residual);
-  if (!growth) {
+  if (!growth || on_closed_axes(round.added, *growth, search.unknown)) {
     search.failed.insert(round.added.effect);
     return false;
   }

@@ -85,12 +85,12 @@ bool memory_may_be_it(const EffectSearch& search, const ExplainReport& report) {
 }
 
 /// A memory follows the way of the table, which may not be in the data.
-void say_way_unknown(const EffectSearch& search, ExplainReport& report) {
-  if (!memory_may_be_it(search, report)) return;
+void say_way_unknown(ExplainReport& report) {
   report.notes.emplace_back(
       "the way of the table between its poses is not in these data: a memory of the cores is followed from "
-      "dwell to dwell only, its size and its width are rough, and another name may stand in its place. To "
-      "settle it: measure with the daemon, whose run file keeps the angles of the table on the way, or go "
+      "dwell to dwell only, its size and its width are rough, and what is there may be one (axis.hysteresis) "
+      "under another name or without any. To settle it: measure with the daemon, whose run file keeps the "
+      "angles of the table on the way, or go "
       "to a dozen of the poses from both sides");
 }
 
@@ -142,16 +142,23 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     out.finding = Finding::bad_data;
     return out;
   }
+  bool memory = memory_may_be_it(search, out);
   for (int axis = 0; axis < kChannels; ++axis) {
     if (criticism.maps.empty()) look_at_maps(criticism);
-    const StandIns found = stand_ins(out, criticism);
-    if (!found.any() || memory_may_be_it(search, out)) break;
+    const StandIns found = stand_ins(out, criticism, search.unknown);
+    if (!found.any()) break;
+    memory = memory || memory_may_be_it(search, out);
     take_back(found, search, out);
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
   say_absurd(search, criticism, out);
-  say_way_unknown(search, out);
+  if (memory || memory_may_be_it(search, out)) say_way_unknown(out);
   if (!out.rounds.empty()) out.detectable = detectable(criticism);
+  // A search that begins anew after a stand-in may say the same again.
+  std::vector<std::string> notes;
+  for (std::string& note : out.notes)
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+  out.notes = std::move(notes);
   share_what_fell(out);
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;

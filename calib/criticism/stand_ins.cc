@@ -44,12 +44,30 @@ int parts(const ExplainReport& report, const Rounds& rounds) {
       rounds.begin(), rounds.end(), [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; }));
 }
 
+/// "s2.z" of the coefficient "s2.z.squares" or "s2.z".
+std::string axis_in(const std::string& coefficient) {
+  const std::size_t sensor_end = coefficient.find('.');
+  return coefficient.substr(
+      0, sensor_end == std::string::npos ? sensor_end : coefficient.find('.', sensor_end + 1));
+}
+
 /// Axes that the effects of a round were put on one by one.
 std::set<std::string> axes_of(const Round& round) {
   std::set<std::string> out;
   for (const EffectPtr& effect : round.effects) {
     const auto spec = EffectSpec::parse(effect->spec());
     if (spec && spec->where && spec->where->scale == Where::Scale::axis) out.insert(spec->where->text());
+  }
+  return out;
+}
+
+/// Axes on which what a round added is seen, put there or as one of many.
+std::set<std::string> axes_seen_in(const Round& round) {
+  std::set<std::string> out = axes_of(round);
+  for (const EffectCoefficient& c : round.added.coefficients) {
+    const auto where = Where::parse(axis_in(c.name));
+    if (where && where->scale == Where::Scale::axis && std::abs(c.value) > kSeen * c.sd)
+      out.insert(where->text());
   }
   return out;
 }
@@ -80,6 +98,20 @@ std::map<std::string, Rounds> rounds_by_place(const ExplainReport& report, Place
 /// Square of a residual that is beyond the noise, nT^2.
 double beyond_noise(const ExplainReport& report, double rms_nT) {
   return std::max(0.0, rms_nT * rms_nT - report.noise_nT * report.noise_nT);
+}
+
+/// Whether a round left most of what was beyond the noise before it.
+bool took_little(const ExplainReport& report, const Round& round) {
+  return beyond_noise(report, round.rms_after_nT) > kMost * beyond_noise(report, round.rms_before_nT);
+}
+
+/// The stand-ins on an axis: `there`, and before them a law of the whole sensor that took little away.
+StandIns on_axis(const ExplainReport& report, const std::string& axis, const Rounds& there) {
+  const std::string sensor = axis.substr(0, axis.find('.'));
+  for (std::size_t i = 0; i < there.front(); ++i)
+    if (took_little(report, report.rounds[i]) && sensors_of(report.rounds[i]).contains(sensor))
+      return {axis, i};
+  return {axis, there.front()};
 }
 
 /// Whether all names together leave more than a tenth of the misfit.
@@ -146,16 +178,23 @@ StandIns on_sensor(const ExplainReport& report, const Criticism& last, bool spre
 
 }  // namespace
 
-StandIns stand_ins(const ExplainReport& report, const Criticism& last) {
+StandIns stand_ins(const ExplainReport& report, const Criticism& last, const std::set<std::string>& closed) {
   if (report.rounds.empty()) return {};
   if (auto found = on_sensor(report, last, true); found.any()) return found;
   for (const auto& [axis, there] : rounds_by_place(report, axes_of)) {
     const int effects = parts(report, there);
-    if (effects >= kAlways || (effects >= kWithRest && left_here(last, axis))) return {axis, there.front()};
+    if (effects >= kAlways || (effects >= kWithRest && left_here(last, axis)))
+      return on_axis(report, axis, there);
+  }
+  for (const auto& [axis, there] : rounds_by_place(report, axes_seen_in)) {
+    const bool little = std::all_of(there.begin(), there.end(),
+                                    [&](std::size_t i) { return took_little(report, report.rounds[i]); });
+    if (little && !closed.contains(axis) && parts(report, there) >= kWithRest && left_here(last, axis))
+      return on_axis(report, axis, there);
   }
   if (auto found = on_sensor(report, last, false); found.any()) return found;
   const std::string axis = axis_left(last);
-  const auto first = axis.empty() ? std::nullopt : lesser_part(report);
+  const auto first = axis.empty() || closed.contains(axis) ? std::nullopt : lesser_part(report);
   return first ? StandIns{axis, *first} : StandIns{};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <set>
 #include <string>
 
 #include "calib/criticism/criticism.h"
@@ -11,7 +12,8 @@
 /// significant. The signs of it:
 ///
 ///   - three effects or more on one axis;
-///   - two on one axis that leave most of what is left there;
+///   - two on one axis that leave most of what is left there; or of all axes, seen on this one, if each of
+///     them took little away;
 ///   - two on one sensor that leave more than a tenth of the misfit, most of it on this sensor: nothing is
 ///     then named at all, because what bends a sensor bends the others through the field of the pose;
 ///   - effects, wherever they act, after which most of the misfit is still there, on one axis.
@@ -24,7 +26,9 @@ struct StandIns {
   [[nodiscard]] bool whole_sensor() const { return any() && where.find('.') == std::string::npos; }
 };
 
-/// In the rounds of `report`, after which `last` was found.
-[[nodiscard]] StandIns stand_ins(const ExplainReport& report, const Criticism& last);
+/// In the rounds of `report`, after which `last` was found. What is left on an axis that is `closed` to names
+/// already is no sign against the other rounds.
+[[nodiscard]] StandIns stand_ins(const ExplainReport& report, const Criticism& last,
+                                 const std::set<std::string>& closed);
 
 }  // namespace mgtd::calib

@@ -25,10 +25,25 @@ void loosen(const JointFit& fit, const std::string& place, JointOptions& options
   }
 }
 
+/// The axes that a law on `place` closes to names: those, and of a sensor with two such axes the third, since
+/// what acts on two acts on the sensor.
+std::set<std::string> closed_by(const std::string& place, const std::set<std::string>& closed) {
+  std::set<std::string> out{place};
+  const std::size_t dot = place.find('.');
+  if (dot == std::string::npos) return out;
+  const std::string sensor = place.substr(0, dot);
+  std::set<std::string> open;
+  for (const char* axis : {".x", ".y", ".z"})
+    if (!closed.contains(sensor + axis) && sensor + axis != place) open.insert(sensor + axis);
+  if (open.size() == 1) out.merge(open);
+  return out;
+}
+
 }  // namespace
 
 void take_back(const StandIns& found, EffectSearch& search, ExplainReport& report) {
-  search.unknown.insert(found.where);
+  const std::set<std::string> places = closed_by(found.where, search.unknown);
+  search.unknown.insert(places.begin(), places.end());
   std::set<std::string> names;
   for (std::size_t i = found.first; i < report.rounds.size(); ++i)
     names.insert(report.rounds[i].added.effect);
@@ -42,7 +57,7 @@ void take_back(const StandIns& found, EffectSearch& search, ExplainReport& repor
   report.rounds.resize(found.first);
   auto before = fit_joint_at_size(search.table, search.joint);
   if (!before) return;
-  loosen(*before, found.where, search.joint);
+  for (const std::string& place : places) loosen(*before, place, search.joint);
   const JointState near = before->state;
   before = fit_joint_at_size(search.table, search.joint, &near);
   if (!before) return;

@@ -109,6 +109,20 @@ TEST(Unlisted, WhatManyNamesWouldDescribeGetsNone) {
   EXPECT_EQ(text.find("way of the table"), std::string::npos) << text;
 }
 
+/// Beside a law that is known, and in a table of poses without the way between them.
+TEST(Unlisted, BesideAKnownLawOnlyThatIsNamed) {
+  const Planted known{"axis.gain.step", "s3.z", {117, 32'000}, {}};
+  for (const Planted& unknown : {Planted{"hidden.cable-twist", "s2.z", {4.8}, {}},
+                                 Planted{"hidden.gravity-offset", "s2.z", {-2, 5.4, -0.5}, {}}}) {
+    PoseTable run = testing::planted_run(testing::full_stage(kSeed), {known, unknown}, kSeed);
+    run.path.clear();
+    const auto r = explain(run, {});
+    ASSERT_TRUE(r) << r.error().text();
+    EXPECT_EQ(r->finding, Finding::partial) << sentence(*r);
+    EXPECT_EQ(r->named, std::vector<std::string>{known.kind}) << unknown.kind << ": " << sentence(*r);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Unlisted, NotListed, ::testing::ValuesIn(rows()), title_of);
 
 }  // namespace
