@@ -2,6 +2,7 @@
 #include "calib/fit/reading_cause.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mgtd::calib {
 
@@ -13,9 +14,11 @@ std::vector<std::size_t> at_the_stop(const JointProblem& problem, int channel) {
   if (y.empty()) return out;
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
   for (const double stop : {*low, *high}) {
+    if (stop == *high && std::abs(stop) == std::abs(*low))
+      break;  // of a range that is symmetric both ends are one
     std::vector<std::size_t> same;
     for (std::size_t k = 0; k < y.size(); ++k)
-      if (y[k] == stop) same.push_back(k);
+      if (std::abs(y[k]) == std::abs(stop)) same.push_back(k);
     if (same.size() >= kShared) out.insert(out.end(), same.begin(), same.end());
   }
   return out;

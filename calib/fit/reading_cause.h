@@ -10,7 +10,8 @@
 namespace mgtd::calib {
 
 /// Poses in which this channel reads its largest, or its smallest, value, where three or more share it to the
-/// last digit: the end of the digitiser's range, or of the feedback.
+/// last digit: the end of the digitiser's range, or of the feedback. Where the two ends differ in sign alone
+/// they count together.
 [[nodiscard]] std::vector<std::size_t> at_the_stop(const JointProblem& problem, int channel);
 
 /// "saturated", "stuck" (the same value as in the pose before or after), or empty.

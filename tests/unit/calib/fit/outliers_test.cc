@@ -78,6 +78,17 @@ TEST(Outliers, NameAnAxisThatIsSaturatedAndOneThatIsStuck) {
   EXPECT_LT(fit->noise_nT(), 1.1);
 }
 
+/// The range has two ends.
+TEST(Outliers, NameAnAxisThatIsAtEitherRail) {
+  PoseTable table = clean_table();
+  for (const std::size_t k : {59U, 60U, 61U}) table.poses[k].y_nT[3][2] = k == 60 ? -100'000 : 100'000;
+  const auto fit = fit_joint(table, {});
+  ASSERT_TRUE(fit) << fit.error().text();
+  const auto texts = outlier_texts(fit->outliers);
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_THAT(texts.front(), HasSubstr("poses 60-62 disturbed: saturated, s4.z contradicts"));
+}
+
 struct Cell {
   mgtd::testing::Contamination what;
   bool accepted;
