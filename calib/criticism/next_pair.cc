@@ -89,10 +89,26 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<NextMea
   return out;
 }
 
-/// The first round's winner against what could stand in its place.
+/// The first round's winner, where something else could stand in its place.
 std::optional<Candidate> open_question(const ExplainReport& report) {
   if (report.rounds.empty()) return std::nullopt;
-  return report.rounds.front().added;
+  const Candidate& winner = report.rounds.front().added;
+  const bool open = std::any_of(winner.rivals.begin(), winner.rivals.end(),
+                                [](const Rival& rival) { return rival.possible; });
+  return open ? std::optional(winner) : std::nullopt;
+}
+
+/// Why nothing is to be settled, with the rival that comes nearest.
+std::string settled_text(const ExplainReport& report) {
+  if (report.rounds.empty())
+    return "nothing stands out on this run: there is nothing to settle (two names ask about a pair)";
+  const Candidate& winner = report.rounds.front().added;
+  if (winner.rivals.empty())
+    return fmt::format("no other effect comes near {}: there is nothing to settle", winner.effect);
+  return fmt::format(
+      "nothing else could stand in the place of {}; the nearest, {}, is told from it: there is nothing to "
+      "settle (two names ask about a pair)",
+      winner.effect, winner.rivals.front().effect);
 }
 
 Rival against(const Candidate& rival) {
@@ -116,10 +132,8 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
     asked = sized(**a, out.assumed);
     asked->rivals = {against(**b)};
   }
-  if (!asked || asked->rivals.empty()) {
-    out.text =
-        asked ? "no other effect comes near it: there is nothing to settle"
-              : "nothing stands out on this run: there is nothing to settle (two names ask about a pair)";
+  if (!asked) {
+    out.text = settled_text(*explained);
     return out;
   }
   const auto hardest =

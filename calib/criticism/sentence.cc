@@ -199,7 +199,7 @@ std::string sentence(const ExplainReport& r) {
   const JointFit* before = r.fit.get();
   for (const Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
-    if (lesser_part.empty()) parts.push_back(rivals_text(round));
+    if (lesser_part.empty() || !round.possible.empty()) parts.push_back(rivals_text(round));
     before = round.fit.get();
   }
   switch (r.finding) {
