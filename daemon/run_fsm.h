@@ -232,6 +232,7 @@ class RunFsm {
   TableAngles mounting_;                ///< ... and as it was entered
   std::optional<int> scales_of_;        ///< pose whose scales were entered ...
   TableAngles scales_;                  ///< ... and what they say
+  std::optional<int> forgotten_;        ///< pose whose scales were entered when the run was paused
   std::optional<int> noted_;            ///< pose whose note was carried out
   bool unproved_{false};                ///< the last entry was not yet held against the field
   bool doubtful_{false};                ///< the operator stands by it: others are not held against its poses

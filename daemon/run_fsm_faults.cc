@@ -41,7 +41,7 @@ Result<void> RunFsm::possible(Request request) const {
     case Request::redo:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
       if (unanswered_) return refuse("a pose is being stored", "ask again in a moment");
-      if (mounted_ || scales_of_ || (config_.by_hand && last_stored_)) return {};
+      if (mounted_ || scales_of_ || forgotten_ || (config_.by_hand && last_stored_)) return {};
       return refuse("nothing was entered by hand yet that could be entered again", "");
     case Request::finish:
       if (!measuring() && phase_ != Phase::paused) return refuse("all poses are measured", "wait, or abort");
@@ -65,6 +65,7 @@ void RunFsm::on(const Request& request) {
     case Request::resume:
       if (asks_for_deed()) return carried_out();
       attempt_ = 0;
+      forgotten_.reset();
       return go_on();
     case Request::finish:
       return finish_early();
@@ -92,7 +93,7 @@ void RunFsm::hold(const std::string& message) {
   flush_path();
   level_nT_.reset();  // whoever goes on takes the field as it is
   disturbed_since_.reset();
-  scales_of_.reset();  // a hand may be at the table meanwhile
+  forgotten_ = std::exchange(scales_of_, std::nullopt);  // a hand may be at the table meanwhile
   enter(Phase::paused, message);
   act(Record{"paused: " + message});
 }

@@ -181,9 +181,10 @@ void RunFsm::redo() {
     for (std::size_t i = 0; i < plan_.poses.size(); ++i)
       if (plan_.poses[i].mount == mounted_ && progress_.is_done(i)) again.push_back(i);
     mounted_.reset();
-  } else if (scales_of_ != planned().number && last_stored_) {
+  } else if (scales_of_ != planned().number && forgotten_ != planned().number && last_stored_) {
     again.push_back(*last_stored_);
   }
+  forgotten_.reset();
   last_stored_.reset();
   scales_of_.reset();
   doubted_.reset();

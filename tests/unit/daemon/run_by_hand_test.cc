@@ -174,6 +174,25 @@ TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
   EXPECT_EQ(bench.stored.back().number, 3);
 }
 
+/// The last entry is that of the pose under way, which the pause forgot: the pose before stays.
+TEST(RunByHand, RedoAfterAPauseAsksForThePoseUnderWayAgain) {
+  RunBench bench(hand_plan(12), hand_config());
+  Operator hands;
+  ASSERT_TRUE(to_prompt(bench));
+  hands.serve(bench);
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  ASSERT_TRUE(to_prompt(bench));
+  hands.serve(bench);
+  ASSERT_FALSE(bench.status->prompt.has_value()) << "pose 2 is being measured";
+  bench.send(Request::pause);
+  ASSERT_TRUE(bench.fsm.possible(Request::redo));
+  bench.send(Request::redo);
+  ASSERT_TRUE(to_prompt(bench));
+  EXPECT_EQ(bench.status->prompt->pose, 2);
+  EXPECT_EQ(bench.dropped, 0);
+  EXPECT_EQ(bench.stored.size(), 1U);
+}
+
 TEST(RunByHand, WhatIsEnteredOutsideTheLimitsIsRefused) {
   RunBench bench(hand_plan(12), hand_config());
   ASSERT_TRUE(to_prompt(bench));
