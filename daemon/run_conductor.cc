@@ -182,6 +182,8 @@ void RunConductor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now
   poses_ = stored ? *std::move(stored) : PoseTable{};
   near_.reset();
   learning_ = false;
+  learning_job_.request_stop();
+  solving_job_.request_stop();
   solved_.reset();
   answers_.clear();
   ++generation_;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 
@@ -93,7 +94,7 @@ class RunConductor {
   void act(const StorePath& action, Stamp now);
   void act(const StoreChecks& action, Stamp now);
   void act(const StartSolve&, Stamp now);
-  void act(const CancelSolve&, Stamp) {}
+  void act(const CancelSolve&, Stamp);
   void act(const ProposeCalibration& action, Stamp now);
   void act(const PublishStatus& action, Stamp now);
   void act(const Record& action, Stamp now);
@@ -109,6 +110,7 @@ class RunConductor {
   PoseTable poses_;                                ///< stored so far; the worker gets copies
   std::shared_ptr<const calib::JointState> near_;  ///< of the last fit while measuring
   bool learning_{false};                           ///< the worker is at such a fit
+  std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};
   std::optional<calib::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
   std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins

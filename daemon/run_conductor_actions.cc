@@ -49,8 +49,10 @@ void RunConductor::act(const StorePose& action, Stamp) {
 void RunConductor::learn_accuracy() {
   if (learning_) return;
   learning_ = true;
-  worker_.run(
-      [poses = poses_, near = near_, options = fit_options(file_->header().options)](std::stop_token) {
+  learning_job_ = worker_.run(
+      [poses = poses_, near = near_,
+       options = fit_options(file_->header().options)](std::stop_token stop) mutable {
+        options.stop = std::move(stop);
         return calib::accuracy_so_far(poses, options, near.get());
       },
       [this, generation = generation_, count = poses_.poses.size()](Result<calib::AccuracySoFar> known) {
@@ -75,23 +77,27 @@ void RunConductor::act(const StoreChecks& action, Stamp now) {
 }
 
 void RunConductor::act(const StartSolve&, Stamp) {
-  worker_.run([path = file_->path()](std::stop_token) { return solve_run(path); },
-              [this, generation = generation_](Result<calib::FitReport> report) {
-                if (generation != generation_ || !active()) return;
-                SolveDone done{tl::unexpected(Error{})};
-                if (const auto active = store_.active(); report && active && *active)
-                  hold_against(**active, *report);
-                if (report) {
-                  const calib::Calibration& c = report->calibration;
-                  done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict,
-                                         calib::left_over(*report)};
-                  solved_ = c;
-                } else {
-                  done.result = tl::unexpected(report.error());
-                }
-                answers_.push_back(std::move(done));
-              });
+  learning_job_.request_stop();  // what it would say is part of what follows
+  solving_job_ =
+      worker_.run([path = file_->path()](std::stop_token stop) { return solve_run(path, std::move(stop)); },
+                  [this, generation = generation_](Result<calib::FitReport> report) {
+                    if (generation != generation_ || !active()) return;
+                    SolveDone done{tl::unexpected(Error{})};
+                    if (const auto active = store_.active(); report && active && *active)
+                      hold_against(**active, *report);
+                    if (report) {
+                      const calib::Calibration& c = report->calibration;
+                      done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict,
+                                             calib::left_over(*report)};
+                      solved_ = c;
+                    } else {
+                      done.result = tl::unexpected(report.error());
+                    }
+                    answers_.push_back(std::move(done));
+                  });
 }
+
+void RunConductor::act(const CancelSolve&, Stamp) { solving_job_.request_stop(); }
 
 void RunConductor::act(const ProposeCalibration& action, Stamp now) {
   Result<void> proposed =

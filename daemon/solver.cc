@@ -27,10 +27,11 @@ Result<calib::FitOptions> fit_options(const PoseSource& source) {
   return out;
 }
 
-Result<calib::FitReport> solve_run(const std::filesystem::path& run_file) {
+Result<calib::FitReport> solve_run(const std::filesystem::path& run_file, std::stop_token stop) {
   const auto source = read_run(run_file);
   if (!source) return tl::unexpected(source.error());
-  const auto options = fit_options(*source);
+  auto options = fit_options(*source);
+  if (options) options->stop = std::move(stop);
   if (!options) return tl::unexpected(options.error());
   auto report = calib::fit(source->table, *options);
   if (!report) return report;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <stop_token>
 #include <string>
 
 #include "calib/fit/fit.h"
@@ -18,7 +19,8 @@ namespace mgtd::daemon {
 [[nodiscard]] Result<calib::FitOptions> fit_options(const PoseSource& source);
 
 /// Reads the poses of a run file and fits them. Takes what it needs from the file alone, so it may run on any
-/// thread.
-[[nodiscard]] Result<calib::FitReport> solve_run(const std::filesystem::path& run_file);
+/// thread, and ends soon after it is told to stop.
+[[nodiscard]] Result<calib::FitReport> solve_run(const std::filesystem::path& run_file,
+                                                 std::stop_token stop = {});
 
 }  // namespace mgtd::daemon

@@ -9,8 +9,8 @@
 #include <memory>
 #include <stop_token>
 
-/// The one thread beside the live one. It gets values, gives a value back on the live thread, and owns
-/// nothing live.
+/// A thread beside the live one: the daemon has one for fits and one for the disk (disk_sync.h). It gets
+/// values, gives a value back on the live thread, and owns nothing live. Jobs run one after the other.
 namespace mgtd::daemon {
 
 class Worker {
@@ -24,17 +24,21 @@ class Worker {
   Worker& operator=(const Worker&) = delete;
 
   /// `job(stop_token)` runs on the worker; `done(its result)` on the live thread, unless the worker is gone
-  /// by then.
+  /// by then. What is returned stops this job, begun or not; the end of the worker stops them all. A job that
+  /// is stopped still gives a result.
   template <class Job, class Done>
-  void run(Job job, Done done) {
-    boost::asio::post(
-        pool_, [this, job = std::move(job), done = std::move(done), alive = std::weak_ptr(alive_),
-                keep = boost::asio::make_work_guard(home_)]() mutable {
-          auto result = std::make_shared<decltype(job(stop_.get_token()))>(job(stop_.get_token()));
-          boost::asio::post(home_, [alive = std::move(alive), done = std::move(done), result]() mutable {
-            if (!alive.expired()) done(std::move(*result));
-          });
-        });
+  std::stop_source run(Job job, Done done) {
+    std::stop_source this_job;
+    boost::asio::post(pool_, [all = stop_.get_token(), this_job, &home = home_, job = std::move(job),
+                              done = std::move(done), alive = std::weak_ptr(alive_),
+                              keep = boost::asio::make_work_guard(home_)]() mutable {
+      const std::stop_callback with_the_others(all, [&] { this_job.request_stop(); });
+      auto result = std::make_shared<decltype(job(this_job.get_token()))>(job(this_job.get_token()));
+      boost::asio::post(home, [alive = std::move(alive), done = std::move(done), result]() mutable {
+        if (!alive.expired()) done(std::move(*result));
+      });
+    });
+    return this_job;
   }
 
  private:

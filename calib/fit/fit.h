@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,8 @@ struct FitOptions {
   double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
   std::uint64_t seed{1};             ///< of the draws that judge a fit (criticism); no method draws
   std::vector<EffectPtr> effects;    ///< beside the twelve parameters a sensor; joint only
+  /// Asked before every step of a solver: a fit that is stopped is refused within that time.
+  std::stop_token stop{};
 };
 
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a

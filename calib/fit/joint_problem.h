@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "calib/effects/library.h"
@@ -68,6 +69,7 @@ struct JointProblem {
   /// Of the site's field, from the operator; and the weight of both, 1/rad.
   std::optional<double> known_inclination_rad, known_declination_rad;
   double direction_weight{0};
+  std::stop_token stop{};  ///< of FitOptions
 
   [[nodiscard]] int coefficients() const;
   [[nodiscard]] int fixed() const { return kEffectSlot + coefficients(); }

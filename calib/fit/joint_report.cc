@@ -159,6 +159,7 @@ JointOptions joint_options(const FitOptions& options) {
   out.inclination_rad = options.inclination_rad;
   out.declination_rad = options.declination_rad;
   out.table_sd_rad = options.table_sd_rad;
+  out.stop = options.stop;
   return out;
 }
 

@@ -81,6 +81,7 @@ CovariateMeans covariate_means(const PoseTable& table) {
 Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options, PoseUse use) {
   JointProblem problem;
   problem.geometry = options.geometry;
+  problem.stop = options.stop;
   auto effects = bound_to_run(options.effects, {.table = &table, .offset_nT = {}});
   if (!effects) return tl::unexpected(effects.error());
   problem.effects = std::move(*effects);

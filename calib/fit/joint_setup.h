@@ -31,6 +31,7 @@ struct JointOptions {
   /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
   /// is.
   double most_left_out{1.0 / 3};
+  std::stop_token stop{};  ///< of FitOptions
 };
 
 /// Spread of the true field from pose to pose that is allowed for when no scalar reference follows it.

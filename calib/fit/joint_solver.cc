@@ -53,6 +53,7 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
   best.reduced = reduce(problem, best.state, damping);
   double before = best.reduced.cost.total();
   for (; best.iterations < kMaxIterations; ++best.iterations) {
+    if (problem.stop.stop_requested()) return fail(ErrorCode::state, "the fit was stopped");
     if (best.iterations == kMaxIterations - kCreeping) before = best.reduced.cost.total();
     const auto step = scaled_solve(best.reduced.S, best.reduced.g);
     if (step) {

@@ -60,8 +60,8 @@ struct JointSolution {
 
 /// Predicted fall of chi-square by the next step at which solve() may stop.
 inline constexpr double kConverged = 1e-9, kNearlyConverged = 0.1;
-/// Stops at `enough`. Refuses when it does not get there, or when the information is not positive definite
-/// (which parameters that is about says identifiability.h).
+/// Stops at `enough`. Refuses when it does not get there, when it is told to stop (ErrorCode::state), or when
+/// the information is not positive definite (which parameters that is about says identifiability.h).
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
                                           double enough = kConverged);
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace mgtd::daemon {
 namespace {
@@ -42,6 +44,25 @@ TEST(Worker, AJobIsToldToStopWhenTheWorkerGoes) {
   }
   io.run();
   EXPECT_FALSE(delivered);
+}
+
+TEST(Worker, OneJobIsStoppedAndTheNextIsNot) {
+  boost::asio::io_context io(1);
+  Worker worker(io);
+  std::vector<std::string> ended;
+  const auto until_stopped = [](std::stop_token stop) {
+    while (!stop.stop_requested()) std::this_thread::yield();
+    return std::string("stopped");
+  };
+  const auto note = [&](const std::string& how) { ended.push_back(how); };
+  std::stop_source under_way = worker.run(until_stopped, note);
+  std::stop_source waiting = worker.run(until_stopped, note);
+  worker.run([](std::stop_token stop) { return std::string(stop.stop_requested() ? "stopped" : "done"); },
+             note);
+  waiting.request_stop();
+  under_way.request_stop();
+  io.run();
+  EXPECT_EQ(ended, (std::vector<std::string>{"stopped", "stopped", "done"}));
 }
 
 }  // namespace

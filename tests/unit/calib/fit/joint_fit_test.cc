@@ -42,6 +42,18 @@ TEST(JointFit, EstimatesTheTableAndTheNoise) {
   EXPECT_NE(fit.gauge_text.find("table angles"), std::string::npos);
 }
 
+TEST(JointFit, ThatIsToldToStopIsRefused) {
+  std::stop_source stop;
+  JointOptions options;
+  options.stop = stop.get_token();
+  const PoseTable table = simulate(real_rig(), 36, 121, 1);
+  ASSERT_TRUE(fit_joint(table, options));
+  stop.request_stop();
+  const auto fit = fit_joint(table, options);
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.error().code, ErrorCode::state) << fit.error().text();
+}
+
 TEST(JointFit, ReportedCovarianceIsTheRealOne) {
   // Normalised estimation error squared: mean of 60 chi-squares with 48 degrees of freedom, 99.9 % band.
   constexpr int kRuns = 60;
