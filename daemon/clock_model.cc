@@ -7,129 +7,178 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr double kBeat_s = 300;    // 4 ms, what 16 leave of 20, at 17 ppm: 235 s
-constexpr double kNear = 1.0 / 8;  // of the mean delay: next to the envelope
-constexpr double kSteps = 0.16;    // share of delays there that chance does not explain: kNear / 2
+constexpr double kWander = 3e-9;      // of the period, relative, in a second: 11 ppm in an hour
+constexpr double kOrdinary = 200e-6;  // rate errors of oscillators; preferred as long as they explain all
+constexpr double kBlock_s = 1.0;
+constexpr double kMean_s = 600;  // over which the estimate is closest to the arrivals: two beats of 13 ppm
+constexpr double kBelow = 0.1;   // of the set's depth, or ...
+constexpr double kBelow_s = 0.5e-3;            // ... so much: no further is the estimate below its upper side
+constexpr double kTails = 4.5;                 // so far does chance reach in hours, in mean tails of a second
+constexpr int kTailBlocks = 64;                // over which they are averaged
+constexpr int kCrowded = 30;                   // blocks in a row: D is too small
+constexpr int kOverdue = 2;                    // blocks in a row that came late as a whole: another rate
 constexpr double kResidualWeight = 1.0 / 256;  // of the running mean of delays
 
 }  // namespace
 
-ClockModel::ClockModel(Config config) : config_(config), b_s_(config.period_s) {
-  const double in_window = std::max(1.0, config.window_s / config.period_s);
-  block_max_ = static_cast<std::size_t>(std::ceil(in_window / static_cast<double>(kBlocks)));
-  points_.reserve(kBlocks + 1);
-  hull_.reserve(kBlocks + 1);
+ClockModel::ClockModel(Config config) : config_(config) {
+  block_.reserve(block_size());
   reset();
 }
 
 void ClockModel::reset() {
-  points_.clear();
-  in_block_ = 0;
-  block_ = 1;
+  step_s_ = config_.step_s;
+  tail_s_ = 0;
+  residual_s_ = 0;
+  crowded_ = 0;
+  forget();
+}
+
+void ClockModel::restart(std::int64_t k, double arrival_s) {
+  forget();
+  start({static_cast<double>(k), arrival_s});
+}
+
+void ClockModel::forget() {
+  distrust();
   samples_ = 0;
-  b_s_ = config_.period_s;
-  bound_s_ = config_.period_s;
-  residual_s_ = last_delay_s_ = near_ = 0;
+  overdue_ = blocks_ = 0;
+  last_delay_s_ = 0;
+  line_.period_s = config_.period_s;
+}
+
+double ClockModel::longest_s() const { return step_s_ + config_.scheduling_s + kTails * tail_s_; }
+
+/// The latest samples of a block that may be the end of one stall of the host.
+std::size_t ClockModel::passed_over() const {
+  return 2 + static_cast<std::size_t>(longest_s() / config_.period_s);
+}
+
+std::size_t ClockModel::block_size() const {
+  return std::max(
+      {static_cast<std::size_t>(kBlock_s / config_.period_s), std::size_t{16}, 8 * passed_over()});
+}
+
+void ClockModel::start(const Arrival& first) {
+  const double spread_s = config_.max_drift * config_.period_s;
+  lines_.start(first.k, {first.t_s - config_.longest_wait_s, first.t_s},
+               {config_.period_s - spread_s, config_.period_s + spread_s});
+  start_k_ = widened_k_ = last_k_ = first.k;
+  samples_ = 1;
+  fit();
+}
+
+void ClockModel::contradicted(const Arrival& by) {
+  ++contradictions_;
+  forget();
+  start(by);
 }
 
 void ClockModel::add(std::int64_t k, double arrival_s) {
-  const Point p{static_cast<double>(k), arrival_s};
-  if (samples_ == 0) {
-    k0_ = p.k;
-    a_s_ = arrival_s;
+  const Arrival a{static_cast<double>(k), arrival_s};
+  last_k_ = a.k;
+  if (samples_++ == 0) {
+    start(a);
+  } else if (!lines_.not_above(a.k, a.t_s)) {
+    contradicted(a);
+  } else if (a.t_s < time_of(a.k) || samples_ < block_size()) {
+    fit();
   }
-  double delay = above_line(p);
-  if (delay < 0) {  // nothing arrives before it was taken: the line was too high
-    a_s_ += delay;
-    delay = 0;
-  }
-  ++samples_;
-  last_delay_s_ = delay;
+  last_delay_s_ = a.t_s - time_of(a.k);
   const double weight = std::max(kResidualWeight, 1.0 / static_cast<double>(samples_));
-  residual_s_ += (delay - residual_s_) * weight;
-  near_ += ((delay < kNear * residual_s_ ? 1.0 : 0.0) - near_) * weight;
-  if (in_block_ == 0 || delay < above_line(lowest_)) lowest_ = p;
-  if (++in_block_ == block_) close_block();
+  residual_s_ += (last_delay_s_ - residual_s_) * weight;
+  block_.push_back(a);
+  if (a.t_s - lines_.time(a.k).most > longest_s()) ++late_;
+  if (a.k - widened_k_ >= static_cast<double>(block_size())) allow_wander();
+  if (block_.size() >= block_size()) close_block();
 }
 
 void ClockModel::close_block() {
-  points_.push_back(lowest_);
-  in_block_ = 0;
-  if (points_.size() > kBlocks) {
-    if (block_ < block_max_) {
-      halve();
-    } else {
-      points_.erase(points_.begin());
-    }
+  const Arrival last = block_.back();
+  bound_from_below();
+  if (overdue_ >= kOverdue || crowded_ >= kCrowded) {
+    crowded_ = 0;
+    contradicted(last);
   }
+  distrust();
   fit();
-  fit_bound();
 }
 
-/// Pairs of blocks become one; the last block, left single, is opened again.
-void ClockModel::halve() {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i + 1 < points_.size(); i += 2) {
-    const Point &p = points_[i], &q = points_[i + 1];
-    points_[kept++] = above_line(p) < above_line(q) ? p : q;
-  }
-  if (points_.size() % 2 == 1) {
-    lowest_ = points_.back();
-    in_block_ = block_;
-  }
-  points_.resize(kept);
-  block_ *= 2;
+void ClockModel::allow_wander() {
+  const double since_s = (last_k_ - widened_k_) * config_.period_s;
+  lines_.allow_wander(last_k_, kWander * since_s * config_.period_s);
+  widened_k_ = last_k_;
 }
 
-/// The edge of the lower convex hull below the mean k is the line below all points that is closest to them in
-/// the mean.
+/// Of the samples in time, the latest but some: it was taken no earlier than D before. A block that is late
+/// as a whole is of another rate; one that is wider than D, of slower delivery.
+void ClockModel::bound_from_below() {
+  const auto later = [](const Arrival& p, const Arrival& q) { return p.above_s > q.above_s; };
+  for (Arrival& a : block_) a.above_s = a.t_s - lines_.time(a.k).most;
+  const auto in_time =
+      std::partition(block_.begin(), block_.end(), [&](const Arrival& a) { return a.above_s > longest_s(); });
+  const auto latest_but = [&](std::vector<Arrival>::iterator from, std::size_t some) {
+    const auto nth = from + std::min(static_cast<std::ptrdiff_t>(some), block_.end() - from - 1);
+    std::nth_element(from, nth, block_.end(), later);
+    return *nth;
+  };
+  if (static_cast<std::size_t>(in_time - block_.begin()) * kLate <= block_.size()) {
+    const Arrival a = latest_but(in_time, passed_over());
+    // Single ones that are late every second, behind a line that is longer, are no tail.
+    const double tail_s = std::min(latest_but(in_time, 0).above_s - a.above_s,
+                                   2 * (a.above_s - latest_but(in_time, 2 * passed_over() + 1).above_s));
+    ++blocks_;
+    tail_s_ += (tail_s - tail_s_) / std::min(blocks_, kTailBlocks);
+    const double longest_s = this->longest_s() + kTails * std::max(0.0, tail_s - tail_s_);
+    static_cast<void>(lines_.not_below(a.k, a.t_s - longest_s));
+    overdue_ = crowded_ = 0;
+    return;
+  }
+  const double least_s =
+      std::min_element(block_.begin(), block_.end(), [&](const Arrival& p, const Arrival& q) {
+        return later(q, p);
+      })->above_s;
+  const double usual_s = latest_but(block_.begin(), passed_over()).above_s;
+  const bool shifted = least_s > longest_s() || usual_s - least_s <= longest_s();
+  overdue_ = shifted ? overdue_ + 1 : 0;
+  crowded_ = shifted ? 0 : crowded_ + 1;
+  if (crowded_ == kCrowded) step_s_ = 2 * usual_s;
+}
+
 void ClockModel::fit() {
-  if (points_.size() < 2) return;
-  hull_.clear();
-  double k_sum = 0;
-  for (const Point& p : points_) {
-    while (hull_.size() >= 2) {
-      const Point &o = hull_[hull_.size() - 2], &q = hull_.back();
-      if ((q.k - o.k) * (p.arrival_s - o.arrival_s) > (q.arrival_s - o.arrival_s) * (p.k - o.k)) break;
-      hull_.pop_back();
-    }
-    hull_.push_back(p);
-    k_sum += p.k;
-  }
-  const double k_mean = k_sum / static_cast<double>(points_.size());
-  auto right = std::lower_bound(hull_.begin() + 1, hull_.end() - 1, k_mean,
-                                [](const Point& p, double k) { return p.k < k; });
-  const Point &p = *(right - 1), &q = *right;
-  const double slope = (q.arrival_s - p.arrival_s) / (q.k - p.k);
-  b_s_ = std::clamp(slope, config_.period_s * (1 - config_.max_drift),
-                    config_.period_s * (1 + config_.max_drift));
-  k0_ = points_.back().k;
-  a_s_ = points_.back().arrival_s;
-  double lowest = 0;
-  for (const Point& h : hull_) lowest = std::min(lowest, above_line(h));
-  if (in_block_ > 0) lowest = std::min(lowest, above_line(lowest_));
-  a_s_ += lowest;
+  const double back = std::min((last_k_ - start_k_) / 2, kMean_s / 2 / config_.period_s);
+  const double from_k = last_k_ - back;
+  line_ = lines_.highest_at(from_k, {config_.period_s * (1 - kOrdinary), config_.period_s * (1 + kOrdinary)});
+  k0_ = from_k;
+  const FeasibleLines::Range now_s = lines_.time(last_k_);
+  const double least_s = now_s.most - std::max(kBelow_s, kBelow * (now_s.most - now_s.least));
+  line_.t_s += std::max(0.0, least_s - time_of(last_k_));
 }
 
-/// How far above the line the lowest arrival of an eighth of the window lies, at worst. A delivery timer that
-/// beats with the samples hides part of its delay for as long as one beat: until then that part counts too.
-void ClockModel::fit_bound() {
-  if (points_.size() < 2 * kGroups) return;
-  double worst = 0;
-  for (std::size_t group = 0; group < kGroups; ++group) {
-    const std::size_t first = points_.size() * group / kGroups, last = points_.size() * (group + 1) / kGroups;
-    double least = above_line(points_[first]);
-    for (std::size_t i = first + 1; i < last; ++i) least = std::min(least, above_line(points_[i]));
-    worst = std::max(worst, least);
-  }
-  const double seen_s = (points_.back().k - points_.front().k) * b_s_;
-  // Delays of a beating timer come in steps, each as often as the next; those of chance spread.
-  const double step_s = near_ > kSteps ? 2 * residual_s_ * near_ : 0;
-  bound_s_ = worst + step_s * std::max(0.0, 1 - seen_s / kBeat_s);
+ClockModel::Bound ClockModel::bound(double k) const {
+  if (empty()) return {config_.longest_wait_s, config_.longest_wait_s};
+  const FeasibleLines::Range t_s = lines_.time(k);
+  const double at_s = time_of(k);
+  return {std::max(0.0, at_s - t_s.least), std::max(0.0, t_s.most - at_s)};
 }
 
 ClockState ClockModel::state() const {
-  return {last_delay_s_, (b_s_ / config_.period_s - 1) * 1e6, residual_s_, bound_s_, samples_, settled()};
+  const Bound b = bound(last_k_);
+  const double nominal_s = config_.period_s;
+  ClockState out{last_delay_s_,
+                 nominal_s / line_.period_s - 1,
+                 0,
+                 residual_s_,
+                 std::max(b.early_s, b.late_s),
+                 step_s_,
+                 samples_,
+                 settled()};
+  if (!empty()) {
+    const FeasibleLines::Range period_s = lines_.period();
+    out.rate_error_pm = std::max(nominal_s / period_s.least - nominal_s / line_.period_s,
+                                 nominal_s / line_.period_s - nominal_s / period_s.most);
+  }
+  return out;
 }
 
 }  // namespace mgtd::daemon

@@ -254,6 +254,11 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
   }
   if (entry->has_port) read_port(s, device);
   if (role == Role::table) read_mounts(s);
+  if (role == Role::sensor) {
+    device.delivery_s = s.number("delivery_s", device.delivery_s);
+    if (!(device.delivery_s >= 0 && device.delivery_s <= 1))
+      s.object("delivery_s", "the step of delivery must be 0 to 1 s; USB converters have 0.001 to 0.016 s");
+  }
   device.device = entry->make(slot, s);
   if (const std::string serial = s.has("serial") ? s.text("serial", "") : ""; !serial.empty()) {
     const auto [where, fresh] = serial_lines_.emplace(serial, s.place_of("serial").line);

@@ -23,7 +23,8 @@ struct DeviceConfig {
   std::string driver;
   std::string port;
   int baud{0};
-  double latency_s{0};  ///< fixed delay between the field and the last byte, beyond the wire time
+  double latency_s{0};       ///< fixed delay between the field and the last byte, beyond the wire time
+  double delivery_s{0.016};  ///< longest step in which its bytes are delivered; of a sensor
   std::shared_ptr<drivers::Device> device;
 };
 

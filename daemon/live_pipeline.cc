@@ -23,6 +23,9 @@ SamplerConfig sampler_config(const Config& config) {
     out.latency_s.at(i) = sensor.latency_s;
     out.wire_s.at(i) = wire_s(sensor.device->line_bytes(), sensor.device->baud());
   }
+  for (std::size_t i = 0; i < kSensors; ++i)
+    out.step_s.at(i) = config.sensors.at(i).delivery_s * config.speed_up;
+  out.scheduling_s *= config.speed_up;
   out.silence_s *= config.speed_up;
   return out;
 }

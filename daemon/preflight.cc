@@ -142,12 +142,14 @@ Check Preflight::saturation() const {
                "choose the sensor's larger range, or look for iron near the array");
 }
 
+/// The limit is a sample's period beside what ordinary delivery may hide of two clocks that were never seen
+/// to beat with their timers: the step of 16 ms and the host's scheduling.
 Check Preflight::skew() const {
   return check(
       "clock", !y_nT_.empty() && skew_s_ <= config_.max_skew_s,
       y_nT_.empty() ? "no epoch" : fmt::format("{:.2f} ms between the sensors at most", 1e3 * skew_s_),
       fmt::format("{:.0f} ms", 1e3 * config_.max_skew_s),
-      "a port delivers late: lower its latency timer, or use another USB hub");
+      "a port delivers late: lower its latency timer and give it as delivery_s, or use another USB hub");
 }
 
 Check Preflight::wiring(const Statistics& s) const {

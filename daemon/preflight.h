@@ -34,7 +34,7 @@ struct PreflightConfig {
   double max_unrest{6};      ///< total scatter against noise ...
   double unrest_free_nT{5};  ///< ... not counted below this
   bool frozen_check{true};   ///< off for instruments whose resolution is coarser than their noise
-  double max_skew_s{0.02};
+  double max_skew_s{0.04};
   double max_field_error{0.25};      ///< |y| of a sensor not calibrated yet against the field, relative
   std::optional<double> field_nT{};  ///< of the site, used when there is no scalar reference
   bool scalar{false};                ///< a scalar reference is configured

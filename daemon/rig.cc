@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <system_error>
 
 #include "daemon/service_notify.h"
@@ -260,6 +261,18 @@ void Rig::tell_drops(const StatusReport& status, Instant at) {
   if (!status.control.last_drop.empty()) quiet_.warn("control client", status.control.last_drop, at);
 }
 
+/// Once, and again when it has gone and come back. The size settles within seconds: it is told when it is
+/// known to a tenth.
+void Rig::tell_clocks(const StatusReport& status, Instant at) {
+  for (const DeviceStatus& device : status.devices) {
+    const bool wrong = device.clock && !device.clock->trouble.empty() &&
+                       device.clock->rate_error_pm < std::abs(device.clock->rate_error) / 10;
+    bool& told = told_clocks_[device.name];
+    if (wrong && !told) quiet_.warn(device.name + " clock", device.clock->trouble, at);
+    if (device.clock) told = wrong || (told && !device.clock->settled);
+  }
+}
+
 void Rig::every_second(Stamp now) {
   const Instant host = std::chrono::steady_clock::now();
   const std::uint64_t epochs = pipeline_.sampler().health().epochs;
@@ -273,6 +286,7 @@ void Rig::every_second(Stamp now) {
   tell_identity();
   const StatusReport status = report();
   tell_drops(status, now.mono);
+  tell_clocks(status, now.mono);
   quiet_.tick(now.mono);
   stream_.publish(status);
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),

@@ -57,6 +57,7 @@ class Rig {
   void watch_links(Stamp now);
   void follow_magnet_test(Instant now, const Epoch* epoch);
   void tell_drops(const StatusReport& status, Instant at);
+  void tell_clocks(const StatusReport& status, Instant at);
   void start_recording();
   void start_disk_ring(LifeNote& life);
   void record(Stamp now);
@@ -97,7 +98,8 @@ class Rig {
   std::uint64_t epochs_at_second_{0};
   std::optional<double> rate_hz_;
   std::map<std::string, LinkState> link_states_;
-  std::uint64_t told_drops_{0};  ///< clients that were disconnected, as far as the log knows
+  std::map<std::string, bool> told_clocks_;  ///< wrong rates, as far as the log knows
+  std::uint64_t told_drops_{0};              ///< clients that were disconnected, as far as the log knows
   std::optional<Instant> last_second_;
   std::optional<WatchdogFeed> watchdog_;
   bool stopping_{false}, calibrating_{false};

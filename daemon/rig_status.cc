@@ -2,6 +2,7 @@
 // What the rig says of itself.
 #include <system_error>
 
+#include "daemon/clock_report.h"
 #include "daemon/rig.h"
 
 namespace mgtd::daemon {
@@ -63,6 +64,10 @@ StatusReport Rig::report() const {
   out.devices = instruments_.status();
   out.inputs = inputs_now(config_, pipeline_.inputs(), now.mono);
   const SamplerHealth sampler = pipeline_.sampler().health();
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    if (sampler.sensors[i].clock.samples > 0)
+      out.devices.at(i).clock = clock_report(sampler.sensors[i].clock, config_.rate_hz);
+  }
   out.sampler = {
       .epochs = sampler.epochs, .gaps = sampler.gaps, .rate_hz = rate_hz_, .skew_bound_s = last_skew_s_};
   out.stream = stream_.stats();

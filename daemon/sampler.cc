@@ -25,6 +25,7 @@ constexpr double kLate = 0.9;               // periods behind it, or ...
 constexpr double kLateResiduals = 2.5;      // ... so many of the usual delays ...
 constexpr double kLatest = 2;               // ... that are not themselves lateness
 constexpr std::uint64_t kLateSamples = 16;  // all late, and spread in time: frames were lost unseen
+constexpr double kDrains = 0.25;            // periods less late than before: a backlog
 constexpr double kHoldGap_s = 1.0;          // before a gap is told, so that a long one is one record
 constexpr double kNoDoubt_s = 1e9;
 constexpr double kRing_s = 16.0;  // of samples kept: a stalled host delivers so much at once
@@ -69,9 +70,14 @@ void Sampler::Stream::prove(std::int64_t from) {
 Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.rate_hz) {
   const double kept = std::max(kRing_s, 4 * config.silence_s) * config.rate_hz + 64;
   const std::size_t capacity = std::bit_ceil(static_cast<std::size_t>(kept));
-  const ClockModel::Config clock{period_s_, config.clock_window_s, config.max_drift, config.settle_samples};
-  for (int slot = 0; slot < kSensors; ++slot) {
-    streams_.emplace_back(ClockModel(clock), capacity);
+  for (const double step_s : config.step_s) {
+    streams_.emplace_back(ClockModel({.period_s = period_s_,
+                                      .step_s = step_s,
+                                      .scheduling_s = config.scheduling_s,
+                                      .max_drift = config.max_drift,
+                                      .longest_wait_s = config.silence_s,
+                                      .settle_samples = config.settle_samples}),
+                          capacity);
   }
   T_degC_.fill(std::numeric_limits<double>::quiet_NaN());
   next_seq_ = config_.first_seq;
@@ -108,6 +114,7 @@ void Sampler::push(const FieldReading& reading, std::vector<EpochOrGap>& out) {
   // A number in doubt must not teach the clock that samples come earlier.
   const double early_s = s.clock.time_of(static_cast<double>(k)) - sample_s;
   if (s.doubtful == 0 || early_s < kEarly * period_s_) s.clock.add(k, sample_s);
+  if (s.doubtful > 0) s.clock.distrust();
   if (reading.y_nT.allFinite()) {
     Flags flags = reading.flags;
     if (s.repeats.stands_still(reading.y_nT)) flags |= Flag::frozen;
@@ -215,7 +222,7 @@ bool Sampler::was_overcounted(Stream& s, double sample_s) const {
 bool Sampler::comes_again(const Stream& s, const FieldReading& reading, double sample_s) const {
   if (reading.seq == s.last->seq) return true;
   if (reading.device_time_s && s.last->device_time_s) {
-    const std::int64_t by = whole((*reading.device_time_s - *s.last->device_time_s) / period_s_);
+    const std::int64_t by = whole((*reading.device_time_s - *s.last->device_time_s) / s.clock.period_s());
     const std::int64_t k = s.last_k + by;
     return by == 0 || (by < 0 && by >= -kOvertaken && k >= s.first_k && s.find(k) == nullptr);
   }
@@ -232,7 +239,7 @@ Sampler::Step Sampler::step(const Stream& s, const FieldReading& reading, double
   const auto counted = static_cast<std::int64_t>(reading.seq - s.last->seq);
   std::int64_t timed = 0;
   if (reading.device_time_s && s.last->device_time_s) {
-    timed = whole((*reading.device_time_s - *s.last->device_time_s) / period_s_);
+    timed = whole((*reading.device_time_s - *s.last->device_time_s) / s.clock.period_s());
   }
   const double due =
       s.clock.index_of(sample_s) - static_cast<double>(s.last_k);  // at most, delay being positive
@@ -255,7 +262,8 @@ double Sampler::late_from_s(const Stream& s) const {
 }
 
 /// Frames lost before the driver saw them leave no trace but time: from then on every sample is whole periods
-/// late.
+/// late. What waited for a host that stood still comes as fast as the line carries it, each sample less late
+/// than the one before: as long as that goes on, nothing is said to be lost.
 void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
   Lateness& late = s.late;
   if (delay_s < late_from_s(s)) {
@@ -266,15 +274,22 @@ void Sampler::watch_lateness(Stream& s, double arrival_s, double delay_s) {
   }
   if (late.samples == 0) late = {0, s.last_k, arrival_s, delay_s, 0};
   ++late.samples;
+  if (s.clock.settled()) s.clock.distrust();
   s.ring[static_cast<std::size_t>(s.last_k) & (s.ring.size() - 1)].late_s = delay_s;
-  late.least_s = std::min(late.least_s, delay_s);
+  if (delay_s < late.least_s - kDrains * period_s_) {
+    late.least_s = delay_s;
+    late.since_s = arrival_s;
+  }
   late.span_s = arrival_s - late.since_s;
   if (!s.clock.settled() || late.samples < kLateSamples || late.span_s < config_.silence_s / 2) return;
   const std::int64_t lost = std::max<std::int64_t>(1, whole(late.least_s / period_s_));
+  const double sample_s = s.clock.time_of(static_cast<double>(s.last_k)) + delay_s;
   s.renumber(late.first_k, lost);
   s.lessen_lateness(late.first_k + lost, static_cast<double>(lost) * period_s_);
   count_lost(s, lost);
   late = {};
+  // What looks like a loss may be a rate that changed.
+  s.clock.restart(s.last_k, sample_s);
 }
 
 /// Numbers are proved by prompt samples that nothing was waiting before, or by many that were neither early

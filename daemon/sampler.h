@@ -28,8 +28,9 @@
 /// deliveries) the number is in doubt until a sample proves it: the epochs are flagged clock_unsettled and
 /// the doubt is part of their bound. A sample that comes twice, or after its successor, is dropped.
 ///
-/// skew_bound_s = what the two worst clock models may be off + the largest shift left uninterpolated.
-/// Constant delays (filter group delay, wire time) must be configured; no software sees them.
+/// skew_bound_s: the most by which two of the four may differ in true time, from how early and how late each
+/// clock model allows its sample to be, and the shift left uninterpolated. Constant delays (filter group
+/// delay, wire time) must be configured; no software sees them.
 namespace mgtd::daemon {
 
 struct SamplerConfig {
@@ -38,12 +39,13 @@ struct SamplerConfig {
   std::array<double, kSensors> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
   /// A sensor that sent nothing for so long is silent; multiply by a simulation's speed-up.
   double silence_s{1.0};
-  double clock_window_s{600};
-  double max_drift{2e-3};  ///< of a device's rate against rate_hz, relative
+  std::array<double, kSensors> step_s{0.016, 0.016, 0.016, 0.016};  ///< longest step of each delivery timer
+  double scheduling_s{0.5e-3};                                      ///< of the host, beside them
+  double max_drift{0.12};  ///< of a device's rate against rate_hz, relative
   std::uint64_t settle_samples{100};
   double temperature_s{300};      ///< a temperature is attached to epochs for so long
   std::uint64_t first_seq{0};     ///< number of the first epoch
-  double negligible_shift{2e-3};  ///< of a period: no interpolation below it (nor below the clock bound)
+  double negligible_shift{2e-3};  ///< of a period: no interpolation below it
 };
 
 /// Time that bytes need on a line with one start and one stop bit, s.

@@ -10,7 +10,8 @@ namespace mgtd::daemon {
 namespace {
 
 constexpr std::size_t kReference = 0;
-constexpr double kMaxUninterpolated = 0.02;  // periods
+constexpr double kApart_s = 1e-6;            // epochs are, at least
+constexpr double kMaxUninterpolated = 0.02;  // periods before the first sample
 
 }  // namespace
 
@@ -35,9 +36,7 @@ Sampler::Pick Sampler::pick(int slot, double t_s) const {
     return s.find(k) != nullptr ? Need::ready : k > s.last_k ? Need::wait : Need::lost;
   };
   const double nearest = std::round(u), shift_s = (nearest - u) * s.clock.period_s();
-  const double negligible_s =
-      std::clamp(s.clock.bound_s(), config_.negligible_shift * period_s_, kMaxUninterpolated * period_s_);
-  if (std::abs(shift_s) <= negligible_s) {
+  if (std::abs(shift_s) <= config_.negligible_shift * period_s_) {
     const auto k = static_cast<std::int64_t>(nearest);
     to.need = need(k);
     if (to.need != Need::ready) return to;
@@ -85,7 +84,7 @@ bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
     emit_gap(1, waiting, Why::silent, out);
     return true;
   }
-  if (t_s <= last_t_s_) {
+  if (t_s < last_t_s_ + kApart_s) {
     emit_gap(1, kReference, Why::clock, out);
   } else {
     emit_epoch(t_s, picks, out);
@@ -114,19 +113,22 @@ void Sampler::emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, st
   epoch.seq = next_seq_++;
   epoch.t = stamp(t_s);
   epoch.T_degC = temperatures(epoch.t.mono);
-  double first = 0, second = 0, earliest = 0, latest = 0;
+  std::array<ClockModel::Bound, kSensors> off;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const Stream& s = streams_[i];
-    const double bound_s = s.clock.bound_s() + picks[i].doubt_s;
-    second = std::max(second, std::min(first, bound_s));
-    first = std::max(first, bound_s);
-    earliest = std::min(earliest, picks[i].shift_s);
-    latest = std::max(latest, picks[i].shift_s);
+    off[i] = s.clock.bound(s.clock.index_of(t_s));
+    off[i].early_s += picks[i].doubt_s + std::max(0.0, -picks[i].shift_s);
+    off[i].late_s += picks[i].doubt_s + std::max(0.0, picks[i].shift_s);
     epoch.y_nT[i] = picks[i].y_nT;
     epoch.flags |= picks[i].flags;
-    if (picks[i].doubt_s > 0 || !s.clock.settled()) epoch.flags |= Flag::clock_unsettled;
+    if (picks[i].doubt_s > 0 || !s.clock.settled() || s.clock.contested())
+      epoch.flags |= Flag::clock_unsettled;
   }
-  epoch.skew_bound_s = first + second + (latest - earliest);
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    for (std::size_t j = 0; j < kSensors; ++j) {
+      if (i != j) epoch.skew_bound_s = std::max(epoch.skew_bound_s, off[i].late_s + off[j].early_s);
+    }
+  }
   last_t_s_ = t_s;
   ++next_k_;
   ++epochs_;

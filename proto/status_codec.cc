@@ -23,6 +23,16 @@ Json rejected(const LinkHealth& health) {
   return counts;
 }
 
+Json to_json(const std::optional<ClockStatus>& clock) {
+  if (!clock) return nullptr;
+  return {{"rate_error", number(clock->rate_error)},
+          {"rate_error_pm", number(clock->rate_error_pm)},
+          {"bound_s", number(clock->bound_s)},
+          {"delivery_s", number(clock->delivery_s)},
+          {"settled", clock->settled},
+          {"trouble", clock->trouble}};
+}
+
 Json to_json(const DeviceStatus& device, Instant now) {
   const LinkHealth& h = device.health;
   return {{"name", device.name},
@@ -42,7 +52,8 @@ Json to_json(const DeviceStatus& device, Instant now) {
           {"opens", h.opens},
           {"closes", h.closes},
           {"balanced", h.balanced()},
-          {"last_frame_age_s", h.last_frame ? Json(to_seconds(now - *h.last_frame)) : Json(nullptr)}};
+          {"last_frame_age_s", h.last_frame ? Json(to_seconds(now - *h.last_frame)) : Json(nullptr)},
+          {"clock", to_json(device.clock)}};
 }
 
 Json to_json(const InputStatus& input, Instant now) {

@@ -16,7 +16,9 @@
 ///          "criticism":{"state","measured","limit","remedy"},
 ///          "devices":[{"name","driver","port","state","detail","identity","bytes_in","bytes_in_frames",
 ///                      "bytes_rejected","bytes_resync","bytes_pending","bytes_out","frames",
-///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s"}],
+///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s",
+///                      "clock":{"rate_error","rate_error_pm","bound_s","delivery_s","settled","trouble"}
+///                              or null}],
 ///          "inputs":[{"name","device","input","unit","value","age_s"}],
 ///          "sampler":{"epochs","gaps","rate_hz","skew_bound_s"},
 ///          "stream":{"clients","accepted","refused","dropped","dropped_for":{..},"last_drop","gaps"},

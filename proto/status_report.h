@@ -15,11 +15,22 @@
 /// Everything an operator asks a running daemon, in one value taken at one instant.
 namespace mgtd {
 
+/// Of a free-running digitiser: how its samples are placed in time.
+struct ClockStatus {
+  double rate_error{0};     ///< samples a second against what was asked for, relative; negative: slow
+  double rate_error_pm{0};  ///< the true one lies no further than this from it
+  double bound_s{0};        ///< so do the true sample times, from the estimated ones
+  double delivery_s{0};     ///< the longest step of delivery, as assumed
+  bool settled{false};
+  std::string trouble;  ///< what is wrong with its rate and what to do; empty: nothing
+};
+
 struct DeviceStatus {
   std::string name;    ///< "s1" .. "s4", "table", "scalar"
   std::string driver;  ///< as in the configuration
   std::string port;
   LinkHealth health;
+  std::optional<ClockStatus> clock{};  ///< of a sensor that has sent samples
 };
 
 /// An auxiliary input or a sensor's thermometer.

@@ -26,6 +26,9 @@ void print_devices(const nlohmann::json& devices) {
     const std::string said = d.at("state") == "live" ? text_or(d, "identity", "") : text_or(d, "detail", "");
     fmt::print("{:<8} {:<8} {:>10} {:>9}  {}\n", d.at("name").get<std::string>(),
                d.at("state").get<std::string>(), d.at("frames").get<std::uint64_t>(), rejected, said);
+    if (const auto clock = d.find("clock"); clock != d.end() && !clock->is_null())
+      if (const std::string trouble = text_or(*clock, "trouble", ""); !trouble.empty())
+        fmt::print("         {}\n", trouble);
   }
 }
 
@@ -116,7 +119,7 @@ void print_clients(const nlohmann::json& s) {
 
 /// What a person would ask about the line of the stream. The limit of the skew is that of a run's preflight.
 void print_stream_remarks(const nlohmann::json& sampler, double speed_up) {
-  constexpr double kMostSkew_s = 0.02, kMostMissing = 0.01;
+  constexpr double kMostSkew_s = 0.04, kMostMissing = 0.01;
   const double skew_s = sampler.at("skew_bound_s").is_null() ? 0 : sampler.at("skew_bound_s").get<double>();
   if (skew_s > kMostSkew_s)
     fmt::print(
@@ -124,7 +127,7 @@ void print_stream_remarks(const nlohmann::json& sampler, double speed_up) {
         1e3 * kMostSkew_s,
         speed_up > 1 ? "in a simulation faster than time that is the host's own delay"
                      : "it passes minutes after a start; else look at the load of this computer and at "
-                       "the converters' latency");
+                       "the converters' latency timers: lower them, and say so in delivery_s");
   const double missing = sampler.at("gaps").get<double>();
   const double share = missing / std::max(1.0, missing + sampler.at("epochs").get<double>());
   if (share > kMostMissing)

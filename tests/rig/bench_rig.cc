@@ -17,14 +17,15 @@
 namespace mgtd::rig {
 namespace {
 
-constexpr double kClockStep_s = 3;  ///< leap seconds learnt late
-constexpr double kReplug_s = 1;     ///< from one instrument to another
+constexpr double kClockStep_s = 3;     ///< leap seconds learnt late
+constexpr double kDelivery_s = 0.016;  ///< of a USB converter as it comes from the maker
+constexpr double kReplug_s = 1;        ///< from one instrument to another
 constexpr std::size_t kTable = 4;
-constexpr std::array kLasting{
-    FaultKind::stranger, FaultKind::unplug,  FaultKind::torn,      FaultKind::half,
-    FaultKind::twice,    FaultKind::swap,    FaultKind::freeze,    FaultKind::stall,
-    FaultKind::mute,     FaultKind::late,    FaultKind::saturate,  FaultKind::power,
-    FaultKind::turn,     FaultKind::runaway, FaultKind::backwards, FaultKind::limit};
+constexpr std::array kLasting{FaultKind::stranger, FaultKind::unplug,  FaultKind::torn,      FaultKind::half,
+                              FaultKind::twice,    FaultKind::swap,    FaultKind::freeze,    FaultKind::stall,
+                              FaultKind::mute,     FaultKind::late,    FaultKind::saturate,  FaultKind::power,
+                              FaultKind::turn,     FaultKind::runaway, FaultKind::backwards, FaultKind::limit,
+                              FaultKind::slow,     FaultKind::step};
 
 /// Whether what is behind this port can have the fault at all.
 bool can_have(std::size_t port, FaultKind kind) {
@@ -55,6 +56,7 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
     wires_.emplace_back(instruments_[i]->baud(), world_.scenario().seed + i);
   for (std::size_t i = 0; i < ports(); ++i)
     whose_.push_back(i < kTable ? static_cast<std::size_t>(world_.scenario().plugs.at(i) - 1) : i);
+  for (std::size_t i = 0; i < ports(); ++i) set_delivery(i, own_delivery_s(i));
   plugged_.assign(ports(), true);
   strange_.assign(ports(), false);
   unplugged_.assign(ports(), 0);
@@ -135,6 +137,17 @@ tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s
   return {};
 }
 
+double BenchRig::own_delivery_s(std::size_t port) const {
+  return port < kTable ? world_.scenario().delivery_s[port] : 0;
+}
+
+/// The timers of the ports tick at different moments.
+void BenchRig::set_delivery(std::size_t port, double step_s) {
+  const double slow = port < kTable ? 1 + 1e-6 * world_.scenario().delivery_ppm[port] : 1;
+  const double phase_s = step_s * static_cast<double>(port) / static_cast<double>(ports());
+  wires_[port].set_delivery(step_s * slow, phase_s);
+}
+
 void BenchRig::plug(std::size_t port, bool in) {
   if (plugged_[port] && !in) ++unplugged_[port];
   plugged_[port] = in;
@@ -170,6 +183,10 @@ void BenchRig::set(std::size_t port, FaultKind kind, bool on, double now_s) {
       return wires_[port].set_late(on);
     case FaultKind::saturate:
       return instrument.set_saturated(on);
+    case FaultKind::slow:
+      return instrument.set_slow(on);
+    case FaultKind::step:
+      return set_delivery(port, on ? kDelivery_s : own_delivery_s(port));
     case FaultKind::power:
       return instrument.set_power(!on, now_s);
     default:

@@ -57,6 +57,8 @@ class BenchRig {
   void advance(std::size_t port, double now_s);
   void set(std::size_t port, FaultKind kind, bool on, double now_s);
   void plug(std::size_t port, bool in);
+  void set_delivery(std::size_t port, double step_s);
+  [[nodiscard]] double own_delivery_s(std::size_t port) const;
   void forget_endings(std::size_t port, FaultKind kind);
 
   /// Whose plug is in the port, whatever is there for a while.

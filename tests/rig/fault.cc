@@ -18,14 +18,15 @@ struct Word {
   bool lasts;
 };
 
-constexpr std::array<Word, 21> kWords{
+constexpr std::array<Word, 23> kWords{
     {{"unplug", FaultKind::unplug, true},       {"garbage", FaultKind::garbage, false},
      {"torn", FaultKind::torn, true},           {"half", FaultKind::half, true},
      {"twice", FaultKind::twice, true},         {"swap", FaultKind::swap, true},
      {"freeze", FaultKind::freeze, true},       {"stall", FaultKind::stall, true},
      {"mute", FaultKind::mute, true},           {"late", FaultKind::late, true},
      {"saturate", FaultKind::saturate, true},   {"clock", FaultKind::clock, false},
-     {"rate", FaultKind::rate, false},          {"power", FaultKind::power, true},
+     {"rate", FaultKind::rate, false},          {"slow", FaultKind::slow, true},
+     {"step", FaultKind::step, true},           {"power", FaultKind::power, true},
      {"stranger", FaultKind::stranger, true},   {"exchange", FaultKind::exchange, true},
      {"turn", FaultKind::turn, true},           {"runaway", FaultKind::runaway, true},
      {"backwards", FaultKind::backwards, true}, {"limit", FaultKind::limit, true},

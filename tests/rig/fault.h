@@ -20,13 +20,17 @@
 ///   saturate PORT [for S]  the instrument is at the end of its range
 ///   clock PORT             its clock jumps 3 s ahead
 ///   rate PORT              it measures half as often
+///   slow PORT [for S]      its oscillator runs 1 % slow
+///   step PORT [for S]      its bytes are delivered every 16 ms
 ///   power PORT [for S]     without current, 2 s long when nothing else is said; it forgets what it was told
 ///   stranger PORT [for S]  unplugged, and after a second the cable leads to a satellite receiver
 ///   exchange PORT PORT [for S]  the plugs of two fluxgates change places; each is out for a second
 ///   turn PORT [for S]      the sensor is turned by a quarter about its z, as well as a hand can: 0.7 deg
-///   more runaway table [for S]  the azimuth turns on and on, whatever it is told backwards table [for S] the
-///   axes turn the wrong way, and say that they are there limit table [for S]    every motion ends at a limit
-///   switch restore PORT           all of it ends
+///   runaway table [for S]    the azimuth turns on and on, whatever it is told
+///   backwards table [for S]  the axes turn the wrong way, and say that they are there
+///   limit table [for S]      every motion ends at a limit switch
+///   restore PORT             all of it ends
+///
 /// A fault of an instrument (freeze, stall, saturate, clock, rate, power, turn) goes with the instrument when
 /// its plug is in another port.
 /// Ports: fluxgate1 .. fluxgate4, table, scalar, auxiliary.
@@ -49,6 +53,8 @@ enum class FaultKind {
   saturate,
   clock,
   rate,
+  slow,
+  step,
   power,
   stranger,
   exchange,
@@ -69,7 +75,8 @@ struct Fault {
 inline constexpr double kPowerOff_s = 2;  ///< when nothing else is said
 
 inline constexpr const char* kFaultUsage =
-    "unplug|torn|half|twice|swap|freeze|stall|mute|late|saturate|power|stranger|turn PORT [for SECONDS], "
+    "unplug|torn|half|twice|swap|freeze|stall|mute|late|saturate|slow|step|power|stranger|turn PORT [for "
+    "SECONDS], "
     "exchange PORT PORT [for SECONDS], "
     "runaway|backwards|limit table [for SECONDS], or garbage|clock|rate|restore PORT";
 

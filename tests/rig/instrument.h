@@ -44,6 +44,8 @@ class Instrument {
   virtual void step_clock(double /*by_s*/) {}
   /// It measures half as often; an instrument that is only asked has no rate.
   virtual void halve_rate() {}
+  /// Its oscillator runs 1 % slow.
+  virtual void set_slow(bool /*slow*/) {}
   /// Without current; with current again it is as it came from the maker.
   void set_power(bool on, double now_s) {
     if (on == powered_) return;

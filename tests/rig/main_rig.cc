@@ -48,7 +48,8 @@ constexpr const char* kScenarioHelp =
                  wiring = [4], plugs = [4] (whose plug is in which port: [1, 4, 3, 2] are two exchanged ones),
                  tells_serial (false: digitisers that do not), copied = 2 (every connector carries sensor 2), apart (in a table the sensors did
                  not share their attitudes), rate_hz, range_V, uT_full_scale, palmacq, common_trigger, autostart,
-                 oscillator_ppm
+                 oscillator_ppm, rate_error_percent = [4] (-1: that digitiser is 1 % slow), delivery_s = [4] (its
+                 bytes come when a timer of this period ticks), delivery_ppm = [4] (by which the timer is slow)
   [visit]        noise, noise_nT, student_dof, rho, outlier_share, outlier_nT, cycle_nT, cycle_visits,
                  cycle_where: what coming back to a pose does not reproduce
   [table]        accuracy_deg, velocity_deg_per_s, acceleration_deg_per_s2, tilt_limit_deg,

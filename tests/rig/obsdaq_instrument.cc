@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kQuickStop = 22;  ///< bars in a row that stop an acquisition
 constexpr double kTick_s = 64 / 9.8304e6;
+constexpr double kSlow = 1.01;  ///< of its seconds, by the fault
 constexpr double kFullCount = 8388608.0;
 constexpr std::int64_t kMaxCount = 8388607;
 constexpr double kSensor_V = 10;  ///< of the analogue fluxgate at full scale
@@ -53,11 +54,12 @@ ObsdaqInstrument::ObsdaqInstrument(World& world, int slot, double utc_s)
   // Spread over the allowed range so that no two of the four agree.
   constexpr std::array<double, 4> kShare{-1.0, 0.6, -0.2, 1.0};
   const Scenario& s = world.scenario();
-  oscillator_ =
-      s.common_trigger ? 1.0 : 1.0 + 1e-6 * s.oscillator_ppm * kShare.at(static_cast<std::size_t>(slot));
+  const auto i = static_cast<std::size_t>(slot);
+  oscillator_ = s.common_trigger ? 1.0 : 1.0 + 1e-6 * s.oscillator_ppm * kShare.at(i);
+  oscillator_ /= 1 + s.rate_error_percent.at(i) / 100;
 }
 
-double ObsdaqInstrument::period_s() const { return ticks_ * kTick_s * oscillator_; }
+double ObsdaqInstrument::period_s() const { return ticks_ * kTick_s * oscillator_ * (slow_ ? kSlow : 1); }
 
 void ObsdaqInstrument::autostart(double now_s) {
   ticks_ = ticks_of(world_.scenario().rate_hz);

@@ -30,6 +30,7 @@ class ObsdaqInstrument final : public Instrument {
   [[nodiscard]] int baud() const override { return palmacq_ ? 57600 : 19200; }
   void step_clock(double by_s) override { utc_s_ += by_s; }
   void halve_rate() override { ticks_ *= 2; }
+  void set_slow(bool slow) override { slow_ = slow; }
   /// Acquiring and forwarding before anybody asked (autostart in its EEPROM). The first the host sees is the
   /// end of a line.
   void autostart(double now_s);
@@ -64,6 +65,7 @@ class ObsdaqInstrument final : public Instrument {
   bool palmacq_;
   std::vector<Covariate> inputs_;  ///< auxiliary, beside the thermometer
   double oscillator_;              ///< length of its second
+  bool slow_{false};
   bool transparent_{false}, forwarding_{false}, escape_{false};
   std::string line_;
   int bars_{0};

@@ -168,6 +168,16 @@ void Reader::read_sensors(Scenario& s) {
   sensors.read("common_trigger", s.common_trigger);
   sensors.read("autostart", s.autostart);
   sensors.read("oscillator_ppm", s.oscillator_ppm, {0, 10'000});
+  sensors.read("rate_error_percent", s.rate_error_percent);
+  for (const double percent : s.rate_error_percent) {
+    if (!(std::abs(percent) <= 20))
+      sensors.complain("rate_error_percent", "rate_error_percent must be within 20 %");
+  }
+  sensors.read("delivery_s", s.delivery_s);
+  for (const double step_s : s.delivery_s) {
+    if (!(step_s >= 0 && step_s <= 1)) sensors.complain("delivery_s", "delivery_s must be 0 to 1 s");
+  }
+  sensors.read("delivery_ppm", s.delivery_ppm);
   sensors.refuse_rest();
 }
 

@@ -65,8 +65,12 @@ struct Scenario {
   double uT_full_scale{100};  ///< of the sensors, for their 10 V
   bool palmacq{true};
   bool common_trigger{false};
-  bool autostart{false};      ///< already streaming when the host opens the port
-  double oscillator_ppm{20};  ///< free-running devices differ by up to this
+  bool autostart{false};                       ///< already streaming when the host opens the port
+  double oscillator_ppm{20};                   ///< free-running devices differ by up to this
+  std::array<double, 4> rate_error_percent{};  ///< of each digitiser's rate: -1 is slow
+  /// Each port delivers when a timer of this period ticks; 0: at once.
+  std::array<double, 4> delivery_s{};
+  std::array<double, 4> delivery_ppm{};  ///< by which the timer is slow: the beat with the samples
 
   double table_accuracy_deg{0.1};
   double table_velocity_deg_per_s{20}, table_acceleration_deg_per_s2{40};

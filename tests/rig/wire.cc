@@ -41,6 +41,7 @@ void Wire::carry(Utterance said) {
 }
 
 std::string Wire::pull(double now_s) {
+  if (step_s_ > 0) now_s = phase_s_ + step_s_ * std::floor((now_s - phase_s_) / step_s_ + kRounding);
   std::string out;
   while (!bursts_.empty()) {
     Burst& first = bursts_.front();

@@ -18,6 +18,11 @@ class Wire {
   void push(Utterance said);
   /// The bytes whose last bit has arrived by now.
   [[nodiscard]] std::string pull(double now_s);
+  /// What has arrived is handed over when a timer of this period ticks; 0: at once.
+  void set_delivery(double step_s, double phase_s) {
+    step_s_ = step_s;
+    phase_s_ = phase_s;
+  }
   /// 200 random bytes, after what is on the line.
   void garbage(double now_s);
   /// One byte in a hundred gets lost.
@@ -44,6 +49,7 @@ class Wire {
   double byte_s_;
   std::mt19937_64 random_;
   std::deque<Burst> bursts_;
+  double step_s_{0}, phase_s_{0};
   double free_s_{0};  ///< when the line has carried all that was pushed
   bool torn_{false}, half_{false}, twice_{false}, swapped_{false}, late_{false};
   std::uint64_t pushed_{0};

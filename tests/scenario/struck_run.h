@@ -20,7 +20,7 @@ struct Strike {
   const char* words;
   bool lasts;
 };
-inline constexpr std::array<Strike, 27> kStrikes{{
+inline constexpr std::array<Strike, 29> kStrikes{{
     {Strike::Where::any, "unplug", true},
     {Strike::Where::any, "torn", true},
     {Strike::Where::any, "half", true},
@@ -47,6 +47,8 @@ inline constexpr std::array<Strike, 27> kStrikes{{
     {Strike::Where::asked, "mute", true},
     {Strike::Where::program, "stand still", false},
     {Strike::Where::program, "stand still for long", false},
+    {Strike::Where::sensors, "slow", true},
+    {Strike::Where::sensors, "step", true},
     {Strike::Where::pairs, "exchange", true},
 }};
 /// Those of the runs that once failed: with more to draw from, a seed is another run.
@@ -57,6 +59,7 @@ class StruckRun {
  public:
   static constexpr int kPoses = 30;
   static constexpr double kMeanPause_s = 15;      ///< between faults
+  static constexpr double kSlowUnseen_s = 4;      ///< 1 %, 16 ms of delivery, a block of samples, and some
   static constexpr double kLongest_s = 4 * 3600;  ///< of a run with its faults; without any, eight minutes
 
   explicit StruckRun(std::uint64_t seed, std::size_t strikes = kStrikes.size())
@@ -68,6 +71,7 @@ class StruckRun {
                                         "[sensors]\npalmacq = {}\nautostart = {}\n",
                                         seed, stamped_, seed % 3 == 0))) {
     judge_.watch(daemon_);
+    judge_.unsettled_is_said = true;
   }
 
   /// Returns the number of faults that it had.
@@ -111,6 +115,10 @@ class StruckRun {
         if (!stamped_) return;
         [[fallthrough]];
       case Strike::Where::sensors:
+        if (what.words == std::string_view("slow")) {
+          judge_.forgive(daemon_.t_s, daemon_.t_s + kSlowUnseen_s);
+          judge_.forgive(daemon_.t_s + for_s, daemon_.t_s + for_s + kSlowUnseen_s);
+        }
         return fault(fmt::format("{} fluxgate{}{}", what.words, 1 + pick(kSensors), lasting));
       case Strike::Where::asked:
         return fault(fmt::format("{} {}{}", what.words, pick(2) == 0 ? "table" : "scalar", lasting));
@@ -184,7 +192,7 @@ class StruckRun {
   }
 
   std::mt19937_64 random_;
-  std::size_t strikes_;  ///< to draw from, the first of all
+  std::size_t strikes_;       ///< to draw from, the first of all
   bool stamped_, exchanges_;  ///< exchanges_: plugs, among what strikes
   VirtualDaemon daemon_;
   StreamJudge judge_;

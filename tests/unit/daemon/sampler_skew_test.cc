@@ -75,7 +75,7 @@ TEST(SamplerSkew, BunchesOfChanceAreLearntInHalfAMinute) {
   RecordProperty("rms_us", static_cast<int>(skew.rms_s * 1e6));
   EXPECT_LT(skew.rms_s, 50e-6);
   EXPECT_GT(skew.bound_held, 0.99);
-  EXPECT_LT(skew.worst_bound_s, 2e-3);
+  EXPECT_LT(skew.worst_bound_s, 8e-3);  // it cannot tell them from delays without an end
 }
 
 /// Each port delivers on a 16 ms timer that beats with the samples: 4 ms of every delay hide for up to 235 s,

@@ -112,7 +112,7 @@ TEST(Sampler, SkewStaysFarBelowDeliveryBunches) {
   RecordProperty("worst_skew_us", static_cast<int>(worst * 1e6));
   RecordProperty("worst_bound_us", static_cast<int>(worst_bound * 1e6));
   EXPECT_LT(worst, 50e-6);
-  EXPECT_LT(worst_bound, 400e-6);
+  EXPECT_LT(worst_bound, 8e-3);  // where delays of chance end is known to some of the gaps between them
   EXPECT_EQ(beyond, 0U);
 }
 
@@ -328,6 +328,25 @@ TEST(Sampler, FlagsTemperatureAndLatencyReachTheEpoch) {
   for (const Epoch& e : found) EXPECT_LT(true_skew(e), 1e-6);
 }
 
+/// Bytes that waited for ten seconds are dated back by the time that the line needs for them: a sample every
+/// 8 ms, each less late than the one before. Nothing was lost.
+TEST(Sampler, ABacklogIsNotTakenForALoss) {
+  constexpr double kFrom_s = 30, kTo_s = 40, kLine_s = 0.008;
+  auto devices = free_running();
+  for (DeviceSim& device : devices) {
+    device.delay_s = [](double t_s) {
+      const double behind_s = (kTo_s - t_s) * (1 - kLine_s / 0.02);
+      return t_s > kFrom_s && t_s < kTo_s ? behind_s : 0.0;
+    };
+  }
+  Sampler sampler({});
+  const auto items = run(sampler, merged(devices, 60));
+  expect_tiling(items);
+  for (std::size_t i = 0; i < kSensors; ++i) EXPECT_EQ(sampler.health().sensors.at(i).lost, 0U);
+  for (const Epoch& e : epochs(items)) EXPECT_LE(true_skew(e), e.skew_bound_s + 1e-7) << true_time(e.t);
+  EXPECT_GT(epochs(items).size(), 2900U);
+}
+
 /// A torn line swallowed its neighbour: the driver counted one loss where there were two. Or garbage looked
 /// like three lines.
 TEST(Sampler, MiscountedLossesAreCorrectedByTime) {
@@ -387,12 +406,14 @@ TEST(Sampler, ADeviceThatSendsHalfAsOftenStaysInDoubt) {
     sampler.advance(r.arrival.mono, items);
   }
   expect_tiling(items);
-  int doubted = 0;
+  int doubted = 0, late = 0;
   for (const Epoch& e : epochs(items)) {
     EXPECT_LT(true_skew(e), e.skew_bound_s + 1e-4) << true_time(e.t);
+    late += true_time(e.t) > 21;
     doubted += true_time(e.t) > 21 && e.flags.has(Flag::clock_unsettled);
   }
-  EXPECT_GT(doubted, 50);
+  EXPECT_GT(late, 20);
+  EXPECT_EQ(doubted, late);
 }
 
 }  // namespace
