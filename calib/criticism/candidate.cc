@@ -65,4 +65,17 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
   }
 }
 
+const EffectCoefficient* seen_most(const Candidate& candidate) {
+  const auto sigmas = [](const EffectCoefficient& c) { return std::abs(c.value) / std::max(c.sd, 1e-300); };
+  const auto found = std::max_element(candidate.coefficients.begin(), candidate.coefficients.end(),
+                                      [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
+  return found == candidate.coefficients.end() ? nullptr : &*found;
+}
+
+std::string place_of(const EffectCoefficient& coefficient) {
+  const std::string& name = coefficient.name;
+  const std::size_t sensor_end = name.find('.');
+  return name.substr(0, sensor_end == std::string::npos ? sensor_end : name.find('.', sensor_end + 1));
+}
+
 }  // namespace mgtd::calib

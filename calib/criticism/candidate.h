@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <vector>
 
 #include "calib/criticism/criticism.h"
@@ -14,5 +15,11 @@ namespace mgtd::calib {
 
 /// Fills in the poses that carry half of the evidence, the heaviest first; `by_pose` by place in the fit.
 void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candidate& out);
+
+/// The coefficient that stands out most from its uncertainty; null where there is none.
+[[nodiscard]] const EffectCoefficient* seen_most(const Candidate& candidate);
+
+/// Where a coefficient acts: "s2.z" of "s2.z" and of "s2.z.squares", "s2" of "s2".
+[[nodiscard]] std::string place_of(const EffectCoefficient& coefficient);
 
 }  // namespace mgtd::calib

@@ -80,12 +80,8 @@ void say_where(const Growth& growth, Candidate& added) {
 /// Whether a winner of all axes came down to axes that are closed to names, or is seen most on one of them.
 bool on_closed_axes(const Candidate& winner, const Growth& growth, const std::set<std::string>& closed) {
   if (closed.empty() || winner.coefficients.empty()) return false;
-  const auto sigmas = [](const EffectCoefficient& c) { return std::abs(c.value) / std::max(c.sd, 1e-300); };
-  const auto seen_most =
-      std::max_element(winner.coefficients.begin(), winner.coefficients.end(),
-                       [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
   const bool each_axis = winner.where.find("each") != std::string::npos;
-  if (each_axis && closed.contains(seen_most->name.substr(0, std::string_view("s1.x").size()))) return true;
+  if (each_axis && closed.contains(place_of(*seen_most(winner)))) return true;
   return std::all_of(growth.added.begin(), growth.added.end(), [&](const EffectPtr& effect) {
     const auto spec = EffectSpec::parse(effect->spec());
     return spec && spec->where && closed.contains(spec->where->text());

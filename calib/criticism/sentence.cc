@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "calib/criticism/candidate.h"
 #include "calib/criticism/noise_text.h"
 #include "calib/effects/effect_family.h"
 #include "calib/effects/effect_spec.h"
@@ -185,10 +186,8 @@ std::string_view share_of(const ExplainReport& r) {
 }
 
 std::string size_text(const Candidate& c) {
-  const auto sigmas = [](const EffectCoefficient& x) { return std::abs(x.value) / std::max(x.sd, 1e-300); };
-  const auto largest = std::max_element(c.coefficients.begin(), c.coefficients.end(),
-                                        [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
-  if (largest == c.coefficients.end()) return "";
+  const EffectCoefficient* const largest = seen_most(c);
+  if (largest == nullptr) return "";
   const std::string what = c.coefficients.size() > 1 ? largest->name + " " : "";
   return fmt::format("{}{} {}", what, with_sd(largest->value, largest->sd), largest->unit);
 }

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "calib/criticism/candidate.h"
 #include "calib/criticism/rest.h"
 #include "calib/effects/effect_spec.h"
 #include "calib/fit/pose_residuals.h"
@@ -44,13 +45,6 @@ int parts(const ExplainReport& report, const Rounds& rounds) {
       rounds.begin(), rounds.end(), [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; }));
 }
 
-/// "s2.z" of the coefficient "s2.z.squares" or "s2.z".
-std::string axis_in(const std::string& coefficient) {
-  const std::size_t sensor_end = coefficient.find('.');
-  return coefficient.substr(
-      0, sensor_end == std::string::npos ? sensor_end : coefficient.find('.', sensor_end + 1));
-}
-
 /// Axes that the effects of a round were put on one by one.
 std::set<std::string> axes_of(const Round& round) {
   std::set<std::string> out;
@@ -65,7 +59,7 @@ std::set<std::string> axes_of(const Round& round) {
 std::set<std::string> axes_seen_in(const Round& round) {
   std::set<std::string> out = axes_of(round);
   for (const EffectCoefficient& c : round.added.coefficients) {
-    const auto where = Where::parse(axis_in(c.name));
+    const auto where = Where::parse(place_of(c));
     if (where && where->scale == Where::Scale::axis && std::abs(c.value) > kSeen * c.sd)
       out.insert(where->text());
   }
