@@ -64,6 +64,10 @@ BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)
     stranger_.push_back(std::make_unique<SatelliteReceiver>(instruments_[i]->baud()));
 }
 
+void BenchRig::advance_all(double now_s) {
+  for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
+}
+
 void BenchRig::advance(std::size_t port, double now_s) {
   plugged_in(port).advance(now_s);
   stranger_.at(port)->advance(now_s);
@@ -76,8 +80,7 @@ void BenchRig::advance(std::size_t port, double now_s) {
 
 void BenchRig::write(std::size_t port, std::string_view bytes, double now_s) {
   if (!plugged_.at(port) || bytes.empty()) return;
-  // What was measured before a command must not know of it.
-  for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
+  advance_all(now_s);
   at_cable(port).receive(bytes, now_s);
 }
 
@@ -109,7 +112,7 @@ tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s
   };
   const std::size_t port = number(fault.port);
   if (port >= ports()) return tl::unexpected(fmt::format("this rig has no {}", fault.port));
-  for (std::size_t i = 0; i < ports(); ++i) advance(i, now_s);
+  advance_all(now_s);
   if (fault.kind == FaultKind::restore) {
     for (const FaultKind kind : kLasting) {
       if (can_have(port, kind)) set(port, kind, false, now_s);
@@ -218,6 +221,7 @@ void BenchRig::run_script(double now_s) {
     if (ending.at_s <= now_s) over.push_back(ending);
     return ending.at_s <= now_s;
   });
+  if (!over.empty()) advance_all(now_s);
   for (const Ending& ending : over) {
     if (ending.kind == FaultKind::exchange)
       exchange(ending.port, ending.other, now_s);
@@ -231,6 +235,7 @@ bool BenchRig::mount(std::string_view line, double now_s) {
   std::string word;
   double azimuth_deg = 0, pitch_deg = 0, roll_deg = 0;
   if (!(in >> word >> azimuth_deg >> pitch_deg >> roll_deg) || word != "mount") return false;
+  advance_all(now_s);
   world_.remount(about_z(azimuth_deg) * about_y(pitch_deg) * about_x(roll_deg), now_s);
   return true;
 }

@@ -55,6 +55,8 @@ class BenchRig {
   };
   /// Lets a port's instrument speak up to now, onto its cable.
   void advance(std::size_t port, double now_s);
+  /// Before the world changes: what was measured until now, though nobody has read it, does not know of it.
+  void advance_all(double now_s);
   void set(std::size_t port, FaultKind kind, bool on, double now_s);
   void plug(std::size_t port, bool in);
   void set_delivery(std::size_t port, double step_s);

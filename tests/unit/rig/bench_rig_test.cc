@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/rig/bench_rig.h"
+
+#include <gmock/gmock.h>
+
+namespace mgtd::rig {
+namespace {
+
+/// Digitisers that send of themselves from the first moment on, and no noise.
+Scenario talkative() {
+  Scenario scenario;
+  scenario.truth = *rig_named("table6", 1);
+  scenario.palmacq = false;
+  scenario.autostart = true;
+  scenario.noise.noise_nT = 0;
+  scenario.faults = {{0.3, "runaway table for 0.4"}};
+  return scenario;
+}
+
+constexpr double kStep_s = 0.005;
+
+/// What a port has sent after `until_s`, while a table that runs away from 0.3 to 0.7 s is read at every step
+/// or, by a host that stands still, at the end.
+std::string sent(bool at_every_step, double until_s) {
+  BenchRig rig(talkative(), 0);
+  std::string out;
+  for (double now_s = kStep_s; now_s < until_s; now_s += kStep_s) {
+    rig.run_script(now_s);
+    if (at_every_step) out += rig.read(0, now_s);
+  }
+  return out + rig.read(0, until_s);
+}
+
+TEST(BenchRig, ReadingsThatWaitAreOfTheMomentTheyWereTakenAt) {
+  const std::string read_at_once = sent(true, 1.2);
+  EXPECT_GT(read_at_once.size(), 500U);
+  EXPECT_EQ(sent(false, 1.2), read_at_once);
+}
+
+}  // namespace
+}  // namespace mgtd::rig
