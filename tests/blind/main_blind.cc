@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <fstream>
 #include <optional>
 
@@ -64,11 +65,19 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--first-seed", sizes.first_seed, "of real-noise and site")->capture_default_str();
   app.add_option("--keep", sizes.keep, "folder for the pose tables of runs that went wrong there");
+  app.add_option("--answers", sizes.answers,
+                 "file of what was answered there, a line a run; those that it holds are not asked again, so "
+                 "that a campaign can be interrupted and go on");
   CLI11_PARSE(app, argc, argv);
   if (runs) sizes.runs = sizes.real = *runs;
   const std::string command =
       fmt::format("blind --clean {} --runs {}{}{} -o docs/blind-benchmark.md", sizes.clean, sizes.runs,
                   only.empty() ? "" : " --only ", fmt::join(only, ","));
-  std::ofstream(output) << page(sizes, only, command);
+  try {
+    std::ofstream(output) << page(sizes, only, command);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
   return 0;
 }

@@ -15,6 +15,7 @@ struct Sizes {
   std::vector<std::string> kinds{};  ///< empty: all of them
   std::uint64_t first_seed{1};       ///< of each kind
   std::string keep{};                ///< folder for the pose tables of runs that went wrong; empty: none
+  std::string answers{};             ///< file of answers that goes on growing; empty: none
 };
 
 [[nodiscard]] std::string clean_page(const Sizes& n);

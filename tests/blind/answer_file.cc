@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/blind/answer_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+namespace mgtd::calib::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array kFindings{Finding::pass,    Finding::explained, Finding::ambiguous,
+                               Finding::partial, Finding::unknown,   Finding::bad_data};
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+std::optional<double> number(const Json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+Finding finding(const std::string& name) {
+  for (const Finding f : kFindings)
+    if (to_string(f) == name) return f;
+  throw std::runtime_error("'" + name + "' is no verdict");
+}
+
+Json to_json(const std::string& kind, std::uint64_t seed, const RealAnswer& a) {
+  return {{"kind", kind},
+          {"seed", seed},
+          {"fit_refused", a.fit_refused},
+          {"explain_refused", a.explain_refused},
+          {"accepted", a.accepted},
+          {"finding", to_string(a.finding)},
+          {"left_out", a.left_out},
+          {"named", a.named},
+          {"declared", a.declared},
+          {"error_nT_per_m", number(a.error_nT_per_m)},
+          {"error_after_nT_per_m", number(a.error_after_nT_per_m)},
+          {"plain_nT_per_m", number(a.plain_nT_per_m)},
+          {"nees_scales", number(a.nees_scales)},
+          {"nees_offsets", number(a.nees_offsets)},
+          {"cpu_s", a.cpu_s}};
+}
+
+RealAnswer from_json(const Json& j) {
+  RealAnswer a;
+  a.fit_refused = j.at("fit_refused");
+  a.explain_refused = j.at("explain_refused");
+  a.accepted = j.at("accepted");
+  a.finding = finding(j.at("finding"));
+  a.left_out = j.at("left_out");
+  a.named = j.at("named");
+  a.declared = j.at("declared");
+  a.error_nT_per_m = number(j.at("error_nT_per_m"));
+  a.error_after_nT_per_m = number(j.at("error_after_nT_per_m"));
+  a.plain_nT_per_m = number(j.at("plain_nT_per_m"));
+  a.nees_scales = number(j.at("nees_scales"));
+  a.nees_offsets = number(j.at("nees_offsets"));
+  a.cpu_s = j.at("cpu_s");
+  return a;
+}
+
+}  // namespace
+
+AnswerFile::AnswerFile(const std::string& path) {
+  if (path.empty()) return;
+  std::uintmax_t whole = 0;
+  {
+    std::ifstream in(path);
+    std::string line;
+    for (int number = 1; std::getline(in, line) && !in.eof(); ++number) {
+      try {
+        const Json j = Json::parse(line);
+        answers_[{j.at("kind"), j.at("seed")}] = from_json(j);
+      } catch (const std::exception& e) {
+        throw std::runtime_error(fmt::format("{}:{}: {}", path, number, e.what()));
+      }
+      whole += line.size() + 1;
+    }
+  }
+  if (std::filesystem::exists(path)) std::filesystem::resize_file(path, whole);
+  out_.open(path, std::ios::app);
+  if (!out_) throw std::runtime_error(path + " cannot be written");
+}
+
+const RealAnswer* AnswerFile::find(const std::string& kind, std::uint64_t seed) const {
+  const auto found = answers_.find({kind, seed});
+  return found == answers_.end() ? nullptr : &found->second;
+}
+
+void AnswerFile::add(const std::string& kind, std::uint64_t seed, const RealAnswer& answer) {
+  answers_[{kind, seed}] = answer;
+  if (out_.is_open()) out_ << to_json(kind, seed, answer).dump() << '\n' << std::flush;
+}
+
+}  // namespace mgtd::calib::testing
