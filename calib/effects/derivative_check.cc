@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "calib/geometry.h"
+#include "calib/sensor/geometry.h"
 
 namespace mgtd::calib {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "calib/effects/library.h"
+#include "calib/effects/effect.h"
 
 namespace mgtd::calib {
 

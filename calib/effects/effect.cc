@@ -55,4 +55,14 @@ Result<void> Effect::check(const PoseTable& table) const {
                   lack.column, name()));
 }
 
+CovariateMeans covariate_means(const PoseTable& table) {
+  CovariateMeans sum, count;
+  for (const Pose& pose : table.poses) {
+    if (pose.set == "check") continue;
+    for (const auto& [name, value] : pose.covariates) sum[name] += value, ++count[name];
+  }
+  for (auto& [name, mean] : sum) mean /= count[name];
+  return sum;
+}
+
 }  // namespace mgtd::calib

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/dual.h"
 #include "calib/effects/effect_context.h"
+#include "calib/sensor/dual.h"
 #include "proto/error.h"
 #include "proto/pose.h"
 
@@ -48,6 +48,8 @@ struct Coefficient {
 
 /// Mean of covariates over the run a calibration was fitted to, by name: the zero of effects of currents.
 using CovariateMeans = std::map<std::string, double>;
+/// Over the poses that are fitted: those of the set "check" do not count.
+[[nodiscard]] CovariateMeans covariate_means(const PoseTable& table);
 
 /// What is known of the pose at which a term is evaluated.
 struct Conditions {
@@ -133,5 +135,7 @@ class EffectOf : public Effect {
     static_cast<const Self&>(*this).template equation<Jet>(at, sensor, in, c, out);
   }
 };
+
+using EffectPtr = std::shared_ptr<const Effect>;
 
 }  // namespace mgtd::calib

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/effects/library.h"
+#include "calib/effects/effect.h"
 
 /// The terms of all effects of one level, summed, with their derivatives.
 namespace mgtd::calib {

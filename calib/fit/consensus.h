@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "calib/tensor.h"
+#include "calib/calibration/tensor.h"
 
 /// Which poses agree with each other, found without a start and without knowing the noise, while up to two in
 /// five are wrong by any amount.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/tensor.h"
+#include "calib/calibration/tensor.h"
 
 namespace mgtd::calib {
 namespace {

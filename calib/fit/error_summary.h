@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "calib/fit/fit.h"
+#include "calib/fit/fit_report.h"
 #include "calib/fit/readings.h"
 
 /// How far corrected readings are from what they should be: |b| from F at each sensor, and the tensor of a

@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "calib/calibration_json.h"
+#include "calib/calibration/calibration_json.h"
 #include "calib/effects/effect_spec.h"
 #include "proto/units.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "calib/fit/fit.h"
+#include "calib/fit/fit_report.h"
 
 /// The result of `mgt fit --json`, schema "mgt.fit/1". Plain numbers in the unit named by the key's suffix,
 /// angles in degrees, standard deviations beside the values. What does not exist (no held-out error, no

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "calib/sensor_model.h"
+#include "calib/sensor/sensor_model.h"
 
 /// From matrices to the parameters of a sensor.
 namespace mgtd::calib {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "calib/calibration.h"
+#include "calib/calibration/calibration.h"
 #include "proto/pose.h"
 
 /// The step of the digitiser, from the grid that the readings themselves stand on.

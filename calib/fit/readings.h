@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "calib/calibration.h"
-#include "calib/fit/fit.h"
+#include "calib/calibration/calibration.h"
+#include "calib/fit/fit_report.h"
 
 /// The poses of a table as the fits want them: one column per pose.
 namespace mgtd::calib {

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 
-#include "calib/fit/joint_setup.h"
-#include "calib/pose_table.h"
-#include "calib/run_time.h"
+#include "calib/poses/pose_table.h"
+#include "calib/poses/run_time.h"
 
 namespace mgtd::calib {
 

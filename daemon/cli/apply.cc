@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/apply.h"
+#include "calib/calibration/apply.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
-#include "daemon/pose_source.h"
+#include "daemon/store/pose_source.h"
 
 namespace mgtd::cli {
 namespace {

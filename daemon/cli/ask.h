@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/command.h"
-#include "daemon/control_client.h"
+#include "daemon/serve/control_client.h"
 
 namespace mgtd::cli {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "calib/calibration.h"
+#include "calib/calibration/calibration.h"
 #include "daemon/cli/fit_flags.h"
 
 namespace mgtd::cli {

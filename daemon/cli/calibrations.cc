@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "calib/calibration_json.h"
+#include "calib/calibration/calibration_json.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/calibration_file.h"
 

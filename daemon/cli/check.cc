@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/check.h"
+#include "calib/validity/validity_check.h"
 
 #include <fmt/format.h>
 
-#include "calib/change_report.h"
 #include "calib/fit/fit_report_json.h"
 #include "calib/fit/residual_words.h"
+#include "calib/validity/change_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 

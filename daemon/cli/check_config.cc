@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "daemon/cli/command.h"
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 
 namespace mgtd::cli {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "daemon/durable_file.h"
+#include "daemon/store/durable_file.h"
 #include "proto/error.h"
 
 /// What every command of `mgt` shares: the --json switch, the control socket, and how results and errors

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "calib/criticism/comparison.h"
-#include "calib/criticism/comparison_report.h"
+#include "calib/criticism/tests/comparison.h"
+#include "calib/report/comparison_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 

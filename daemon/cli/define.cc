@@ -7,14 +7,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/resemblance.h"
-#include "calib/effects/angle_unit.h"
-#include "calib/effects/effect_family.h"
-#include "calib/effects/formula.h"
-#include "calib/pose_table.h"
+#include "calib/criticism/tests/collinearity.h"
+#include "calib/effects/formula/angle_unit.h"
+#include "calib/effects/formula/formula.h"
+#include "calib/effects/library/effect_family.h"
+#include "calib/poses/pose_table.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/kept_run.h"
-#include "daemon/definitions.h"
+#include "daemon/store/user_formulas.h"
 
 namespace mgtd::cli {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/diff.h"
+#include "calib/validity/diff.h"
 
 #include <fmt/format.h>
 
-#include "calib/change_report.h"
+#include "calib/validity/change_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "daemon/run_file.h"
+#include "daemon/store/run_file.h"
 
 namespace mgtd::cli {
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/choice.h"
-#include "daemon/kept_model.h"
-#include "daemon/pose_source.h"
+#include "calib/criticism/search/choice.h"
+#include "daemon/store/model_history.h"
+#include "daemon/store/pose_source.h"
 
-/// What is open about the model that a run file keeps: see calib/criticism/choice.h.
+/// What is open about the model that a run file keeps: see calib/criticism/search/choice.h.
 namespace mgtd::cli {
 
 /// How the model of RUN came to be; empty for a pose table.

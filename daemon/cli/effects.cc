@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 
-#include "calib/effects/effect_page.h"
+#include "calib/effects/library/effect_page.h"
+#include "calib/effects/library/library.h"
 #include "daemon/cli/command.h"
 
 namespace mgtd::cli {

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "calib/pose_table.h"
+#include "calib/poses/pose_table.h"
 #include "daemon/cli/command.h"
-#include "daemon/pose_source.h"
-#include "daemon/run_file.h"
+#include "daemon/store/pose_source.h"
+#include "daemon/store/run_file.h"
 
 namespace mgtd::cli {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/criticism/explain.h"
+#include "calib/criticism/search/explain.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/explain_json.h"
-#include "calib/criticism/explain_text.h"
+#include "calib/report/explain_json.h"
+#include "calib/report/explain_text.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"

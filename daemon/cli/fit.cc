@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "calib/calibration.h"
+#include "calib/calibration/calibration.h"
 #include "calib/fit/fit_report_json.h"
-#include "calib/fit/fit_report_text.h"
-#include "daemon/calibrated_with.h"
+#include "calib/report/fit_report_text.h"
+#include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 

@@ -8,8 +8,9 @@
 #include <cmath>
 
 #include "calib/effects/common_axis.h"
+#include "calib/effects/library/library.h"
 #include "daemon/cli/in_range.h"
-#include "daemon/solver.h"
+#include "daemon/run/solver.h"
 #include "proto/units.h"
 
 namespace mgtd::cli {

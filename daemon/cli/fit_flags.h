@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/fit/fit.h"
-#include "daemon/pose_source.h"
+#include "calib/fit/methods/fit.h"
+#include "daemon/store/pose_source.h"
 
 /// The options that every command with a fit understands, and how they combine with what a run file says
 /// itself.

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 
-#include "calib/criticism/resemblance.h"
-#include "calib/pose_table.h"
+#include "calib/criticism/tests/collinearity.h"
+#include "calib/poses/pose_table.h"
 
 namespace mgtd::cli {
 
-std::vector<calib::Suspect> formulas_of(const daemon::PoseSource& source, const calib::FitOptions& options) {
-  std::vector<calib::Suspect> out;
+std::vector<calib::CandidateEffect> formulas_of(const daemon::PoseSource& source,
+                                                const calib::FitOptions& options) {
+  std::vector<calib::CandidateEffect> out;
   for (const daemon::Definition& d : source.definitions) {
     const bool known = std::any_of(options.effects.begin(), options.effects.end(),
                                    [&](const calib::EffectPtr& e) { return e->name() == d.name; });

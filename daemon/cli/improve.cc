@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "calib/criticism/improve.h"
-#include "calib/criticism/improve_report.h"
-#include "calib/criticism/waterfall.h"
-#include "daemon/calibrated_with.h"
+#include "calib/criticism/search/improve.h"
+#include "calib/effects/library/library.h"
+#include "calib/report/improve_report.h"
+#include "calib/report/waterfall.h"
+#include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-#include "daemon/rotated_files.h"
+#include "daemon/store/rotated_files.h"
 #include "proto/raw_log.h"
 
 namespace mgtd::cli {

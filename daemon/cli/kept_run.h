@@ -4,7 +4,7 @@
 #include <string>
 
 #include "daemon/cli/fit_flags.h"
-#include "daemon/run_file.h"
+#include "daemon/store/run_file.h"
 
 /// A run file whose model an operator works on: what was measured, the model as it is kept, and the way to
 /// write the next step. Refuses a pose table, which keeps nothing, and a run that is still being measured.

@@ -6,9 +6,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/choice.h"
-#include "calib/criticism/model_change.h"
-#include "calib/criticism/waterfall.h"
+#include "calib/criticism/search/choice.h"
+#include "calib/criticism/search/explain.h"
+#include "calib/criticism/search/model_change.h"
+#include "calib/effects/library/library.h"
+#include "calib/report/waterfall.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/kept_run.h"

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/plan.h"
+#include "calib/design/experiment_design.h"
 
 #include <fmt/format.h>
 
-#include "calib/plan_report.h"
-#include "calib/pose_table.h"
+#include "calib/design/experiment_design_report.h"
+#include "calib/effects/library/library.h"
+#include "calib/poses/pose_table.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/in_range.h"
-#include "daemon/limits_cost.h"
-#include "daemon/planned_poses.h"
+#include "daemon/run/limits_cost.h"
+#include "daemon/run/planned_poses.h"
 
 namespace mgtd::cli {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "daemon/cli/ask.h"
 #include "daemon/cli/serial_lines.h"
-#include "daemon/config.h"
-#include "daemon/durable_file.h"
+#include "daemon/config/config.h"
+#include "daemon/store/durable_file.h"
 #include "drivers/port_list.h"
 
 namespace mgtd::cli {

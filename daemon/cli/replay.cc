@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/replay.h"
+#include "daemon/acquire/replay.h"
 
 #include <fmt/format.h>
 

@@ -10,12 +10,12 @@
 #include <map>
 #include <set>
 
-#include "calib/criticism/comparison_report.h"
-#include "calib/criticism/noise_text.h"
-#include "calib/criticism/sentence.h"
-#include "calib/fit/fit_report_text.h"
 #include "calib/fit/residual_words.h"
-#include "calib/probability.h"
+#include "calib/report/comparison_report.h"
+#include "calib/report/fit_report_text.h"
+#include "calib/report/noise_text.h"
+#include "calib/report/verdict_text.h"
+#include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
 #include "daemon/cli/svg.h"
 #include "proto/units.h"

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/choice.h"
-#include "calib/criticism/comparison.h"
-#include "calib/criticism/explain.h"
-#include "calib/criticism/waterfall.h"
-#include "calib/fit/fit.h"
-#include "daemon/kept_model.h"
-#include "daemon/pose_source.h"
+#include "calib/criticism/search/choice.h"
+#include "calib/criticism/search/explain.h"
+#include "calib/criticism/tests/comparison.h"
+#include "calib/fit/methods/fit.h"
+#include "calib/report/waterfall.h"
+#include "daemon/store/model_history.h"
+#include "daemon/store/pose_source.h"
 
 /// The report of a run as one page that needs nothing else: no script, no font, no network.
 namespace mgtd::cli {

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/detectable.h"
-#include "calib/criticism/sentence.h"
-#include "calib/probability.h"
+#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/tests/detectable.h"
+#include "calib/report/verdict_text.h"
+#include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
 #include "daemon/cli/report_page.h"
 #include "daemon/cli/svg.h"

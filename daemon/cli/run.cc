@@ -8,15 +8,15 @@
 #include <memory>
 #include <thread>
 
-#include "calib/pose_list.h"
+#include "calib/poses/pose_list.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
-#include "daemon/limits_cost.h"
-#include "daemon/listed_plan.h"
-#include "daemon/planned_poses.h"
-#include "daemon/run_plan_json.h"
+#include "daemon/plan/plan_from_list.h"
+#include "daemon/plan/run_plan_json.h"
+#include "daemon/run/limits_cost.h"
+#include "daemon/run/planned_poses.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
 

@@ -12,7 +12,7 @@
 #include "daemon/cli/gap_line.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/cli/progress.h"
-#include "daemon/stream_reader.h"
+#include "daemon/serve/stream_reader.h"
 
 namespace mgtd::cli {
 namespace {

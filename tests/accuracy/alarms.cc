@@ -5,10 +5,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "calib/check.h"
-#include "calib/diff.h"
-#include "calib/fit/joint_fit.h"
-#include "calib/plan.h"
+#include "calib/design/experiment_design.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/validity/diff.h"
+#include "calib/validity/validity_check.h"
 #include "proto/units.h"
 
 namespace mgtd::testing {

@@ -5,10 +5,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "calib/chi_square.h"
-#include "calib/fit/joint_fit.h"
-#include "calib/fit/tensor_uncertainty.h"
-#include "calib/fit/two_step.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/fit/two_step/two_step.h"
+#include "calib/stats/chi_square.h"
 #include "proto/units.h"
 
 namespace mgtd::testing {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/sensor_model.h"
+#include "calib/sensor/sensor_model.h"
 #include "tests/support/paper_rigs.h"
 
 /// Many simulated runs of one rig: is the estimate as good as it can be, and is its uncertainty the real one?

@@ -8,8 +8,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "calib/fit/fit.h"
-#include "calib/fit/joint_fit.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/methods/fit.h"
 #include "proto/units.h"
 
 namespace mgtd::testing {

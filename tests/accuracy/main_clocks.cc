@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "tests/accuracy/markdown.h"
-#include "tests/unit/daemon/clock_trial.h"
+#include "tests/unit/daemon/acquire/clock_trial.h"
 
 namespace mgtd::testing {
 namespace {
@@ -28,7 +28,8 @@ constexpr const char* kOpening =
     "docs/clocks.md\n\n"
     "Four free-running devices at 50 Hz, their oscillators off by up to the given ppm to both sides, hand "
     "their "
-    "samples over when a timer ticks (`tests/unit/daemon/clock_trial.h`). The daemon's sampler makes epochs "
+    "samples over when a timer ticks (`tests/unit/daemon/acquire/clock_trial.h`). The daemon's sampler makes "
+    "epochs "
     "of "
     "them, knowing nothing of the timers but the default `delivery_s = 0.016`. Each epoch's true skew, the "
     "largest difference between the times at which its four readings were taken, is held against the "

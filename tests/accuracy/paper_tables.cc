@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/diff.h"
+#include "calib/effects/library/library.h"
 #include "calib/fit/fit_report_json.h"
+#include "calib/validity/diff.h"
 #include "proto/units.h"
 #include "tests/accuracy/campaign.h"
 #include "tests/accuracy/markdown.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "calib/fit/fit.h"
+#include "calib/fit/methods/fit.h"
 #include "tests/support/paper_rigs.h"
 
 namespace mgtd::testing {

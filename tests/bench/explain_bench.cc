@@ -3,7 +3,7 @@
 // four rounds.
 #include <benchmark/benchmark.h>
 
-#include "calib/criticism/improve.h"
+#include "calib/criticism/search/improve.h"
 #include "tests/blind/hidden_law.h"
 
 namespace mgtd::calib::testing {

@@ -2,7 +2,8 @@
 // Cost of the joint fit against the number of poses, covariance included.
 #include <benchmark/benchmark.h>
 
-#include "calib/fit/joint_fit.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib {

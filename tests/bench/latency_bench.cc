@@ -14,10 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include "calib/tensor.h"
-#include "daemon/sampler.h"
-#include "daemon/stream_reader.h"
-#include "daemon/stream_server.h"
+#include "calib/calibration/tensor.h"
+#include "daemon/acquire/sampler.h"
+#include "daemon/serve/stream_reader.h"
+#include "daemon/serve/stream_server.h"
 #include "drivers/port_link.h"
 #include "drivers/registry.h"
 #include "tests/support/event_loop.h"

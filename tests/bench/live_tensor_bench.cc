@@ -3,7 +3,8 @@
 // included. Target: 50 Hz costs less than 0.1 % of a core, 20 us a sample.
 #include <benchmark/benchmark.h>
 
-#include "calib/live_tensor.h"
+#include "calib/calibration/live_tensor.h"
+#include "calib/effects/library/library.h"
 
 namespace mgtd::calib {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
-#include "daemon/sampler.h"
-#include "tests/unit/daemon/streams.h"
+#include "daemon/acquire/sampler.h"
+#include "tests/unit/daemon/serve/streams.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 // scaled data), the classic C implementation 0.27 ms.
 #include <benchmark/benchmark.h>
 
-#include "calib/fit/step1.h"
+#include "calib/sensor/step1.h"
 #include "tests/support/paper_rigs.h"
 
 namespace mgtd::calib {

@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "calib/tensor.h"
-#include "daemon/sample_ring.h"
-#include "daemon/stream_server.h"
+#include "calib/calibration/tensor.h"
+#include "daemon/serve/sample_ring.h"
+#include "daemon/serve/stream_server.h"
 #include "proto/tensor_encoder.h"
 #include "tests/support/event_loop.h"
 #include "tests/support/line_peer.h"

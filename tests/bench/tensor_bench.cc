@@ -3,7 +3,7 @@
 // second.
 #include <benchmark/benchmark.h>
 
-#include "calib/tensor.h"
+#include "calib/calibration/tensor.h"
 
 namespace mgtd::calib {
 namespace {

@@ -3,8 +3,8 @@
 // its covariance, held-out folds and halves.
 #include <benchmark/benchmark.h>
 
-#include "calib/fit/fit.h"
-#include "calib/fit/two_step.h"
+#include "calib/fit/methods/fit.h"
+#include "calib/fit/two_step/two_step.h"
 #include "tests/support/paper_rigs.h"
 
 namespace mgtd::calib {

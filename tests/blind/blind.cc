@@ -7,8 +7,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "calib/criticism/improve.h"
-#include "calib/criticism/residual.h"
+#include "calib/criticism/search/improve.h"
+#include "calib/criticism/tests/residual.h"
 
 namespace mgtd::calib::testing {
 namespace {
@@ -43,9 +43,9 @@ bool changes_the_field(const ExplainReport& r) {
 }
 
 /// Every effect of the library but one.
-std::vector<Suspect> library_without(const PoseTable& table, std::string_view name) {
-  std::vector<Suspect> out = library_suspects(table).testable;
-  std::erase_if(out, [&](const Suspect& s) { return s.name == name; });
+std::vector<CandidateEffect> library_without(const PoseTable& table, std::string_view name) {
+  std::vector<CandidateEffect> out = library_suspects(table).testable;
+  std::erase_if(out, [&](const CandidateEffect& s) { return s.name == name; });
   return out;
 }
 

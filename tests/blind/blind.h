@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/explain.h"
+#include "calib/criticism/search/explain.h"
 #include "tests/blind/hidden_law.h"
 
 /// The blind benchmark: a law is hidden, explain is asked, the answers are counted.

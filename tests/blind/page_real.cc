@@ -7,7 +7,7 @@
 #include <fstream>
 #include <optional>
 
-#include "calib/chi_square.h"
+#include "calib/stats/chi_square.h"
 #include "tests/accuracy/markdown.h"
 #include "tests/blind/answer_file.h"
 #include "tests/blind/page.h"

@@ -5,8 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib/criticism/residual.h"
-#include "calib/criticism/rows.h"
+#include "calib/criticism/tests/residual.h"
+#include "calib/criticism/tests/rows.h"
+#include "calib/effects/library/library.h"
 #include "tests/rig/rotations.h"
 #include "tests/rig/scenario.h"
 

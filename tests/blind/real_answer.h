@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/explain.h"
+#include "calib/criticism/search/explain.h"
 #include "tests/blind/real_kind.h"
 
 /// What fit and explain say of one run, held against what is true.

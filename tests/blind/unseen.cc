@@ -5,10 +5,11 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "calib/criticism/improve.h"
-#include "calib/fit/joint_errors.h"
-#include "calib/fit/joint_fit.h"
-#include "calib/fit/tune.h"
+#include "calib/criticism/search/improve.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_errors.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/profile_search.h"
 #include "tests/blind/blind.h"
 #include "tests/rig/simulated_table.h"
 

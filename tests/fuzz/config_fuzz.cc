@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 #include "tests/fuzz/require.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "calib/pose_table.h"
+#include "calib/poses/pose_table.h"
 #include "tests/fuzz/require.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string>
 
-#include "daemon/run_file.h"
+#include "daemon/store/run_file.h"
 #include "tests/fuzz/require.h"
 
 namespace {

@@ -15,7 +15,7 @@
 #include <set>
 #include <thread>
 
-#include "daemon/run_file.h"
+#include "daemon/store/run_file.h"
 #include "tests/integration/bench.h"
 
 namespace mgtd::testing {

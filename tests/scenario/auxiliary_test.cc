@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "calib/effects/library.h"
-#include "calib/fit/fit.h"
-#include "daemon/live_pipeline.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/methods/fit.h"
+#include "daemon/acquire/live_pipeline.h"
 #include "tests/scenario/virtual_daemon.h"
 
 namespace mgtd {

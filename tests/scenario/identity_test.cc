@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/exchange_in_run.h"
-#include "daemon/calibrated_with.h"
+#include "calib/criticism/tests/exchange_in_run.h"
+#include "daemon/acquire/calibrated_with.h"
 #include "tests/scenario/virtual_daemon.h"
 #include "tests/scenario/virtual_stream.h"
 

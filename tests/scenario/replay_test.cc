@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stream made again of the journal, to the last byte, whatever happened.
-#include "daemon/replay.h"
+#include "daemon/acquire/replay.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

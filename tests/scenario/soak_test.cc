@@ -16,8 +16,8 @@
 #include <numeric>
 #include <span>
 
-#include "daemon/disk_ring.h"
-#include "daemon/subscription.h"
+#include "daemon/serve/subscription.h"
+#include "daemon/store/disk_ring.h"
 #include "tests/scenario/virtual_stream.h"
 #include "tests/support/child_process.h"
 

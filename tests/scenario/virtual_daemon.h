@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/calibrated_with.h"
-#include "daemon/config.h"
-#include "daemon/instrument_watch.h"
-#include "daemon/live_pipeline.h"
-#include "daemon/run_fsm.h"
-#include "daemon/sampler.h"
+#include "daemon/acquire/calibrated_with.h"
+#include "daemon/acquire/instrument_watch.h"
+#include "daemon/acquire/live_pipeline.h"
+#include "daemon/acquire/sampler.h"
+#include "daemon/config/config.h"
+#include "daemon/run/run_fsm.h"
 #include "drivers/link_life.h"
 #include "tests/rig/bench_rig.h"
 #include "tests/rig/config_text.h"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/instruments.h"
-#include "daemon/live_pipeline.h"
+#include "daemon/acquire/instruments.h"
+#include "daemon/acquire/live_pipeline.h"
 #include "drivers/link_life.h"
 #include "proto/journal_note.h"
 #include "proto/raw_log.h"

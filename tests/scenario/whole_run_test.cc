@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit/fit.h"
+#include "calib/fit/methods/fit.h"
 #include "tests/scenario/virtual_daemon.h"
 
 namespace mgtd {

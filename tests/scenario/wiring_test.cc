@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/magnet_test.h"
+#include "daemon/run/wiring_probe.h"
 #include "tests/scenario/virtual_daemon.h"
 
 namespace mgtd {
@@ -37,7 +37,7 @@ TEST(MagnetOnTheRig, SwappedCablesAreNamed) {
   VirtualDaemon daemon(scenario_of(
       "[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n[sensors]\nwiring = [3, 2, 1, 4]\n"));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  MagnetTest magnet(daemon.now().mono);
+  WiringProbe magnet(daemon.now().mono);
   daemon.on_item = [&](const EpochOrGap& item) {
     if (const auto* epoch = std::get_if<Epoch>(&item)) magnet.add(*epoch);
     magnet.advance(daemon.now().mono);

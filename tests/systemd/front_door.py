@@ -141,7 +141,7 @@ def check_manual(options, root):
 
 def check_keys(options, root):
     del root
-    sources = [options.source / "daemon/config.cc", *sorted((options.source / "drivers").glob("*.cc"))]
+    sources = [options.source / "daemon/config/config.cc", *sorted((options.source / "drivers").glob("*.cc"))]
     keys = set()
     for source in sources:
         for match in KEY_CALL.finditer(source.read_text()):

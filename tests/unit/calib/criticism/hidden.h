@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/suspect.h"
+#include "calib/criticism/tests/candidate_effect.h"
 #include "tests/blind/hidden_run.h"
 
 /// Effects to suspect that share no code with the library.
@@ -66,8 +66,8 @@ class AxisLaw final : public EffectOf<AxisLaw> {
   std::array<std::vector<int>, 4> at_;
 };
 
-inline Suspect suspect(const std::string& name, const AxisLaw::Shape& shape) {
-  Suspect out{.name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
+inline CandidateEffect suspect(const std::string& name, const AxisLaw::Shape& shape) {
+  CandidateEffect out{.name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
   out.hypotheses = hypotheses_of(*out.variants.front());
   out.make = [name, shape](const Hypothesis* part, const std::optional<double>&) -> Result<EffectPtr> {
     if (part == nullptr) return AxisLaw::finest(name, shape);
@@ -84,7 +84,7 @@ inline Suspect suspect(const std::string& name, const AxisLaw::Shape& shape) {
 }
 
 /// Five laws of an axis: two of temperature, one of time, two of the field.
-inline std::vector<Suspect> few_suspects() {
+inline std::vector<CandidateEffect> few_suspects() {
   const auto warmer = [](const Pose& p, int i) { return *p.T_degC[static_cast<std::size_t>(i)] - 20; };
   return {
       suspect("offset.temperature", [warmer](const Pose& p, double, int i, double) { return warmer(p, i); }),

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/score.h"
+#include "calib/criticism/tests/score.h"
 
 /// Families whose signatures are given as columns, without a run behind them.
 namespace mgtd::calib::testing {
 
 /// One column on one axis; several are values of a searched number.
-inline std::shared_ptr<Suspect> suspect_of_columns(const std::string& name, std::size_t values) {
-  auto out = std::make_shared<Suspect>();
+inline std::shared_ptr<CandidateEffect> suspect_of_columns(const std::string& name, std::size_t values) {
+  auto out = std::make_shared<CandidateEffect>();
   out->name = name;
   out->variants.resize(values);
   for (std::size_t v = 0; v < values; ++v) out->values.emplace_back(static_cast<double>(v));
@@ -23,7 +23,7 @@ inline std::shared_ptr<Suspect> suspect_of_columns(const std::string& name, std:
   return out;
 }
 
-inline ScoredFamily scored(const std::shared_ptr<Suspect>& suspect, const Eigen::MatrixXd& columns,
+inline ScoredFamily scored(const std::shared_ptr<CandidateEffect>& suspect, const Eigen::MatrixXd& columns,
                            const Eigen::VectorXd& residual) {
   ScoredFamily out{.suspect = suspect.get(), .own = suspect};
   for (Eigen::Index v = 0; v < columns.cols(); ++v) {

@@ -3,8 +3,9 @@
 
 #include <Eigen/Dense>
 
-#include "calib/effects/effect_family.h"
-#include "calib/fit/joint_fit.h"
+#include "calib/effects/library/effect_family.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
 namespace mgtd::calib {

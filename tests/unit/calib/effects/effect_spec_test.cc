@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "calib/effects/effect_family.h"
+#include "calib/effects/library/effect_family.h"
+#include "calib/effects/library/library.h"
 
 namespace mgtd::calib {
 namespace {

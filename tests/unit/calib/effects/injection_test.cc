@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "calib/fit/joint_fit.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
 /// Every effect put into a run by equations written here, and found again by the fit: the coefficient within

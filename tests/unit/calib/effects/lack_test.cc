@@ -2,9 +2,9 @@
 // What poses lack for an effect, and which effect can do without it in some of them.
 #include <gmock/gmock.h>
 
-#include "calib/criticism/suspect.h"
-#include "calib/effects/library.h"
-#include "calib/fit/fit.h"
+#include "calib/criticism/tests/candidate_effect.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/methods/fit.h"
 #include "tests/blind/hidden_run.h"
 
 namespace mgtd::calib {
@@ -44,7 +44,7 @@ TEST(Lack, SaysHowManyPosesAndWhatToDo) {
   EXPECT_EQ(refused.error().message,
             "table.backlash needs sense, which 16 of 157 poses have not (the first: pose 1)");
   EXPECT_THAT(refused.error().remedy, HasSubstr("leave the poses without it out of the table"));
-  const Suspects suspects = library_suspects(table);
+  const CandidateEffects suspects = library_suspects(table);
   const Untestable* listed = find(suspects.untestable, "table.backlash");
   ASSERT_NE(listed, nullptr);
   EXPECT_THAT(listed->why, StartsWith("needs sense, which 16 of 157"));
@@ -60,7 +60,7 @@ TEST(Lack, AnAngleIsNeededOfEveryPose) {
 TEST(Lack, ATemperatureThatNeverChangesTestsNothing) {
   PoseTable table = with_sense(0);
   for (Pose& pose : table.poses) pose.T_degC = {20, 20, 21, 20};
-  const Suspects suspects = library_suspects(table);
+  const CandidateEffects suspects = library_suspects(table);
   const Untestable* listed = find(suspects.untestable, "axis.offset.temperature");
   ASSERT_NE(listed, nullptr);
   EXPECT_THAT(listed->why, HasSubstr("never change"));

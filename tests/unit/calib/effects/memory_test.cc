@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "calib/effects/axis_hysteresis.h"
-#include "calib/fit/joint_fit.h"
-#include "calib/fit/tune.h"
+#include "calib/effects/laws/axis_hysteresis.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/profile_search.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
 namespace mgtd::calib {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "calib/fit/fit.h"
+#include "calib/fit/methods/fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 /// Data that cannot carry a calibration: refused, or given with a check that fails, a reason in the

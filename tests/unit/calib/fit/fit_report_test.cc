@@ -2,7 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "calib/fit/fit_report_json.h"
-#include "calib/fit/fit_report_text.h"
+#include "calib/fit/methods/fit.h"
+#include "calib/report/fit_report_text.h"
 #include "tests/support/paper_rigs.h"
 
 namespace mgtd::calib {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/fit/fit.h"
+#include "calib/fit/methods/fit.h"
 
 #include <gmock/gmock.h>
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "calib/fit/step1.h"
+#include "calib/sensor/step1.h"
 #include "proto/number.h"
 
 namespace mgtd::calib {

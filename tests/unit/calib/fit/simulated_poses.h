@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "calib/geometry.h"
-#include "calib/sensor_model.h"
+#include "calib/sensor/geometry.h"
+#include "calib/sensor/sensor_model.h"
 #include "proto/pose.h"
 #include "proto/units.h"
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/apply.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "calib/calibration/effect_correction.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::array<std::string_view, 6> kComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
+
+std::array<double, 6> in_order(const Gradient& g) { return {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}; }
+
+std::string header(bool with_time, bool with_sd, bool with_left_out) {
+  std::string out = "pose";
+  if (with_time) out += ",t_s";
+  for (int i = 1; i <= kSensors; ++i) {
+    for (const char axis : {'x', 'y', 'z'}) out += fmt::format(",s{}_b{}_nT", i, axis);
+  }
+  out += ",Bx_nT,By_nT,Bz_nT,F_nT";
+  for (const auto component : kComponents) out += fmt::format(",G{}_nT_per_m", component);
+  out += ",curl_nT_per_m,center_x_nT,center_y_nT,center_z_nT";
+  if (with_sd) {
+    for (const auto component : kComponents) out += fmt::format(",G{}_sd_nT_per_m", component);
+    out += ",closure_chi2";
+  }
+  if (with_left_out) out += ",left_out";
+  return out + "\n";
+}
+
+/// What stops this pose, if anything does.
+Result<void> usable(const TensorPipeline& pipeline, const Pose& pose, const ApplyOptions& options) {
+  const EffectCorrection* const effects = pipeline.effects();
+  if (options.remove_site && (effects == nullptr || !effects->has_site_effects())) {
+    return fail(ErrorCode::refused, "the calibration holds no effect of the site",
+                "fit with one (mgt fit --with site.gradient), or leave --remove-site out");
+  }
+  if (options.remove_site && !pose.angles()) {
+    return fail(
+        ErrorCode::refused,
+        fmt::format("pose {} has no {}, and the site turns with the table", pose.number, missing_angle(pose)),
+        "give azimuth_deg, pitch_deg and roll_deg of every pose, or leave --remove-site out");
+  }
+  if (effects == nullptr || options.missing_ok) return {};
+  const auto left_out = effects->left_out(pose, options.remove_site);
+  if (left_out.empty()) return {};
+  return fail(ErrorCode::refused,
+              fmt::format("pose {} has no {}, which {} needs", pose.number, left_out.front().column,
+                          left_out.front().effect),
+              fmt::format("give the column {}, or leave the effect out with --missing-ok: the standard "
+                          "deviations are then wider and the rows say so",
+                          left_out.front().column));
+}
+
+}  // namespace
+
+Result<std::vector<AppliedPose>> apply(const Calibration& calibration, const PoseTable& table,
+                                       const ApplyOptions& options) {
+  const TensorPipeline pipeline(std::make_shared<Calibration>(calibration), &table);
+  std::vector<AppliedPose> out;
+  out.reserve(table.poses.size());
+  const Pose* previous = nullptr;
+  for (const Pose& pose : table.poses) {
+    if (const auto ok = usable(pipeline, pose, options); !ok) return tl::unexpected(ok.error());
+    const double samples = std::max(1.0, pose.n_eff.value_or(pose.n.value_or(1)));
+    AppliedPose row{pose.number, pose.t_s, {}, {}, {}};
+    row.sample = pipeline.apply(pose, samples, options.remove_site, previous, &row.b_P_nT);
+    if (row.sample.flags.has(Flag::incomplete)) {
+      for (const auto& [effect, column] : pipeline.effects()->left_out(pose, options.remove_site))
+        row.left_out.emplace_back(effect);
+    }
+    out.push_back(std::move(row));
+    previous = &pose;
+  }
+  return out;
+}
+
+std::string format_applied(const std::vector<AppliedPose>& rows) {
+  const bool with_time =
+      std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.t_s.has_value(); });
+  const bool with_sd = !rows.empty() && std::isfinite(rows.front().sample.closure.chi2);
+  const bool with_left_out =
+      std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.left_out.empty(); });
+  std::string out = header(with_time, with_sd, with_left_out);
+  const auto add = [&](double value) { fmt::format_to(std::back_inserter(out), ",{:.6f}", value); };
+  for (const AppliedPose& row : rows) {
+    fmt::format_to(std::back_inserter(out), "{}", row.number);
+    if (with_time) out += row.t_s ? fmt::format(",{}", *row.t_s) : ",";
+    const TensorSample& s = row.sample;
+    for (const double b : row.b_P_nT) add(b);
+    for (const double b : s.b_P_nT) add(b);
+    add(s.f_nT);
+    for (const double g : in_order(s.g_nT_per_m)) add(g);
+    add(s.closure.curl_nT_per_m);
+    for (const double c : s.closure.center_nT) add(c);
+    if (with_sd) {
+      for (const double sd : in_order(s.g_sd_nT_per_m)) add(sd);
+      add(s.closure.chi2);
+    }
+    if (with_left_out) fmt::format_to(std::back_inserter(out), ",{}", fmt::join(row.left_out, ";"));
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/calibration_json.h"
+
+#include <fmt/format.h>
+
+#include "calib/effects/library/library.h"
+#include "proto/json_text.h"
+#include "proto/sha256.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+constexpr const char* kSchema = "mgt.cal/1";
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+json rows(const AxisNoise& noise) {
+  json out = json::array();
+  for (int i = 0; i < kSensors; ++i) out.push_back({noise(i, 0), noise(i, 1), noise(i, 2)});
+  return out;
+}
+
+AxisNoise noise_from(const json& object) {
+  AxisNoise noise;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t a = 0; a < 3; ++a)
+      noise(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = object.at(i).at(a);
+  }
+  return noise;
+}
+
+json sensor_json(const SensorModel& s) {
+  const ParameterVector p = s.parameters();
+  json out;
+  for (int k = 0; k < kSensorParameters; ++k) {
+    const std::string name(kParameterNames[static_cast<std::size_t>(k)]);
+    const bool is_scale = k >= cx && k <= cz;
+    const bool is_offset = k >= ix && k <= iz;
+    out[name + (is_scale ? "" : is_offset ? "_nT" : "_rad")] = p[k];
+  }
+  json mounting = json::array();
+  for (int i = 0; i < 3; ++i) mounting.push_back({s.mounting(i, 0), s.mounting(i, 1), s.mounting(i, 2)});
+  out["mounting"] = std::move(mounting);
+  return out;
+}
+
+SensorModel sensor_from_json(const json& object) {
+  ParameterVector p;
+  for (int k = 0; k < kSensorParameters; ++k) {
+    const std::string name(kParameterNames[static_cast<std::size_t>(k)]);
+    const bool is_scale = k >= cx && k <= cz;
+    const bool is_offset = k >= ix && k <= iz;
+    p[k] = object.at(name + (is_scale ? "" : is_offset ? "_nT" : "_rad"));
+  }
+  Eigen::Matrix3d mounting;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      mounting(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          object.at("mounting").at(i).at(j);
+    }
+  }
+  return SensorModel::from_parameters(p, mounting);
+}
+
+json triangle(const ArrayCovariance& c) {
+  json out = json::array();
+  for (int i = 0; i < kArrayParameters; ++i) {
+    for (int j = i; j < kArrayParameters; ++j) out.push_back(c(i, j));
+  }
+  return out;
+}
+
+ArrayCovariance covariance_from(const json& list) {
+  ArrayCovariance c;
+  std::size_t k = 0;
+  for (int i = 0; i < kArrayParameters; ++i) {
+    for (int j = i; j < kArrayParameters; ++j) c(i, j) = c(j, i) = list.at(k++).get<double>();
+  }
+  return c;
+}
+
+json effects_json(const std::vector<CalibratedEffect>& effects) {
+  json out = json::array();
+  for (const CalibratedEffect& e : effects) {
+    json coefficients = json::array();
+    for (const EffectCoefficient& c : e.coefficients) {
+      coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
+    }
+    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}, {"size_nT", e.size_nT}});
+  }
+  return out;
+}
+
+std::vector<CalibratedEffect> effects_from(const json& list) {
+  std::vector<CalibratedEffect> out;
+  for (const json& e : list) {
+    CalibratedEffect effect{e.at("effect"), {}, e.at("size_nT").get<decltype(CalibratedEffect::size_nT)>()};
+    for (const json& c : e.at("coefficients")) {
+      effect.coefficients.push_back({c.at("name"), c.at("value"), c.at("sd"), c.at("unit")});
+    }
+    out.push_back(std::move(effect));
+  }
+  return out;
+}
+
+json matrix_json(const Eigen::MatrixXd& m) {
+  json out = json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    json row = json::array();
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+Eigen::MatrixXd matrix_from(const json& rows, std::size_t columns) {
+  Eigen::MatrixXd m(static_cast<Eigen::Index>(rows.size()),
+                    rows.empty() ? 0 : static_cast<Eigen::Index>(columns));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = rows.at(i).at(j).get<double>();
+    }
+  }
+  return m;
+}
+
+json reference_json(const Reference& r) {
+  json T = json::array();
+  for (const auto& t : r.T_degC) T.push_back(t ? json(*t) : json());
+  return {{"T_degC", T},
+          {"t_utc", r.t_utc},
+          {"F_nT", r.f_nT ? json(*r.f_nT) : json()},
+          {"currents", r.currents_A}};
+}
+
+Reference reference_from(const json& object) {
+  Reference r;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (const json& t = object.at("T_degC").at(i); !t.is_null()) r.T_degC.at(i) = t.get<double>();
+  }
+  r.t_utc = object.at("t_utc");
+  r.currents_A = object.at("currents").get<std::map<std::string, double>>();
+  if (const json& f = object.at("F_nT"); !f.is_null()) r.f_nT = f.get<double>();
+  return r;
+}
+
+std::vector<Check> checks_from(const json& list) {
+  std::vector<Check> out;
+  for (const json& c : list) {
+    out.push_back({c.at("name"), c.at("passed"), c.at("measured"), c.at("limit"), c.at("remedy")});
+  }
+  return out;
+}
+
+/// Its values, whatever they are worth.
+Calibration calibration_of(const json& object) {
+  Calibration c;
+  c.id = object.at("id");
+  c.method = object.at("method");
+  for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
+  c.covariance = covariance_from(object.at("covariance"));
+  c.effects = effects_from(object.at("effects"));
+  const json& rows = object.at("effect_covariance");
+  c.effect_covariance = matrix_from(rows, kArrayParameters + rows.size());
+  c.geometry.baseline_m = object.at("baseline_m");
+  c.sample_noise_nT = noise_from(object.at("sample_noise_nT"));
+  c.pose_noise_nT = noise_from(object.at("pose_noise_nT"));
+  c.gauge = object.at("gauge");
+  c.reference = reference_from(object.at("reference"));
+  c.data_hash = object.at("data_hash");
+  c.poses = object.at("poses");
+  c.accepted_by_checks = object.at("accepted");
+  c.verdict = checks_from(object.at("verdict"));
+  c.software = object.at("software");
+  return c;
+}
+
+/// A calibration with one of everything, as to_json writes it.
+json example() {
+  Calibration c;
+  c.effects = {{.effect = "", .coefficients = {{}}}};
+  c.effect_covariance = Eigen::MatrixXd::Zero(1, 1);
+  c.verdict = {{}};
+  return to_json(c);
+}
+
+/// `text`: what the object was parsed from, where there is one.
+Result<Calibration> read(const json& object, std::optional<std::string_view> text) {
+  constexpr const char* kRemedy = "give a CAL.json written by mgt fit -o";
+  if (object.is_object() && object.value("schema", json()) != kSchema && object.contains("schema"))
+    return fail(ErrorCode::bad_input,
+                fmt::format("schema {} is not \"{}\"", object["schema"].dump(), kSchema),
+                "use the version of mgt that wrote it");
+  static const json kExample = example();
+  if (const auto wrong = misfit(kExample, object))
+    return fail(ErrorCode::bad_input, "not a calibration: " + (text ? wrong->text(*text) : wrong->what),
+                kRemedy);
+  // What the example cannot tell (a list that is too short, a temperature that is a text) is left to the
+  // library's way of refusing.
+  try {
+    return calibration_of(object);
+  } catch (const json::exception&) {
+    return fail(ErrorCode::bad_input,
+                "not a calibration: a list is too short, or holds a value of another kind", kRemedy);
+  }
+}
+
+/// An effect that cannot be made, a content that was changed, a key that means nothing here.
+Result<Calibration> checked(const json& object, std::optional<std::string_view> text) {
+  auto c = read(object, text);
+  if (!c) return c;
+  for (const CalibratedEffect& e : c->effects) {
+    if (make_effect(e.effect)) continue;
+    return fail(ErrorCode::bad_input,
+                fmt::format("it holds an effect that this version cannot remove: {}", e.effect),
+                "use the version of mgt that wrote it");
+  }
+  const std::string found = content_id(object);
+  if (c->id != found) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("the content was changed: it hashes to {}, the file says {}", found, c->id),
+                "a calibration is never edited; fit again instead");
+  }
+  if (const json more = json::diff(to_json(*c), object); !more.empty()) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("it holds what this version does not know: {}",
+                            more.front().at("path").get_ref<const std::string&>()),
+                "use the version of mgt that wrote it");
+  }
+  // A 9 in the place of a 9.0 is the same number and another text: written again it would have another id.
+  if (content_id(to_json(*c)) != found) {
+    return fail(ErrorCode::bad_input, "its numbers are not written as mgt writes them",
+                "a calibration is never edited; fit again instead");
+  }
+  return c;
+}
+
+}  // namespace
+
+json to_json(const std::vector<Check>& checks) {
+  json out = json::array();
+  for (const Check& c : checks) {
+    out.push_back({{"name", c.name},
+                   {"passed", c.passed},
+                   {"measured", c.measured},
+                   {"limit", c.limit},
+                   {"remedy", c.remedy}});
+  }
+  return out;
+}
+
+json to_json(const Calibration& c) {
+  json sensors = json::array();
+  for (const SensorModel& s : c.sensors) sensors.push_back(sensor_json(s));
+  return {{"schema", kSchema},
+          {"id", c.id},
+          {"method", c.method},
+          {"model", "y = C A R' b + I (12 parameters a sensor)"},
+          {"sensors", std::move(sensors)},
+          {"covariance", triangle(c.covariance)},
+          {"effects", effects_json(c.effects)},
+          {"effect_covariance", matrix_json(c.effect_covariance)},
+          {"baseline_m", c.geometry.baseline_m},
+          {"sample_noise_nT", rows(c.sample_noise_nT)},
+          {"pose_noise_nT", rows(c.pose_noise_nT)},
+          {"gauge", c.gauge},
+          {"reference", reference_json(c.reference)},
+          {"data_hash", c.data_hash},
+          {"poses", c.poses},
+          {"accepted", c.accepted_by_checks},
+          {"verdict", to_json(c.verdict)},
+          {"software", c.software}};
+}
+
+Result<Calibration> calibration_from_json(const json& object) { return checked(object, std::nullopt); }
+
+std::string content_id(json object) {
+  object.erase("id");
+  return "c" + sha256_hex(object.dump(-1, ' ', false, json::error_handler_t::replace)).substr(0, 12);
+}
+
+std::string to_json_text(const Calibration& calibration) {
+  return to_json(calibration).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+Result<Calibration> calibration_from_json_text(std::string_view text) {
+  const auto object = parse_json_text(text, "give a CAL.json written by mgt fit -o");
+  return object ? checked(*object, text) : tl::unexpected(object.error());
+}
+
+}  // namespace mgtd::calib

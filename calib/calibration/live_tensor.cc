@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/live_tensor.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kTurned = 2e-3;  // of the field, relative
+
+FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& y_nT) {
+  FieldVector out;
+  for (int i = 0; i < kSensors; ++i) out.segment<3>(3 * i) = y_nT[static_cast<std::size_t>(i)];
+  return out;
+}
+
+}  // namespace
+
+LiveTensor::LiveTensor(Geometry geometry) : pipeline_(geometry) {}
+
+LiveTensor::LiveTensor(const std::shared_ptr<const Calibration>& calibration) : pipeline_(calibration) {
+  if (pipeline_.effects() == nullptr || !pipeline_.effects()->has_instrument_effects()) return;
+  effects_ = std::make_unique<const EffectCorrection>(EffectCorrection::live(*calibration));
+  for (const auto& [effect, column] : effects_->left_out(now_, false))
+    left_out_.push_back({std::string(effect), std::string(column)});
+}
+
+/// Everything the effects may ask for, and the memories moved on to this epoch.
+void LiveTensor::look_around(const Epoch& epoch, const LiveConditions& conditions) {
+  now_.y_nT = epoch.y_nT;
+  if (effects_->knows_start()) now_.t_utc = epoch.t.wall;
+  for (std::size_t i = 0; i < kSensors; ++i)
+    now_.T_degC[i] = std::isfinite(epoch.T_degC[i]) ? std::optional(epoch.T_degC[i]) : std::nullopt;
+  now_.azimuth_rad.reset();
+  now_.pitch_rad.reset();
+  now_.roll_rad.reset();
+  if (const auto& angles = conditions.angles) {
+    now_.azimuth_rad = angles->azimuth_rad;
+    now_.pitch_rad = angles->pitch_rad;
+    now_.roll_rad = angles->roll_rad;
+  }
+  if (conditions.covariates != nullptr) now_.covariates = *conditions.covariates;
+  if (effects_->memories().empty()) return;
+  SensorReadings v_nT;
+  for (std::size_t i = 0; i < kSensors; ++i) v_nT[i] = epoch.y_nT[i] - calibration()->sensors[i].offset_nT;
+  for (const auto& memory : effects_->memories())
+    memory->follow(to_seconds(epoch.t.mono.time_since_epoch()), v_nT);
+}
+
+void LiveTensor::refresh(const FieldVector& b_P_nT) {
+  const ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
+  g_sd_nT_per_m_ = pipeline_.gradient_sd(covariance, 1);
+  const auto C = closure_rows(calibration()->geometry);
+  closure_weight_ = (C * (covariance + pipeline_.sample_noise()) * C.transpose()).eval().inverse();
+  at_P_nT_ = b_P_nT.head<3>();
+  fresh_ = kRefresh;
+}
+
+TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditions) {
+  if (!effects_) return pipeline_.apply(epoch);
+  look_around(epoch, conditions);
+  const FieldVector b_P_nT = effects_->fields(now_, stacked(epoch.y_nT));
+  TensorSample out = pipeline_.sample(b_P_nT);
+
+  const auto lacking = effects_->left_out(now_, false);
+  const auto same = [](const EffectCorrection::LeftOut& now, const LeftOutEffect& before) {
+    return now.effect == before.effect && now.column == before.lacks;
+  };
+  if (!std::equal(lacking.begin(), lacking.end(), left_out_.begin(), left_out_.end(), same)) {
+    left_out_.clear();
+    for (const auto& [effect, column] : lacking)
+      left_out_.push_back({std::string(effect), std::string(column)});
+    fresh_ = 0;
+  }
+  if (!lacking.empty()) out.flags |= Flag::incomplete;
+
+  if (pipeline_.noise_known()) {
+    const bool turned = (b_P_nT.head<3>() - at_P_nT_).norm() > kTurned * at_P_nT_.norm();
+    if (--fresh_ < 0 || turned) refresh(b_P_nT);
+    out.g_sd_nT_per_m = g_sd_nT_per_m_;
+    const Eigen::Vector4d closure(out.closure.curl_nT_per_m, out.closure.center_nT[0],
+                                  out.closure.center_nT[1], out.closure.center_nT[2]);
+    out.closure.chi2 = closure.dot(closure_weight_ * closure);
+  }
+  out.seq = epoch.seq;
+  out.t = epoch.t;
+  out.skew_bound_s = epoch.skew_bound_s;
+  out.flags |= epoch.flags;
+  return out;
+}
+
+}  // namespace mgtd::calib

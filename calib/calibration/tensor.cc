@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/tensor.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "calib/calibration/effect_correction.h"
+#include "calib/calibration/field_derivative.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+
+FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
+  FieldVector out;
+  for (std::size_t i = 0; i < kCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
+  return out;
+}
+
+double closure_chi2(const Closure& closure, const Eigen::Matrix4d& covariance) {
+  Eigen::Vector4d values;
+  values << closure.curl_nT_per_m, closure.center_nT;
+  return values.dot(covariance.llt().solve(values));
+}
+
+/// What a live sample knows of its circumstances.
+Pose pose_of(const Epoch& epoch) {
+  Pose pose;
+  pose.y_nT = epoch.y_nT;
+  pose.t_utc = epoch.t.wall;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (std::isfinite(epoch.T_degC[i])) pose.T_degC[i] = epoch.T_degC[i];
+  }
+  return pose;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry) {
+  const double g = 1 / geometry.baseline_m;
+  Eigen::Matrix<double, 6, kChannels> m = Eigen::Matrix<double, 6, kChannels>::Zero();
+  const auto difference = [&](int row, int axis, int plus, int minus, double weight) {
+    m(row, 3 * plus + axis) += weight;
+    m(row, 3 * minus + axis) -= weight;
+  };
+  difference(0, 0, 0, 2, g);  // Bxx
+  difference(1, 1, 1, 3, g);  // Byy
+  m.row(2) = -m.row(0) - m.row(1);
+  difference(3, 0, 1, 3, g / 2);  // Bxy
+  difference(3, 1, 0, 2, g / 2);  // Byx
+  difference(4, 2, 0, 2, g);      // Bzx
+  difference(5, 2, 1, 3, g);      // Bzy
+  return m;
+}
+
+Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry) {
+  const double g = 1 / geometry.baseline_m;
+  Eigen::Matrix<double, 4, kChannels> m = Eigen::Matrix<double, 4, kChannels>::Zero();
+  m(0, 3 * 1) = g, m(0, 3 * 3) = -g;  // Bxy
+  m(0, 1) = -g, m(0, 3 * 2 + 1) = g;  // -Byx
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < kSensors; ++i) m(1 + axis, 3 * i + axis) = i % 2 == 0 ? 0.5 : -0.5;
+  }
+  return m;
+}
+
+FieldAndGradient field_and_gradient(const FieldVector& b, const Geometry& geometry) {
+  const auto b1 = b.segment<3>(0), b2 = b.segment<3>(3), b3 = b.segment<3>(6), b4 = b.segment<3>(9);
+  const double d = geometry.baseline_m;
+  const Eigen::Vector3d along_x = (b1 - b3) / d, along_y = (b2 - b4) / d;
+  FieldAndGradient out;
+  out.b_P_nT = (b1 + b2 + b3 + b4) / 4;
+  out.g_nT_per_m = {.xx = along_x[0],
+                    .yy = along_y[1],
+                    .zz = -(along_x[0] + along_y[1]),
+                    .xy = (along_y[0] + along_x[1]) / 2,
+                    .xz = along_x[2],
+                    .yz = along_y[2]};
+  out.closure.curl_nT_per_m = along_y[0] - along_x[1];
+  out.closure.center_nT = (b1 + b3 - b2 - b4) / 2;
+  out.closure.chi2 = kNaN;
+  return out;
+}
+
+TensorPipeline::TensorPipeline(Geometry geometry) : geometry_(geometry) {
+  gain_.fill(Eigen::Matrix3d::Identity());
+  offset_nT_.fill(Eigen::Vector3d::Zero());
+}
+
+TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run)
+    : calibration_(std::move(calibration)),
+      id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
+      geometry_(calibration_->geometry) {
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const SensorModel& sensor = calibration_->sensors[i];
+    gain_[i] = sensor.R_PS() * sensor.response().inverse();
+    offset_nT_[i] = sensor.offset_nT;
+  }
+  if (!calibration_->effects.empty()) effects_ = std::make_shared<const EffectCorrection>(*calibration_, run);
+  noise_known_ = (calibration_->sample_noise_nT.array() > 0).all();
+  prepare_uncertainty();
+}
+
+void TensorPipeline::prepare_uncertainty() {
+  // The derivative of the corrected fields is linear in q = (1, b): evaluate it at the four unit values of q.
+  using ParameterRows = Eigen::Matrix<double, 4, kArrayParameters>;  // rows: q components
+  const auto rows_of = [&](const Eigen::Matrix<double, 1, kChannels>& w) {
+    ParameterRows rows;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const auto weight = w.segment<3>(3 * at);
+      const auto constant =
+          (weight * field_derivative(calibration_->sensors[i], Eigen::Vector3d::Zero())).eval();
+      rows.block<1, kSensorParameters>(0, at * kSensorParameters) = constant;
+      for (int a = 0; a < 3; ++a) {
+        rows.block<1, kSensorParameters>(1 + a, at * kSensorParameters) =
+            weight * field_derivative(calibration_->sensors[i], Eigen::Vector3d::Unit(a)) - constant;
+      }
+    }
+    return rows;
+  };
+  const auto corrected = [&](const AxisNoise& of_reading_nT) {
+    ChannelCovariance out = ChannelCovariance::Zero();
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      out.block<3, 3>(3 * at, 3 * at) =
+          gain_[i] * of_reading_nT.row(at).array().square().matrix().asDiagonal() * gain_[i].transpose();
+    }
+    return out;
+  };
+  noise_ = corrected(calibration_->sample_noise_nT);
+  const ChannelCovariance scatter = corrected(calibration_->pose_noise_nT);
+  const auto covariance = [&](const Eigen::Matrix<double, 1, kChannels>& u,
+                              const Eigen::Matrix<double, 1, kChannels>& v) {
+    const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
+    return Variance{u.dot(noise_ * v.transpose()), 0.5 * (Q + Q.transpose())};
+  };
+  const auto G = gradient_rows(geometry_);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    gradient_variance_[static_cast<std::size_t>(i)] = covariance(G.row(i), G.row(i));
+    unmodelled_[static_cast<std::size_t>(i)] = G.row(i).dot(scatter * G.row(i).transpose());
+  }
+  const auto C = closure_rows(geometry_);
+  std::size_t pair = 0;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    for (Eigen::Index j = i; j < 4; ++j) closure_covariance_[pair++] = covariance(C.row(i), C.row(j));
+  }
+}
+
+FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const {
+  std::array<Eigen::Vector3d, kSensors> b;
+  for (std::size_t i = 0; i < kCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
+  return stacked(b);
+}
+
+TensorSample TensorPipeline::sample(const FieldVector& b_P_nT) const {
+  const FieldAndGradient computed = field_and_gradient(b_P_nT, geometry_);
+  TensorSample out;
+  out.calibration_id = id_;
+  out.b_P_nT = computed.b_P_nT;
+  out.f_nT = computed.b_P_nT.norm();
+  out.g_nT_per_m = computed.g_nT_per_m;
+  out.g_sd_nT_per_m = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+  out.closure = computed.closure;
+  if (calibration_ == nullptr) out.flags |= Flag::uncalibrated;
+  return out;
+}
+
+/// By the quadratic forms: parameters and noise only.
+void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
+  Eigen::Vector4d q;
+  q << 1, out.b_P_nT;
+  std::array<double, 6> sd{};
+  for (std::size_t i = 0; i < sd.size(); ++i)
+    sd[i] = std::sqrt(gradient_variance_[i].by_parameters(q) + gradient_noise(i, samples));
+  out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+  Eigen::Matrix4d S;
+  std::size_t pair = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i; j < 4; ++j) S(i, j) = S(j, i) = closure_covariance_[pair++].at(q, samples);
+  }
+  out.closure.chi2 = closure_chi2(out.closure, S);
+}
+
+Gradient TensorPipeline::gradient_sd(const ChannelCovariance& covariance, double samples) const {
+  const auto G = gradient_rows(geometry_);
+  std::array<double, 6> sd{};
+  for (std::size_t i = 0; i < sd.size(); ++i) {
+    const auto row = G.row(static_cast<Eigen::Index>(i));
+    sd[i] = std::sqrt(row.dot(covariance * row.transpose()) + gradient_noise(i, samples));
+  }
+  return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+}
+
+void TensorPipeline::add_uncertainty(const ChannelCovariance& covariance, double samples,
+                                     TensorSample& out) const {
+  out.g_sd_nT_per_m = gradient_sd(covariance, samples);
+  const auto C = closure_rows(geometry_);
+  out.closure.chi2 = closure_chi2(out.closure, C * (covariance + noise_ / samples) * C.transpose());
+}
+
+TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,
+                                   FieldVector* fields_P_nT) const {
+  const bool with_effects = effects_ && (remove_site || effects_->has_instrument_effects());
+  Corrected corrected;
+  if (with_effects) {
+    corrected = effects_->correct(pose, stacked(pose.y_nT), remove_site, previous);
+  } else {
+    corrected.b_P_nT = correct(pose.y_nT);
+  }
+  if (fields_P_nT != nullptr) *fields_P_nT = corrected.b_P_nT;
+  TensorSample out = sample(corrected.b_P_nT);
+  if (with_effects && !effects_->left_out(pose, remove_site).empty()) out.flags |= Flag::incomplete;
+  if (calibration_ == nullptr || !noise_known_) return out;
+  if (with_effects) {
+    add_uncertainty(corrected.covariance, samples, out);
+  } else {
+    add_uncertainty(samples, out);
+  }
+  return out;
+}
+
+TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
+  TensorSample out;
+  if (effects_ && effects_->has_instrument_effects()) {
+    out = apply(pose_of(epoch), samples);
+  } else {
+    out = sample(correct(epoch.y_nT));
+    if (calibration_ != nullptr && noise_known_) add_uncertainty(samples, out);
+  }
+  out.seq = epoch.seq;
+  out.t = epoch.t;
+  out.skew_bound_s = epoch.skew_bound_s;
+  out.flags |= epoch.flags;
+  return out;
+}
+
+}  // namespace mgtd::calib

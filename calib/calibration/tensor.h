@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "calib/calibration/calibration.h"
+#include "calib/sensor/channels.h"
+#include "proto/epoch.h"
+#include "proto/pose.h"
+#include "proto/tensor.h"
+
+/// Field, gradient tensor and closure of one set of four readings.
+///
+/// The 12 corrected components b_i (platform frame, sensor at r_i) are fitted by least squares to
+///     b_i = B + G r_i,   G symmetric and traceless (5 numbers)
+/// which leaves 12 - 3 - 5 = 4 closure quantities. On the cross the six differences decide G:
+///     Bxx=(Bx1-Bx3)/d  Byx=(By1-By3)/d  Bzx=(Bz1-Bz3)/d  Bxy=(Bx2-Bx4)/d  Byy=(By2-By4)/d  Bzy=(Bz2-Bz4)/d
+///     Gxx = Bxx, Gyy = Byy, Gzz = -(Bxx+Byy), Gxy = (Bxy+Byx)/2, Gxz = Bzx, Gyz = Bzy.
+/// Does not remove site effects: a gradient of the site is real field.
+namespace mgtd::calib {
+
+class EffectCorrection;
+
+struct FieldAndGradient {
+  Eigen::Vector3d b_P_nT;
+  Gradient g_nT_per_m;
+  Closure closure;  ///< chi2 is left NaN here: it needs the noise
+};
+
+[[nodiscard]] FieldAndGradient field_and_gradient(const FieldVector& b_P_nT, const Geometry& geometry);
+
+/// The six gradient components (xx, yy, zz, xy, xz, yz) and the four closure quantities (curl, centre x, y,
+/// z) as linear functions of the corrected components.
+[[nodiscard]] Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry);
+[[nodiscard]] Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry);
+
+/// The stream's arithmetic for one calibration. Everything that does not depend on the sample is computed
+/// once; a sample allocates nothing.
+///
+/// Uncertainty. An error dp of the parameters shifts the corrected field of sensor i by -R (CA)^-1 dy(dp; b),
+/// linear in (1, b): so the variance of any linear function of the corrected fields is a quadratic form q' Q
+/// q in q = (1, b_P), with Q a constant 4x4 matrix per function. The noise of n samples adds a constant over
+/// n, and never less than the scatter of a pose mean about the model in the calibration's own run: what the
+/// model leaves out does not average away.
+class TensorPipeline {
+ public:
+  /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
+  /// are NaN.
+  explicit TensorPipeline(Geometry geometry);
+  /// `run`: poses that will be applied, for effects with a memory (EffectCorrection).
+  explicit TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run = nullptr);
+
+  /// Effects of the instrument are removed with the temperatures and the time of the epoch; one whose inputs
+  /// are not in it is left out, widens g_sd by its size, and flags the sample `incomplete` (LiveTensor knows
+  /// more of a stream, and its memory).
+  /// g_sd holds noise and calibration covariance together, the latter at the field of this very sample.
+  /// `samples` is the number of samples averaged into the readings.
+  [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1) const;
+  /// The same for a pose of a table, with everything it knows and the pose before it. `remove_site` takes the
+  /// effects of the site out, for which the pose needs its table angles. seq and time stay empty.
+  [[nodiscard]] TensorSample apply(const Pose& pose, double samples, bool remove_site = false,
+                                   const Pose* previous = nullptr, FieldVector* fields_P_nT = nullptr) const;
+  /// The corrected field at each sensor, platform frame, by the 48 parameters alone.
+  [[nodiscard]] FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
+  /// Field, gradient and closure of corrected fields, without their uncertainty.
+  [[nodiscard]] TensorSample sample(const FieldVector& b_P_nT) const;
+  /// Of the gradient: `covariance` of the corrected components by calibration and effects, and the noise.
+  [[nodiscard]] Gradient gradient_sd(const ChannelCovariance& covariance, double samples) const;
+  /// Of one sample, in the corrected components; zero where noise_known() is false.
+  [[nodiscard]] const ChannelCovariance& sample_noise() const { return noise_; }
+  [[nodiscard]] bool noise_known() const { return noise_known_; }
+  /// Null without a calibration or without effects in it.
+  [[nodiscard]] const EffectCorrection* effects() const { return effects_.get(); }
+  [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const { return calibration_; }
+
+ private:
+  /// Variance of a linear function of the corrected fields: noise + q' Q q.
+  struct Variance {
+    double noise{0};
+    Eigen::Matrix4d Q{Eigen::Matrix4d::Zero()};
+    [[nodiscard]] double at(const Eigen::Vector4d& q, double samples) const {
+      return noise / samples + by_parameters(q);
+    }
+    [[nodiscard]] double by_parameters(const Eigen::Vector4d& q) const { return q.dot(Q * q); }
+  };
+
+  void prepare_uncertainty();
+  void add_uncertainty(double samples, TensorSample& out) const;
+  void add_uncertainty(const ChannelCovariance& covariance, double samples, TensorSample& out) const;
+  [[nodiscard]] double gradient_noise(std::size_t component, double samples) const {
+    return std::max(gradient_variance_[component].noise / samples, unmodelled_[component]);
+  }
+
+  std::shared_ptr<const Calibration> calibration_;
+  std::shared_ptr<const std::string> id_;
+  Geometry geometry_;
+  std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R_PS (C A)^-1
+  std::array<Eigen::Vector3d, kSensors> offset_nT_;
+  std::shared_ptr<const EffectCorrection> effects_;
+  ChannelCovariance noise_{ChannelCovariance::Zero()};  ///< of one sample, in the corrected components
+  bool noise_known_{false};
+  std::array<Variance, 6> gradient_variance_;
+  std::array<double, 6> unmodelled_{};  ///< variance of a gradient by what scatters about the model
+  /// Covariance of each pair of closure quantities, upper triangle by rows.
+  std::array<Variance, 10> closure_covariance_;
+};
+
+}  // namespace mgtd::calib

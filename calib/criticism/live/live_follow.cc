@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/live/live_follow.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kLeastBlocks = 18;
+constexpr double kLeastSpread = 0.02;      // of b/F0, rms: one degree
+constexpr double kLeastRange_degC = 0.3;   // below it the thermometer's own steps count
+constexpr double kLeastSpan = 60;          // blocks, for a drift to be told from noise
+constexpr double kMedianChi2of4 = 3.3567;  // of a chi-square with four degrees of freedom
+constexpr double kMostCorrelation = 0.95;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Blocks as rows: closure whitened by the noise of one sample, times the root of the number of samples.
+struct Rows {
+  Eigen::MatrixXd c;  ///< n x 4
+  Eigen::VectorXd root_n;
+  Eigen::MatrixXd u;     ///< n x 3
+  Eigen::VectorXd t, T;  ///< T: NaN where unknown
+  Eigen::Matrix4d unwhiten;
+
+  [[nodiscard]] Eigen::Index n() const { return c.rows(); }
+  /// Columns times the weights, so that every row has the same noise.
+  [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& columns) const {
+    return root_n.asDiagonal() * columns;
+  }
+};
+
+Rows rows_of(const std::deque<ClosureBlock>& blocks, const ClosurePrior& prior) {
+  const auto n = static_cast<Eigen::Index>(blocks.size());
+  Rows out{Eigen::MatrixXd(n, 4), Eigen::VectorXd(n), Eigen::MatrixXd(n, 3),
+           Eigen::VectorXd(n),    Eigen::VectorXd(n), prior.sample_noise.llt().matrixL()};
+  const auto L = prior.sample_noise.llt();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const ClosureBlock& b = blocks[static_cast<std::size_t>(k)];
+    out.root_n[k] = std::sqrt(b.samples);
+    out.c.row(k) = out.root_n[k] * L.matrixL().solve(b.closure).transpose();
+    out.u.row(k) = b.u.transpose();
+    out.t[k] = b.t_s;
+    out.T[k] = b.T_degC;
+  }
+  return out;
+}
+
+Eigen::VectorXd centred(const Eigen::VectorXd& x) { return x.array() - x.mean(); }
+
+/// Directions in which the field moved, as columns of u centred and turned; none when it stood.
+Eigen::MatrixXd moved_directions(const Rows& r) {
+  const Eigen::MatrixXd u = r.u.rowwise() - r.u.colwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(
+      Eigen::Matrix3d(u.transpose() * u / static_cast<double>(r.n())));
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    if (axes.eigenvalues()[a] > kLeastSpread * kLeastSpread) kept.push_back(a);
+  }
+  return axes.eigenvectors()(Eigen::all, kept);
+}
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out(a.rows(), a.cols() + b.cols());
+  out << a, b;
+  return out;
+}
+
+/// y less its regression on the columns.
+Eigen::MatrixXd residual(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& y) {
+  return y - columns * columns.colPivHouseholderQr().solve(y);
+}
+
+struct Noise {
+  double median{1};    ///< variance of a block against white noise
+  double widening{1};  ///< of the variance of slopes, beside: mean square and correlation
+};
+
+Noise noise_of(const Rows& r, const std::deque<ClosureBlock>& blocks, const Eigen::MatrixXd& everything) {
+  std::vector<double> within, between;
+  for (const ClosureBlock& b : blocks) within.push_back(b.excess);
+  Noise out{std::max(1.0, median(within)), 1};
+  if (r.n() < everything.cols() + 6) return out;
+  const Eigen::MatrixXd e = residual(r.weighted(everything), r.c);
+  const double spent = static_cast<double>(r.n()) / static_cast<double>(r.n() - everything.cols());
+  for (Eigen::Index k = 0; k < r.n(); ++k) between.push_back(spent * e.row(k).squaredNorm());
+  out.median = std::max(out.median, median(between) / kMedianChi2of4);
+  const double mean = spent * e.squaredNorm() / (4.0 * static_cast<double>(r.n()));
+  const double lagged = e.topRows(r.n() - 1).cwiseProduct(e.bottomRows(r.n() - 1)).sum() / e.squaredNorm();
+  const double correlation = std::clamp(lagged, 0.0, kMostCorrelation);
+  out.widening = std::max(1.0, mean / out.median) * (1 + correlation) / (1 - correlation);
+  return out;
+}
+
+/// Share of what y does beyond its noise (`variance` a row and quantity) that the columns explain.
+double share_of(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& y, double variance) {
+  const auto n = static_cast<double>(y.rows()), m = static_cast<double>(columns.cols());
+  const double left = residual(columns, y).squaredNorm(), all = y.squaredNorm();
+  const double excess = all - 4 * variance * (n - 1);
+  return excess <= 0 ? 0 : std::clamp((all - left - 4 * variance * m) / excess, 0.0, 1.0);
+}
+
+/// The same of the best indicator of an interval, y having no mean.
+double event_share_of(const Eigen::MatrixXd& y, double variance) {
+  const Eigen::Index n = y.rows();
+  const double excess = y.squaredNorm() - 4 * variance * static_cast<double>(n - 1);
+  if (excess <= 0) return 0;
+  Eigen::Matrix<double, 4, Eigen::Dynamic> sums(4, n + 1);
+  sums.col(0).setZero();
+  for (Eigen::Index k = 0; k < n; ++k) sums.col(k + 1) = sums.col(k) + y.row(k).transpose();
+  double best = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j <= n && j - i < n; ++j) {
+      const auto inside = static_cast<double>(j - i);
+      const double weight = 1 / inside + 1 / (static_cast<double>(n) - inside);
+      best = std::max(best, weight * (sums.col(j) - sums.col(i)).squaredNorm());
+    }
+  }
+  return std::clamp((best - 4 * variance) / excess, 0.0, 1.0);
+}
+
+/// Prior of W, whitened.
+ClosureErrors whitened(const ClosurePrior& prior) {
+  const Eigen::Matrix4d inverse = Eigen::Matrix4d(prior.sample_noise.llt().matrixL()).inverse();
+  ClosureErrors out;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j)
+      out.block<4, 4>(4 * i, 4 * j) =
+          inverse * prior.parameters.block<4, 4>(4 * i, 4 * j) * inverse.transpose();
+  }
+  return out;
+}
+
+/// Closure that the calibration's own uncertainty may make at this field.
+Eigen::Matrix4d stated(const ClosureErrors& parameters, const Eigen::Vector3d& u) {
+  Eigen::Matrix<double, 16, 4> q;
+  q << Eigen::Matrix4d::Identity(), u[0] * Eigen::Matrix4d::Identity(), u[1] * Eigen::Matrix4d::Identity(),
+      u[2] * Eigen::Matrix4d::Identity();
+  return q.transpose() * parameters * q;
+}
+
+/// c against one x, W within its prior.
+Following against(const Rows& r, const ClosurePrior& prior, const Eigen::VectorXd& x, const Noise& noise) {
+  Following out{.tested = true};
+  const double variance = noise.median * noise.widening;
+  ClosureErrors P = whitened(prior);
+  P.diagonal().array() += 1e-12 * P.trace() + 1e-12;
+  Eigen::MatrixXd z(r.n(), 5);
+  z << Eigen::VectorXd::Ones(r.n()), r.u, centred(x);
+  const Eigen::MatrixXd zw = r.weighted(z), S = zw.transpose() * zw / variance;
+  Eigen::Matrix<double, 20, 20> M = Eigen::Matrix<double, 20, 20>::Zero();
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    for (Eigen::Index j = 0; j < 5; ++j) M.block<4, 4>(4 * i, 4 * j).diagonal().setConstant(S(i, j));
+  }
+  M.topLeftCorner<16, 16>() += P.inverse();
+  const Eigen::MatrixXd g = r.c.transpose() * zw / variance;  // 4 x 5
+  const Eigen::Matrix<double, 20, 20> V = M.inverse();
+  const Eigen::Matrix<double, 20, 1> solution = V * g.reshaped();
+  const Eigen::Vector4d beta = solution.tail<4>();
+  const Eigen::Matrix4d cov = V.bottomRightCorner<4, 4>();
+  out.log10_p = chi_square_log10_p(beta.dot(cov.llt().solve(beta)), 4);
+  const Eigen::Vector4d slope = r.unwhiten * beta;
+  const Eigen::Matrix4d slope_cov = r.unwhiten * cov * r.unwhiten.transpose();
+  const Eigen::Vector4d stated_sd =
+      stated(prior.parameters, r.u.colwise().mean().transpose()).diagonal().cwiseSqrt();
+  out.range = x.maxCoeff() - x.minCoeff();
+  (slope.cwiseAbs().array() / stated_sd.array()).maxCoeff(&out.component);
+  out.slope = slope[out.component];
+  out.slope_sd = std::sqrt(slope_cov(out.component, out.component));
+  out.swing = std::abs(out.slope) * out.range;
+  out.stated_sd = stated_sd[out.component];
+  // What turning the array may do is no part of what x has to explain.
+  const Eigen::MatrixXd directions = moved_directions(r);
+  Eigen::MatrixXd base = Eigen::VectorXd::Ones(r.n());
+  if (directions.cols() > 0) base = beside(base, r.u * directions);
+  base = r.weighted(base);
+  const Eigen::MatrixXd y = residual(base, r.c);
+  out.share = share_of(residual(base, r.weighted(centred(x))), y, noise.median);
+  out.event_share = event_share_of(y, noise.median);
+  return out;
+}
+
+/// c against the directions that the field took.
+Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen::MatrixXd& V,
+                           const Noise& noise) {
+  Following out{.tested = true};
+  const Eigen::MatrixXd constant = r.weighted(Eigen::VectorXd::Ones(r.n()));
+  const Eigen::MatrixXd x = residual(constant, r.weighted(r.u * V)), y = residual(constant, r.c);
+  const Eigen::MatrixXd inverse = (x.transpose() * x).inverse();
+  const Eigen::MatrixXd B = (inverse * x.transpose() * y).transpose();  // 4 x directions
+  const Eigen::Index m = B.size();
+  const ClosureErrors P = whitened(prior);
+  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
+  for (Eigen::Index i = 0; i < V.cols(); ++i) {
+    for (Eigen::Index j = 0; j < V.cols(); ++j) {
+      auto block = cov.block<4, 4>(4 * i, 4 * j);
+      block.diagonal().setConstant(noise.median * noise.widening * inverse(i, j));
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) block += V(a, i) * V(b, j) * P.block<4, 4>(4 + 4 * a, 4 + 4 * b);
+      }
+    }
+  }
+  const Eigen::VectorXd slopes = B.reshaped();
+  out.log10_p = chi_square_log10_p(slopes.dot(cov.llt().solve(slopes)), static_cast<double>(m));
+  out.share = share_of(x, y, noise.median);
+  out.event_share = event_share_of(y, noise.median);
+  // Told in the quantity that swings most, over the turn that was made.
+  const Eigen::MatrixXd made =
+      (r.u.rowwise() - r.u.colwise().mean()) * V * (r.unwhiten * B).transpose();  // n x 4
+  const Eigen::Vector4d swing = (made.colwise().maxCoeff() - made.colwise().minCoeff()).transpose();
+  const Eigen::Vector4d stated_sd =
+      stated(prior.parameters, r.u.colwise().mean().transpose()).diagonal().cwiseSqrt();
+  (swing.array() / stated_sd.array()).maxCoeff(&out.component);
+  out.swing = swing[out.component];
+  out.stated_sd = stated_sd[out.component];
+  const Eigen::MatrixXd spread = (r.u * V).rowwise() - (r.u * V).colwise().mean();
+  out.range = spread.rowwise().norm().maxCoeff();
+  return out;
+}
+
+}  // namespace
+
+WindowCriticism criticise(const std::deque<ClosureBlock>& blocks, const ClosurePrior& prior) {
+  WindowCriticism out;
+  if (blocks.empty()) return out;
+  const Rows r = rows_of(blocks, prior);
+  const Eigen::MatrixXd V = moved_directions(r);
+  const bool knows_T = r.T.allFinite() && r.T.maxCoeff() - r.T.minCoeff() > kLeastRange_degC;
+  const double least_step_s = r.n() > 1 ? (r.t[r.n() - 1] - r.t[0]) / static_cast<double>(r.n() - 1) : 0;
+  const bool knows_t = static_cast<double>(r.n()) >= kLeastSpan && least_step_s > 0;
+  Eigen::MatrixXd everything = Eigen::VectorXd::Ones(r.n());
+  if (V.cols() > 0) everything = beside(everything, r.u * V);
+  if (knows_T) everything = beside(everything, centred(r.T));
+  if (knows_t) everything = beside(everything, centred(r.t) / 3600);
+  const Noise noise = noise_of(r, blocks, everything);
+  out.noise_scale = noise.median;
+  if (blocks.size() < kLeastBlocks) return out;
+  if (knows_T) out.follows[0] = against(r, prior, r.T, noise);
+  if (knows_t) out.follows[1] = against(r, prior, r.t / 3600, noise);
+  if (V.cols() > 0) out.follows[2] = against_attitude(r, prior, V, noise);
+  return out;
+}
+
+double block_log10_p(const ClosureBlock& block, const ClosurePrior& prior, double noise_scale) {
+  const Eigen::Matrix4d S =
+      noise_scale / block.samples * prior.sample_noise + stated(prior.parameters, block.u);
+  return chi_square_log10_p(block.closure.dot(S.llt().solve(block.closure)), 4);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/live/live_window.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/calibration/field_derivative.h"
+#include "calib/calibration/tensor.h"
+#include "calib/effects/effect_context.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kEmptyParts = 2;  // that a block may have
+using ParameterRows = Eigen::Matrix<double, 16, kArrayParameters>;
+
+/// dW/dp: closure at the four unit values of q, which it is linear in.
+ParameterRows closure_by_parameters(const Calibration& c) {
+  const auto rows = closure_rows(c.geometry);
+  const auto at = [&](const Eigen::Vector3d& b_P_nT) {
+    Eigen::Matrix<double, kChannels, kArrayParameters> d;
+    d.setZero();
+    for (int i = 0; i < kSensors; ++i) {
+      d.block<3, kSensorParameters>(3 * i, kSensorParameters * i) =
+          field_derivative(c.sensors[static_cast<std::size_t>(i)], b_P_nT);
+    }
+    return Eigen::Matrix<double, 4, kArrayParameters>(rows * d);
+  };
+  const auto constant = at(Eigen::Vector3d::Zero());
+  ParameterRows out;
+  out.topRows<4>() = constant;
+  for (int a = 0; a < 3; ++a)
+    out.middleRows<4>(4 + 4 * a) = at(kReferenceField_nT * Eigen::Vector3d::Unit(a)) - constant;
+  return out;
+}
+
+}  // namespace
+
+ClosurePrior closure_prior(const Calibration& c) {
+  const auto W = closure_by_parameters(c);
+  const auto rows = closure_rows(c.geometry);
+  return {rows * TensorPipeline(std::make_shared<const Calibration>(c)).sample_noise() * rows.transpose(),
+          W * c.covariance * W.transpose()};
+}
+
+LiveWindow::LiveWindow(double block_s, std::size_t blocks, const ClosurePrior& prior)
+    : block_s_(block_s), most_(blocks), weight_(prior.sample_noise.inverse()) {}
+
+bool LiveWindow::add(const ClosureSample& s) {
+  const double at = s.t_s / block_s_;
+  const auto number = static_cast<std::int64_t>(std::floor(at));
+  bool closed = false;
+  if (begun_ && number != number_) {
+    closed = close();
+    parts_.fill({});
+  }
+  begun_ = true;
+  number_ = number;
+  const auto part = static_cast<std::size_t>((at - std::floor(at)) * kParts);
+  Sums& sums = parts_[std::min<std::size_t>(part, kParts - 1)];
+  ++sums.n;
+  sums.t_s += s.t_s;
+  sums.closure += s.closure;
+  sums.u += s.b_P_nT / kReferenceField_nT;
+  if (std::isfinite(s.T_degC)) {
+    sums.T_degC += s.T_degC;
+    ++sums.n_T;
+  }
+  return closed;
+}
+
+bool LiveWindow::close() {
+  Sums all;
+  int parts = 0;
+  for (const Sums& p : parts_) {
+    if (p.n == 0) continue;
+    ++parts;
+    all.n += p.n;
+    all.t_s += p.t_s;
+    all.closure += p.closure;
+    all.u += p.u;
+    all.T_degC += p.T_degC;
+    all.n_T += p.n_T;
+  }
+  if (parts < kParts - kEmptyParts) return false;
+  ClosureBlock block{all.t_s / all.n,
+                     all.n,
+                     all.closure / all.n,
+                     all.u / all.n,
+                     all.n_T > 0 ? all.T_degC / all.n_T : std::numeric_limits<double>::quiet_NaN(),
+                     0};
+  for (const Sums& p : parts_) {
+    if (p.n == 0) continue;
+    const Eigen::Vector4d off = p.closure / p.n - block.closure;
+    block.excess += p.n * off.dot(weight_ * off) / (4.0 * (parts - 1));
+  }
+  if (blocks_.size() == most_) blocks_.pop_front();
+  blocks_.push_back(block);
+  return true;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/choice.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/search/explain.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/poses/pose_table.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+const double kExcluded = 2 * std::log(1000);
+
+/// A family where another one acts, its number left open; where it usually acts when it cannot act there.
+std::string spec_of(const std::string& family, const std::string& where) {
+  const std::string there = family + "@" + where;
+  return make_effect(there) ? there : family;
+}
+
+/// Everything that could stand in the place of `effect`, where a round of the search found it or one of its
+/// rivals.
+std::vector<std::string> rivals_of(const ExplainReport& before, const std::string& effect) {
+  for (const Round& round : before.rounds) {
+    std::vector<std::string> names = round.possible;
+    names.insert(names.begin(), round.added.effect);
+    const auto own = std::find(names.begin(), names.end(), effect);
+    if (own == names.end()) continue;
+    names.erase(own);
+    if (round.possible.empty()) return {};
+    for (std::string& name : names) name = spec_of(name, round.added.where);
+    return names;
+  }
+  return {};
+}
+
+bool named(const ExplainReport& before, const std::string& effect) {
+  return std::find(before.named.begin(), before.named.end(), effect) != before.named.end();
+}
+
+/// dof ln(chi-square per degree of freedom, nT2) of a model: comparable also where the weights are estimated.
+std::optional<double> misfit(const PoseTable& table, const FitOptions& options) {
+  const auto joint = tuned_options(table, options);
+  if (!joint) return std::nullopt;
+  const auto fit = fit_joint_at_size(table, *joint);
+  if (!fit || !(fit->dof > 0)) return std::nullopt;
+  return fit->dof * std::log(std::pow(fit->noise_nT(), 2) * fit->chi2 / fit->dof);
+}
+
+/// The model with `spec` in the place of the effect called `name`.
+std::optional<FitOptions> exchanged(const FitOptions& options, const std::string& name,
+                                    const std::string& spec) {
+  auto rival = make_effect(spec);
+  if (!rival) return std::nullopt;
+  FitOptions out = options;
+  for (EffectPtr& effect : out.effects)
+    if (effect->name() == name) effect = *rival;
+  return out;
+}
+
+}  // namespace
+
+Choice choice_of(const ExplainReport& before, const PoseTable& table, const EffectPtr& effect) {
+  const std::string name(effect->name());
+  Choice out{.spec = effect->spec(),
+             .finding = std::string(to_string(before.finding)),
+             .rivals = rivals_of(before, name),
+             .data = data_hash(table)};
+  const bool something = before.finding != Finding::pass && before.finding != Finding::bad_data;
+  const bool whole = before.finding == Finding::explained || before.finding == Finding::ambiguous;
+  out.describes = something && !(whole && named(before, name));
+  return out;
+}
+
+Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& options) {
+  if (choice.data == data_hash(table)) return choice;
+  if (choice.describes) {
+    const auto now = explain(table, {.fit = options});
+    choice.describes = !now || now->finding != Finding::pass;
+  }
+  const auto own = EffectSpec::parse(choice.spec);
+  const auto chosen = choice.rivals.empty() || !own ? std::nullopt : misfit(table, options);
+  if (!chosen) return choice;
+  std::erase_if(choice.rivals, [&](const std::string& rival) {
+    const auto model = exchanged(options, own->name, rival);
+    const auto other = model ? misfit(table, *model) : std::nullopt;
+    return other && *other - *chosen > kExcluded;
+  });
+  return choice;
+}
+
+std::string to_text(const Choice& choice) {
+  std::string out;
+  if (!choice.rivals.empty())
+    out += fmt::format("{} was chosen where {} could stand in its place, and no poses since tell them apart",
+                       choice.spec, fmt::join(choice.rivals, ", "));
+  if (choice.describes)
+    out += fmt::format(
+        "{}{} describes the readings, it does not explain them: when it was added (verdict {}) it was "
+        "not the whole of what stood out, and another law may be the cause",
+        out.empty() ? "" : "; ", choice.spec, choice.finding);
+  return out;
+}
+
+json to_json(const Choice& choice) {
+  return {{"spec", choice.spec},
+          {"finding", choice.finding},
+          {"rivals", choice.rivals},
+          {"describes_only", choice.describes},
+          {"data", choice.data}};
+}
+
+Choice choice_from_json(const json& object) {
+  try {
+    return {.spec = object.at("spec"),
+            .finding = object.at("finding"),
+            .rivals = object.at("rivals"),
+            .describes = object.at("describes_only"),
+            .data = object.at("data")};
+  } catch (const json::exception&) {
+    return {};
+  }
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/verdict/explain_report.h"
+
+/// What the poses said of an effect when it was put into a model: which others could have stood in its place,
+/// and whether it was the whole of what stood out. A fit with the effect in it shows neither any more, so it
+/// is kept with the effect until other data settle it.
+///
+///     a rival goes   when on other data the model with the rival in the place of the effect leaves more, by
+///                    more than chance: dof ln(ratio of chi-square per dof) above 2 ln 1000
+///     `describes`    goes when on other data nothing stands out beside the model
+namespace mgtd::calib {
+
+struct Choice {
+  std::string spec{};                 ///< of the effect, with the numbers that were searched
+  std::string finding{};              ///< the verdict at the time
+  std::vector<std::string> rivals{};  ///< specs of those that could stand in its place; numbers left open
+  bool describes{false};              ///< it was one of several stand-ins, or beside something unknown
+  std::string data{};                 ///< hash of the poses that said so
+
+  [[nodiscard]] bool open() const { return describes || !rivals.empty(); }
+};
+
+/// Of an effect that is about to be added. `before`: what was said of the model without it.
+[[nodiscard]] Choice choice_of(const ExplainReport& before, const PoseTable& table, const EffectPtr& effect);
+
+/// What is left of the doubt on these poses. `options`: the model, with the effect in it. The same poses
+/// leave it as it was. A rival that cannot be fitted here stays.
+[[nodiscard]] Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& options);
+
+/// One or two clauses; empty when nothing is open.
+[[nodiscard]] std::string to_text(const Choice& choice);
+
+[[nodiscard]] nlohmann::json to_json(const Choice& choice);
+/// Empty (no spec) where the object is no choice: files of earlier versions have none.
+[[nodiscard]] Choice choice_from_json(const nlohmann::json& object);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/conclusion.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "calib/criticism/tests/local_lack_of_fit.h"
+#include "calib/effects/common_axis.h"
+#include "calib/fit/joint/agreement.h"
+#include "calib/fit/joint/joint_verdict.h"
+#include "calib/fit/two_step/verdict.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
+/// run of a hundred, and below 0.8 in one of seven.
+constexpr double kEnoughShare = 0.5;
+constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
+constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
+constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
+
+/// Poses with an observation that is left out, of all poses. Where a law accounts for them, explain() has
+/// taken them back.
+double contradicted(const JointFit& fit) {
+  std::set<int> poses;
+  for (const OutlierNode& node : fit.outliers) poses.insert(node.pose);
+  return static_cast<double>(poses.size()) / static_cast<double>(fit.problem.poses.size());
+}
+
+/// Why a single name that accounts for the data is not yet an explanation; empty when it is.
+std::string doubt(const Round& round, const Asked& before) {
+  const Candidate& a = round.added;
+  const double spread = 4 * std::sqrt(2 * before.dof);
+  if (before.reference.from_dwells() && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
+    return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
+  const double realised = round.chi2_before - round.chi2_after;
+  if (before.reference.known && std::abs(realised - a.fall) > kRefit * a.fall + 3 * std::sqrt(2 * a.fall))
+    return fmt::format("chi-square fell by {:.0f} where {:.0f} was predicted", realised, a.fall);
+  return {};
+}
+
+/// The first of the named laws that leaves something on its own axes; empty when none does.
+std::string leaves_something(const ExplainReport& report, const Criticism& last) {
+  for (const Round& round : report.rounds) {
+    for (const EffectPtr& effect : round.effects) {
+      const auto spec = EffectSpec::parse(effect->spec());
+      const std::string where = spec && spec->where ? spec->where->text() : round.added.where;
+      const double log10_p = rest_log10_p(last, where);
+      if (log10_p < std::log10(kRestAlarm))
+        return fmt::format("{} is not all of it: with it {} still differs from noise, {}", round.added.effect,
+                           where, p_phrase(log10_p));
+    }
+  }
+  return {};
+}
+
+std::set<std::string> names_of(const std::vector<Round>& rounds) {
+  std::set<std::string> out;
+  for (const Round& round : rounds) out.insert(round.added.effect);
+  return out;
+}
+
+/// Of several names that together leave only noise, one that itself is little more than that; empty when all
+/// stand out.
+std::string weak_name(const std::vector<Round>& rounds) {
+  constexpr double kSigmas = 8;  // from here on the right law of the library stands first, and alone
+  for (const Round& round : rounds) {
+    if (round.added.d < kSigmas)
+      return fmt::format("{} is {:.1f} sigma large, too little to say that no other law is behind the sum",
+                         round.added.effect, round.added.d);
+  }
+  return {};
+}
+
+/// One law on one axis with two values of its searched number.
+bool staircase(const std::vector<Round>& rounds) {
+  std::vector<EffectSpec> seen;
+  for (const Round& round : rounds) {
+    for (const EffectPtr& effect : round.effects) {
+      const auto spec = EffectSpec::parse(effect->spec());
+      if (!spec) return true;
+      for (const EffectSpec& other : seen) {
+        const bool together = !spec->where || !other.where || share_an_axis(*spec->where, *other.where);
+        if (spec->name == other.name && together && spec->parameters != other.parameters) return true;
+      }
+      seen.push_back(*spec);
+    }
+  }
+  return false;
+}
+
+/// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
+std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
+  std::vector<std::size_t> mirrored;
+  for (std::size_t i = 0; i < fit.state.sensors.size(); ++i)
+    if (fit.state.sensors[i].mounting.determinant() < 0) mirrored.push_back(i + 1);
+  if (!mirrored.empty()) return mirrored_text(mirrored);
+  const double limit = table_limit_rad(table_sd_rad);
+  if (fit.table_sd_rad > limit)
+    return fmt::format(
+        "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
+        "or order of the angles, or a mounting written down wrongly",
+        to_deg(fit.table_sd_rad), to_deg(limit));
+  return {};
+}
+
+/// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
+/// or a few readings make it; empty when it is not so.
+std::string gross(const JointFit& fit, const Criticism& last) {
+  if (!(fit.worse > 1) || last.noise.wandering.any()) return {};
+  const Scatter scatter = scatter_of(fit);
+  const bool shapeless = !last.rejects() && fit.contradicting > kMaxBadPoses;
+  if (!shapeless && !scatter.few_far_off()) return {};
+  return fmt::format(
+      "the residual is {:.2g} times the noise, {:.3g} nT rms where its median tells {:.3g} nT, and {:.0f} % "
+      "of the poses contradict the others: look for a loose cable or a disturbance, and measure again",
+      fit.worse, scatter.residual_nT, scatter.typical_nT, 100 * fit.contradicting);
+}
+
+}  // namespace
+
+Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
+                 std::vector<std::string>& notes) {
+  if (report.rounds.empty()) {
+    std::string why = gross(*report.fit, last);
+    if (why.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
+    notes.push_back(std::move(why));
+    return Finding::bad_data;
+  }
+  const Round& round = report.rounds.front();
+  if (last.rejects()) return Finding::partial;
+  if (std::string rest = leaves_something(report, last); !rest.empty()) {
+    notes.push_back(std::move(rest));
+    return Finding::partial;
+  }
+  if (staircase(report.rounds)) {
+    notes.emplace_back(
+        "several steps or thresholds on one axis follow a smooth curve: they are not evidence of steps");
+    return Finding::partial;
+  }
+  const bool several = names_of(report.rounds).size() > 1;
+  const bool ambiguous = std::any_of(report.rounds.begin(), report.rounds.end(),
+                                     [](const Round& r) { return !r.possible.empty(); });
+  if (several ? ambiguous : !round.possible.empty()) return Finding::ambiguous;
+  std::string why = several ? weak_name(report.rounds) : doubt(round, first);
+  if (why.empty()) return Finding::explained;
+  notes.push_back(std::move(why));
+  return Finding::partial;
+}
+
+bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std::vector<std::string>& notes) {
+  if (std::string why = wrong_wiring(fit, table_sd_rad); !why.empty()) {
+    notes.push_back(std::move(why));
+    return true;
+  }
+  if (std::string rough = rough_table_text(fit.table_sd_rad, table_sd_rad); !rough.empty())
+    notes.push_back(std::move(rough));
+  if (const double share = contradicted(fit); share > kMaxBadPoses) {
+    notes.push_back(
+        fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",
+                    100 * share, 100 * kMaxBadPoses));
+    return true;
+  }
+  if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {
+    notes.push_back(
+        fmt::format("{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
+                    "wrong, or poses are copies",
+                    c.quiet, c.quiet_ratio));
+    return true;
+  }
+  return false;
+}
+
+void share_what_fell(ExplainReport& report) {
+  if (report.rounds.empty() || report.noise.reference.from_dwells()) return;
+  const double left = std::pow(report.rounds.back().rms_after_nT / report.rounds.front().rms_before_nT, 2);
+  const double unit = report.chi2 / report.dof, excess = report.chi2 * (1 - left);
+  const auto share = [&](Candidate& c) {
+    c.share = excess > 0 ? std::clamp((c.fall - c.k * unit * left) / excess, 0.0, 1.0) : 0;
+  };
+  for (Candidate& c : report.candidates) share(c);
+  share(report.rounds.front().added);
+}
+
+}  // namespace mgtd::calib

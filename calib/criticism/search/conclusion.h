@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/criticism.h"
+#include "calib/criticism/verdict/explain_report.h"
+
+/// From what a search found to one of the verdicts of explain.h.
+namespace mgtd::calib {
+
+/// The residual that was asked about, and its noise.
+struct Asked {
+  double dof;
+  NoiseReference reference;
+};
+
+[[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
+                               std::vector<std::string>& notes);
+
+/// Data that no effect stands for: wiring, poses that contradict the rest, noise that is told wrongly. Says
+/// which in `notes`, and there too when the table is worse than `table_sd_rad`, what was told of it.
+[[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, double table_sd_rad,
+                            std::vector<std::string>& notes);
+
+/// Where the dwells do not say how large the noise is, the excess that the candidates share is what the
+/// rounds took away: the residual at their end stands for the noise. Nothing to share where nothing was
+/// added.
+void share_what_fell(ExplainReport& report);
+
+}  // namespace mgtd::calib

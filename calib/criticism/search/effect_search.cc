@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/effect_search.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/search/forward_step.h"
+#include "calib/criticism/search/nonlinear_parameters.h"
+#include "calib/criticism/search/second_look.h"
+#include "calib/criticism/tests/judgement.h"
+#include "calib/design/next_measurement.h"
+#include "calib/fit/joint/pose_residuals.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kHalf = 0.5;     ///< of the winner's d: a sketch of a memory fits so well at least
+constexpr double kOnePose = 0.5;  ///< of the evidence
+
+/// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
+/// stands out by itself stays possible.
+void keep_memory_possible(const EffectSearch& search, const Criticism& c, Round& round) {
+  constexpr std::string_view kMemory = "axis.hysteresis";
+  if (!search.table.path.empty() || round.added.effect == kMemory || search.slow) return;
+  for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
+    if (c.families[f].suspect->name != kMemory || c.families[f].winner().d() < kHalf * round.added.d)
+      continue;
+    if (std::find(round.possible.begin(), round.possible.end(), kMemory) == round.possible.end())
+      round.possible.emplace_back(kMemory);
+  }
+}
+
+/// How many of the effects that were given are still there; they stand first.
+std::size_t kept(const std::vector<EffectPtr>& given, const std::vector<EffectPtr>& model) {
+  std::size_t out = 0;
+  for (const EffectPtr& effect : model)
+    out += std::find(given.begin(), given.end(), effect) != given.end() ? 1U : 0U;
+  return out;
+}
+
+/// A start for a wider model: coefficients that it shares with the narrower one as they were, the others
+/// zero.
+JointState widened(const std::vector<EffectPtr>& narrow, const JointState& state,
+                   const std::vector<EffectPtr>& wide) {
+  const auto count = [](const EffectPtr& e) { return static_cast<Eigen::Index>(e->coefficients().size()); };
+  Eigen::Index size = 0, at = 0;
+  for (const EffectPtr& effect : wide) size += count(effect);
+  JointState out = state;
+  out.coefficients = Eigen::VectorXd::Zero(size);
+  for (const EffectPtr& effect : wide) {
+    Eigen::Index from = 0;
+    for (const EffectPtr& known : narrow) {
+      if (known == effect)
+        out.coefficients.segment(at, count(effect)) = state.coefficients.segment(from, count(effect));
+      from += count(known);
+    }
+    at += count(effect);
+  }
+  return out;
+}
+
+/// A winner that became several effects is called after them.
+void say_where(const ForwardStep& growth, Candidate& added) {
+  if (growth.added.size() == 1 && added.where.find("each") == std::string::npos) return;
+  std::vector<std::string> specs, places;
+  for (const EffectPtr& effect : growth.added) {
+    specs.push_back(effect->spec());
+    const auto spec = EffectSpec::parse(specs.back());
+    if (spec && spec->where) places.push_back(spec->where->text());
+  }
+  added.spec = fmt::format("{}", fmt::join(specs, " + "));
+  if (!places.empty()) added.where = fmt::format("{}", fmt::join(places, ", "));
+}
+
+/// Whether a winner of all axes came down to axes that are closed to names, or is seen most on one of them.
+bool on_closed_axes(const Candidate& winner, const ForwardStep& growth, const std::set<std::string>& closed) {
+  if (closed.empty() || winner.coefficients.empty()) return false;
+  const bool each_axis = winner.where.find("each") != std::string::npos;
+  if (each_axis && closed.contains(place_of(*seen_most(winner)))) return true;
+  return std::all_of(growth.added.begin(), growth.added.end(), [&](const EffectPtr& effect) {
+    const auto spec = EffectSpec::parse(effect->spec());
+    return spec && spec->where && closed.contains(spec->where->text());
+  });
+}
+
+std::size_t family_called(const Criticism& criticism, const std::string& name) {
+  const auto found = std::find_if(criticism.families.begin(), criticism.families.end(),
+                                  [&](const ScoredFamily& f) { return f.suspect->name == name; });
+  return static_cast<std::size_t>(found - criticism.families.begin());
+}
+
+bool possible_in(const std::vector<Rival>& rivals, const std::string& effect) {
+  return std::any_of(rivals.begin(), rivals.end(),
+                     [&](const Rival& rival) { return rival.possible && rival.effect == effect; });
+}
+
+/// Rivals that a second look does not find possible any more.
+void strike(const std::vector<Rival>& again, Round& round) {
+  for (Rival& rival : round.added.rivals) {
+    if (!rival.possible || possible_in(again, rival.effect)) continue;
+    rival.possible = false;
+    std::erase(round.possible, rival.effect);
+  }
+}
+
+/// Adds family `f` and fits again. False when the fit with it fails. A `first_choice` gives way where a
+/// second look prefers one of its rivals.
+bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_choice = true) {
+  const ScoredFamily& best = search.criticism.families[f];
+  Round round{.added = candidate_of(best, search.criticism, search.fit.worse)};
+  weigh_poses(search.fit, search.criticism.evidence_by_pose(f), round.added);
+  round.added.rivals = rivals_of(search.criticism.families, f, search.seed);
+  for (const Rival& rival : round.added.rivals)
+    if (rival.possible) round.possible.push_back(rival.effect);
+  auto growth = grown(search.joint.effects, best, search.criticism.residual);
+  if (!growth || on_closed_axes(round.added, *growth, search.unknown)) {
+    search.failed.insert(round.added.effect);
+    return false;
+  }
+  say_where(*growth, round.added);
+  round.effects = growth->added;
+  JointOptions wider = search.joint;
+  wider.effects = std::move(growth->model);
+  wider.worse = search.fit.worse;
+  const JointState near = widened(search.joint.effects, search.fit.state, wider.effects);
+  auto refit = fit_joint_at_size(search.table, wider, &near);
+  if (!refit) {
+    report.notes.push_back(
+        fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
+    search.failed.insert(round.added.effect);
+    return false;
+  }
+  refine_numbers(search.table, kept(search.given, wider.effects), wider, *refit);
+  const auto again = second_look(search.table, search.joint, search.criticism, f, round.added.rivals,
+                                 search.fit.worse, *refit, search.seed);
+  if (again && again->better && first_choice)
+    return add(search, family_called(search.criticism, *again->better), report, false);
+  if (again && !again->better) strike(again->rivals, round);
+  keep_memory_possible(search, search.criticism, round);
+  if (report.rounds.empty()) {
+    report.next = next_measurements(search.table, search.fit, search.joint, round.added).steps;
+    report.candidates[f].rivals = round.added.rivals;
+  }
+  const double table_sd_rad = search.fit.table_sd_rad;
+  round.chi2_before = chi2_told(search.fit, search.criticism, table_sd_rad),
+  round.rms_before_nT = residual_of(search.fit);
+  search.joint = std::move(wider);
+  round.model = search.joint.effects;
+  search.judge_anew(*refit);
+  round.fit = std::make_shared<const JointFit>(search.fit);
+  round.chi2_after = chi2_told(search.fit, search.criticism, table_sd_rad),
+  round.rms_after_nT = residual_of(search.fit);
+  report.rounds.push_back(std::move(round));
+  return true;
+}
+
+/// The note on a family whose evidence is that of one pose; empty where it is spread.
+std::string one_pose_text(const JointFit& fit, const Criticism& c, std::size_t f) {
+  Candidate weighed;
+  weigh_poses(fit, c.evidence_by_pose(f), weighed);
+  if (weighed.largest_pose <= kOnePose) return {};
+  return fmt::format("one pose ({}) carries the evidence for {}: measure it again", weighed.poses.front(),
+                     c.families[f].suspect->name);
+}
+
+/// A size beyond what occurs is a sign that something else is there; but a law that leaves only noise is
+/// right whatever its size.
+bool accounts_for_all(const Candidate& candidate, const Criticism& criticism) {
+  constexpr double kNearlyAll = 0.9;
+  constexpr double kMost = 0.6;  // of all chi-square, where the noise in it is not known
+  if (!std::isnan(candidate.share)) return candidate.share >= kNearlyAll;
+  return candidate.d * candidate.d >= kMost * criticism.residual.chi2();
+}
+
+/// Adds the best family that can be fitted; those that cannot are noted, as is the first that rests on one
+/// pose.
+bool add_winner(EffectSearch& search, ExplainReport& report) {
+  for (std::size_t f = 0; f < search.criticism.families.size() && search.criticism.rejects_named(f); ++f) {
+    if (search.failed.contains(search.criticism.families[f].suspect->name)) continue;
+    if (search.unknown.contains(search.criticism.families[f].where().where)) continue;
+    if (std::string one = one_pose_text(search.fit, search.criticism, f); !one.empty()) {
+      if (search.one_pose.empty()) search.one_pose = std::move(one);
+      continue;
+    }
+    const Candidate c = candidate_of(search.criticism.families[f], search.criticism, search.fit.worse);
+    if (!c.plausible && !accounts_for_all(c, search.criticism)) {
+      search.absurd[c.effect] = size_text(c);
+      continue;  // for now: beside what is still missing a size may be absurd that later is none
+    }
+    if (!add(search, f, report)) continue;
+    if (!c.plausible)
+      report.notes.push_back(
+          fmt::format("the size of {}, {}, is larger than is usual", c.effect, size_text(c)));
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void EffectSearch::judge_anew(const JointFit& refit) {
+  const Rates rates = std::move(criticism.rates);
+  Judgement judged = judge(refit, suspects, seed, &rates);
+  fit = std::move(judged.fit);
+  criticism = std::move(judged.criticism);
+}
+
+double residual_of(const JointFit& fit) { return pose_residuals(fit.problem, fit.state).residual_nT(); }
+
+bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
+  for (int round = 0; round < most && search.criticism.rejects_named(); ++round) {
+    search.one_pose.clear();
+    if (!add_winner(search, report)) break;
+  }
+  if (search.one_pose.empty() || !search.criticism.rejects_named()) return true;
+  report.notes.push_back(search.one_pose);
+  return !report.rounds.empty();
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/criticism.h"
+#include "calib/criticism/verdict/explain_report.h"
+#include "calib/poses/pose_table.h"
+
+/// The search for the effects that a model lacks, round by round: the best family is added, everything is
+/// fitted again, and what is left is judged anew.
+namespace mgtd::calib {
+
+struct EffectSearch {
+  const PoseTable& table;
+  JointOptions joint;
+  CandidateEffects suspects;
+  std::uint64_t seed;
+  JointFit fit;                    ///< of `joint`, with the covariance of the noise in force
+  Criticism criticism;             ///< of `fit`
+  std::vector<EffectPtr> given{};  ///< the model that was asked about
+  std::set<std::string> failed{};  ///< effects that no fit settled with
+  /// Effects that would have needed a size beyond what occurs, and that size as last seen.
+  std::map<std::string, std::string> absurd{};
+  std::string one_pose{};           ///< said of what rests on one pose
+  std::set<std::string> unknown{};  ///< axes and sensors with a law of no library: closed to effects
+  bool slow{false};                 ///< the residual follows time or temperature: no memory of a turn does
+
+  /// Of a fit of `joint`; the rates of false alarms stay those that are known.
+  void judge_anew(const JointFit& refit);
+};
+
+[[nodiscard]] double residual_of(const JointFit& fit);
+
+/// Adds what stands out, `most` rounds of it. False: nothing does but what rests on one pose.
+[[nodiscard]] bool add_rounds(int most, EffectSearch& search, ExplainReport& report);
+
+}  // namespace mgtd::calib

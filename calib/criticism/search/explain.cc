@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/search/conclusion.h"
+#include "calib/criticism/search/effect_search.h"
+#include "calib/criticism/search/stand_ins.h"
+#include "calib/criticism/search/take_back.h"
+#include "calib/criticism/tests/exchange_in_run.h"
+#include "calib/criticism/tests/judgement.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/profile_search.h"
+
+namespace mgtd::calib {
+namespace {
+
+std::vector<Detectable> detectable(const Criticism& c) {
+  std::vector<Detectable> out;
+  for (const ScoredFamily& f : c.families) out.push_back(detectable_of(*f.suspect, f.signatures.front()));
+  return out;
+}
+
+/// Fills what describes the model that was asked about.
+void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
+  out.noise = c.noise;
+  out.noise_nT = fit.noise_nT();
+  out.residual_nT = residual_of(fit);
+  out.chi2 = chi2_told(fit, c, fit.table_sd_rad), out.dof = c.dof;
+  out.omnibus_log10_p = c.omnibus_log10_p;
+  out.families = c.rates.best;
+  out.maps = c.maps;
+  out.outliers = fit.outliers;
+  out.untestable.insert(out.untestable.end(), c.untestable.begin(), c.untestable.end());
+  for (std::size_t i = 0; i < c.families.size(); ++i) {
+    Candidate candidate = candidate_of(c.families[i], c, fit.worse);
+    if (i == 0) weigh_poses(fit, c.evidence_by_pose(0), candidate);
+    out.candidates.push_back(std::move(candidate));
+  }
+  out.detectable = detectable(c);
+}
+
+/// Of what still stands out at the end.
+void say_absurd(const EffectSearch& search, const Criticism& c, ExplainReport& report) {
+  for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
+    const auto found = search.absurd.find(c.families[f].suspect->name);
+    if (found == search.absurd.end()) continue;
+    report.notes.push_back(
+        fmt::format("the size that {} would need, {}, is beyond what occurs: it is not named", found->first,
+                    found->second));
+  }
+}
+
+void name(ExplainReport& report) {
+  for (const Round& round : report.rounds) {
+    if (std::find(report.named.begin(), report.named.end(), round.added.effect) == report.named.end())
+      report.named.push_back(round.added.effect);
+  }
+  if (report.finding == Finding::ambiguous) {
+    const auto& possible = report.rounds.front().possible;
+    report.named.insert(report.named.end(), possible.begin(), possible.end());
+  }
+}
+
+/// No residual shows it.
+Untestable swapped_sensors() {
+  return {
+      "data.swapped-sensors",
+      "two sensors whose cables are exchanged read the same uniform field through matrices that are free: "
+      "pass a small magnet by each sensor in turn and see which one answers, or compare with an earlier "
+      "calibration (mgt diff)"};
+}
+
+/// Whether a memory of the cores may be what was found, of which these data do not have the way.
+bool memory_may_be_it(const EffectSearch& search, const ExplainReport& report) {
+  const auto memory = [](const std::string& name) { return name == "axis.hysteresis"; };
+  return search.table.path.empty() &&
+         std::any_of(report.rounds.begin(), report.rounds.end(), [&](const Round& r) {
+           return memory(r.added.effect) ||
+                  (!search.slow && std::any_of(r.possible.begin(), r.possible.end(), memory));
+         });
+}
+
+/// A memory follows the way of the table, which may not be in the data.
+void say_way_unknown(ExplainReport& report) {
+  report.notes.emplace_back(
+      "the way of the table between its poses is not in these data: a memory of the cores is followed from "
+      "dwell to dwell only, its size and its width are rough, and what is there may be one (axis.hysteresis) "
+      "under another name or without any. To settle it: measure with the daemon, whose run file keeps the "
+      "angles of the table on the way, or go "
+      "to a dozen of the poses from both sides");
+}
+
+/// Whether what the fit left out may be what a law does to some of the poses: a step, a current that is
+/// switched. One that does more than a hundredth of the field is no law of a working rig.
+bool may_be_a_law(const JointFit& fit) {
+  constexpr double kPoses = 4, kOfField = 0.01;
+  if (fit.contradicting * static_cast<double>(fit.problem.poses.size()) < kPoses) return false;
+  return std::all_of(fit.outliers.begin(), fit.outliers.end(), [&](const OutlierNode& node) {
+    const JointPose& pose = fit.problem.poses.at(node.place);
+    const double f_nT = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
+    return node.unit != "nT" || std::abs(node.shift) < kOfField * f_nT;
+  });
+}
+
+Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out) {
+  auto joint = tuned_options(table, options.fit);
+  if (!joint) return tl::unexpected(joint.error());
+  joint->most_left_out = most_left_out;
+  CandidateEffects suspects =
+      options.suspects ? CandidateEffects{*options.suspects, {}} : library_suspects(table);
+  suspects.testable.insert(suspects.testable.end(), options.also.begin(), options.also.end());
+  const auto fit = fit_joint_at_size(table, *joint);
+  if (!fit) return tl::unexpected(fit.error());
+  Judgement judged = judge(*fit, suspects, options.fit.seed);
+  EffectSearch search{.table = table,
+                      .joint = *joint,
+                      .suspects = std::move(suspects),
+                      .seed = options.fit.seed,
+                      .fit = std::move(judged.fit),
+                      .criticism = std::move(judged.criticism),
+                      .given = joint->effects};
+  Criticism& criticism = search.criticism;
+  ExplainReport out;
+  out.untestable = search.suspects.untestable;
+  out.untestable.push_back(swapped_sensors());
+  if (criticism.maps.empty()) look_at_maps(criticism);
+  out.fit = std::make_shared<const JointFit>(search.fit);
+  describe(search.fit, criticism, out);
+  search.slow =
+      !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
+  const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
+  if (const auto exchange = exchange_in_run(table, options.fit.field_nT)) {
+    out.notes.push_back(in_words(*exchange));
+    out.finding = Finding::bad_data;
+    return out;
+  }
+  if (bad_data(search.fit, criticism, search.joint.table_sd_rad, out.notes) ||
+      !add_rounds(options.rounds, search, out)) {
+    out.finding = Finding::bad_data;
+    return out;
+  }
+  bool memory = memory_may_be_it(search, out);
+  for (int axis = 0; axis < kChannels; ++axis) {
+    if (criticism.maps.empty()) look_at_maps(criticism);
+    const StandIns found = stand_ins(out, criticism, search.unknown);
+    if (!found.any()) break;
+    memory = memory || memory_may_be_it(search, out);
+    take_back(found, search, out);
+    if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
+  }
+  say_absurd(search, criticism, out);
+  if (memory || memory_may_be_it(search, out)) say_way_unknown(out);
+  if (!out.rounds.empty()) out.detectable = detectable(criticism);
+  // A search that begins anew after a stand-in may say the same again.
+  std::vector<std::string> notes;
+  for (std::string& note : out.notes)
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+  out.notes = std::move(notes);
+  share_what_fell(out);
+  out.maps_left = criticism.maps;
+  out.model = search.joint.effects;
+  out.left = !criticism.rejects() && search.unknown.empty() ? Finding::pass
+             : criticism.rejects_named()                    ? Finding::partial
+                                                            : Finding::unknown;
+  out.finding = conclude(out, first, criticism, out.notes);
+  if (!search.unknown.empty()) out.finding = out.rounds.empty() ? Finding::unknown : Finding::partial;
+  name(out);
+  return out;
+}
+
+}  // namespace
+
+std::string_view to_string(Finding finding) {
+  switch (finding) {
+    case Finding::pass:
+      return "PASS";
+    case Finding::explained:
+      return "EXPLAINED";
+    case Finding::ambiguous:
+      return "AMBIGUOUS";
+    case Finding::partial:
+      return "PARTIAL";
+    case Finding::unknown:
+      return "UNKNOWN";
+    case Finding::bad_data:
+      return "BAD-DATA";
+  }
+  return "";
+}
+
+/// A law that accounts for everything outranks leaving out what it does.
+Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
+  auto out = explained(table, options, JointOptions().most_left_out);
+  if (!out || !may_be_a_law(*out->fit)) return out;
+  auto with_all = explained(table, options, 0);
+  const bool accounts =
+      with_all && (with_all->finding == Finding::explained || with_all->finding == Finding::ambiguous);
+  return accounts ? with_all : out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/model_change.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/criticism/tests/noise.h"
+#include "calib/criticism/tests/residual.h"
+#include "calib/criticism/tests/score.h"
+#include "calib/effects/common_axis.h"
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+struct Fall {
+  double chi2{0};
+  int k{0};
+};
+
+/// Of the score test: what chi-square would fall by if `effect` were in the model.
+Fall score_fall(const ModelStage& stage, const EffectPtr& effect) {
+  const Residual residual(stage.fit.problem, stage.fit.state,
+                          pose_correlation(stage.fit.problem, stage.fit.state));
+  const Signature s = signature_of(residual, effect_rows(stage.fit.problem, stage.fit.state, effect));
+  const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
+  const OneStep step = one_step(s, Hypothesis{.combine = Eigen::MatrixXd::Identity(m, m), .names = {}});
+  return {(step.basis.transpose() * s.by_residual).squaredNorm(), static_cast<int>(step.basis.cols())};
+}
+
+/// Of the Wald test: what chi-square would rise by if these coefficients were zero.
+double wald_rise(const JointFit& fit, Eigen::Index first, Eigen::Index count) {
+  const Eigen::VectorXd c = fit.state.coefficients.segment(first, count);
+  const Eigen::MatrixXd C =
+      fit.covariance.block(kEffectSlot + first, kEffectSlot + first, count, count) / std::pow(fit.spread, 2);
+  return c.dot(C.ldlt().solve(c));
+}
+
+std::vector<EffectCoefficient> coefficients_of(const JointFit& fit, std::size_t which, Eigen::Index& first) {
+  first = 0;
+  for (std::size_t i = 0; i < which; ++i)
+    first += static_cast<Eigen::Index>(fit.problem.effects[i]->coefficients().size());
+  std::vector<EffectCoefficient> out;
+  Eigen::Index slot = first;
+  for (const Coefficient& c : fit.problem.effects[which]->coefficients()) {
+    const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
+    out.push_back({c.name, fit.state.coefficients[slot], std::sqrt(variance), c.unit});
+    ++slot;
+  }
+  return out;
+}
+
+/// Chi-square of both with the correlation from pose to pose of the first.
+double chi2_of(const ModelStage& stage, const JointFit& fit) {
+  return Residual(fit.problem, fit.state, pose_correlation(stage.fit.problem, stage.fit.state)).chi2();
+}
+
+std::optional<double> residual_of(const std::optional<JointErrors>& errors) {
+  return errors ? std::optional(errors->residual_nT) : std::nullopt;
+}
+
+void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
+  for (const EffectPtr& effect : after.options.effects) out.model.push_back(effect->spec());
+  out.chi2_before = before.fit.chi2, out.dof_before = before.fit.dof;
+  out.chi2_after = after.fit.chi2, out.dof_after = after.fit.dof;
+  out.rms_before_nT = before.errors.residual_nT, out.rms_after_nT = after.errors.residual_nT;
+  out.noise_nT = (out.adding ? after : before).fit.noise_nT();
+  out.tensor_before_nT_per_m = tensor_rms(before.errors.summary.tensor_rmse_nT_per_m);
+  out.tensor_after_nT_per_m = tensor_rms(after.errors.summary.tensor_rmse_nT_per_m);
+  out.held_out_before_nT = residual_of(before.held_out);
+  out.held_out_after_nT = residual_of(after.held_out);
+  // A model that is far off in another way has its chi-square fall by thousands for nothing.
+  out.spread = (out.adding ? after : before).fit.spread;
+  const double fall = out.realised / (out.spread * out.spread);
+  out.log10_p = fall > 0 ? chi_square_log10_p(fall, std::max(1, out.k)) : 0;
+}
+
+}  // namespace
+
+std::vector<Veto> ModelChange::vetoes() const {
+  std::vector<Veto> out;
+  if (held_out_before_nT && held_out_after_nT && *held_out_after_nT > kHeldOutVeto * *held_out_before_nT)
+    out.push_back(Veto::held_out);
+  if (adding && log10_p > std::log10(kVetoChance)) out.push_back(Veto::not_shown);
+  if (adding && price.growth > kVetoPrice) out.push_back(Veto::price);
+  return out;
+}
+
+Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options, const EffectPtr& effect) {
+  for (const EffectPtr& known : options.effects) {
+    if (!same_law_on_a_common_axis(*known, *effect)) continue;
+    return fail(ErrorCode::refused, "the model holds " + known->spec() + " already",
+                "drop it first, if it should act elsewhere");
+  }
+  const auto before = model_stage(table, options);
+  if (!before) return tl::unexpected(before.error());
+  FitOptions wider = options;
+  wider.effects = before->options.effects;
+  wider.effects.push_back(effect);
+  const auto after = model_stage(table, wider);
+  if (!after) return tl::unexpected(after.error());
+  const EffectPtr& tuned = after->fit.problem.effects.back();
+  ModelChange out{.adding = true, .effect = std::string(effect->name()), .spec = tuned->spec()};
+  const Fall fall = score_fall(*before, tuned);
+  out.predicted = fall.chi2, out.k = fall.k;
+  const auto same = fit_under_same_weights(table, *before, after->fit.problem.effects);
+  out.realised = chi2_of(*before, before->fit) - chi2_of(*before, same ? *same : after->fit);
+  Eigen::Index first = 0;
+  out.coefficients = coefficients_of(after->fit, options.effects.size(), first);
+  out.price = variance_price(before->fit, after->fit);
+  fill(*before, *after, out);
+  return out;
+}
+
+Result<ModelChange> drop_effect(const PoseTable& table, const FitOptions& options, std::size_t which) {
+  const auto before = model_stage(table, options);
+  if (!before) return tl::unexpected(before.error());
+  FitOptions narrower = options;
+  narrower.effects = before->options.effects;
+  narrower.effects.erase(narrower.effects.begin() + static_cast<std::ptrdiff_t>(which));
+  const auto after = model_stage(table, narrower);
+  if (!after) return tl::unexpected(after.error());
+  const EffectPtr& effect = before->fit.problem.effects[which];
+  ModelChange out{.adding = false, .effect = std::string(effect->name()), .spec = effect->spec()};
+  Eigen::Index first = 0;
+  out.coefficients = coefficients_of(before->fit, which, first);
+  out.k = static_cast<int>(out.coefficients.size());
+  out.predicted = wald_rise(before->fit, first, out.k);
+  const auto same = fit_under_same_weights(table, *before, narrower.effects);
+  out.realised = chi2_of(*before, same ? *same : after->fit) - chi2_of(*before, before->fit);
+  out.price = variance_price(after->fit, before->fit);
+  fill(*before, *after, out);
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/model_stage.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calib/fit/joint/joint_report.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// The poses of `to`, the same as those of `from`, take over what their observations weigh.
+void weigh_alike(const JointProblem& from, JointProblem& to) {
+  for (std::size_t k = 0; k < to.poses.size(); ++k) {
+    to.poses[k].weight = from.poses[k].weight;
+    to.poses[k].attitude_weight = from.poses[k].attitude_weight;
+    to.poses[k].f_weight = from.poses[k].f_weight;
+  }
+}
+
+}  // namespace
+
+Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options) {
+  auto joint = tuned_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  auto fit = fit_joint(table, *joint);
+  if (!fit) return tl::unexpected(fit.error());
+  ModelStage out{.options = *std::move(joint), .fit = std::move(*fit), .errors = {}};
+  out.errors = joint_errors(out.fit.problem, out.fit.state, FixedBlock::fitted);
+  out.held_out = held_out_errors(out.fit);
+  return out;
+}
+
+Result<JointFit> fit_under_same_weights(const PoseTable& table, const ModelStage& stage,
+                                        const std::vector<EffectPtr>& effects) {
+  JointOptions options = stage.options;
+  options.effects = effects;
+  auto problem = joint_problem(table, options);
+  if (!problem) return tl::unexpected(problem.error());
+  fix_gauge(*problem, options);
+  weigh_alike(stage.fit.problem, *problem);
+  JointState start =
+      joint_state(*problem, stage.fit.state.sensors, stage.fit.state.direction, stage.fit.state.f_nT);
+  auto solved = solve(*problem, std::move(start));
+  if (!solved) return tl::unexpected(solved.error());
+  JointFit out = stage.fit;
+  out.problem = std::move(*problem);
+  out.state = std::move(solved->state);
+  out.chi2 = solved->reduced.cost.readings + solved->reduced.cost.scalar;
+  return out;
+}
+
+VariancePrice variance_price(const JointFit& narrow, const JointFit& wide) {
+  VariancePrice out;
+  JointProblem same = narrow.problem;
+  weigh_alike(wide.problem, same);
+  const auto before = covariance_of(reduce(same, narrow.state, 0).S);
+  const auto after = covariance_of(reduce(wide.problem, wide.state, 0).S);
+  if (!before || !after) return out;
+  for (int i = 0; i < kSensorBlock; ++i) {
+    const double growth = std::sqrt((*after)(i, i) / (*before)(i, i));
+    if (!std::isfinite(growth) || growth <= out.growth) continue;
+    out.growth = growth;
+    out.parameter = fmt::format("s{}.{}", i / kSensorParameters + 1,
+                                kParameterNames[static_cast<std::size_t>(i % kSensorParameters)]);
+  }
+  return out;
+}
+
+double tensor_rms(const Gradient& g) {
+  double sum = 0;
+  for (const double x : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) sum += x * x;
+  return std::sqrt(sum / 6);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "calib/fit/joint/joint_errors.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/methods/fit.h"
+
+/// One model of a run, fitted and judged, so that two of them can be weighed against each other.
+namespace mgtd::calib {
+
+struct ModelStage {
+  JointOptions options;  ///< with every number of its effects that had to be searched
+  JointFit fit;          ///< points into the pose table
+  JointErrors errors;
+  std::optional<JointErrors> held_out{};  ///< folds contiguous in time
+};
+
+[[nodiscard]] Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options);
+
+/// The same poses with other effects, under the weights of `stage`: chi-squares of the two compare.
+/// Nothing is searched, no observation is left out anew.
+[[nodiscard]] Result<JointFit> fit_under_same_weights(const PoseTable& table, const ModelStage& stage,
+                                                      const std::vector<EffectPtr>& effects);
+
+/// What a wider model costs: the parameter of a sensor whose standard deviation grows most.
+struct VariancePrice {
+  double growth{1};         ///< of its standard deviation
+  std::string parameter{};  ///< "s3.cx"
+};
+/// Two fits of the same poses, both weighed as the wide one: what the data would tell without the effect at
+/// the noise that is left with it. No growth where one of them tells nothing.
+[[nodiscard]] VariancePrice variance_price(const JointFit& narrow, const JointFit& wide);
+
+/// Rise of the error on poses left out that is not chance any more: beyond it an effect is not added.
+inline constexpr double kHeldOutVeto = 1.01;
+
+/// One number for the tensor: rms over its six components.
+[[nodiscard]] double tensor_rms(const Gradient& g);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/joint/joint_fit.h"
+
+/// The fixed numbers of the effects in a fitted model (the width of a hysteresis, the time constant of a
+/// settling) as parameters of their own.
+///
+/// With z(w) the columns of an effect and c its coefficients, dz/dw c is one more column. Its coefficient,
+/// fitted to the residual beside everything else, is the step of w (Gauss-Newton); all numbers step together,
+/// then the model is fitted again from where it was. A search over a grid, with a fit for each value, gets no
+/// further.
+namespace mgtd::calib {
+
+/// Steps until the numbers stand; `options` and `fit` go along. The first `given` effects keep theirs, and
+/// numbers in which the model is not smooth (a threshold, a moment) stay. Stops where a fit fails or gets no
+/// better.
+void refine_numbers(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/search/prune.h"
+
+#include <cmath>
+#include <set>
+
+#include "calib/criticism/search/nonlinear_parameters.h"
+#include "calib/effects/effect_spec.h"
+#include "calib/effects/library/library.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kTold = 3.5;    ///< standard deviations from zero: one of 2000 that are zero
+constexpr std::size_t kFew = 4;  ///< axes that are listed one by one
+
+/// Axes of an effect whose coefficients are told from zero. `first`: its slot in the fit.
+std::set<std::string> told_axes(const JointFit& fit, const Effect& effect, Eigen::Index first) {
+  std::set<std::string> out;
+  for (std::size_t j = 0; j < effect.coefficients().size(); ++j) {
+    const Eigen::Index slot = first + static_cast<Eigen::Index>(j);
+    const double sd = std::sqrt(fit.covariance(kEffectSlot + slot, kEffectSlot + slot));
+    if (std::abs(fit.state.coefficients[slot]) > kTold * sd)
+      out.insert(effect.coefficients()[j].name.substr(0, 4));
+  }
+  return out;
+}
+
+/// One effect for each of those axes; the effect itself where they are many.
+std::vector<EffectPtr> on_told_axes(const JointFit& fit, const EffectPtr& effect, Eigen::Index first) {
+  auto spec = EffectSpec::parse(effect->spec());
+  if (effect->level() != Level::axis || !spec || !spec->where ||
+      spec->where->scale != Where::Scale::each_axis)
+    return {effect};
+  const std::set<std::string> axes = told_axes(fit, *effect, first);
+  if (axes.size() > kFew) return {effect};
+  std::vector<EffectPtr> out;
+  for (const std::string& axis : axes) {
+    const auto where = Where::parse(axis);
+    if (!where) return {effect};
+    spec->where = *where;
+    auto made = make_effect(*spec);
+    if (!made) return {effect};
+    out.push_back(*std::move(made));
+  }
+  return out;
+}
+
+}  // namespace
+
+void polished(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
+  JointOptions few = options;
+  few.effects.clear();
+  Eigen::Index slot = 0;
+  for (std::size_t i = 0; i < options.effects.size(); ++i) {
+    const EffectPtr& effect = options.effects[i];
+    if (i < given) {
+      few.effects.push_back(effect);
+    } else {
+      for (EffectPtr& part : on_told_axes(fit, effect, slot)) few.effects.push_back(std::move(part));
+    }
+    slot += static_cast<Eigen::Index>(effect->coefficients().size());
+  }
+  if (few.effects != options.effects) {
+    auto narrow = fit_joint_at_size(table, few, &fit.state);
+    if (!narrow) return;
+    options = std::move(few);
+    fit = *std::move(narrow);
+  }
+  refine_numbers(table, given, options, fit);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "calib/criticism/tests/criticism.h"
+#include "calib/criticism/verdict/explain_report.h"
+
+/// Effects that describe a law of no library without being its cause. Laws enough follow any curve, so a
+/// search that goes on adds one after the other to the axis on which the unknown law acts, and each looks
+/// significant. The signs of it:
+///
+///   - three effects or more on one axis;
+///   - two on one axis that leave most of what is left there; or of all axes, seen on this one, if each of
+///     them took little away;
+///   - two on one sensor that leave more than a tenth of the misfit, most of it on this sensor: nothing is
+///     then named at all, because what bends a sensor bends the others through the field of the pose;
+///   - effects, wherever they act, after which most of the misfit is still there, on one axis.
+namespace mgtd::calib {
+
+struct StandIns {
+  std::string where{};   ///< "s3.z" or "s3"; empty where there are none
+  std::size_t first{0};  ///< the first round that is one of them
+  [[nodiscard]] bool any() const { return !where.empty(); }
+  [[nodiscard]] bool whole_sensor() const { return any() && where.find('.') == std::string::npos; }
+};
+
+/// In the rounds of `report`, after which `last` was found. What is left on an axis that is `closed` to names
+/// already is no sign against the other rounds.
+[[nodiscard]] StandIns stand_ins(const ExplainReport& report, const Criticism& last,
+                                 const std::set<std::string>& closed);
+
+}  // namespace mgtd::calib

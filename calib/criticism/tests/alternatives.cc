@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/alternatives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "calib/criticism/tests/contenders.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
+constexpr int kAsked = 3;          ///< the best questions of a rival stand for all of its
+constexpr double kShown = 0.999;   ///< pairs that are told apart better than this are no rivals
+constexpr double kNothing = 1e-3;  ///< of a chi-square
+/// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
+constexpr double kGone = 16;
+
+/// Length in squares of what of `v` is not in the space of U.
+double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& U) {
+  return (v - U * (U.transpose() * v)).squaredNorm();
+}
+
+double share_inside(const Eigen::VectorXd& v, double outside) {
+  return 1 - outside / std::max(v.squaredNorm(), kNothing);
+}
+
+/// `drawn`: the chance that it fell behind is asked for.
+Rival compare(const Contenders& contenders, const std::vector<ScoredFamily>& families, const Contender& a,
+              const Contender& b, bool drawn) {
+  const ScoredFamily& family = families[b.family];
+  const Hypothesis& h = family.suspect->hypotheses[b.score->hypothesis];
+  const Eigen::VectorXd v_a = contenders.signature(a), v_b = contenders.signature(b);
+  const double lambda_ba = outside(v_b, contenders.space(a)), lambda_ab = outside(v_a, contenders.space(b));
+  Rival out{.effect = family.suspect->name,
+            .where = h.where,
+            .spec = spec_of(*family.suspect, h, b.score->variant)};
+  out.alike = share_inside(v_b, lambda_ba);
+  const Hypothesis& won = families[a.family].suspect->hypotheses[a.score->hypothesis];
+  if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
+  // Of two fields of the site what a dipole has beyond its gradient is as exact as the gradient.
+  const bool exact = family.suspect->level == Level::site && families[a.family].suspect->level == Level::site;
+  out.form_only = !exact && out.alike > kAlike && family.suspect->reads == families[a.family].suspect->reads;
+  out.p_right = told_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
+  if (drawn && a.L - b.L < kGone) out.p_behind = contenders.behind(b);
+  out.possible = out.p_behind >= kLost || out.form_only;
+  return out;
+}
+
+bool nearer(const Rival& x, const Rival& y) {
+  return std::make_pair(x.possible, x.p_behind) > std::make_pair(y.possible, y.p_behind);
+}
+
+}  // namespace
+
+double told_right(double lambda) { return 0.5 * std::erfc(-std::sqrt(lambda / 8)); }
+
+double beyond_form(double lambda, double length2) { return std::max(0.0, lambda - (1 - kAlike) * length2); }
+
+std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a, std::uint64_t seed) {
+  Contenders contenders(families, a);
+  const auto& all = contenders.all();
+  const auto winner = std::find_if(all.begin(), all.end(), [&](const Contender& c) {
+    return c.family == a && c.score == &families[a].winner();
+  });
+  if (winner == all.end()) return {};
+  contenders.draw(seed, kRuns);
+  std::vector<Rival> out;
+  for (std::size_t b = 0; b < families.size(); ++b) {
+    if (b == a) continue;
+    std::optional<Rival> nearest;
+    int asked = 0;
+    for (const Contender& c : all) {
+      if (c.family != b) continue;
+      Rival rival = compare(contenders, families, *winner, c, asked++ < kAsked);
+      if (!nearest || nearer(rival, *nearest)) nearest = std::move(rival);
+    }
+    if (nearest && (nearest->possible || nearest->p_right < kShown)) out.push_back(*std::move(nearest));
+  }
+  std::sort(out.begin(), out.end(), nearer);
+  return out;
+}
+
+}  // namespace mgtd::calib

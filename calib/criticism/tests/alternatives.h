@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/score.h"
+
+/// Which other names could stand behind the same residual.
+///
+/// The families are ranked by their p, in units of chi-square by
+///     L = S - price,   price = S0 + 2 ln(p(S0) n),   S0 the winner's fall, n the questions that were asked.
+/// Were b the true one with its fitted signature v_b, the residual would be v_b plus noise; drawn so often,
+/// the best of all other questions then beats the best of b's own by D. What was seen is D_0. With
+///     p_behind = P(D >= D_0)
+/// b stays possible while p_behind is at least 1/200: the true name is lost in one run of 200 at the most,
+/// however many rivals there are and however close they lie.
+///
+/// If a is true with fitted signature v_a, b falls short of it by lambda_ab = |(I - P_b) v_a|^2 in the mean,
+/// the difference of the two falls of chi-square is normal (lambda, 4 lambda), and the right one of the two
+/// wins with probability Phi(sqrt(lambda_ab) / 2).
+///
+/// And b stays possible, however large the effect, where both laws read the same (CandidateEffect::reads) and
+/// all but a twentieth of one signature (in squares) lies within the other's on the same axes: then only the
+/// exact form of two idealised laws would decide, not their physics, and what differs is not counted in
+/// p_right. An axis' own square against the squares of the transverse axes, in one field strength, is such a
+/// pair: of square axes the two would differ by a constant. Laws that read different things differ by what
+/// was measured, and that decides: a gradient that was there from the first pose, against one that came after
+/// it.
+namespace mgtd::calib {
+
+/// Share of a signature, in squares, inside that of another effect from which the two count as one.
+inline constexpr double kAlike = 0.95;
+/// True names that are declared impossible.
+inline constexpr double kLost = 0.005;
+
+/// The right one of two effects wins with this probability.
+[[nodiscard]] double told_right(double lambda);
+
+/// lambda of two idealised laws less what their form alone may make, of a signature of `length2` in squares.
+[[nodiscard]] double beyond_form(double lambda, double length2);
+
+struct Rival {
+  std::string effect{}, where{};
+  std::string spec{};     ///< as --with reads it
+  double p_behind{0};     ///< chance that it fell so far behind although it is the true one
+  double alike{0};        ///< share of its signature, in squares, that the winner's holds too, or the reverse
+  bool form_only{false};  ///< the exact form of two laws alone would tell them apart
+  double p_right{1};      ///< that of these two the right one wins, at the size that was found
+  bool possible{false};
+};
+
+/// Against the winner of `families[a]`; most dangerous first. Hypotheses of one family are not rivals of each
+/// other.
+[[nodiscard]] std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a,
+                                           std::uint64_t seed);
+
+}  // namespace mgtd::calib

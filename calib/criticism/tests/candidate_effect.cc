@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/candidate_effect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "calib/effects/where.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// "s3.z.tau1" in parts; axis -1 for what belongs to no single axis.
+struct Place {
+  int sensor{-1}, axis{-1};
+  std::string rest;
+};
+
+Place place_of(const std::string& name) {
+  Place out{.rest = name};
+  if (name.size() < 4 || name[0] != 's' || name[2] != '.' || name[1] < '1' || name[1] > '4') return out;
+  out.sensor = name[1] - '1';
+  const auto axis = std::string_view("xyz").find(name[3]);
+  if (axis != std::string_view::npos) out.axis = static_cast<int>(axis);
+  out.rest = out.axis < 0 ? name.substr(3) : name.substr(4);
+  return out;
+}
+
+using Groups = std::map<std::string, std::vector<Eigen::Index>>;
+
+/// One column per group: the sum of its members.
+Hypothesis summed(std::string where, int axes, int alike, Eigen::Index finest, const Groups& groups) {
+  Hypothesis out{.where = std::move(where),
+                 .axes = axes,
+                 .combine = Eigen::MatrixXd::Zero(finest, static_cast<Eigen::Index>(groups.size())),
+                 .names = {},
+                 .alike = alike};
+  Eigen::Index j = 0;
+  for (const auto& [name, members] : groups) {
+    for (const Eigen::Index i : members) out.combine(i, j) = 1;
+    out.names.push_back(name);
+    ++j;
+  }
+  return out;
+}
+
+Hypothesis everything(const Effect& effect, std::string where) {
+  const auto n = static_cast<Eigen::Index>(effect.coefficients().size());
+  Hypothesis out{
+      .where = std::move(where), .axes = 12, .combine = Eigen::MatrixXd::Identity(n, n), .names = {}};
+  for (const Coefficient& c : effect.coefficients()) out.names.push_back(c.name);
+  return out;
+}
+
+/// An effect of site, table or platform as a whole and, where each sensor has coefficients of its own, sensor
+/// by sensor.
+std::vector<Hypothesis> whole_and_sensors(const Effect& effect) {
+  const bool site = effect.level() == Level::site || effect.level() == Level::reference;
+  std::vector<Hypothesis> out{everything(effect, site ? "site" : std::string(to_string(effect.level())))};
+  const auto& coefficients = effect.coefficients();
+  const auto n = static_cast<Eigen::Index>(coefficients.size());
+  std::array<Groups, 4> sensor;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
+    const Place p = place_of(name);
+    if (p.sensor < 0) return out;
+    sensor[static_cast<std::size_t>(p.sensor)][name].push_back(i);
+  }
+  for (std::size_t s = 0; s < sensor.size(); ++s) {
+    if (!sensor[s].empty()) out.push_back(summed(fmt::format("s{}", s + 1), 3, 4, n, sensor[s]));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
+  if (finest.level() != Level::axis) return whole_and_sensors(finest);
+  std::vector<Hypothesis> out{everything(finest, "each-axis")};
+  const auto& coefficients = finest.coefficients();
+  const auto n = static_cast<Eigen::Index>(coefficients.size());
+  Groups all, sensors;
+  std::array<Groups, 4> sensor;
+  std::array<Groups, 12> axis;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
+    const Place p = place_of(name);
+    if (p.sensor < 0 || p.axis < 0) return out;
+    const auto s = static_cast<std::size_t>(p.sensor);
+    const std::string of_sensor = fmt::format("s{}{}", p.sensor + 1, p.rest);
+    all["all" + p.rest].push_back(i);
+    sensors[of_sensor].push_back(i);
+    sensor[s][of_sensor].push_back(i);
+    axis[3 * s + static_cast<std::size_t>(p.axis)][name].push_back(i);
+  }
+  for (std::size_t a = 0; a < axis.size(); ++a) {
+    out.push_back(summed(fmt::format("s{}.{}", a / 3 + 1, "xyz"[a % 3]), 1, 12, n, axis[a]));
+  }
+  const bool alike = std::all_of(coefficients.begin(), coefficients.end(),
+                                 [](const Coefficient& c) { return c.name.size() == 4 || c.name[4] == '.'; });
+  if (!alike) return out;
+  out.push_back(summed("each-sensor", 12, 1, n, sensors));
+  for (std::size_t s = 0; s < sensor.size(); ++s)
+    out.push_back(summed(fmt::format("s{}", s + 1), 3, 4, n, sensor[s]));
+  out.push_back(summed("all", 12, 1, n, all));
+  return out;
+}
+
+std::string spec_of(const CandidateEffect& suspect, const Hypothesis& hypothesis, std::size_t variant) {
+  if (suspect.dipole_at) return suspect.variants[variant]->spec();
+  std::string out = suspect.name;
+  const auto where = Where::parse(hypothesis.where);
+  if (where && where->scale != Where::Scale::own) out += "@" + hypothesis.where;
+  if (variant < suspect.values.size() && suspect.values[variant])
+    out += fmt::format(",{}={:.6g}", suspect.parameter, *suspect.values[variant]);
+  return out;
+}
+
+}  // namespace mgtd::calib

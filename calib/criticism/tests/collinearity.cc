@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/collinearity.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/tests/detectable.h"
+#include "calib/criticism/tests/noise.h"
+#include "calib/criticism/tests/score.h"
+#include "calib/effects/derivative_check.h"
+#include "calib/effects/formula/formula.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kWorthTelling = 0.3;  ///< correlation
+constexpr std::size_t kToldAtMost = 5;
+constexpr double kTheSame = 0.98;
+
+/// Share of the length of `Z` that lies in the space of `B`, as a correlation; columns of Z counted alike.
+double correlation(const Eigen::MatrixXd& Z, const Eigen::MatrixXd& B) {
+  Eigen::VectorXd scale = B.colwise().norm();
+  scale = (scale.array() > 0).select(scale.cwiseInverse(), 0.0);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B * scale.asDiagonal());
+  qr.setThreshold(kAbsorbed);
+  if (qr.rank() == 0) return 0;
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(B.rows(), qr.rank());
+  return std::sqrt((Q.transpose() * Z).squaredNorm() / Z.squaredNorm());
+}
+
+std::vector<Collinearity> alike(const JointFit& fit, const Residual& residual, const PoseTable& table,
+                                const Eigen::MatrixXd& Z) {
+  std::vector<Collinearity> out;
+  const CandidateEffects library = library_suspects(table, fit.problem.effects);
+  for (const CandidateEffect& suspect : library.testable) {
+    Collinearity r{.effect = suspect.name};
+    for (const EffectPtr& variant : suspect.variants) {
+      const auto B = residual.project(effect_rows(fit.problem, fit.state, variant)).projected;
+      r.correlation = std::max(r.correlation, correlation(Z, B));
+    }
+    if (r.correlation > kWorthTelling) out.push_back(std::move(r));
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Collinearity& a, const Collinearity& b) {
+    return a.correlation > b.correlation;
+  });
+  if (out.size() > kToldAtMost) out.resize(kToldAtMost);
+  return out;
+}
+
+void tell_coefficients(const CandidateEffect& suspect, const ScoredFamily& scored, FormulaExamination& out) {
+  const Score& score = scored.winner();
+  const OneStep step = one_step(scored.signatures[score.variant], scored.where());
+  out.S = score.S, out.rank = score.k, out.log10_p = score.log10_p;
+  const auto& coefficients = suspect.variants[score.variant]->coefficients();
+  out.unit = coefficients.front().unit;
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const auto j = static_cast<Eigen::Index>(i);
+    const double sd = std::sqrt(step.covariance(j, j));
+    out.coefficients.push_back({coefficients[i].name, step.value[j], sd, coefficients[i].unit});
+    out.detectable = std::max(out.detectable, kSeen * sd);
+  }
+}
+
+}  // namespace
+
+double FormulaExamination::d() const { return std::sqrt(std::max(0.0, S - rank)); }
+
+Result<CandidateEffect> formula_suspect(const EffectSpec& formula) {
+  const auto scan = open_scan(formula);
+  CandidateEffect out{.name = formula.name};
+  const std::vector<double> values = scan ? scan_values(*scan) : std::vector<double>{0};
+  for (const double value : values) {
+    EffectSpec spec = formula;
+    if (scan) spec.set(scan->parameter, value);
+    auto effect = make_formula(spec);
+    if (!effect) return tl::unexpected(effect.error());
+    out.variants.push_back(std::move(*effect));
+    out.values.push_back(scan ? std::optional(value) : std::nullopt);
+  }
+  const Effect& first = *out.variants.front();
+  out.level = first.level();
+  if (scan) out.parameter = scan->parameter;
+  out.typical = first.coefficients().front().typical;
+  const auto n = static_cast<Eigen::Index>(first.coefficients().size());
+  const auto own = EffectSpec::parse(first.spec());
+  const bool whole = !own || !own->where || own->where->scale == Where::Scale::own;
+  Hypothesis everything{.where = whole ? std::string(to_string(out.level)) : own->where->text(),
+                        .axes = !whole && own->where->axis >= 0     ? 1
+                                : !whole && own->where->sensor >= 0 ? 3
+                                                                    : 12,
+                        .combine = Eigen::MatrixXd::Identity(n, n),
+                        .names = {}};
+  for (const Coefficient& c : first.coefficients()) everything.names.push_back(c.name);
+  out.hypotheses = {std::move(everything)};
+  out.make = [formula, scan](const Hypothesis*, const std::optional<double>& value) {
+    EffectSpec spec = formula;
+    if (scan && value) spec.set(scan->parameter, *value);
+    return make_formula(spec);
+  };
+  return out;
+}
+
+Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOptions& options,
+                                           const EffectSpec& formula) {
+  const auto suspect = formula_suspect(formula);
+  if (!suspect) return tl::unexpected(suspect.error());
+  for (const EffectPtr& variant : suspect->variants) {
+    if (const auto ok = variant->check(table); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = check_derivatives(*variant, table); !ok) return tl::unexpected(ok.error());
+  }
+  const auto fit = fit_joint(table, joint_options(options));
+  if (!fit) return tl::unexpected(fit.error());
+  Residual residual(fit->problem, fit->state, pose_correlation(fit->problem, fit->state));
+  const NoiseModel noise = noise_model(*fit, residual);
+  residual.measure_by(noise.reference.scale2);
+  const ScoredFamily scored = score_family(fit->problem, fit->state, residual, noise.reference, *suspect);
+  FormulaExamination out{.name = formula.name,
+                         .where = suspect->hypotheses.front().where,
+                         .expression = *formula.find("expr"),
+                         .k = static_cast<int>(suspect->variants.front()->coefficients().size())};
+  const Signature& s = scored.signatures[scored.testable() ? scored.winner().variant : 0];
+  const double length = s.norms.squaredNorm();
+  out.absorbed = length > 0 ? 1 - s.columns.squaredNorm() / length : 1;
+  if (!scored.testable()) return out;
+  tell_coefficients(*suspect, scored, out);
+  out.alike = alike(*fit, residual, table, s.columns);
+  return out;
+}
+
+nlohmann::json to_json(const FormulaExamination& x) {
+  nlohmann::json alike = nlohmann::json::array(), coefficients = nlohmann::json::array();
+  for (const Collinearity& r : x.alike)
+    alike.push_back({{"effect", r.effect}, {"correlation", r.correlation}});
+  for (const EffectCoefficient& c : x.coefficients)
+    coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
+  return {{"name", x.name},
+          {"where", x.where},
+          {"expression", x.expression},
+          {"absorbed", x.absorbed},
+          {"k", x.k},
+          {"rank", x.rank},
+          {"d", x.d()},
+          {"log10_p", x.log10_p},
+          {"coefficients", std::move(coefficients)},
+          {"detectable_above", {{"value", x.detectable}, {"unit", x.unit}}},
+          {"resembles", std::move(alike)}};
+}
+
+std::string to_text(const FormulaExamination& x) {
+  std::string out = fmt::format("{} at {}: {}\n", x.name, x.where, x.expression);
+  const auto to = std::back_inserter(out);
+  if (x.wholly_absorbed()) {
+    out +=
+        "the calibration absorbs it whole: offsets, scales, angles, attitudes and field of these poses take\n"
+        "up every trace of it, so no residual can show it, and adding it changes nothing but the "
+        "parameters\n";
+    return out;
+  }
+  fmt::format_to(to, "{:.1f} % of it (in squares) is already absorbed by calibration, attitude and field\n",
+                 100 * x.absorbed);
+  if (x.rank < x.k) fmt::format_to(to, "of its {} coefficients these poses can tell {}\n", x.k, x.rank);
+  fmt::format_to(to, "seen in 99 of 100 runs like this from {:.3g} {}\n", x.detectable, x.unit);
+  if (x.alike.empty()) out += "no effect of the library looks like it\n";
+  for (const Collinearity& r : x.alike) {
+    fmt::format_to(to, "{} {:.1f} % the same as {}{}\n",
+                   r.correlation == x.alike.front().correlation ? "it is" : "     ", 100 * r.correlation,
+                   r.effect, r.correlation > kTheSame ? ": no run like this can tell them apart" : "");
+  }
+  fmt::format_to(to, "on this run, by the score test: d {:.1f}, {}\n", x.d(), p_phrase(x.log10_p));
+  for (const EffectCoefficient& c : x.coefficients)
+    fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", c.name, c.value, c.sd, c.unit);
+  return out;
+}
+
+}  // namespace mgtd::calib

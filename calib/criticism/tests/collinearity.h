@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/candidate_effect.h"
+#include "calib/fit/methods/fit.h"
+
+/// What a user's formula would mean on a run, before it is used: how much of it the calibration takes up by
+/// itself, what it would show, and which known effect it cannot be told from.
+namespace mgtd::calib {
+
+struct Collinearity {
+  std::string effect{};
+  double correlation{0};  ///< of the formula with the best combination of the effect's coefficients
+};
+
+struct FormulaExamination {
+  std::string name{}, where{}, expression{};
+  double absorbed{0};  ///< share of its signature, in squares, that calibration, attitude and field take up
+  int k{0}, rank{0};   ///< coefficients, and how many of them the poses can tell
+  double S{0}, log10_p{0};  ///< score test of this question alone, on this run
+  std::vector<EffectCoefficient> coefficients{};
+  double detectable{0};  ///< smallest value of its worst coefficient that is seen in 99 of 100 runs like this
+  std::string unit{};
+  std::vector<Collinearity> alike{};  ///< strongest first; at most five
+
+  [[nodiscard]] bool wholly_absorbed() const { return rank == 0; }
+  [[nodiscard]] double d() const;
+};
+
+/// `formula` on top of the model of `options`. Refuses what a fit refuses, and derivatives that are no
+/// derivatives (derivative_check.h).
+[[nodiscard]] Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOptions& options,
+                                                         const EffectSpec& formula);
+
+/// A formula among those that explain suspects, at the scale it was given.
+[[nodiscard]] Result<CandidateEffect> formula_suspect(const EffectSpec& formula);
+
+[[nodiscard]] nlohmann::json to_json(const FormulaExamination& x);
+[[nodiscard]] std::string to_text(const FormulaExamination& x);
+
+}  // namespace mgtd::calib

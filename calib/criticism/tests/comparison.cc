@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/comparison.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calib/calibration/tensor.h"
+#include "calib/criticism/tests/criticism.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/pose_residuals.h"
+#include "calib/stats/chi_square.h"
+#include "calib/stats/f_distribution.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kBins = 8;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct Covariate {
+  std::string name;
+  std::vector<double> values;  ///< by pose; NaN where it is not known
+};
+
+std::vector<Covariate> covariates(const JointProblem& problem) {
+  std::vector<Covariate> out;
+  const auto add = [&](std::string name, auto&& value) {
+    Covariate c{std::move(name), {}};
+    std::set<double> different;
+    for (const JointPose& pose : problem.poses) {
+      c.values.push_back(value(pose));
+      if (std::isfinite(c.values.back())) different.insert(c.values.back());
+    }
+    if (different.size() > 1) out.push_back(std::move(c));
+  };
+  add("time_h", [](const JointPose& p) { return p.t_h; });
+  add("azimuth_deg",
+      [](const JointPose& p) { return p.pose->azimuth_rad ? to_deg(*p.pose->azimuth_rad) : kNone; });
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    add(fmt::format("s{}_T_degC", i + 1),
+        [i](const JointPose& p) { return p.pose->T_degC[i].value_or(kNone); });
+  }
+  add("mount",
+      [](const JointPose& p) { return p.pose->mount ? static_cast<double>(*p.pose->mount) : kNone; });
+  std::set<std::string> columns;
+  for (const JointPose& pose : problem.poses)
+    for (const auto& [name, value] : pose.pose->covariates) columns.insert(name);
+  for (const std::string& column : columns) {
+    add(column, [&](const JointPose& p) {
+      const auto found = p.pose->covariates.find(column);
+      return found == p.pose->covariates.end() ? kNone : found->second;
+    });
+  }
+  return out;
+}
+
+/// Poses by the covariate, in equally filled bins; equal values stay together.
+std::vector<std::vector<Eigen::Index>> bins_of(const Covariate& c) {
+  std::vector<Eigen::Index> order;
+  for (std::size_t k = 0; k < c.values.size(); ++k)
+    if (std::isfinite(c.values[k])) order.push_back(static_cast<Eigen::Index>(k));
+  const auto value = [&](Eigen::Index k) { return c.values[static_cast<std::size_t>(k)]; };
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return value(a) < value(b); });
+  std::vector<std::vector<Eigen::Index>> out;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool full = !out.empty() && out.back().size() * kBins >= order.size();
+    if (out.empty() || (full && value(order[i]) > value(order[i - 1]))) out.emplace_back();
+    out.back().push_back(order[i]);
+  }
+  return out;
+}
+
+/// Those that make the same bins as one before them say nothing of their own.
+std::vector<std::pair<std::string, std::string>> take_out_alike(std::vector<Covariate>& all) {
+  std::vector<std::pair<std::string, std::string>> out;
+  std::vector<Covariate> kept;
+  for (Covariate& c : all) {
+    const auto bins = bins_of(c);
+    const auto same =
+        std::find_if(kept.begin(), kept.end(), [&](const Covariate& k) { return bins_of(k) == bins; });
+    if (same == kept.end()) {
+      kept.push_back(std::move(c));
+    } else {
+      out.emplace_back(c.name, same->name);
+    }
+  }
+  all = std::move(kept);
+  return out;
+}
+
+/// One-way analysis of variance of a component over the bins.
+double log10_p_of(const Eigen::VectorXd& values, const std::vector<std::vector<Eigen::Index>>& bins,
+                  std::vector<double>& means) {
+  double total = 0, n = 0;
+  for (const auto& bin : bins)
+    for (const Eigen::Index k : bin) total += values[k], ++n;
+  double between = 0, within = 0;
+  means.clear();
+  for (const auto& bin : bins) {
+    const auto size = static_cast<double>(bin.size());
+    const double mean = values(bin).sum() / size;
+    means.push_back(mean);
+    between += size * std::pow(mean - total / n, 2);
+    within += (values(bin).array() - mean).square().sum();
+  }
+  const double groups = static_cast<double>(bins.size());
+  if (groups < 2 || n <= groups || !(within > 0)) return 0;
+  return f_log10_p(between / (groups - 1) / (within / (n - groups)), groups - 1, n - groups);
+}
+
+struct Component {
+  std::string name;
+  Eigen::VectorXd values;
+};
+
+ResidualChannel channel_of(ResidualChannel out, const std::vector<Component>& components,
+                           const std::vector<Covariate>& all) {
+  for (const Component& c : components)
+    out.rms += c.values.squaredNorm() /
+               static_cast<double>(c.values.size() * static_cast<Eigen::Index>(components.size()));
+  out.rms = std::sqrt(out.rms);
+  for (const Covariate& covariate : all) {
+    const auto bins = bins_of(covariate);
+    Dependence best{.covariate = covariate.name, .log10_p = 1};
+    for (const Component& c : components) {
+      std::vector<double> means;
+      const double log10_p = log10_p_of(c.values, bins, means);
+      if (log10_p >= best.log10_p) continue;
+      best.log10_p = log10_p, best.component = c.name, best.means = std::move(means);
+    }
+    best.log10_p = std::min(0.0, best.log10_p + std::log10(static_cast<double>(components.size())));
+    for (const double x : covariate.values) {
+      if (!std::isfinite(x)) continue;
+      best.from = best.to = x;
+      break;
+    }
+    for (const double x : covariate.values)
+      if (std::isfinite(x)) best.from = std::min(best.from, x), best.to = std::max(best.to, x);
+    out.against.push_back(std::move(best));
+  }
+  std::stable_sort(out.against.begin(), out.against.end(),
+                   [](const Dependence& a, const Dependence& b) { return a.log10_p < b.log10_p; });
+  return out;
+}
+
+/// Residuals of the readings, brought back to the field at each sensor in the platform frame.
+struct Fields {
+  Eigen::MatrixXd whitened, delta_nT;  ///< 12 x P
+  Eigen::MatrixXd scalar_nT;           ///< 4 x P
+  Eigen::MatrixXd attitude_deg;        ///< 3 x P
+};
+
+Fields fields_of(const JointFit& fit) {
+  const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
+  Fields out{Eigen::MatrixXd(kChannels, n), Eigen::MatrixXd(kChannels, n), Eigen::MatrixXd(kSensors, n),
+             Eigen::MatrixXd::Zero(3, n)};
+  const PoseModel model(fit.problem, fit.state);
+  PoseLinear linear;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const JointPose& pose = fit.problem.poses[at];
+    model.linearise(pose, fit.state.nuisances[at], linear);
+    const Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
+    out.whitened.col(k) = fit.worse * pose.weight.cwiseProduct(e);
+    const double field = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
+    for (int i = 0; i < kSensors; ++i) {
+      const SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d b = s.correct(linear.y_nT.segment<3>(3 * i));
+      const Eigen::Vector3d delta = s.R_PS() * (s.response().inverse() * e.segment<3>(3 * i));
+      out.delta_nT.block<3, 1>(3 * i, k) = delta;
+      out.scalar_nT(i, k) = b.normalized().dot(delta) + linear.f_nT - field;
+    }
+    if (pose.has_angles) out.attitude_deg.col(k) = fit.state.nuisances[at].head<3>() * to_deg(1);
+  }
+  return out;
+}
+
+std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<Covariate>& all) {
+  const Fields f = fields_of(fit);
+  std::vector<Component> whitened, scalar, attitude, between, closure;
+  const Eigen::MatrixXd closures = closure_rows(fit.problem.geometry) * f.delta_nT;
+  for (int c = 0; c < kChannels; ++c) {
+    const std::string axis = fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]);
+    whitened.push_back({axis, f.whitened.row(c)});
+    Eigen::VectorXd d = f.delta_nT.row(c);
+    for (int i = 0; i < kSensors; ++i) d -= f.delta_nT.row(3 * i + c % 3).transpose() / kSensors;
+    between.push_back({axis, std::move(d)});
+  }
+  for (int i = 0; i < kSensors; ++i) scalar.push_back({fmt::format("s{}", i + 1), f.scalar_nT.row(i)});
+  for (int a = 0; a < 3; ++a) attitude.push_back({std::string(1, "xyz"[a]), f.attitude_deg.row(a)});
+  const std::array<std::string, 4> names{"curl", "center x", "center y", "center z"};
+  for (int i = 0; i < 4; ++i) {
+    const double to_nT = i == 0 ? fit.problem.geometry.baseline_m : 1;
+    closure.push_back({names[static_cast<std::size_t>(i)], to_nT * closures.row(i)});
+  }
+  std::vector<ResidualChannel> out;
+  const auto add = [&](ResidualChannel channel, const std::vector<Component>& components) {
+    out.push_back(channel_of(std::move(channel), components, all));
+  };
+  add({"whitened", "", "reading less prediction, in units of the noise of its pose mean"}, whitened);
+  add({"scalar", "nT", "|b| of each sensor less F: blind to every error of angles"}, scalar);
+  if (fit.problem.has_angles)
+    add({"attitude", "deg", "what the table angles had to be corrected by: blind to the sensors"}, attitude);
+  add({"inter-sensor", "nT", "b of each sensor less the mean of the four: blind to attitude and field"},
+      between);
+  add({"closure", "nT",
+       "curl over the baseline, and centre of 1 and 3 less that of 2 and 4: zero in any gradient"},
+      closure);
+  return out;
+}
+
+}  // namespace
+
+Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
+  const auto joint = tuned_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  const auto fit = fit_joint_at_size(table, *joint);
+  if (!fit) return tl::unexpected(fit.error());
+  Criticism c = criticise(*fit, CandidateEffects{}, options.seed);
+  look_at_maps(c);
+  const PoseResiduals residuals = pose_residuals(fit->problem, fit->state);
+  Comparison out{.noise = c.noise,
+                 .noise_nT = fit->noise_nT(),
+                 .residual_nT = residuals.residual_nT(),
+                 .axis_noise_nT = fit->pose_noise_nT};
+  out.axis_residual_nT = fit->pose_noise_nT.cwiseProduct(residuals.noise_ratio) * fit->worse;
+  out.chi2 = chi2_told(*fit, c, fit->table_sd_rad), out.dof = c.dof;
+  if (c.noise.reference.known) {
+    out.log10_p = c.omnibus_log10_p;
+  } else if (c.noise.told && !c.noise.correlated()) {
+    out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+  }
+
+  out.table_sd_deg = to_deg(fit->table_sd_rad);
+  std::vector<Covariate> all = covariates(fit->problem);
+  out.alike = take_out_alike(all);
+  out.channels = channels_of(*fit, all);
+  out.maps = c.maps;
+  out.outliers = fit->outliers;
+  out.fits = !c.rejects();
+  return out;
+}
+
+}  // namespace mgtd::calib

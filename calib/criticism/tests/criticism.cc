@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/criticism.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/criticism/tests/scan_refinement.h"
+#include "calib/fit/joint/pose_residuals.h"
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// A residual larger than its noise, where that is known.
+void judge_size(Criticism& out) {
+  const NoiseReference& n = out.noise.reference;
+  if (!n.known) return;
+  if (std::isinf(n.nu)) {
+    out.omnibus_log10_p = chi_square_log10_p(n.chi2, out.dof);
+  } else if (out.noise.revisits) {
+    out.omnibus_log10_p = out.noise.revisits->log10_p;
+  }
+}
+
+/// A channel that scatters less than its noise. The scalar reference, whose uncertainty is often only a
+/// bound, says nothing here.
+void judge_quiet(const JointFit& fit, Criticism& out) {
+  if (!out.noise.reference.known) return;
+  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  Eigen::Index sensor = 0, axis = 0;
+  out.quiet_ratio = ratio.minCoeff(&sensor, &axis);
+  out.quiet = fmt::format("s{}.{}", sensor + 1, "xyz"[axis]);
+  const double nu = out.dof / kChannels;
+  const double more = chi_square_p(std::pow(out.quiet_ratio, 2) * nu, nu);
+  out.quiet_log10_p = std::min(0.0, std::log10(kChannels * std::max(1 - more, 1e-300)));
+}
+
+/// The model holds this law: nothing of it is left to test.
+bool in_model(const JointProblem& problem, const CandidateEffect& suspect) {
+  return std::any_of(problem.effects.begin(), problem.effects.end(),
+                     [&](const EffectPtr& effect) { return effect->name() == suspect.name; });
+}
+
+bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
+
+/// Rates hardly move from one model to the next: those of the one before decide where the best p-value is a
+/// factor of a hundred from its alarm.
+void rate(const Rates* before, std::uint64_t seed, Criticism& out) {
+  constexpr double kClear = 2;
+  if (before != nullptr && calibrate(out.families, *before)) {
+    double best = 0;
+    for (const ScoredFamily& family : out.families) best = std::min(best, family.calibrated);
+    out.rates = *before;
+    if (std::abs(best_of(best, before->best) - std::log10(kNamedAlarm)) > kClear) return;
+  }
+  out.rates = draw_rates(out.families, seed);
+  calibrate(out.families, out.rates);
+}
+
+double largest_S(const std::vector<ScoredFamily>& families) {
+  double out = 0;
+  for (const ScoredFamily& family : families) out = std::max(out, family.winner().S);
+  return out;
+}
+
+/// Families that could still win with a better number. A dipole makes the gradient that is seen, once its
+/// place is known: it comes as near as site.gradient does. A dipole that came during the run is looked for
+/// where a step of the site is what stands out most.
+void refine_contenders(const JointFit& fit, Criticism& out) {
+  constexpr double kInReach = 0.6;  // of the largest score
+  const double largest = largest_S(out.families);
+  double of_gradient = 0;
+  for (std::size_t f = 0; f < out.families.size(); ++f) {
+    ScoredFamily& family = out.families[f];
+    if (family.suspect->name == "site.gradient") of_gradient = family.winner().S;
+    if (family.winner().S >= kInReach * largest && out.rejects_named(f))
+      refine(fit.problem, fit.state, out.residual, out.noise.reference, family);
+  }
+  const double refined = largest_S(out.families);
+  for (std::size_t f = 0; f < out.families.size(); ++f) {
+    ScoredFamily& family = out.families[f];
+    const bool came = family.suspect->name == "site.step";
+    const bool in_reach =
+        came ? family.winner().S == refined : std::max(family.winner().S, of_gradient) >= kInReach * refined;
+    if (family.suspect->dipole_at && in_reach && out.rejects_named(f))
+      refine_place(fit.problem, fit.state, out.residual, out.noise.reference, family);
+  }
+}
+
+Criticism tested(const JointFit& fit, Residual residual, const CandidateEffects& suspects, std::uint64_t seed,
+                 const Rates* before) {
+  Criticism out{.residual = std::move(residual), .tested = std::make_shared<const JointFit>(fit)};
+  out.noise = noise_model(fit, out.residual);
+  out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
+  out.residual.measure_by(out.noise.reference.scale2);
+  for (const CandidateEffect& suspect : suspects.testable) {
+    ScoredFamily scored = score_family(fit.problem, fit.state, out.residual, out.noise.reference, suspect);
+    if (scored.testable()) {
+      out.families.push_back(std::move(scored));
+    } else if (!in_model(fit.problem, suspect)) {
+      out.untestable.push_back(
+          {suspect.name, "calibration, attitude and field of these poses absorb it whole"});
+    }
+  }
+  rate(before, seed, out);
+  refine_contenders(fit, out);
+  std::stable_sort(out.families.begin(), out.families.end(),
+                   [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
+  judge_size(out);
+  judge_quiet(fit, out);
+  return out;
+}
+
+Residual among_poses(const JointFit& fit) {
+  return {fit.problem, fit.state, pose_correlation(fit.problem, fit.state)};
+}
+
+/// Channels whose residual is beyond their noise by more than chance makes it.
+int noisier_channels(const JointFit& fit) {
+  constexpr double kSigmas = 3;
+  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  const double chance = std::sqrt(2 * kChannels / std::max(fit.dof, 1.0));
+  return static_cast<int>((ratio.array().square() > 1 + kSigmas * chance).count());
+}
+
+/// The residual is larger than the dwells say, no revisit says that they are right, and no law accounts for
+/// even half of it: then it may be the noise that is larger, and only what has a shape speaks of the model.
+bool contradicts_dwells(const Criticism& c) {
+  constexpr double kHalf = 0.5;
+  constexpr double kRevisitsAgree_log10_p = -3;
+  constexpr double kUnequal = 40;  // chi-square with eleven degrees of freedom where all channels are alike
+  constexpr int kNoisier = kChannels / 2;  // fewer: something is with these few, and no noise of the dwells
+  const NoiseReference& n = c.noise.reference;
+  if (!n.from_dwells() || !c.rejects_omnibus()) return false;
+  if (c.noise.revisits && c.noise.revisits->log10_p < kRevisitsAgree_log10_p) return false;
+  if (noisier_channels(*c.tested) < kNoisier || unequal_noise_evidence(*c.tested) > kUnequal) return false;
+  double largest = 0;
+  for (const ScoredFamily& f : c.families) largest = std::max(largest, f.winner().S - f.winner().k);
+  return largest < kHalf * (n.chi2 - n.dof);
+}
+
+/// The noise of each axis by what the fit left there, whatever the dwells say.
+JointFit weighed_by_residual(const JointFit& fit) {
+  constexpr int kRounds = 3;
+  JointFit out = fit;
+  out.sample_noise_nT.reset();
+  for (int i = 0; i < kRounds; ++i) {
+    const AxisNoise ratio = pose_residuals(out.problem, out.state).noise_ratio;
+    for (JointPose& pose : out.problem.poses)
+      for (int c = 0; c < kChannels; ++c) pose.weight[c] /= ratio(c / 3, c % 3);
+    refit_nuisances(out.problem, out.state);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
+  const ScoredFamily& f = families[family];
+  const Signature& s = f.signatures[f.winner().variant];
+  const OneStep step = one_step(s, f.where());
+  const Eigen::VectorXd fit = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
+  const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
+  std::vector<double> out;
+  for (Eigen::Index k = 0; k < residual.poses(); ++k)
+    out.push_back(product.segment<kChannels>(k * kChannels).sum());
+  return out;
+}
+
+bool Criticism::rejects_named(std::size_t family) const {
+  return family < families.size() && below(best_of(families[family].calibrated, rates.best), kNamedAlarm);
+}
+bool Criticism::rejects_map() const {
+  return !maps.empty() && below(best_of(maps.front().log10_p, static_cast<double>(maps.size())), kMapAlarm);
+}
+bool Criticism::rejects_omnibus() const { return below(omnibus_log10_p, kOmnibusAlarm); }
+
+Criticism criticise(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
+                    const Rates* before) {
+  Criticism out = tested(fit, among_poses(fit), suspects, seed, before);
+  if (!contradicts_dwells(out)) return out;
+  const double chi2 = out.chi2;
+  const Rates rates = std::move(out.rates);
+  const std::optional<PureError> revisits = out.noise.revisits;
+  const JointFit again = weighed_by_residual(fit);
+  out = tested(again, among_poses(again), suspects, seed, &rates);
+  out.chi2 = chi2;
+  out.noise.told = true;
+  out.noise.revisits = revisits;
+  out.noise.beyond_dwells =
+      std::sqrt(pose_residuals(fit.problem, fit.state).noise_ratio.array().square().mean());
+  return out;
+}
+
+Criticism criticise_against_walk(const JointFit& fit, const WanderingRates& nT_per_sqrt_h,
+                                 const CandidateEffects& suspects, std::uint64_t seed, const Rates* before) {
+  return tested(fit, Residual(fit.problem, fit.state, 0, nT_per_sqrt_h), suspects, seed, before);
+}
+
+double chi2_told(const JointFit& fit, const Criticism& c, double table_sd_rad) {
+  const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
+  return (c.chi2 - fit.chi2_table) * fit.worse * fit.worse + fit.chi2_table * angles;
+}
+
+void look_at_maps(Criticism& criticism) {
+  const JointFit& fit = *criticism.tested;
+  criticism.maps =
+      score_maps(residual_maps(fit.problem, fit.state), criticism.residual, criticism.noise.reference);
+}
+
+}  // namespace mgtd::calib

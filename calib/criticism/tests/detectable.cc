@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/detectable.h"
+
+#include <cmath>
+
+namespace mgtd::calib {
+
+Detectable detectable_of(const CandidateEffect& suspect, const Signature& s) {
+  Detectable out{.effect = suspect.name};
+  for (const Hypothesis& h : suspect.hypotheses) {
+    if (suspect.level == Level::axis ? h.axes != 1 : &h != &suspect.hypotheses.front()) continue;
+    for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
+      const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
+      const double value = kSeen / std::sqrt(left);
+      if (!(value > out.value) || !std::isfinite(value)) continue;
+      Eigen::Index of = 0;
+      h.combine.col(j).maxCoeff(&of);
+      out.value = value;
+      out.where = h.names[static_cast<std::size_t>(j)];
+      out.unit = suspect.variants.front()->coefficients()[static_cast<std::size_t>(of)].unit;
+    }
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/exchange_in_run.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kFewest = 3, kFewestInAll = 24;  // poses on either side; nine numbers from all
+constexpr double kBetter = 5, kOtherExchange = 2, kLeast_nT = 5;
+constexpr int kNumbers = 9;
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+using Row = Eigen::Matrix<double, kNumbers, 1>;
+
+/// Sums of a linear least-squares problem; they add and subtract.
+struct Normal {
+  Eigen::Matrix<double, kNumbers, kNumbers> A{Eigen::Matrix<double, kNumbers, kNumbers>::Zero()};
+  Row b{Row::Zero()};
+  double c{0};
+  void add(const Row& x, double y) {
+    A += x * x.transpose();
+    b += y * x;
+    c += y * y;
+  }
+  [[nodiscard]] Normal with(const Normal& all, const Normal& before) const {
+    Normal out = *this;
+    out.A += all.A - before.A;
+    out.b += all.b - before.b;
+    out.c += all.c - before.c;
+    return out;
+  }
+  /// What is left of the squares.
+  [[nodiscard]] double rest() const { return std::max(0.0, c - b.dot(A.ldlt().solve(b))); }
+};
+
+double mean_field_nT(const PoseTable& table, std::optional<double> field_nT) {
+  double sum = 0, n = 0;
+  for (const Pose& pose : table.poses) {
+    if (!pose.f_nT) continue;
+    sum += *pose.f_nT;
+    ++n;
+  }
+  if (n > 0) return sum / n;
+  if (field_nT) return *field_nT;
+  for (const Pose& pose : table.poses) sum += pose.y_nT[0].norm() / static_cast<double>(table.poses.size());
+  return sum;
+}
+
+Row row_of(const Eigen::Vector3d& y) {
+  Row x;
+  x << y[0] * y[0], y[1] * y[1], y[2] * y[2], y[0] * y[1], y[0] * y[2], y[1] * y[2], y;
+  return x;
+}
+
+/// Sums up to before each pose, sensor by sensor; those of all poses at the end.
+using Sums = std::array<std::vector<Normal>, kCount>;
+
+Sums sums_of(const PoseTable& table, double f_nT) {
+  Sums out;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    Normal sum;
+    for (const Pose& pose : table.poses) {
+      out[i].push_back(sum);
+      const double f = pose.f_nT.value_or(f_nT) / f_nT;
+      sum.add(row_of(pose.y_nT[i] / f_nT), f * f);
+    }
+    out[i].push_back(sum);
+  }
+  return out;
+}
+
+struct Best {
+  double rest{std::numeric_limits<double>::max()};
+  std::array<std::size_t, kSensors> sensor{};
+  std::size_t from{0};
+};
+
+/// The best of every exchange at one pose, into `best` by exchange.
+void look_at(const Sums& sums, std::size_t from, std::vector<Best>& best) {
+  std::array<std::array<double, kCount>, kCount> rest{};
+  for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t j = 0; j < kCount; ++j)
+      rest[i][j] = sums[i][from].with(sums[j].back(), sums[j][from]).rest();
+  }
+  std::array<std::size_t, kSensors> sensor{0, 1, 2, 3};
+  for (std::size_t number = 0; std::next_permutation(sensor.begin(), sensor.end()); ++number) {
+    // What comes in a place from here on belongs to the sensor whose it is.
+    double sum = 0;
+    for (std::size_t place = 0; place < kCount; ++place) sum += rest[sensor[place]][place];
+    if (sum < best[number].rest) best[number] = {sum, sensor, from};
+  }
+}
+
+}  // namespace
+
+std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table, std::optional<double> field_nT) {
+  constexpr std::size_t kExchanges = 23;
+  const std::size_t n = table.poses.size();
+  if (n < kFewestInAll) return std::nullopt;
+  const double f_nT = mean_field_nT(table, field_nT);
+  const Sums sums = sums_of(table, f_nT);
+  double without = 0;
+  for (const auto& of_sensor : sums) without += of_sensor.back().rest();
+  std::vector<Best> best(kExchanges);
+  for (std::size_t from = kFewest; from + kFewest <= n; ++from) look_at(sums, from, best);
+  std::sort(best.begin(), best.end(), [](const Best& a, const Best& b) { return a.rest < b.rest; });
+  const auto to_nT = [&](double rest) {
+    return std::sqrt(rest / static_cast<double>(kCount * n)) * f_nT / 2;
+  };
+  const double taken_so = to_nT(best[0].rest), as_it_stands = to_nT(without);
+  if (as_it_stands < kLeast_nT || as_it_stands < kBetter * taken_so ||
+      to_nT(best[1].rest) < kOtherExchange * taken_so)
+    return std::nullopt;
+  ExchangeInRun out;
+  out.what.sensor = best[0].sensor;
+  out.from_pose = table.poses[best[0].from].number;
+  out.residual_nT = taken_so;
+  out.without_nT = as_it_stands;
+  return out;
+}
+
+std::string in_words(const ExchangeInRun& found) {
+  return fmt::format(
+      "{} from pose {} on: taken so, the total field of the sensors fits to {:.2g} nT, as it stands to "
+      "{:.3g} "
+      "nT; swap the plugs back and measure again",
+      in_words(found.what), found.from_pose, found.residual_nT, found.without_nT);
+}
+
+std::optional<Rearrangement> exchanged_since(const Calibration& before, const Calibration& now) {
+  constexpr double kAged_nT = 10, kAged = 2e-4, kOwn = 10;
+  const auto apart = [&](std::size_t i, std::size_t j) {
+    const SensorModel &a = now.sensors[i], &b = before.sensors[j];
+    const Eigen::Vector3d skew(a.theta_rad - b.theta_rad, a.phi_rad - b.phi_rad, a.psi_rad - b.psi_rad);
+    const double square = (skew / kAged).squaredNorm() + ((a.scale - b.scale) / kAged).squaredNorm() +
+                          ((a.offset_nT - b.offset_nT) / kAged_nT).squaredNorm();
+    return std::sqrt(square / kNumbers);
+  };
+  Rearrangement what;
+  while (std::next_permutation(what.sensor.begin(), what.sensor.end())) {
+    bool fits = true;
+    for (std::size_t place = 0; place < kCount && fits; ++place) {
+      const std::size_t whose = what.sensor.at(place);
+      fits = apart(place, whose) < 1 && (whose == place || apart(place, place) > kOwn);
+    }
+    if (fits) return what;
+  }
+  return std::nullopt;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/wandering_rival.h"
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Families that are asked: those that stood out first.
+constexpr std::size_t kAsked = 8;
+/// Of 2 ln of the odds. A single axis that wanders where eleven do not is a guess of its own: a law on that
+/// axis need only be the better one.
+constexpr double kBetter = 6;
+/// Step of the walk from pose to pose over the noise, up to which a few slow terms describe it.
+constexpr double kMild = 0.7;
+
+Eigen::MatrixXd rows_of(const WanderingRival& rival, const ScoredFamily& family, const Score& score) {
+  const EffectPtr& effect = family.suspect->variants[score.variant];
+  return effect_rows(rival.problem(), rival.state(), effect) *
+         family.suspect->hypotheses[score.hypothesis].combine;
+}
+
+/// The winner, and the best on a single axis: where all axes wander the winner acts on all of them.
+std::vector<const Score*> questions(const ScoredFamily& family) {
+  std::vector<const Score*> out{&family.winner()};
+  const Score* one = nullptr;
+  for (const Score& score : family.scores)
+    if (family.suspect->hypotheses[score.hypothesis].axes == 1 && (one == nullptr || score.S > one->S))
+      one = &score;
+  if (one != nullptr && one != out.front()) out.push_back(one);
+  return out;
+}
+
+/// log10 p of families against the walk, by name, and what still wanders beside the best that passed.
+struct AgainstWalk {
+  std::map<std::string, double> log10_p{};
+  double least{0};
+  bool passed{false};
+  WanderingEstimate beside{};
+};
+
+/// log10 p of one question against the walk.
+double against(const WanderingRival& rival, const ScoredFamily& family, const Score& score,
+               const Eigen::MatrixXd& rows) {
+  const auto [R, instead, rank] = rival.ratio(rows);
+  if (rank == 0) return 0;
+  const Hypothesis& h = family.suspect->hypotheses[score.hypothesis];
+  const bool same_axis = h.axes == 1 && rival.estimate().where == std::vector<std::string>{h.where};
+  if (same_axis && instead > kBetter) return family.calibrated;
+  return best_of(std::min(0.0, chi_square_log10_p(std::max(R, 0.0), rank) + std::log10(h.alike)),
+                 family.asked);
+}
+
+void ask(const WanderingRival& rival, const Criticism& c, AgainstWalk& out) {
+  std::size_t asked = 0;
+  for (std::size_t f = 0; f < c.families.size() && asked < kAsked && c.rejects_named(f); ++f) {
+    const ScoredFamily& family = c.families[f];
+    if (out.log10_p.contains(family.suspect->name)) continue;
+    ++asked;
+    double& p = out.log10_p[family.suspect->name] = 0;
+    for (const Score* score : questions(family)) {
+      const Eigen::MatrixXd rows = rows_of(rival, family, *score);
+      p = std::min(p, against(rival, family, *score, rows));
+      if (best_of(p, c.rates.best) >= std::log10(kNamedAlarm) || p >= out.least) continue;
+      out.least = p, out.passed = true;
+      out.beside = rival.beside(rows);
+    }
+  }
+}
+
+/// Rates times the factor at which a deviance is smallest.
+WanderingRates at_least(WanderingRates rates, const auto& deviance) {
+  constexpr double kFactor = 1.6;
+  constexpr int kMost = 8;
+  double least = deviance(rates);
+  for (const double step : {kFactor, 1 / kFactor}) {
+    for (int i = 0; i < kMost; ++i) {
+      const double next = deviance(rates * step);
+      if (next >= least) break;
+      least = next;
+      rates *= step;
+    }
+  }
+  return rates;
+}
+
+/// Rates where the white noise is that of the weights, near given ones: those come from a few slow terms,
+/// beyond which a walk far above the noise looks white.
+WanderingRates beside_white(const JointFit& fit, const WanderingRates& rates) {
+  return at_least(rates, [&](const WanderingRates& at) {
+    const Residual residual(fit.problem, fit.state, 0, at);
+    return residual.dof() * std::log(residual.chi2()) + residual.whitener().log_det();
+  });
+}
+
+/// At the noise that is told, whatever the readings were taken for: what made them worse is the walk.
+JointFit as_told(const JointFit& fit) {
+  JointFit out = fit;
+  if (!(fit.worse > 1)) return out;
+  for (JointPose& pose : out.problem.poses) pose.weight *= fit.worse, pose.f_weight *= fit.worse;
+  out.worse = 1;
+  refit_nuisances(out.problem, out.state);
+  return out;
+}
+
+/// The largest step from one pose to the next, in units of the noise of a pose mean.
+double step_over_noise(const JointFit& fit, const WanderingRates& nT_per_sqrt_h) {
+  const auto& poses = fit.problem.poses;
+  Channels squares = Channels::Zero();
+  double from_h = poses.front().t_h, to_h = from_h;
+  for (const JointPose& pose : poses) {
+    squares += pose.weight.cwiseAbs2();
+    from_h = std::min(from_h, pose.t_h);
+    to_h = std::max(to_h, pose.t_h);
+  }
+  const double n = static_cast<double>(poses.size());
+  return (nT_per_sqrt_h.array() * (squares.array() / n).sqrt()).maxCoeff() * std::sqrt((to_h - from_h) / n);
+}
+
+/// A family is as probable as the walk lets it be.
+void hold_against(const AgainstWalk& walk, Criticism& c) {
+  for (ScoredFamily& family : c.families) {
+    const auto found = walk.log10_p.find(family.suspect->name);
+    if (found != walk.log10_p.end()) family.calibrated = std::max(family.calibrated, found->second);
+  }
+  std::stable_sort(c.families.begin(), c.families.end(),
+                   [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
+}
+
+/// The walk that the tests stand against, with a margin for what its rates are known to: sixteen terms tell a
+/// rate to a fifth, of twelve one is two such fifths too low, and a slow law is not to be named for that.
+WanderingRates with_margin(const WanderingRates& rates, const WanderingEstimate& found) {
+  constexpr double kMargin = 2;  // standard deviations
+  const auto wanders = found.nT_per_sqrt_h.array() > 0;
+  const Eigen::ArrayXd margin =
+      wanders.select(1 + kMargin * found.sd.array() / found.nT_per_sqrt_h.array().max(1e-300), 1.0);
+  return (rates.array() * margin).matrix();
+}
+
+/// The readings' noise times a factor; scalar reference and table stay as good as they are.
+JointFit with_noise(const JointFit& told, double factor) {
+  JointFit out = told;
+  for (JointPose& pose : out.problem.poses) pose.weight /= factor;
+  refit_nuisances(out.problem, out.state);
+  return out;
+}
+
+/// -2 ln L of readings whose noise is what the weights say, beside a walk.
+double deviance_of(const JointFit& fit, const WanderingRates& rates) {
+  double log_variances = 0;
+  for (const JointPose& pose : fit.problem.poses)
+    for (int c = 0; c < kChannels; ++c)
+      if (pose.weight[c] > 0) log_variances -= 2 * std::log(pose.weight[c]);
+  const Residual residual(fit.problem, fit.state, 0, rates);
+  return residual.chi2() + residual.whitener().log_det() + log_variances;
+}
+
+/// What the tests stand against.
+struct Against {
+  JointFit fit;
+  WanderingRates rates;
+  double factor{1};  ///< of the readings' noise over that of the dwells
+};
+
+double largest_fall(const Criticism& c) {
+  double out = 0;
+  for (const ScoredFamily& family : c.families)
+    out = std::max(out, family.winner().S * c.noise.reference.scale2);
+  return out;
+}
+
+/// Beside the walk the white noise may be larger than the dwells say, as 1/f noise or correlated samples make
+/// it. It is taken for that where this describes the readings better than any law does, by `fall` in
+/// chi-square. Empty where the dwells stay what counts.
+std::optional<Against> beside_larger_noise(const JointFit& told, const Against& dwells,
+                                           const WanderingEstimate& found, double fall) {
+  constexpr double kStep = 1.25, kMost = 20;
+  constexpr double kEnough = 20;  // of 2 ln of the odds
+  double factor = 1, least = deviance_of(told, dwells.rates) - std::max(fall, kEnough);
+  WanderingRates rates;
+  for (double at = kStep; at < kMost; at *= kStep) {
+    const JointFit fit = with_noise(told, at);
+    const auto deviance = [&](const WanderingRates& r) { return deviance_of(fit, r); };
+    const WanderingRates beside = at_least(found.nT_per_sqrt_h, deviance);
+    if (const double now = deviance(beside); now < least) {
+      least = now, factor = at, rates = beside;
+    } else if (factor > 1) {
+      break;
+    }
+  }
+  if (!(factor > 1)) return std::nullopt;
+  return Against{with_noise(told, factor), rates, factor};
+}
+
+/// The tests against a walk, and where it needs to be beside larger noise.
+Criticism judged_against_walk(const JointFit& told, const WanderingEstimate& found,
+                              const CandidateEffects& suspects, std::uint64_t seed, const Rates& before) {
+  Against against{told, beside_white(told, found.nT_per_sqrt_h)};
+  const auto tests = [&](const WanderingRates& rates) {
+    Criticism out = criticise_against_walk(against.fit, rates, suspects, seed, &before);
+    if (!out.rejects_named()) look_at_maps(out);
+    return out;
+  };
+  Criticism out = tests(against.rates);
+  const double most = out.chi2 - out.dof - out.dof * std::log(std::max(1.0, out.chi2 / out.dof));
+  if (out.rejects() && most > largest_fall(out)) {  // what a common factor of all noise could take away
+    if (auto larger = beside_larger_noise(told, against, found, largest_fall(out))) {
+      against = *std::move(larger);
+      out = tests(against.rates);
+    }
+  }
+  // A law was asked with the rates free; what has no name was not.
+  if (out.rejects() && !out.rejects_named()) out = tests(with_margin(against.rates, found));
+  if (against.factor > 1) out.noise.beyond_dwells = against.factor;
+  return out;
+}
+
+/// One axis follows time in a way that no walk does.
+bool is_a_curve(const WanderingRival& rival) {
+  const std::vector<std::string>& all = rival.estimate().where;
+  if (all.size() != 1) return false;
+  const auto where = Where::parse(all.front());
+  return where && where->scale == Where::Scale::axis &&
+         rival.curve_instead(3 * where->sensor + where->axis) > 0;
+}
+
+}  // namespace
+
+Judgement judge(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
+                const Rates* before) {
+  Judgement out{.fit = fit, .criticism = criticise(fit, suspects, seed, before)};
+  if (!out.criticism.rejects_named()) look_at_maps(out.criticism);
+  std::optional<WanderingRival> rival;
+  if (out.criticism.rejects_named() || out.criticism.rejects_map()) rival.emplace(*out.criticism.tested);
+  WanderingEstimate found = rival ? rival->estimate() : WanderingEstimate{};
+  const JointFit& judged = *out.criticism.tested;
+  if (found.any() &&
+      (found.evidence < kWanderingEvidence + unequal_noise_evidence(judged) || is_a_curve(*rival)))
+    found = {};
+  if (!found.any()) return out;
+  AgainstWalk walk;
+  const JointFit told = as_told(judged);
+  // A few slow terms do not tell a law from a walk that is far above the noise: a law then has to make it
+  // vanish, or the tests stand against the walk as it was found without any law.
+  const auto mild = [&](const WanderingEstimate& w) {
+    return step_over_noise(told, beside_white(told, w.nT_per_sqrt_h)) < kMild;
+  };
+  ask(*rival, out.criticism, walk);
+  if (walk.passed && (!walk.beside.any() || mild(walk.beside))) {
+    found = std::move(walk.beside);
+  } else if (walk.passed || !mild(found)) {
+    walk = {};
+  }
+  if (!found.any()) return out;
+  const bool asked = !walk.log10_p.empty();
+  if (auto covariance = covariance_with_wandering(out.fit, found))
+    out.fit.covariance = *std::move(covariance);
+  const Rates rates = std::move(out.criticism.rates);
+  const double chi2 = out.criticism.chi2;
+  out.criticism = judged_against_walk(told, found, suspects, seed, rates);
+  out.criticism.chi2 = chi2;
+  if (asked) ask(*rival, out.criticism, walk);
+  hold_against(walk, out.criticism);
+  out.criticism.noise.wandering = std::move(found);
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/criticism/tests/criticism.h"
+
+/// A fit judged under the noise that its residual asks for.
+///
+/// Where nothing stands out against the noise that is assumed, nothing is asked. Where something does, the
+/// offsets may wander (wandering_estimate.h). Each law that stood out is then asked against the walk
+/// (wandering_rival.h), and only one that beats it can be named. The noise in force is what still wanders
+/// beside the best such law, or everything that wanders where there is none.
+namespace mgtd::calib {
+
+struct Judgement {
+  JointFit fit;  ///< with the covariance of that noise
+  Criticism criticism;
+};
+
+/// `before` as in criticise().
+[[nodiscard]] Judgement judge(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
+                              const Rates* before = nullptr);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "calib/criticism/tests/criticism.h"
+
+/// What a law leaves on its own axes. Once a name is given, the question is no longer whether anything is
+/// wrong anywhere but whether this law is all there is where it acts: a wrong one that looks alike leaves its
+/// difference from the right one just there. Few questions are asked, so that difference shows when it is too
+/// small for an alarm.
+namespace mgtd::calib {
+
+/// Right names that are called incomplete.
+inline constexpr double kRestAlarm = 0.01;
+
+/// log10 of the probability that noise alone leaves so much on `where` ("s3.z" or "s3"), named effects and
+/// maps counted; 0 for what acts on more than one sensor.
+[[nodiscard]] double rest_log10_p(const Criticism& criticism, const std::string& where);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/multiplicity.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <span>
+
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kDraws = 1000;
+/// Of a searched number so many values take part in the draws of all families together: neighbours are
+/// alike. Draws of one family have all of them.
+constexpr std::size_t kTogether = 3;
+/// Share of the draws that decides about m.
+constexpr double kLower = 1.0 / 3;
+constexpr double kJitter = 1e-9;
+
+std::vector<std::size_t> drawn(const ScoredFamily& family, std::size_t most) {
+  const std::size_t n = family.signatures.size(), m = std::min(n, most);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < m; ++i) out.push_back(m < 2 ? 0 : i * (n - 1) / (m - 1));
+  return out;
+}
+
+/// log10 of the chi-square tail on a grid, for one k.
+class Tail {
+ public:
+  explicit Tail(int k) {
+    const double end = k + 80 + 10 * std::sqrt(k);
+    for (double S = 0; S <= end; S += kStep) values_.push_back(chi_square_log10_p(S, k));
+  }
+  [[nodiscard]] double operator()(double S) const {
+    const double x = std::min(S / kStep, static_cast<double>(values_.size()) - 1.001);
+    const auto i = static_cast<std::size_t>(x);
+    const double part = x - static_cast<double>(i);
+    return values_[i] * (1 - part) + values_[i + 1] * part;
+  }
+
+ private:
+  static constexpr double kStep = 0.1;
+  std::vector<double> values_;
+};
+
+/// Unit-length columns of all families side by side: where each begins, and draws of their sums.
+struct Draws {
+  std::vector<std::vector<std::pair<std::size_t, Eigen::Index>>> first;  ///< family -> (variant, column)
+  Eigen::VectorXd length;
+  Eigen::MatrixXd sums;  ///< columns x draws
+};
+
+Eigen::MatrixXd normal(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gauss;
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return gauss(random); });
+}
+
+Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64_t seed) {
+  Draws out;
+  Eigen::Index m = 0, rows = 0;
+  for (const ScoredFamily& family : families) {
+    out.first.emplace_back();
+    for (const std::size_t v : drawn(family, most)) {
+      out.first.back().emplace_back(v, m);
+      m += family.signatures[v].columns.cols();
+      rows = family.signatures[v].columns.rows();
+    }
+  }
+  Eigen::MatrixXd all(rows, m);
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    for (const auto& [v, at] : out.first[f]) {
+      const Eigen::MatrixXd& columns = families[f].signatures[v].columns;
+      all.middleCols(at, columns.cols()) = columns;
+    }
+  }
+  out.length = all.colwise().norm();
+  const Eigen::VectorXd inverse = (out.length.array() > 0).select(out.length.cwiseInverse(), 0.0);
+  all = all * inverse.asDiagonal();
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
+  gram.diagonal().array() += kJitter;
+  gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
+  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(gram.selfadjointView<Eigen::Lower>());
+  out.sums = llt.matrixL() * normal(m, kDraws, seed);
+  return out;
+}
+
+/// Rate of the exponential that -ln(1 - p) follows, from its lower third.
+double rate_of(std::vector<double> log10_p) {
+  const auto count = static_cast<std::size_t>(kLower * static_cast<double>(log10_p.size()));
+  std::nth_element(log10_p.begin(), log10_p.begin() + static_cast<std::ptrdiff_t>(count), log10_p.end());
+  const auto exposure = [](double l) { return -std::log1p(-std::min(std::pow(10.0, l), 1 - 1e-12)); };
+  const double limit = exposure(log10_p[count]);
+  double sum = limit * static_cast<double>(log10_p.size() - count);
+  for (std::size_t i = 0; i < count; ++i) sum += exposure(log10_p[i]);
+  return static_cast<double>(count) / sum;
+}
+
+/// Smallest priced log10 p of a family, by draw.
+std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std::size_t f,
+                             std::map<int, Tail>& tails) {
+  const Eigen::Index n = draws.sums.cols();
+  // The largest S of those questions that have rank and price in common.
+  std::map<std::pair<int, int>, Eigen::ArrayXd> largest;
+  for (const auto& [v, at] : draws.first[f]) {
+    const Signature& s = family.signatures[v];
+    const Eigen::Index m = s.columns.cols();
+    const Eigen::MatrixXd sums = draws.length.segment(at, m).asDiagonal() * draws.sums.middleRows(at, m);
+    for (const Hypothesis& h : family.suspect->hypotheses) {
+      const Eigen::MatrixXd basis = one_step(s, h).basis;
+      if (basis.cols() == 0) continue;
+      const Eigen::ArrayXd S = (basis.transpose() * sums).colwise().squaredNorm().transpose().array();
+      auto& top = largest[{static_cast<int>(basis.cols()), h.alike}];
+      top = top.size() == 0 ? S : top.max(S).eval();
+    }
+  }
+  std::vector<double> out(static_cast<std::size_t>(n), 0.0);
+  for (const auto& [kind, S] : largest) {
+    const Tail& tail = tails.try_emplace(kind.first, kind.first).first->second;
+    const double price = std::log10(kind.second);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      double& l = out[static_cast<std::size_t>(i)];
+      l = std::min(l, tail(S[i]) + price);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+double best_of(double log10_p, double m) {
+  if (log10_p < -10) return log10_p + std::log10(m);
+  return std::log10(-std::expm1(m * std::log1p(-std::pow(10.0, std::min(log10_p, -1e-12)))));
+}
+
+Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed) {
+  Rates out;
+  if (families.empty()) return out;
+  const Draws together = draw(families, kTogether, seed);
+  std::map<int, Tail> tails;
+  std::vector<double> best(kDraws, 0.0);
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    const ScoredFamily& family = families[f];
+    const std::vector<double> own = smallest(family, together, f, tails);
+    const double m = rate_of(own);
+    for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
+    double& asked = out.family[family.suspect->name] = m;
+    if (family.signatures.size() > kTogether) {
+      const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1);
+      asked = rate_of(smallest(family, alone, 0, tails));
+    }
+  }
+  out.best = std::max(1.0, rate_of(std::move(best)));
+  return out;
+}
+
+bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates) {
+  bool all = true;
+  for (ScoredFamily& family : families) {
+    const auto rate = rates.family.find(family.suspect->name);
+    all = all && rate != rates.family.end();
+    family.asked = rate == rates.family.end() ? 1 : rate->second;
+    family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
+  }
+  return all;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/noise.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "calib/stats/chi_square.h"
+#include "calib/stats/f_distribution.h"
+
+namespace mgtd::calib {
+namespace {
+
+using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
+constexpr double kMaxRho = 0.95;
+/// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
+/// too large costs a little power. The median is so much worse than the mean.
+constexpr double kCautious = 1.5, kMedianOfMean = 1.25;
+/// Angles that are the same pose again, as a table reads them back. What a model misses does not change over
+/// so little, and each pose has its own attitude.
+const double kSameAngle_rad = to_rad(0.05);
+/// The dwells are believed unless the revisits contradict them this clearly.
+constexpr double kContradicts_log10_p = -3;
+
+/// Residuals of the readings with the nuisances fitted, and how noise gets into them.
+struct Fitted {
+  Eigen::MatrixXd e;      ///< 12 x P
+  std::vector<Mixing> M;  ///< by pose
+  Eigen::MatrixXd J;      ///< 12 P x fixed, the same of the fixed block
+};
+
+Fitted fitted(const JointProblem& problem, const JointState& state) {
+  const LinearRows rows = linear_rows(problem, state);
+  const auto n = static_cast<Eigen::Index>(problem.poses.size());
+  Fitted out{
+      .e = Eigen::MatrixXd(kChannels, n), .M = {}, .J = Eigen::MatrixXd(kChannels * n, problem.fixed())};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto N = rows.nuisance.middleRows<kPoseRows>(k * kPoseRows);
+    const Eigen::Matrix4d H = N.transpose() * N;
+    const Eigen::LLT<Eigen::Matrix4d> llt(H);
+    const auto top = N.topRows<kChannels>();
+    const auto weight = problem.poses[static_cast<std::size_t>(k)].weight;
+    Mixing there = Mixing::Zero();
+    there.diagonal() = (weight.array() > 0).cast<double>();
+    out.M.push_back(there - top * llt.solve(top.transpose()));
+    out.e.col(k) = rows.residual.segment<kChannels>(k * kPoseRows);
+    const Eigen::MatrixXd block = rows.fixed.middleRows<kPoseRows>(k * kPoseRows);
+    out.J.middleRows<kChannels>(k * kChannels) =
+        block.topRows<kChannels>() - top * llt.solve(N.transpose() * block);
+  }
+  return out;
+}
+
+/// Rows whose products are the elements of the hat matrix of the fixed block.
+Eigen::MatrixXd leverages(const Fitted& f) {
+  const Eigen::VectorXd length = f.J.colwise().norm();
+  const Eigen::VectorXd scale = (length.array() > 0).select(length.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd A = f.J * scale.asDiagonal();
+  Eigen::MatrixXd G = A.transpose() * A;
+  G.diagonal().array() += 1e-9;
+  return G.llt().matrixL().solve(A.transpose()).transpose();
+}
+
+bool same_attitude(const Pose& a, const Pose& b) {
+  const auto p = a.angles(), q = b.angles();
+  const auto near = [](double x, double y) {
+    return std::abs(std::remainder(x - y, 2 * std::numbers::pi)) < kSameAngle_rad;
+  };
+  return p && q && a.mount == b.mount && near(p->azimuth_rad, q->azimuth_rad) &&
+         near(p->pitch_rad, q->pitch_rad) && near(p->roll_rad, q->roll_rad);
+}
+
+/// Each pose with the next visit to its attitude.
+std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const JointProblem& problem) {
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> out;
+  const auto n = problem.poses.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      if (!same_attitude(*problem.poses[i].pose, *problem.poses[j].pose)) continue;
+      out.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      break;
+    }
+  }
+  return out;
+}
+
+/// sum over j of rho^|k-j| x_j: the covariance of the noise times columns over the poses.
+Eigen::MatrixXd correlated(const Eigen::MatrixXd& x, double rho) {
+  Eigen::MatrixXd out = x, back = x;
+  for (Eigen::Index k = 1; k < x.rows(); ++k) out.row(k) += rho * out.row(k - 1);
+  for (Eigen::Index k = x.rows() - 2; k >= 0; --k) back.row(k) += rho * back.row(k + 1);
+  return out + back - x;
+}
+
+/// What one channel shows: its lag-one sum of products and its sum of squares, and those that noise of a
+/// given correlation would leave after the fit.
+struct LagOne {
+  double products{0}, squares{0};
+  double by_lag{0}, own{0};  ///< of uncorrelated noise before the fit
+  Eigen::MatrixXd L;         ///< hat matrix of the channel is L L'
+
+  [[nodiscard]] std::pair<double, double> expected(double rho) const {
+    const Eigen::MatrixXd VL = correlated(L, rho), K = L.transpose() * VL, LK = L * K;
+    const Eigen::Index n = L.rows();
+    const auto lag = [n](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+      return a.bottomRows(n - 1).cwiseProduct(b.topRows(n - 1)).sum();
+    };
+    return {rho * by_lag - lag(L, VL) - lag(VL, L) + lag(LK, L),
+            own - 2 * L.cwiseProduct(VL).sum() + LK.cwiseProduct(L).sum()};
+  }
+};
+
+std::vector<LagOne> lag_one(const JointProblem& problem, const JointState& state) {
+  const Fitted f = fitted(problem, state);
+  const Eigen::MatrixXd hat = leverages(f);
+  const auto order = order_in_time(problem);
+  std::vector<LagOne> out(kChannels);
+  for (int c = 0; c < kChannels; ++c) {
+    LagOne& x = out[static_cast<std::size_t>(c)];
+    x.L.resize(static_cast<Eigen::Index>(order.size()), hat.cols());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Eigen::Index k = order[i];
+      const auto& M = f.M[static_cast<std::size_t>(k)];
+      x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * kChannels + c);
+      x.squares += f.e(c, k) * f.e(c, k);
+      x.own += M.row(c).squaredNorm();
+      if (i == 0) continue;
+      x.products += f.e(c, k) * f.e(c, order[i - 1]);
+      x.by_lag += M.row(c).dot(f.M[static_cast<std::size_t>(order[i - 1])].row(c));
+    }
+  }
+  return out;
+}
+
+double median_correlation(const JointProblem& problem, const JointState& state) {
+  const std::vector<LagOne> channels = lag_one(problem, state);
+  std::vector<double> seen;
+  for (const LagOne& c : channels) seen.push_back(c.squares > 0 ? c.products / c.squares : 0);
+  std::sort(seen.begin(), seen.end());
+  const double median = (seen[kChannels / 2 - 1] + seen[kChannels / 2]) / 2;
+  // What would show as the median: the curve rises with rho, and a step of 0.05 is straight enough.
+  double rho = 0, last = -1;
+  for (double trial = 0; trial < kMaxRho + 1e-9; trial += 0.05) {
+    double products = 0, squares = 0;
+    for (const LagOne& c : channels) {
+      const auto [lag, own] = c.expected(trial);
+      products += lag, squares += own;
+    }
+    const double shown = products / squares;
+    if (shown >= median) return trial == 0 ? 0 : rho + 0.05 * (median - last) / (shown - last);
+    rho = trial, last = shown;
+  }
+  return kMaxRho;
+}
+
+/// Factors that bring the residuals of two visits, each in units of its own noise, to units in which the same
+/// misfit is the same number. Zero where one of them was left out; one where both weigh alike.
+std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels& v) {
+  const Channels length = (u.cwiseAbs2() + v.cwiseAbs2()).cwiseSqrt();
+  const auto both = (u.array() > 0) && (v.array() > 0);
+  const double root2 = std::sqrt(2.0);
+  return {both.select(root2 * v.array() / length.array(), 0.0).matrix(),
+          both.select(root2 * u.array() / length.array(), 0.0).matrix()};
+}
+
+}  // namespace
+
+double pose_correlation(const JointProblem& problem, const JointState& state) {
+  const double rho = median_correlation(problem, state);
+  if (rho <= kCorrelated) return rho;
+  const double values = kChannels * static_cast<double>(problem.poses.size());
+  return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
+}
+
+std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
+  const auto pairs = revisits(fit.problem);
+  if (pairs.empty()) return std::nullopt;
+  // At the noise that is told, whatever the readings were taken for: else the angles of the table, each with
+  // its own error, pull at the attitudes.
+  JointProblem problem = fit.problem;
+  JointState state = fit.state;
+  if (fit.worse > 1) {
+    for (JointPose& pose : problem.poses) pose.weight *= fit.worse, pose.f_weight *= fit.worse;
+    refit_nuisances(problem, state);
+  }
+  const Fitted f = fitted(problem, state);
+  PureError out{.pairs = static_cast<int>(pairs.size())};
+  double squares = 0, expected = 0;
+  for (const auto& [u, v] : pairs) {
+    const auto a = static_cast<std::size_t>(u), b = static_cast<std::size_t>(v);
+    const auto [by_u, by_v] = in_common_units(problem.poses[a].weight, problem.poses[b].weight);
+    squares += (by_u.cwiseProduct(f.e.col(u)) - by_v.cwiseProduct(f.e.col(v))).squaredNorm();
+    expected += (by_u.asDiagonal() * f.M[a]).squaredNorm() + (by_v.asDiagonal() * f.M[b]).squaredNorm();
+  }
+  if (!(expected > 0)) return std::nullopt;
+  out.nu = expected / 2;
+  out.ratio = squares / expected;
+  const double rest = std::max(0.0, chi2 * fit.worse * fit.worse - out.ratio * out.nu),
+               rest_dof = dof - out.nu;
+  if (rest_dof > 0) {
+    out.F = rest / rest_dof / out.ratio;
+    out.log10_p = f_log10_p(out.F, rest_dof, out.nu);
+    out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, rest / rest_dof - out.ratio));
+  }
+  return out;
+}
+
+NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
+  NoiseModel out{.rho = residual.whitener().rho(),
+                 .revisits = pure_error(fit, residual.chi2(), residual.dof()),
+                 .reference = {.dof = residual.dof()}};
+  out.told = fit.sample_noise_nT.has_value();
+  out.quantisation_nT = fit.quantisation.step_nT;
+  NoiseReference& n = out.reference;
+  // What lasts from one pose to the next is not seen within a dwell, and what a model far off leaves is no
+  // noise: its size is that of the residual.
+  const bool lasting = out.correlated() || fit.worse > 1 || residual.whitener().wanders();
+  n.known = out.told && !lasting;
+  n.by_channel = !out.told;
+  if (lasting) n.scale2 = residual.chi2() / residual.dof();
+  if (n.known && out.revisits) {
+    const PureError& p = *out.revisits;
+    if (chi_square_log10_p(p.ratio * p.nu, p.nu) < kContradicts_log10_p) {
+      n.scale2 = p.ratio;
+      n.nu = p.nu;
+    }
+  }
+  n.chi2 = residual.chi2() / n.scale2;
+  return out;
+}
+
+}  // namespace mgtd::calib

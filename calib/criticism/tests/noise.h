@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "calib/criticism/tests/score.h"
+#include "calib/fit/joint/wandering_estimate.h"
+
+/// What the noise is before anything is said about the model.
+///
+/// Residuals of pose k with its nuisances fitted are e_k = M_k n_k, M_k = I - N (N'N + Lambda)^-1 N'. They
+/// give
+///     correlation from pose to pose   rho_c = sum e_kc e_(k-1)c / sum (M_k M_(k-1)')_cc, corrected for what
+///                                     the fit took; the median over the twelve channels counts, so that an
+///                                     effect on one axis is not taken for noise
+///     pure error                      pairs of visits to one attitude: |e_u - e_v|^2 against tr M_u M_u' +
+///                                     tr M_v M_v', both in nT where the two weigh differently, so that what
+///                                     the model misses at that attitude drops out: eight combinations a pair
+///                                     that neither attitude nor field strength moves
+namespace mgtd::calib {
+
+/// Autocorrelation from pose to pose above which noise is not what a dwell shows of it.
+inline constexpr double kCorrelated = 0.2;
+
+struct PureError {
+  int pairs{0};
+  double nu{0};             ///< degrees of freedom
+  double ratio{1};          ///< variance between visits over the variance that a pose mean is said to have
+  double F{1}, log10_p{0};  ///< lack of fit: the rest of the residual against it
+  double model_nT{0};       ///< rms that the model misses, beyond the noise
+};
+
+struct NoiseModel {
+  double rho{0};
+  std::optional<PureError> revisits{};
+  NoiseReference reference;
+  bool told{true};  ///< the noise of a pose mean, by the spreads within the dwells
+  /// Residual over the noise that the dwells tell, where it is larger and no law, no map and no revisit says
+  /// that the model is at fault; else one.
+  double beyond_dwells{1};
+  double quantisation_nT{0};      ///< step of the digitiser, where readings stand on its grid
+  WanderingEstimate wandering{};  ///< of the offsets, where the tests stand against it
+
+  [[nodiscard]] bool correlated() const { return rho > kCorrelated; }
+};
+
+/// With a margin for its own uncertainty where it counts.
+[[nodiscard]] double pose_correlation(const JointProblem& problem, const JointState& state);
+/// Empty without revisits.
+[[nodiscard]] std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof);
+/// `residual` at the rho that is in force.
+[[nodiscard]] NoiseModel noise_model(const JointFit& fit, const Residual& residual);
+
+}  // namespace mgtd::calib

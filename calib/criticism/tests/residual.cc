@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/residual.h"
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+/// Columns shorter than this against their own length before elimination are rounding.
+constexpr double kRankTolerance = 1e-9;
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  Eigen::VectorXd scale = columns.colwise().norm();
+  scale = (scale.array() > 0).select(scale.cwiseInverse(), 0.0);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns * scale.asDiagonal());
+  qr.setThreshold(kRankTolerance);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+}
+
+}  // namespace
+
+Residual::Residual(const JointProblem& problem, const JointState& state, double rho,
+                   const WanderingRates& nT_per_sqrt_h)
+    : Residual(problem, state, linear_rows(problem, state), rho, nT_per_sqrt_h) {}
+
+Residual::Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho,
+                   const WanderingRates& nT_per_sqrt_h)
+    : whitener_(problem, rows.nuisance, rho, nT_per_sqrt_h),
+      poses_(static_cast<Eigen::Index>(problem.poses.size())) {
+  const PriorRows priors = prior_rows(problem, state);
+  Eigen::MatrixXd all(rows.fixed.rows(), rows.fixed.cols() + 1);
+  all << rows.fixed, rows.residual;
+  const Eigen::MatrixXd white = whitener_.apply(all);
+  const Eigen::Index n = white.rows(), q = priors.residual.size(), p = problem.fixed();
+  Eigen::MatrixXd fixed(n + q, p);
+  fixed << white.leftCols(p), priors.fixed;
+  value_.resize(n + q);
+  value_ << white.col(p), priors.residual;
+  basis_ = orthonormal(fixed);
+  value_ -= basis_ * (basis_.transpose() * value_);
+  chi2_ = value_.squaredNorm();
+  const auto constraints = (priors.fixed.rowwise().squaredNorm().array() > 0).count();
+  dof_ = whitener_.rank() + static_cast<double>(constraints) - static_cast<double>(basis_.cols());
+}
+
+void Residual::measure_by(double scale2) {
+  const double unit = std::sqrt(scale2);
+  value_ *= unit_ / unit;
+  chi2_ *= unit_ * unit_ / scale2;
+  unit_ = unit;
+}
+
+Residual::Columns Residual::project(const Eigen::MatrixXd& rows) const {
+  const Eigen::MatrixXd white = whitener_.apply(rows);
+  Columns out{.projected = Eigen::MatrixXd::Zero(value_.size(), rows.cols()), .norms = {}};
+  out.norms = white.colwise().norm();
+  out.projected.topRows(white.rows()) = white;
+  out.projected.noalias() -= basis_ * (basis_.topRows(white.rows()).transpose() * white);
+  out.projected /= unit_;
+  out.norms /= unit_;
+  return out;
+}
+
+}  // namespace mgtd::calib

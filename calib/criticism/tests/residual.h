@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "calib/criticism/tests/whitener.h"
+#include "calib/fit/joint/joint_fit.h"
+
+/// What a joint fit left over, ready for tests: nuisances, correlation between poses and every direction that
+/// the model's own parameters can take are out. Under the model the residual is unit normal in the space that
+/// is left, `dof` dimensions of it.
+namespace mgtd::calib {
+
+class Residual {
+ public:
+  Residual(const JointProblem& problem, const JointState& state, double rho,
+           const WanderingRates& nT_per_sqrt_h = WanderingRates::Zero());
+
+  /// Twelve rows a pose, then the priors.
+  [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
+  [[nodiscard]] double chi2() const { return chi2_; }
+  [[nodiscard]] double dof() const { return dof_; }
+  [[nodiscard]] const Whitener& whitener() const { return whitener_; }
+  [[nodiscard]] Eigen::Index poses() const { return poses_; }
+
+  /// From now on everything is in units of noise with `scale2` times the variance of the weights.
+  void measure_by(double scale2);
+
+  struct Columns {
+    Eigen::MatrixXd projected;
+    Eigen::VectorXd norms;  ///< of the columns before the model's parameters were projected out
+  };
+  /// Rows as effect_rows() gives them.
+  [[nodiscard]] Columns project(const Eigen::MatrixXd& rows) const;
+
+  /// Orthonormal, of the directions that the model's own parameters can take.
+  [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
+
+ private:
+  Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho,
+           const WanderingRates& nT_per_sqrt_h);
+
+  Whitener whitener_;
+  Eigen::Index poses_;
+  Eigen::MatrixXd basis_;  ///< orthonormal, of the space of the model's parameters
+  Eigen::VectorXd value_;
+  double chi2_{0}, dof_{0};
+  double unit_{1};
+};
+
+}  // namespace mgtd::calib

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/residual_maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "calib/criticism/tests/site_maps.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Values of the functions of a map at a pose for one channel; empty where the pose cannot feed it.
+using ChannelFunctions = std::function<std::vector<double>(const JointPose& pose, int channel)>;
+/// The same for all channels of a sensor.
+using Functions = std::function<std::vector<double>(const JointPose& pose, int sensor)>;
+
+Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Eigen::Index count,
+                  Eigen::Index total) {
+  Hypothesis h{.where = std::move(where), .axes = axes, .combine = {}, .names = {}, .alike = alike};
+  h.combine = Eigen::MatrixXd::Zero(total, count);
+  h.combine.middleRows(first, count).setIdentity();
+  return h;
+}
+
+/// The functions free in each of the twelve channels.
+Map of_channels(const JointProblem& problem, std::string name, Eigen::Index m,
+                const ChannelFunctions& functions) {
+  const auto poses = static_cast<Eigen::Index>(problem.poses.size());
+  Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * kPoseRows, m * kChannels)};
+  for (Eigen::Index k = 0; k < poses; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    for (int c = 0; c < kChannels; ++c) {
+      const std::vector<double> values = functions(pose, c);
+      for (std::size_t j = 0; j < values.size(); ++j)
+        out.rows(k * kPoseRows + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
+    }
+  }
+  out.hypotheses.push_back(picked("all", kChannels, 1, 0, m * kChannels, m * kChannels));
+  for (int c = 0; c < kChannels; ++c) {
+    out.hypotheses.push_back(
+        picked(fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]), 1, kChannels, c * m, m, m * kChannels));
+  }
+  return out;
+}
+
+Map by_channel(const JointProblem& problem, std::string name, Eigen::Index m, const Functions& functions) {
+  return of_channels(problem, std::move(name), m,
+                     [&functions](const JointPose& pose, int c) { return functions(pose, c / 3); });
+}
+
+/// A covariate brought to [-1, 1] over the poses; not usable where it does not vary.
+struct Range {
+  double low{std::numeric_limits<double>::infinity()}, high{-low};
+  void add(double x) { low = std::min(low, x), high = std::max(high, x); }
+  [[nodiscard]] bool varies() const {
+    return high - low > 1e-9 * (std::abs(high) + std::abs(low)) && high > low;
+  }
+  [[nodiscard]] double scaled(double x) const { return (2 * x - low - high) / (high - low); }
+};
+
+std::vector<double> powers(double x, int n) {
+  std::vector<double> out;
+  for (double p = x; n > 0; --n, p *= x) out.push_back(p);
+  return out;
+}
+
+void add_time(const JointProblem& problem, std::vector<Map>& out) {
+  Range range;
+  for (const JointPose& pose : problem.poses) range.add(pose.t_h);
+  if (!range.varies()) return;
+  out.push_back(by_channel(problem, "time", kCosines, [range](const JointPose& pose, int) {
+    std::vector<double> v;
+    for (int j = 1; j <= kCosines; ++j) v.push_back(time_cosine(range.scaled(pose.t_h), j));
+    return v;
+  }));
+}
+
+void add_azimuth(const JointProblem& problem, std::vector<Map>& out) {
+  constexpr int kHarmonics = 4;
+  const bool any = std::any_of(problem.poses.begin(), problem.poses.end(),
+                               [](const JointPose& p) { return p.pose->azimuth_rad.has_value(); });
+  if (!any) return;
+  out.push_back(by_channel(problem, "azimuth", 2 * kHarmonics, [](const JointPose& pose, int) {
+    std::vector<double> v;
+    if (!pose.pose->azimuth_rad) return v;
+    for (int j = 1; j <= kHarmonics; ++j) {
+      v.push_back(std::cos(j * *pose.pose->azimuth_rad));
+      v.push_back(std::sin(j * *pose.pose->azimuth_rad));
+    }
+    return v;
+  }));
+}
+
+/// Chebyshev polynomials of the axis' own part of the field.
+void add_own_reading(const JointProblem& problem, const JointState& state, std::vector<Map>& out) {
+  constexpr int kFirst = 2, kLast = 6;
+  out.push_back(
+      of_channels(problem, "own reading", kLast - kFirst + 1, [&state](const JointPose& pose, int c) {
+        const auto s = static_cast<std::size_t>(c / 3);
+        const Eigen::Vector3d u = (pose.y_nT.segment<3>(c - c % 3) - state.sensors[s].offset_nT).normalized();
+        std::vector<double> v;
+        for (int j = kFirst; j <= kLast; ++j) v.push_back(std::cos(j * std::acos(u[c % 3])));
+        return v;
+      }));
+}
+
+void add_direction(const JointProblem& problem, const JointState& state, std::vector<Map>& out) {
+  constexpr Eigen::Index kMonomials = 5 + 7 + 9;
+  out.push_back(by_channel(problem, "direction", kMonomials, [&state](const JointPose& pose, int i) {
+    const auto s = static_cast<std::size_t>(i);
+    const Eigen::Vector3d u = (pose.y_nT.segment<3>(3 * i) - state.sensors[s].offset_nT).normalized();
+    std::vector<double> v;
+    // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
+    for (int degree = 2; degree <= 4; ++degree) {
+      for (int z = 0; z <= 1; ++z) {
+        for (int x = 0; x <= degree - z; ++x)
+          v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
+      }
+    }
+    return v;
+  }));
+}
+
+void add_temperature(const JointProblem& problem, std::vector<Map>& out) {
+  Range range;
+  for (const JointPose& pose : problem.poses) {
+    for (const auto& T : pose.pose->T_degC)
+      if (T) range.add(*T);
+  }
+  if (!range.varies()) return;
+  out.push_back(by_channel(problem, "temperature", 3, [range](const JointPose& pose, int i) {
+    const auto& T = pose.pose->T_degC[static_cast<std::size_t>(i)];
+    return T ? powers(range.scaled(*T), 3) : std::vector<double>{};
+  }));
+}
+
+void add_previous(const JointProblem& problem, std::vector<Map>& out) {
+  out.push_back(by_channel(problem, "previous pose", 3, [](const JointPose& pose, int i) {
+    std::vector<double> v;
+    if (pose.previous == nullptr) return v;
+    const Eigen::Vector3d& y = pose.previous->y_nT[static_cast<std::size_t>(i)];
+    const double size = pose.y_nT.segment<3>(3 * i).norm();
+    for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
+    return v;
+  }));
+}
+
+void add_mount(const JointProblem& problem, std::vector<Map>& out) {
+  std::set<int> mounts;
+  for (const JointPose& pose : problem.poses)
+    if (pose.pose->mount) mounts.insert(*pose.pose->mount);
+  if (mounts.size() < 2) return;
+  out.push_back(by_channel(problem, "mount", static_cast<Eigen::Index>(mounts.size()),
+                           [mounts](const JointPose& pose, int) {
+                             std::vector<double> v;
+                             for (const int m : mounts) v.push_back(pose.pose->mount == m ? 1 : 0);
+                             return v;
+                           }));
+}
+
+void add_columns(const JointProblem& problem, std::vector<Map>& out) {
+  std::map<std::string, Range> columns;
+  for (const JointPose& pose : problem.poses) {
+    for (const auto& [name, value] : pose.pose->covariates) columns[name].add(value);
+  }
+  for (const auto& [name, range] : columns) {
+    if (!range.varies()) continue;
+    out.push_back(by_channel(problem, name, 2, [name = name, range = range](const JointPose& pose, int) {
+      const auto found = pose.pose->covariates.find(name);
+      return found == pose.pose->covariates.end() ? std::vector<double>{}
+                                                  : powers(range.scaled(found->second), 2);
+    }));
+  }
+}
+
+}  // namespace
+
+std::vector<Map> residual_maps(const JointProblem& problem, const JointState& state) {
+  std::vector<Map> out;
+  add_time(problem, out);
+  add_azimuth(problem, out);
+  add_own_reading(problem, state, out);
+  add_direction(problem, state, out);
+  add_temperature(problem, out);
+  add_previous(problem, out);
+  add_mount(problem, out);
+  add_columns(problem, out);
+  for (SiteRows& site : site_map_rows(problem, state)) {
+    const Eigen::Index m = site.rows.cols();
+    out.push_back({.name = std::move(site.name), .rows = std::move(site.rows), .hypotheses = {}});
+    out.back().hypotheses.push_back(picked("site", kChannels, 1, 0, m, m));
+  }
+  return out;
+}
+
+std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& residual,
+                                 const NoiseReference& noise) {
+  std::vector<MapScore> out;
+  for (const Map& map : maps) {
+    const Signature s = signature_of(residual, map.rows);
+    MapScore best{.map = map.name, .where = {}, .log10_p = 1, .by_channel = {}, .fit = {}};
+    double scales = 0;
+    for (const Hypothesis& h : map.hypotheses) {
+      scales += 1.0 / h.alike;
+      const OneStep step = one_step(s, h);
+      const auto k = static_cast<int>(step.basis.cols());
+      if (k == 0) continue;
+      const Eigen::VectorXd t = step.basis.transpose() * s.by_residual;
+      const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
+      if (h.alike == kChannels) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
+      if (log10_p >= best.log10_p) continue;
+      best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
+      best.fit = s.columns * (step.basis * t);
+    }
+    if (best.k == 0) continue;
+    best.log10_p = std::min(0.0, best.log10_p + std::log10(scales));
+    out.push_back(std::move(best));
+  }
+  std::sort(out.begin(), out.end(),
+            [](const MapScore& a, const MapScore& b) { return a.log10_p < b.log10_p; });
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/rows.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "calib/fit/joint/joint_solver.h"
+
+namespace mgtd::calib {
+namespace {
+
+Eigen::Index row_of(std::size_t pose) { return static_cast<Eigen::Index>(pose) * kPoseRows; }
+
+void fill_attitude(const JointPose& pose, const Nuisance& nuisance, Eigen::Index row, LinearRows& out) {
+  const Eigen::Index first = row + kChannels + 1;
+  if (!pose.has_angles) {
+    out.nuisance(first, 3) = 1;
+    return;
+  }
+  out.residual.segment<3>(first) = -pose.attitude_weight * nuisance.head<3>();
+  out.nuisance.block<3, 3>(first, 0).diagonal().setConstant(pose.attitude_weight);
+}
+
+}  // namespace
+
+LinearRows linear_rows(const JointProblem& problem, const JointState& state) {
+  const auto rows = row_of(problem.poses.size());
+  LinearRows out{.residual = Eigen::VectorXd::Zero(rows),
+                 .fixed = Eigen::MatrixXd::Zero(rows, problem.fixed()),
+                 .nuisance = Eigen::MatrixXd::Zero(rows, kNuisances)};
+  const PoseModel model(problem, state);
+  PoseBlocks b;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    const JointPose& pose = problem.poses[k];
+    const Eigen::Index row = row_of(k);
+    assemble(problem, model, state, k, false, b);
+    out.residual.segment<kChannels>(row) = b.residual;
+    out.residual[row + kChannels] = b.scalar.residual;
+    out.nuisance.middleRows<kChannels>(row) = b.N;
+    out.nuisance.row(row + kChannels) = b.scalar.nuisance;
+    const auto w = pose.weight.asDiagonal();
+    for (int i = 0; i < kSensors; ++i) {
+      out.fixed.block<3, kSensorParameters>(row + 3 * i, kSensorParameters * i) =
+          pose.weight.segment<3>(3 * i).asDiagonal() * b.linear.d_sensor.middleRows<3>(3 * i);
+    }
+    const Eigen::Index globals = b.linear.d_global.cols();
+    out.fixed.block(row, kSensorBlock, kChannels, globals) = w * b.linear.d_global;
+    out.fixed.block(row + kChannels, kSensorBlock, 1, globals) = b.scalar.global;
+    fill_attitude(pose, state.nuisances[k], row, out);
+  }
+  return out;
+}
+
+Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state, const EffectPtr& effect) {
+  return effect_rows(problem, state, effect,
+                     Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect->coefficients().size())));
+}
+
+Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state, const EffectPtr& effect,
+                            const Eigen::VectorXd& coefficients) {
+  JointProblem wider;
+  wider.geometry = problem.geometry;
+  wider.effects = problem.effects;
+  wider.common_field = problem.common_field;
+  wider.effects.push_back(effect);
+  const Eigen::Index added = coefficients.size();
+  JointState at = state;
+  at.coefficients.conservativeResize(state.coefficients.size() + added);
+  at.coefficients.tail(added) = coefficients;
+  const PoseModel model(wider, at);
+  PoseLinear linear;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(row_of(problem.poses.size()), added);
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    const JointPose& pose = problem.poses[k];
+    if (!effect->missing(*pose.pose).empty()) continue;
+    model.linearise(pose, state.nuisances[k], linear);
+    const Eigen::Index row = row_of(k);
+    out.middleRows<kChannels>(row) = pose.weight.asDiagonal() * linear.d_global.rightCols(added);
+    out.row(row + kChannels) = pose.f_weight * linear.f_global.tail(added);
+  }
+  return out;
+}
+
+PriorRows prior_rows(const JointProblem& problem, const JointState& state) {
+  const Eigen::VectorXd x = state.fixed();
+  const auto n = static_cast<Eigen::Index>(problem.priors.size());
+  PriorRows out{.residual = Eigen::VectorXd::Zero(n + 2),
+                .fixed = Eigen::MatrixXd::Zero(n + 2, problem.fixed())};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const LinearPrior& prior = problem.priors[static_cast<std::size_t>(i)];
+    out.residual[i] = prior.weight * (prior.target - prior.row.dot(x));
+    out.fixed.row(i) = prior.weight * prior.row;
+  }
+  if (!problem.has_angles) return out;
+  const double w = problem.direction_weight;
+  const Eigen::Matrix2d rows = inclination_declination_rows(state.direction);
+  const auto observe = [&](const std::optional<double>& known, double now, Eigen::Index i) {
+    if (!known) return;
+    out.residual[n + i] = w * std::remainder(*known - now, 2 * std::numbers::pi);
+    out.fixed.block<1, 2>(n + i, kSiteSlot) = w * rows.row(i);
+  };
+  observe(problem.known_inclination_rad, inclination_of(state.direction), 0);
+  observe(problem.known_declination_rad, declination_of(state.direction), 1);
+  return out;
+}
+
+}  // namespace mgtd::calib

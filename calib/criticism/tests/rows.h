@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "calib/fit/joint/joint_problem.h"
+
+/// The linearised joint fit as rows, one block of sixteen a pose, each divided by its standard deviation:
+///     0..11  readings     12  scalar reference     13..15  attitude (without table angles: the idle slot)
+///
+/// An observation that was left out is a row of zeros. Nothing is eliminated here: see whitener.h.
+namespace mgtd::calib {
+
+inline constexpr int kPoseRows = kChannels + 4;
+
+struct LinearRows {
+  Eigen::VectorXd residual;  ///< measured less predicted
+  Eigen::MatrixXd fixed;     ///< by the slots of the fixed block
+  Eigen::MatrixXd nuisance;  ///< by the pose's own four nuisances
+};
+
+[[nodiscard]] LinearRows linear_rows(const JointProblem& problem, const JointState& state);
+
+/// By the coefficients of an effect that is not in the model, at zero. Poses that cannot feed it get zeros.
+[[nodiscard]] Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state,
+                                          const EffectPtr& effect);
+/// The same at `coefficients`: the shift of a dipole shows only where it has a moment.
+[[nodiscard]] Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state,
+                                          const EffectPtr& effect, const Eigen::VectorXd& coefficients);
+
+/// The priors and gauge constraints of the fixed block, as rows.
+struct PriorRows {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd fixed;
+};
+[[nodiscard]] PriorRows prior_rows(const JointProblem& problem, const JointState& state);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/scan_refinement.h"
+
+#include <algorithm>
+
+#include "calib/criticism/tests/dipole_search.h"
+#include "calib/criticism/tests/multiplicity.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kHalvings = 4;
+
+/// The value next to that of the winner, below or above; empty at the end.
+std::optional<double> neighbour(const CandidateEffect& suspect, double value, bool above) {
+  std::optional<double> out;
+  for (const auto& other : suspect.values) {
+    if (!other || (above ? *other <= value : *other >= value)) continue;
+    if (!out || (above ? *other < *out : *other > *out)) out = other;
+  }
+  return out;
+}
+
+/// The family with a suspect of its own, to which more may be added.
+CandidateEffect& widened(ScoredFamily& family) {
+  const auto wider = std::make_shared<CandidateEffect>(*family.suspect);
+  family.own = wider;
+  family.suspect = wider.get();
+  return *wider;
+}
+
+void add_variant(const std::optional<double>& value, EffectPtr effect, Signature signature,
+                 const NoiseReference& noise, CandidateEffect& wider, ScoredFamily& family) {
+  wider.values.push_back(value);
+  wider.variants.push_back(std::move(effect));
+  family.signatures.push_back(std::move(signature));
+  family.score_last(noise);
+}
+
+}  // namespace
+
+void refine(const JointProblem& problem, const JointState& state, const Residual& residual,
+            const NoiseReference& noise, ScoredFamily& family) {
+  if (!family.suspect->between || !family.suspect->values[family.winner().variant]) return;
+  CandidateEffect& wider = widened(family);
+  for (int i = 0; i < kHalvings; ++i) {
+    const double value = *wider.values[family.winner().variant];
+    for (const bool above : {false, true}) {
+      const auto end = neighbour(wider, value, above);
+      const auto tried = end ? wider.between(std::min(value, *end), std::max(value, *end)) : std::nullopt;
+      auto effect = tried ? wider.make(nullptr, tried) : Result<EffectPtr>(nullptr);
+      if (!effect || *effect == nullptr) continue;
+      Signature signature = signature_of(residual, effect_rows(problem, state, *effect));
+      add_variant(tried, *std::move(effect), std::move(signature), noise, wider, family);
+    }
+  }
+  family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
+}
+
+void refine_place(const JointProblem& problem, const JointState& state, const Residual& residual,
+                  const NoiseReference& noise, ScoredFamily& family) {
+  if (!family.suspect->dipole_at) return;
+  CandidateEffect& wider = widened(family);
+  const std::optional<double> value = wider.values[family.winner().variant];
+  auto found = find_dipole(problem, state, residual, [&](const Eigen::Vector3d& place_S_m) {
+    return wider.dipole_at(place_S_m, value);
+  });
+  if (!found) return;
+  if (found->signature.columns.cols() != wider.hypotheses.front().combine.rows())
+    wider.hypotheses.push_back(hypotheses_of(*found->effect).front());
+  add_variant(value, found->effect, std::move(found->signature), noise, wider, family);
+  family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
+}
+
+}  // namespace mgtd::calib

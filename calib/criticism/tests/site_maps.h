@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/rows.h"
+
+/// Maps of the site: field and gradient that change smoothly with time, and the field's map to second degree.
+namespace mgtd::calib {
+
+inline constexpr int kCosines = 8;
+/// The j-th of a basis of smooth functions over a run, u from -1 at its start to 1 at its end.
+[[nodiscard]] inline double time_cosine(double u, int j) {
+  return std::cos(j * std::numbers::pi * (u + 1) / 2);
+}
+
+struct SiteRows {
+  std::string name;  ///< "site field", "site gradient", "site map"
+  Eigen::MatrixXd rows;
+};
+
+/// Empty without table angles; those over time only where the poses have times.
+[[nodiscard]] std::vector<SiteRows> site_map_rows(const JointProblem& problem, const JointState& state);
+
+}  // namespace mgtd::calib

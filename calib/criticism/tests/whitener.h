@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/criticism/tests/rows.h"
+#include "calib/fit/joint/wandering.h"
+
+/// Takes the four nuisances of every pose out of a linearised joint fit, and the correlation between poses.
+///
+/// Model of the readings' noise: of each channel first-order autoregressive over the poses in the order of
+/// time, n_k = rho n_(k-1) + sqrt(1 - rho^2) e_k; scalar and attitude are independent. Rows of pose k less
+/// rho times those of the pose before have independent noise; a sequence of orthogonal transformations then
+/// removes the nuisances, pose by pose (a banded QR). What is left are twelve rows a pose with unit
+/// independent noise, equivalent to marginalising C_k = Sigma_k + N_k Lambda N_k' exactly, for any rho.
+/// A channel whose reading was left out starts its memory anew.
+///
+/// Beside it an offset may wander (wandering.h): o_k = o_(k-1) + a sqrt(t_k - t_(k-1)) e_k. Its value at each
+/// pose is one more unknown, and each step a row of its own; both are removed in the same way, exactly.
+namespace mgtd::calib {
+
+class Whitener {
+ public:
+  /// `nuisance` as in LinearRows. Poses are taken in the order of their times.
+  Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
+           const WanderingRates& nT_per_sqrt_h = WanderingRates::Zero());
+
+  /// (16 P) x n rows in, (12 P) x n out, blocks of twelve in the order of the poses of the problem.
+  [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& rows) const;
+
+  [[nodiscard]] double rho() const { return rho_; }
+  /// ln of the determinant of the covariance of the readings, less that of their weights.
+  [[nodiscard]] double log_det() const { return log_det_; }
+  [[nodiscard]] bool wanders() const { return !walking_.empty(); }
+  /// Observations less nuisances: the rank of what apply() gives.
+  [[nodiscard]] int rank() const { return rank_; }
+  /// Indices of the poses in the order of time.
+  [[nodiscard]] const std::vector<Eigen::Index>& order() const { return order_; }
+
+ private:
+  /// Unknowns of a pose: offsets that wander, then its nuisances.
+  [[nodiscard]] Eigen::Index unknowns() const {
+    return static_cast<Eigen::Index>(walking_.size()) + kNuisances;
+  }
+  struct Step {
+    Eigen::Matrix<double, kChannels, 1> now, before;  ///< factors of this pose's readings and the last one's
+    /// Rows carried over, steps of the walks and readings: takes out the unknowns of the pose before.
+    Eigen::MatrixXd first;
+    /// What is left, and scalar and attitude: takes out this pose's own.
+    Eigen::MatrixXd second;
+  };
+  double rho_;
+  std::vector<int> walking_;  ///< channels
+  int rank_{0};
+  double log_det_{0};
+  std::vector<Eigen::Index> order_;
+  std::vector<Step> steps_;
+};
+
+/// Poses by time, those of one time in the order of the table.
+[[nodiscard]] std::vector<Eigen::Index> order_in_time(const JointProblem& problem);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/design/experiment_design.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/fit/fit_report_json.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/tensor_uncertainty.h"
+
+#include "calib/calibration/tensor.h"
+#include "calib/sensor/sensor_equations.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kHelpful = 6;
+
+Gradient unknown() {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  return {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+}
+
+double mean_square(const Gradient& g) {
+  return (g.xx * g.xx + g.yy * g.yy + g.zz * g.zz + g.xy * g.xy + g.xz * g.xz + g.yz * g.yz) / 6;
+}
+
+/// A room that warms up: fast at first, all of it by the end, so that temperature and time are not the same.
+void assume_warming(PoseTable& table, double warming_degC) {
+  const bool known = std::any_of(table.poses.begin(), table.poses.end(),
+                                 [](const Pose& pose) { return pose.T_degC[0].has_value(); });
+  const auto &begin = table.poses.front().t_s, &end = table.poses.back().t_s;
+  if (known || warming_degC == 0 || !begin || !end || !(*end > *begin)) return;
+  constexpr double kTimeConstants = 3;
+  for (Pose& pose : table.poses) {
+    if (!pose.t_s) continue;
+    const double elapsed = (*pose.t_s - *begin) / (*end - *begin);
+    const double rise = (1 - std::exp(-kTimeConstants * elapsed)) / (1 - std::exp(-kTimeConstants));
+    pose.T_degC.fill(kReferenceT_degC + warming_degC * rise);
+  }
+}
+
+PoseTable measured_in_thought(const PlanRequest& request) {
+  const Eigen::Vector3d n = direction_of(request.inclination_rad, request.declination_rad);
+  PoseTable table = request.poses;
+  for (Pose& pose : table.poses) {
+    pose.set.clear();
+    const TableAngles a = pose.angles().value_or(TableAngles{});
+    const Eigen::Vector3d b =
+        request.f_nT * table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0) * n;
+    for (std::size_t i = 0; i < kSensors; ++i) pose.y_nT[i] = request.sensors[i].predict(b);
+    pose.f_nT = request.scalar_sd_nT ? std::optional(request.f_nT) : std::nullopt;
+    pose.f_sd_nT = request.scalar_sd_nT;
+  }
+  if (!table.poses.empty()) assume_warming(table, request.warming_degC);
+  return table;
+}
+
+struct Named {
+  std::string name, unit;
+  double factor;
+};
+
+/// The fixed block but for the site's own slots, by slot.
+std::vector<std::pair<int, Named>> named_slots(const JointProblem& problem) {
+  std::vector<std::pair<int, Named>> out;
+  for (int slot = 0; slot < kSensorBlock; ++slot) {
+    const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(slot % kSensorParameters)];
+    out.push_back(
+        {slot, {fmt::format("s{} {}", slot / kSensorParameters + 1, shown.name), shown.unit, shown.factor}});
+  }
+  int slot = kEffectSlot;
+  for (const EffectPtr& effect : problem.effects) {
+    for (const Coefficient& c : effect->coefficients())
+      out.push_back({slot++, {fmt::format("{} {}", effect->name(), c.name), c.unit, 1}});
+  }
+  return out;
+}
+
+std::vector<Expected> standard_errors(const JointProblem& problem, const Eigen::MatrixXd& covariance) {
+  std::vector<Expected> out;
+  for (const auto& [slot, named] : named_slots(problem))
+    out.push_back({named.name, std::sqrt(covariance(slot, slot)) * named.factor, named.unit});
+  return out;
+}
+
+std::vector<Separation> separations(const JointProblem& problem, const Eigen::MatrixXd& S,
+                                    const Eigen::MatrixXd& covariance) {
+  std::vector<Separation> out;
+  const auto named = named_slots(problem);
+  for (const auto& [slot, own] : named) {
+    if (slot < kEffectSlot) continue;
+    Separation s{
+        .name = own.name, .inflation = std::sqrt(covariance(slot, slot) * S(slot, slot)), .rival = {}};
+    for (const auto& [other, theirs] : named) {
+      const double r = covariance(slot, other) / std::sqrt(covariance(slot, slot) * covariance(other, other));
+      if (other == slot || std::abs(r) <= std::abs(s.correlation)) continue;
+      s.correlation = r;
+      s.rival = theirs.name;
+    }
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+/// Tried one by one: the tensor variance with each candidate added.
+std::vector<PlanReport::Helpful> most_helpful(const JointProblem& problem, const JointState& state,
+                                              const Eigen::MatrixXd& S, double f_nT,
+                                              const std::vector<TableAngles>& candidates) {
+  const auto variance = [&](const Eigen::MatrixXd& information) {
+    const auto covariance = covariance_of(information);
+    if (!covariance) return std::numeric_limits<double>::infinity();
+    return mean_square(calibration_tensor_sd(state.sensors, problem.geometry, *covariance, f_nT));
+  };
+  const double now = variance(S);
+  std::vector<PlanReport::Helpful> out;
+  for (const TableAngles& angles : candidates)
+    out.push_back({angles, 1 - variance(S + information_of(problem, state, angles, f_nT)) / now});
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+  out.resize(std::min(out.size(), kHelpful));
+  return out;
+}
+
+Gradient noise_of_tensor(const PlanRequest& request) {
+  const auto rows = gradient_rows(request.geometry);
+  const Eigen::Matrix<double, 6, 1> sd = request.pose_noise_nT * rows.rowwise().norm();
+  return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+}
+
+std::string gauge_text(const Gauge& gauge) {
+  std::string out;
+  switch (gauge.angles) {
+    case AngleCoverage::none:
+      out = "the angles do not fix the platform frame: mean alpha = beta = gamma = 0 by convention";
+      break;
+    case AngleCoverage::one_axis:
+      out = "the angles turn about one axis: mean gamma = 0 by convention";
+      break;
+    case AngleCoverage::full:
+      out = "the table angles fix the platform frame";
+      break;
+  }
+  return gauge.scale_known ? out : fmt::format("{}; no field is known: {}", out, kScaleIsFree);
+}
+
+std::string assumed_text(const PlanRequest& r) {
+  const std::string field =
+      r.scalar_sd_nT  ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
+      : r.field_known ? fmt::format("known to {} nT", std::max(r.field_sd_nT, kCommonFieldSpread_nT))
+                      : std::string("not known");
+  return fmt::format(
+      "field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg; heads that "
+      "warm "
+      "by {} degC where the poses tell no temperature",
+      r.f_nT, field, to_deg(r.inclination_rad), r.pose_noise_nT, to_deg(r.table_sd_rad), r.warming_degC);
+}
+
+}  // namespace
+
+Result<PlanReport> plan(const PlanRequest& request) {
+  const PoseTable table = measured_in_thought(request);
+  const auto design = planned_design(request, table);
+  if (!design) return tl::unexpected(design.error());
+  const auto& [problem, state, gauge] = *design;
+  const Eigen::MatrixXd S = reduce(problem, state, 0).S;
+
+  PlanReport report;
+  if (request.power) {
+    auto power = plan_power(request, table);
+    if (!power) return tl::unexpected(power.error());
+    report.power = std::move(*power);
+  }
+  report.poses = static_cast<int>(table.poses.size());
+  report.noise_sd_nT_per_m = noise_of_tensor(request);
+  report.tensor_sd_nT_per_m = unknown();
+  report.assumed = assumed_text(request);
+  report.gauge = gauge_text(gauge);
+  report.known = identifiability(problem, state, S, request.f_nT, request.candidates);
+  const auto covariance = covariance_of(S);
+  report.determined = covariance && report.known.worst_nT() < kUnusable * request.f_nT;
+  if (!report.determined) return report;
+  report.parameters = standard_errors(problem, *covariance);
+  report.separations = separations(problem, S, *covariance);
+  report.tensor_sd_nT_per_m =
+      calibration_tensor_sd(request.sensors, request.geometry, *covariance, request.f_nT);
+  report.helpful = most_helpful(problem, state, S, request.f_nT, request.candidates);
+  return report;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/design/experiment_power.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "calib/criticism/tests/alternatives.h"
+#include "calib/criticism/tests/rows.h"
+#include "calib/design/actions.h"
+#include "calib/design/experiment_design.h"
+#include "calib/effects/library/effect_family.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kWorth = 0.02;  ///< gain of a probability that is worth telling
+
+bool one_place(const CandidateEffect& suspect, const Hypothesis& h) {
+  return suspect.level == Level::axis ? h.axes == 1 : &h == &suspect.hypotheses.front();
+}
+
+bool of_array(const Hypothesis& h) { return h.axes == kChannels; }
+
+/// `b` acts where `a` does, and is no mere sum of effects of many places.
+bool reaches(const Hypothesis& b, const Hypothesis& a, Level level_b) {
+  if (b.where == a.where) return true;
+  if (of_array(a)) return of_array(b);
+  if (of_array(b)) return level_b != Level::axis;
+  return b.where == a.where.substr(0, 2);
+}
+
+/// Everything an effect could be on these poses.
+struct Shape {
+  const CandidateEffect* suspect{nullptr};
+  std::vector<Signature> signatures;                ///< by variant
+  std::vector<std::vector<Eigen::MatrixXd>> basis;  ///< by hypothesis, by variant
+};
+
+Shape shape_of(const PlannedDesign& design, const Residual& residual, const CandidateEffect& suspect) {
+  Shape out{.suspect = &suspect, .signatures = {}, .basis = {}};
+  for (const EffectPtr& variant : suspect.variants)
+    out.signatures.push_back(signature_of(residual, effect_rows(design.problem, design.state, variant)));
+  for (const Hypothesis& h : suspect.hypotheses) {
+    std::vector<Eigen::MatrixXd>& bases = out.basis.emplace_back();
+    for (const Signature& s : out.signatures) bases.emplace_back(s.columns * one_step(s, h).basis);
+  }
+  return out;
+}
+
+std::vector<Shape> shapes_of(const PlannedDesign& design,
+                             const std::vector<const CandidateEffect*>& suspects) {
+  const Residual residual(design.problem, design.state, 0);
+  std::vector<Shape> out;
+  for (const CandidateEffect* const suspect : suspects)
+    if (!suspect->variants.empty()) out.push_back(shape_of(design, residual, *suspect));
+  return out;
+}
+
+/// Signature of a truth: coefficients alike in size and independent in sign. Of a searched number the value
+/// in the middle.
+Eigen::MatrixXd truth(const Shape& a, std::size_t hypothesis) {
+  const std::size_t middle = a.signatures.size() / 2;
+  if (a.basis[hypothesis][middle].cols() == 0) return {};
+  return a.signatures[middle].columns * a.suspect->hypotheses[hypothesis].combine;
+}
+
+/// Largest share of `a` within `b`, in squares.
+double alike(const Eigen::MatrixXd& a, const Hypothesis& where, const Shape& b) {
+  double most = 0;
+  for (std::size_t h = 0; h < b.basis.size(); ++h) {
+    if (!reaches(b.suspect->hypotheses[h], where, b.suspect->level)) continue;
+    for (const Eigen::MatrixXd& U : b.basis[h])
+      if (U.cols() > 0) most = std::max(most, (U.transpose() * a).squaredNorm());
+  }
+  return std::min(1.0, most / a.squaredNorm());
+}
+
+double named_right(double alike_share) {
+  return told_right(kComparedAt_d * kComparedAt_d * (1 - alike_share));
+}
+
+struct Hardest {
+  double alike{0};
+  std::string where;
+};
+
+Hardest hardest(const Shape& a, const Shape& b) {
+  Hardest out;
+  for (std::size_t h = 0; h < a.basis.size(); ++h) {
+    const Hypothesis& where = a.suspect->hypotheses[h];
+    if (!one_place(*a.suspect, where)) continue;
+    const Eigen::MatrixXd signature = truth(a, h);
+    if (signature.size() == 0) continue;
+    const double share = alike(signature, where, b);
+    if (share > out.alike) out = {share, where.where};
+  }
+  return out;
+}
+
+std::string advice(const std::string& effect, const std::string& rival) {
+  for (const auto& [of, with] : {std::pair{effect, rival}, std::pair{rival, effect}}) {
+    const EffectFamily* const family = find_family(of);
+    if (family == nullptr) continue;
+    for (const Confusion& c : family->confusions)
+      if (c.with == with) return std::string(c.broken_by);
+  }
+  return {};
+}
+
+/// Both ways of each pair, the worse one kept.
+std::vector<LookAlike> compare_all(const std::vector<Shape>& shapes, int& pairs) {
+  std::vector<LookAlike> out;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    for (std::size_t j = i + 1; j < shapes.size(); ++j) {
+      const Hardest ij = hardest(shapes[i], shapes[j]), ji = hardest(shapes[j], shapes[i]);
+      if (ij.where.empty() && ji.where.empty()) continue;
+      ++pairs;
+      const bool first = ij.alike >= ji.alike;
+      const Hardest& worse = first ? ij : ji;
+      if (named_right(worse.alike) >= kSeparated) continue;
+      const std::string &a = shapes[first ? i : j].suspect->name, &b = shapes[first ? j : i].suspect->name;
+      out.push_back({.effect = a,
+                     .where = worse.where,
+                     .rival = b,
+                     .correlation = std::sqrt(worse.alike),
+                     .p_right = named_right(worse.alike),
+                     .remedy = {},
+                     .advice = advice(a, b)});
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& x, const auto& y) { return x.p_right < y.p_right; });
+  return out;
+}
+
+/// The best action for each pair: the one that names it right most often, of equals the shortest.
+void find_remedies(const PlanRequest& request, const PoseTable& table, const Action& action,
+                   std::vector<LookAlike>& pairs) {
+  const PoseTable longer = extended(table, action, request.sensors);
+  const auto design = planned_design(request, longer);
+  if (!design) return;
+  const CandidateEffects library = library_suspects(longer, request.effects);
+  std::set<std::string> wanted;
+  for (const LookAlike& pair : pairs) wanted.insert({pair.effect, pair.rival});
+  std::vector<const CandidateEffect*> suspects;
+  for (const CandidateEffect& s : library.testable)
+    if (wanted.contains(s.name)) suspects.push_back(&s);
+  const std::vector<Shape> shapes = shapes_of(*design, suspects);
+  std::map<std::string, const Shape*> by_name;
+  for (const Shape& shape : shapes) by_name.emplace(shape.suspect->name, &shape);
+  const double minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses);
+  for (LookAlike& pair : pairs) {
+    if (!by_name.contains(pair.effect) || !by_name.contains(pair.rival)) continue;
+    const Shape &a = *by_name.at(pair.effect), &b = *by_name.at(pair.rival);
+    const double p = named_right(std::max(hardest(a, b).alike, hardest(b, a).alike));
+    const double best = pair.remedy ? pair.remedy->p_right : pair.p_right;
+    if (p > best + kWorth) pair.remedy = Remedy{std::string(action.text), minutes, p};
+  }
+}
+
+/// What would have to be larger than it ever is will not be seen.
+Detectable plausible(Detectable found, const CandidateEffect& suspect) {
+  if (suspect.bound > 0 && found.value > suspect.bound) found.value = 0;
+  return found;
+}
+
+}  // namespace
+
+Result<PlannedDesign> planned_design(const PlanRequest& request, const PoseTable& table) {
+  JointOptions options;
+  options.geometry = request.geometry;
+  options.effects = request.effects;
+  options.table_sd_rad = request.table_sd_rad;
+  if (request.field_known) options.field_nT = request.f_nT;
+  if (request.field_sd_nT > 0) options.field_sd_nT = request.field_sd_nT;
+  auto problem = joint_problem(table, options);
+  if (!problem) return tl::unexpected(problem.error());
+  PlannedDesign out{.problem = std::move(*problem), .state = {}, .gauge = {}};
+  out.gauge = fix_gauge(out.problem, options);
+  weight_by_pose(out.problem, AxisNoise::Constant(request.pose_noise_nT));
+  out.state = joint_state(out.problem, request.sensors,
+                          direction_of(request.inclination_rad, request.declination_rad), request.f_nT);
+  refit_nuisances(out.problem, out.state);
+  return out;
+}
+
+Result<PlanPower> plan_power(const PlanRequest& request, const PoseTable& table) {
+  const auto design = planned_design(request, table);
+  if (!design) return tl::unexpected(design.error());
+  const CandidateEffects library = library_suspects(table, request.effects);
+  PlanPower out;
+  out.untestable = library.untestable;
+  std::vector<const CandidateEffect*> suspects;
+  for (const CandidateEffect& s : library.testable) suspects.push_back(&s);
+  const std::vector<Shape> shapes = shapes_of(*design, suspects);
+  for (const Shape& shape : shapes)
+    out.detectable.push_back(
+        plausible(detectable_of(*shape.suspect, shape.signatures.front()), *shape.suspect));
+  out.inseparable = compare_all(shapes, out.pairs);
+  for (const Action& action : actions())
+    if (!action.moved) find_remedies(request, table, action, out.inseparable);
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/criticism/tests/candidate_effect.h"
+#include "calib/criticism/tests/detectable.h"
+#include "calib/fit/joint/joint_setup.h"
+#include "calib/fit/joint/joint_solver.h"
+
+/// What a run that is not yet measured would show of physics that is not in its model, and which two causes
+/// it could not tell apart.
+///
+/// Signatures z of the library's effects at the planned poses, calibration and pose nuisances projected out.
+/// If a is the truth, the share of its signature that lies within that of b,
+///     alike = |P_b z_a|^2 / |z_a|^2       (its square root: the correlation of the two)
+/// is all there is to go by: at a size of d standard errors the right one of the two wins with probability
+///     Phi(d sqrt(1 - alike) / 2).
+/// b is taken at every scale that reaches where a is, and at every value of its searched number; a at the
+/// place where it is hardest to tell. Readings play no part.
+namespace mgtd::calib {
+
+/// Of the size at which two effects are compared, in standard errors.
+inline constexpr double kComparedAt_d = 10;
+/// A pair that is named right less often than this cannot be separated.
+inline constexpr double kSeparated = 0.95;
+
+/// What would separate a pair.
+struct Remedy {
+  std::string action;
+  double minutes{0};
+  double p_right{0};  ///< afterwards
+};
+
+struct LookAlike {
+  std::string effect, where;     ///< the truth
+  std::string rival;             ///< what it would be taken for
+  double correlation{0};         ///< of the signatures
+  double p_right{1};             ///< that the right one of the two is named, at d = kComparedAt_d
+  std::optional<Remedy> remedy;  ///< the best further measurement; none of the menu helps where it is empty
+  std::string advice;            ///< what the library's page says of this pair
+};
+
+struct PlanPower {
+  std::vector<Detectable> detectable;  ///< in the order of the library; value 0: at no size that occurs
+  std::vector<Untestable> untestable;
+  std::vector<LookAlike> inseparable;  ///< worst first; each pair once
+  int pairs{0};                        ///< compared
+};
+
+/// A rig at its planned poses: what the fit would work on.
+struct PlannedDesign {
+  JointProblem problem;
+  JointState state;
+  Gauge gauge;
+};
+struct PlanRequest;
+
+/// `table` holds readings made in thought; pointers into it are kept.
+[[nodiscard]] Result<PlannedDesign> planned_design(const PlanRequest& request, const PoseTable& table);
+
+[[nodiscard]] Result<PlanPower> plan_power(const PlanRequest& request, const PoseTable& table);
+
+}  // namespace mgtd::calib

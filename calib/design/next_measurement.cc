@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/design/next_measurement.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "calib/criticism/tests/residual.h"
+#include "calib/design/actions.h"
+#include "calib/effects/library/effect_family.h"
+#include "calib/effects/library/library.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kWorth = 0.01;    ///< gain of the probability that is worth telling
+constexpr double kBetter = 0.005;  ///< than more of the same, for what takes more than that
+
+/// The fit's model on other poses, ready to project signatures.
+struct Design {
+  JointProblem problem;
+  JointState state;
+};
+
+Result<Design> design_of(const PoseTable& table, const JointFit& fit, const JointOptions& options) {
+  auto problem = joint_problem(table, options);
+  if (!problem) return tl::unexpected(problem.error());
+  Design out{.problem = std::move(*problem), .state = {}};
+  fix_gauge(out.problem, options);
+  weight_by_pose(out.problem, fit.pose_noise_nT);
+  for (JointPose& pose : out.problem.poses)
+    if (pose.has_angles && fit.table_sd_rad > 0) pose.attitude_weight = 1 / fit.table_sd_rad;
+  out.state = joint_state(out.problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  if (out.state.coefficients.size() == fit.state.coefficients.size())
+    out.state.coefficients = fit.state.coefficients;
+  refit_nuisances(out.problem, out.state);
+  return out;
+}
+
+/// Further poses of an action, beside the run they follow.
+struct Longer {
+  PoseTable table;
+  Eigen::Index rows_here{0};  ///< of the poses at the place of the run
+};
+
+Longer longer(const PoseTable& table, const Action& action, const JointFit& fit) {
+  Longer out{.table = extended(table, action, fit.state.sensors)};
+  out.rows_here = kPoseRows * static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
+  return out;
+}
+
+/// An effect of the site at two places: coefficients of the one, then of the other.
+Eigen::MatrixXd at_two_places(const Eigen::MatrixXd& rows, Eigen::Index here) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.rows(), 2 * rows.cols());
+  out.topLeftCorner(here, rows.cols()) = rows.topRows(here);
+  out.bottomRightCorner(rows.rows() - here, rows.cols()) = rows.bottomRows(rows.rows() - here);
+  return out;
+}
+
+/// Projected columns of an effect; empty when these poses cannot feed it.
+Eigen::MatrixXd columns_of(const Design& design, const Residual& residual, const std::string& spec,
+                           const Longer& run, std::vector<std::string>* names) {
+  const PoseTable& table = run.table;
+  const auto parsed = EffectSpec::parse(spec);
+  if (!parsed) return {};
+  const auto effect = make_effect(*parsed, EffectContext{.table = &table, .offset_nT = {}});
+  if (!effect || !(*effect)->check(table)) return {};
+  if (names != nullptr)
+    for (const Coefficient& c : (*effect)->coefficients()) names->push_back(c.name);
+  const Eigen::MatrixXd rows = effect_rows(design.problem, design.state, *effect);
+  if ((*effect)->level() != Level::site || run.rows_here >= rows.rows())
+    return residual.project(rows).projected;
+  return residual.project(at_two_places(rows, run.rows_here)).projected;
+}
+
+Eigen::VectorXd sizes_of(const Candidate& winner, const std::vector<std::string>& names) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (const EffectCoefficient& c : winner.coefficients)
+      if (c.name == names[i]) out[static_cast<Eigen::Index>(i)] = c.value;
+  }
+  return out;
+}
+
+Longer as_it_is(const PoseTable& table) {
+  return {table, kPoseRows * static_cast<Eigen::Index>(table.poses.size())};
+}
+
+/// What of `v` is not in the space of B, in squares.
+double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& B) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
+  qr.setThreshold(1e-6);
+  return (v - B * qr.solve(v)).squaredNorm();
+}
+
+/// Two shapes of one dependence: both on the axis' own reading alone, or of one quantity (axis.offset, site)
+/// on the same columns. An offset and a scale factor that drift differ by the reading, which is measured.
+bool differ_in_form(const std::string& a, const std::string& b) {
+  const auto reads = [](const std::string& spec) {
+    const EffectFamily* const family = find_family(family_name(spec));
+    return family == nullptr ? std::string_view() : family->needs;
+  };
+  const auto quantity = [](const std::string& spec) {
+    const std::string_view name = family_name(spec);
+    return name.substr(0, name.rfind('.'));
+  };
+  return reads(a) == reads(b) && (reads(a).empty() || quantity(a) == quantity(b));
+}
+
+/// Smallest probability over the rivals that the winner's name is told right, were it true.
+double p_right(const Longer& run, const JointFit& fit, const JointOptions& options, const Candidate& winner,
+               const std::vector<Rival>& rivals) {
+  const auto design = design_of(run.table, fit, options);
+  if (!design) return 0;
+  const Residual residual(design->problem, design->state, 0);
+  std::vector<std::string> names;
+  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
+  if (Z.cols() == 0) return 0;
+  const Eigen::VectorXd sizes = sizes_of(winner, names);
+  const Eigen::VectorXd v =
+      Z.leftCols(sizes.size()) * sizes;  // what the site made here is not at another place
+  double lambda = v.squaredNorm();
+  for (const Rival& rival : rivals) {
+    const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
+    if (B.cols() == 0) continue;
+    const double told = outside(v, B);
+    lambda = std::min(lambda, rival.form_only ? beyond_form(told, v.squaredNorm()) : told);
+  }
+  return told_right(lambda);
+}
+
+std::vector<Rival> hardest(const Candidate& winner) {
+  std::vector<Rival> out;
+  for (const Rival& rival : winner.rivals)
+    if (rival.possible) out.push_back(rival);
+  if (out.empty() && !winner.rivals.empty()) {
+    out.push_back(*std::min_element(winner.rivals.begin(), winner.rivals.end(),
+                                    [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; }));
+  }
+  return out;
+}
+
+/// Of rivals that nobody has held against the winner yet.
+void find_form_only(const PoseTable& table, const JointFit& fit, const JointOptions& options,
+                    const Candidate& winner, std::vector<Rival>& rivals) {
+  const Longer run = as_it_is(table);
+  const auto design = design_of(table, fit, options);
+  if (!design) return;
+  const Residual residual(design->problem, design->state, 0);
+  std::vector<std::string> names;
+  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
+  if (Z.cols() == 0) return;
+  const Eigen::VectorXd v = Z * sizes_of(winner, names);
+  for (Rival& rival : rivals) {
+    if (rival.form_only || !differ_in_form(rival.spec, winner.spec)) continue;
+    const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
+    rival.form_only = B.cols() > 0 && outside(v, B) < (1 - kAlike) * v.squaredNorm();
+  }
+}
+
+}  // namespace
+
+NextMenu next_measurements(const PoseTable& table, const JointFit& fit, const JointOptions& options,
+                           const Candidate& winner) {
+  NextMenu out;
+  auto rivals = hardest(winner);
+  if (rivals.empty()) return out;
+  find_form_only(table, fit, options, winner, rivals);
+  out.p_right_before = p_right(as_it_is(table), fit, options, winner, rivals);
+  double worth = out.p_right_before + kWorth;
+  for (const Action& action : actions()) {
+    const double after = p_right(longer(table, action, fit), fit, options, winner, rivals);
+    if (after < worth) continue;
+    if (&action == actions().data()) worth = after + kBetter;
+    out.steps.push_back(
+        {.action = std::string(action.text),
+         .minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses),
+         .p_right_before = out.p_right_before,
+         .p_right_after = after});
+  }
+  std::stable_sort(
+      out.steps.begin(), out.steps.end(),
+      [](const NextMeasurement& a, const NextMeasurement& b) { return a.p_right_after > b.p_right_after; });
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/criticism/verdict/explain_report.h"
+
+/// The cheapest further measurement that would tell two effects apart.
+///
+/// An action is a set of poses that could be added to the run: some of its own attitudes again, under other
+/// conditions. Their rows of the fit need no readings, so the distance
+///     lambda_ab = |(I - P_b) z_a gamma_a|^2
+/// of the two effects with these poses, at the size that was found, is known before anything is measured, and
+/// with it the probability Phi(sqrt(lambda_ab)/2) that the right one of the two wins.
+namespace mgtd::calib {
+
+struct NextMenu {
+  double p_right_before{1};  ///< on the run as it is
+  std::vector<NextMeasurement> steps{};
+};
+
+/// For the winner of a round against its possible rivals (or its nearest one), best first; actions that gain
+/// nothing, or no more than more of the same, are left out. `model`: the effects of the fit that the round
+/// started from.
+[[nodiscard]] NextMenu next_measurements(const PoseTable& table, const JointFit& fit,
+                                         const JointOptions& options, const Candidate& winner);
+
+}  // namespace mgtd::calib

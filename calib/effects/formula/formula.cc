@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effects/formula/formula.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "calib/effects/formula/formula_effect.h"
+#include "calib/effects/laws/axis_effect.h"
+#include "proto/number.h"
+
+namespace mgtd::calib {
+namespace {
+
+using Source = FormulaName::Source;
+
+/// Parameters of a spec that are not the formula's own number.
+bool reserved(const std::string& key) {
+  return key == "level" || key == "unit" || key == "prior" || key == "expr";
+}
+
+Result<Level> level_of(const EffectSpec& spec) {
+  const std::string* text = spec.find("level");
+  if (text == nullptr || *text == "axis") return Level::axis;
+  if (*text == "platform") return Level::platform;
+  if (*text == "site") return Level::site;
+  return fail(ErrorCode::usage, fmt::format("{}: '{}' is no level for a formula", spec.name, *text),
+              "axis, platform or site");
+}
+
+Result<Where> place_of(const EffectSpec& spec, Level level) {
+  const bool site = level == Level::site;
+  if (!spec.where) return Where{.scale = site ? Where::Scale::own : Where::Scale::each_axis};
+  if (site != (spec.where->scale == Where::Scale::own)) {
+    return fail(ErrorCode::usage,
+                fmt::format("{} at level {} cannot be laid over '{}'", spec.name, to_string(level),
+                            site ? spec.where->text() : "site"),
+                site ? "leave the part after '@' out: it has one coefficient for x, y and z each"
+                     : "all, each-sensor, each-axis, a sensor (s3) or an axis (s3.z)");
+  }
+  return *spec.where;
+}
+
+/// The formula's own number: its name, and a value or a range.
+struct OwnNumber {
+  std::optional<std::string> name;
+  double value{0};
+};
+
+Result<OwnNumber> own_number(const EffectSpec& spec) {
+  OwnNumber out;
+  for (const auto& [key, text] : spec.parameters) {
+    if (reserved(key)) continue;
+    if (out.name)
+      return fail(ErrorCode::usage,
+                  fmt::format("{} has two numbers to look for, {} and {}", spec.name, *out.name, key),
+                  "fix one of them in the expression");
+    out.name = key;
+    const auto value = parse_number(text);
+    const auto range = open_scan(spec);
+    if (!value && !range) {
+      return fail(ErrorCode::usage,
+                  fmt::format("{}: {}={} is neither a number nor a range", spec.name, key, text),
+                  fmt::format("{}=12 fixes it, {}=2..120 looks for it", key, key));
+    }
+    out.value = value ? *value : scan_values(*range).at(scan_values(*range).size() / 2);
+  }
+  return out;
+}
+
+Result<void> used(const EffectSpec& spec, const Expression& expression, const OwnNumber& number) {
+  const auto& names = expression.names();
+  if (number.name && std::find(names.begin(), names.end(), *number.name) == names.end())
+    return fail(ErrorCode::usage, fmt::format("{}: {} is not in the expression", spec.name, *number.name),
+                "leave it out, or write it into the expression");
+  if (names.size() > kFormulaNames)
+    return fail(ErrorCode::usage,
+                fmt::format("{} names {} things, at most {}", spec.name, names.size(), kFormulaNames),
+                "make it of several formulas");
+  return {};
+}
+
+/// The values of one trial, and the term for given coefficients.
+struct Trial {
+  const Expression& expression;
+  const std::vector<FormulaName>& names;
+  std::array<double, kFormulaNames> values{};
+
+  double at(const std::array<double, kFormulaCoefficients>& c) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i].source == Source::coefficient) values[i] = c[names[i].index];
+    return expression({values.data(), names.size()});
+  }
+};
+
+/// Twice the coefficients is twice the term, no coefficients no term, for anything else held fixed.
+Result<void> linear(const EffectSpec& spec, const Expression& expression,
+                    const std::vector<FormulaName>& names, Level level) {
+  const auto first = std::find_if(names.begin(), names.end(),
+                                  [](const FormulaName& n) { return n.source == Source::coefficient; });
+  if (first == names.end()) return {};
+  constexpr double kRounding = 1e-9;
+  std::mt19937_64 rng(1);
+  std::uniform_real_distribution<double> around(0.5, 1.5);
+  for (int trial = 0; trial < 5; ++trial) {
+    Trial t{expression, names};
+    for (std::size_t i = 0; i < names.size(); ++i) t.values[i] = around(rng) * usual_size(names[i], level);
+    const double nothing = t.at({}), one = t.at({1, -2, 0.5}), other = t.at({0.7, 3, -1});
+    const double both = t.at({1.7, 1, -0.5}), size = std::abs(one) + std::abs(other);
+    if (!std::isfinite(size + nothing + both)) continue;
+    const std::size_t column = column_of(expression.text(), first->name);
+    if (std::abs(nothing) > kRounding * size)
+      return tl::unexpected(expression_error(
+          expression.text(), column, spec.name + " does not vanish when its coefficients are zero",
+          "multiply every part of it by a coefficient: what is always there belongs to the calibration"));
+    if (std::abs(both - one - other) > kRounding * size)
+      return tl::unexpected(expression_error(expression.text(), column,
+                                             spec.name + " is not linear in its coefficients",
+                                             "give a number that acts otherwise a name of its own, and a "
+                                             "range to look for it in (--scan tau=2:120)"));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<FormulaScan> open_scan(const EffectSpec& spec) {
+  if (!is_formula(spec)) return std::nullopt;
+  for (const auto& [key, text] : spec.parameters) {
+    const auto dots = text.find("..");
+    if (reserved(key) || dots == std::string::npos) continue;
+    const auto from = parse_number(std::string_view(text).substr(0, dots));
+    const auto to = parse_number(std::string_view(text).substr(dots + 2));
+    if (from && to && *to > *from) return FormulaScan{key, *from, *to};
+  }
+  return std::nullopt;
+}
+
+std::vector<double> scan_values(const FormulaScan& scan) {
+  constexpr int kSteps = 10;
+  constexpr double kWide = 5;  ///< beyond this ratio steps are equal ratios
+  const bool ratios = scan.from > 0 && scan.to / scan.from > kWide;
+  std::vector<double> out;
+  for (int i = 0; i < kSteps; ++i) {
+    const double share = i / (kSteps - 1.0);
+    out.push_back(ratios ? scan.from * std::pow(scan.to / scan.from, share)
+                         : scan.from + share * (scan.to - scan.from));
+  }
+  return out;
+}
+
+bool is_formula(const EffectSpec& spec) { return spec.find("expr") != nullptr; }
+
+Result<EffectPtr> make_formula(const EffectSpec& spec) {
+  const auto level = level_of(spec);
+  if (!level) return tl::unexpected(level.error());
+  const auto where = place_of(spec, *level);
+  if (!where) return tl::unexpected(where.error());
+  const auto prior = spec.number("prior", 0, 0, 1e9);
+  if (!prior) return tl::unexpected(prior.error());
+  auto expression = Expression::parse(*spec.find("expr"));
+  if (!expression) return tl::unexpected(expression.error());
+  const auto number = own_number(spec);
+  if (!number) return tl::unexpected(number.error());
+  if (const auto ok = used(spec, *expression, *number); !ok) return tl::unexpected(ok.error());
+  std::vector<FormulaName> names;
+  for (const std::string& name : expression->names())
+    names.push_back(formula_name(name, *level, number->name, number->value));
+  if (const auto ok = linear(spec, *expression, names, *level); !ok) return tl::unexpected(ok.error());
+  const std::string* unit = spec.find("unit");
+  EffectSpec own = spec;
+  own.where = *where;
+  return std::make_shared<const FormulaEffect>(std::move(own), *level, std::move(*expression),
+                                               std::move(names), unit != nullptr ? *unit : "nT", *prior);
+}
+
+Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
+  const auto effect = make_formula(spec);
+  if (!effect) return tl::unexpected(effect.error());
+  const auto& formula = static_cast<const FormulaEffect&>(**effect);
+  const std::vector<std::string> there = usable_columns(table);
+  for (const FormulaName& name : formula.names()) {
+    if (name.source != Source::column) continue;
+    if (std::find(there.begin(), there.end(), name.name) != there.end()) continue;
+    return tl::unexpected(expression_error(
+        *spec.find("expr"), column_of(*spec.find("expr"), name.name),
+        fmt::format("no pose has a '{}'", name.name),
+        fmt::format("columns: {}; coefficients k or k1 to k3; t_h, {}", fmt::join(there, ", "),
+                    formula.level() == Level::axis       ? "T_degC, u, ux, uy, uz"
+                    : formula.level() == Level::platform ? "T_degC, b, bx, by, bz, gx, gy, gz"
+                                                         : "px, py, pz")));
+  }
+  return {};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "calib/effects/effect_spec.h"
+#include "calib/effects/formula/expression.h"
+#include "calib/effects/formula/formula_names.h"
+#include "calib/effects/laws/axis_scale.h"
+
+/// A user's formula as a term of the model: see formula.h. The derivative by a coefficient is exact (the term
+/// with that coefficient one and the others zero); those by the field and the place are central differences
+/// at two steps, extrapolated to none.
+namespace mgtd::calib {
+
+inline constexpr std::size_t kFormulaNames = 24;
+
+class FormulaEffect final : public Effect {
+ public:
+  FormulaEffect(EffectSpec spec, Level level, Expression expression, std::vector<FormulaName> names,
+                const std::string& unit, double prior_sd);
+
+  [[nodiscard]] std::string_view name() const override { return spec_.name; }
+  [[nodiscard]] std::string spec() const override { return spec_.text(); }
+  [[nodiscard]] Level level() const override { return level_; }
+  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] std::span<const int> at(int sensor) const override {
+    return level_ == Level::site ? std::span<const int>(site_) : scale_.at(sensor);
+  }
+  [[nodiscard]] std::string_view missing(const Pose& pose) const override;
+  /// Also refuses poses at which the formula has no value.
+  [[nodiscard]] Result<void> check(const PoseTable& table) const override;
+  void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
+            std::span<double> out) const override;
+  void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,
+            std::span<Jet> out) const override;
+
+  [[nodiscard]] const std::vector<FormulaName>& names() const { return names_; }
+
+ private:
+  using Values = std::array<double, kFormulaNames>;
+  using Inputs = std::array<double, 6>;
+  using Own = std::array<double, 3>;  ///< coefficients of one axis
+
+  [[nodiscard]] int first(int sensor, int axis) const;
+  void set_conditions(const Conditions& at, int sensor, Values& values) const;
+  void set_inputs(const Inputs& in, int axis, Values& values) const;
+  [[nodiscard]] double value(Values& values, const Own& c) const;
+  [[nodiscard]] double slope(Values& values, const Inputs& in, int axis, std::size_t input,
+                             const Own& c) const;
+
+  EffectSpec spec_;
+  Level level_;
+  Expression expression_;
+  std::vector<FormulaName> names_;
+  std::size_t per_axis_{1};
+  bool implicit_{true};              ///< no coefficient in the text: the whole is multiplied by one
+  std::vector<std::size_t> inputs_;  ///< that it uses
+  bool uses_own_{false};
+  AxisScale scale_;
+  std::vector<Coefficient> coefficients_;
+  std::vector<int> site_;
+};
+
+}  // namespace mgtd::calib

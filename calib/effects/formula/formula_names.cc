@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effects/formula/formula_names.h"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+#include "calib/effects/effect_context.h"
+#include "calib/poses/pose_columns.h"
+
+namespace mgtd::calib {
+namespace {
+
+using Source = FormulaName::Source;
+
+/// Names of the inputs of a level, in its order; then that of the component along the axis itself.
+struct LevelNames {
+  std::vector<std::string_view> inputs;
+  std::string_view own;
+};
+
+LevelNames names_of(Level level) {
+  if (level == Level::platform) return {{"bx", "by", "bz", "gx", "gy", "gz"}, "b"};
+  if (level == Level::site) return {{"px", "py", "pz"}, ""};
+  return {{"ux", "uy", "uz"}, "u"};
+}
+
+/// k is the first, k1 .. k3 are numbered.
+std::optional<std::size_t> coefficient_index(std::string_view name) {
+  if (name == "k") return 0;
+  if (name.size() == 2 && name[0] == 'k' && name[1] >= '1' && name[1] <= '3')
+    return static_cast<std::size_t>(name[1] - '1');
+  return std::nullopt;
+}
+
+/// Readings are what a formula explains; it cannot be made of them.
+const PoseColumn* format_column(const std::string& name) {
+  const auto& all = pose_columns();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const PoseColumn& c) { return c.name == name && !c.required; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+double usual_size(const FormulaName& name, Level level) {
+  switch (name.source) {
+    case Source::number:
+      return name.number;
+    case Source::own:
+      return kReferenceField_nT / 2;
+    case Source::input:
+      return level == Level::site ? 0.2 : name.index < 3 ? kReferenceField_nT / 2 : 0.5;
+    case Source::temperature:
+      return kReferenceT_degC;
+    case Source::column:
+      return 10;
+    default:
+      return 1;
+  }
+}
+
+FormulaName formula_name(const std::string& name, Level level, const std::optional<std::string>& scanned,
+                         double value) {
+  FormulaName out{.name = name};
+  const LevelNames known = names_of(level);
+  if (scanned && name == *scanned) {
+    out.source = Source::number, out.number = value;
+  } else if (const auto index = coefficient_index(name)) {
+    out.source = Source::coefficient, out.index = *index;
+  } else if (name == "t_h") {
+    out.source = Source::hours;
+  } else if (name == "T_degC" && level != Level::site) {
+    out.source = Source::temperature;
+  } else if (!known.own.empty() && name == known.own) {
+    out.source = Source::own;
+  } else if (const auto at = std::find(known.inputs.begin(), known.inputs.end(), name);
+             at != known.inputs.end()) {
+    out.source = Source::input, out.index = static_cast<std::size_t>(at - known.inputs.begin());
+  } else if (const PoseColumn* column = format_column(name)) {
+    out.get = column->get;
+  } else {
+    out.get = [name](const Pose& pose) {
+      const auto found = pose.covariates.find(name);
+      return found == pose.covariates.end() ? std::nullopt : std::optional(found->second);
+    };
+  }
+  return out;
+}
+
+std::vector<std::string> usable_columns(const PoseTable& table) {
+  std::set<std::string> found;
+  for (const Pose& pose : table.poses) {
+    for (const PoseColumn& column : pose_columns()) {
+      if (!column.required && !column.name.ends_with("_nT") && column.get(pose)) found.insert(column.name);
+    }
+    if (pose.f_nT) found.insert("f_nT");
+    for (const auto& [name, value] : pose.covariates) found.insert(name);
+  }
+  return {found.begin(), found.end()};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <unordered_map>
+
+#include "calib/effects/laws/axis_nonlinearity.h"
+#include "calib/effects/laws/live_memory.h"
+#include "calib/effects/laws/run_memory.h"
+
+/// `axis.hysteresis`: the core remembers where the field came from. Play operator of width w over the whole
+/// run, started at p = 0:
+///
+///     p <- max(x - w, min(x + w, p)),   y += h (p - x)/w        x = v/F0, h in nT, w of F0
+///
+/// Follows the path of the table where the run kept it, else from dwell to dwell: a turn that overshoots both
+/// ends is then missed. Where the readings before a pose are not known (an effect that is not bound to the
+/// run) the term is left out. On a stream every sample moves p; where it began is known once each axis has
+/// swung by 2w, whatever it was.
+namespace mgtd::calib {
+
+/// The play at one pose before the pose's own field has moved it, by sensor and axis.
+using PlayState = std::array<Eigen::Vector3d, kSensors>;
+
+/// p after x.
+[[nodiscard]] inline double play(double p, double x, double w) { return std::max(x - w, std::min(x + w, p)); }
+/// By pose number.
+[[nodiscard]] std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>& run,
+                                                             double w);
+
+/// The play on a stream: the lowest and the highest it can be. Both end at one value after a swing of 2w.
+class LivePlay final : public LiveMemory {
+ public:
+  explicit LivePlay(double w) : w_(w) {}
+  [[nodiscard]] bool known(int sensor) const;
+  [[nodiscard]] double p(int sensor, int axis) const {
+    const auto i = static_cast<std::size_t>(sensor);
+    return (low_[i][axis] + high_[i][axis]) / 2;
+  }
+
+ protected:
+  void begin(double t_s, const SensorReadings& v_nT) override;
+  void step(double dt_s, const SensorReadings& v_nT) override;
+
+ private:
+  double w_;
+  PlayState low_, high_;
+};
+
+struct Hysteresis {
+  static constexpr std::string_view kName = "axis.hysteresis";
+  static constexpr int kPerAxis = 1;
+  static constexpr double kDefaultWidth = 0.1;
+  std::optional<double> w;
+  std::shared_ptr<const std::unordered_map<int, PlayState>> before{};
+  std::shared_ptr<const LivePlay> now{};  ///< on a stream
+
+  static AxisCoefficients coefficients() { return one_per_axis("nT", 1); }
+  [[nodiscard]] std::string_view missing(const Pose& pose, int sensor) const {
+    if (now) return now->known(sensor) ? "" : kNoMemory;
+    return before && before->contains(pose.number) ? "" : kNoMemory;
+  }
+  void parameters(EffectSpec& spec) const {
+    if (w) spec.set("w", *w);
+  }
+  [[nodiscard]] Result<Hysteresis> on_run(const EffectContext& context) const;
+  [[nodiscard]] std::pair<Hysteresis, std::shared_ptr<LiveMemory>> live() const;
+  template <class S>
+  S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
+    const double width = w.value_or(kDefaultWidth);
+    const double p =
+        now ? now->p(sensor, axis) : before->at(at.pose.number)[static_cast<std::size_t>(sensor)][axis];
+    const S behind = (S(p) - in_F0(v, axis)) * S(1 / width);
+    return behind > S(1.0) ? S(1.0) : behind < S(-1.0) ? S(-1.0) : behind;
+  }
+};
+
+}  // namespace mgtd::calib

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effects/laws/table_effects.h"
+
+namespace mgtd::calib {
+
+Result<void> Backlash::check(const PoseTable& table) const {
+  constexpr std::size_t kOneOf = 10;
+  std::size_t without = 0;
+  for (const Pose& pose : table.poses) {
+    if (!missing_angle(pose).empty()) return Effect::check(table);
+    without += pose.sense ? 0U : 1U;
+  }
+  return kOneOf * without <= table.poses.size() ? Result<void>{} : Effect::check(table);
+}
+
+}  // namespace mgtd::calib

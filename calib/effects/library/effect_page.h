@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calib/effects/library/effect_family.h"
+
+/// The library as an operator reads it.
+namespace mgtd::calib {
+
+/// One line for each effect, by level.
+[[nodiscard]] std::string effect_list();
+/// Everything that is known of one effect.
+[[nodiscard]] std::string effect_page(const EffectFamily& family);
+/// {"schema":"mgt.effects/1", "effects":[...]}, of all or of one.
+[[nodiscard]] nlohmann::json effects_json(std::span<const EffectFamily> families);
+
+}  // namespace mgtd::calib

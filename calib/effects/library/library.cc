@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/effects/library/library.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "calib/effects/formula/formula.h"
+#include "calib/effects/library/effect_family.h"
+
+namespace mgtd::calib {
+
+std::vector<std::string_view> effect_names() {
+  std::vector<std::string_view> names;
+  for (const EffectFamily& family : effect_families()) names.push_back(family.name);
+  return names;
+}
+
+Result<EffectPtr> make_effect(const EffectSpec& spec) {
+  if (is_formula(spec)) return make_formula(spec);
+  if (const EffectFamily* family = find_family(spec.name)) return family->from_spec(spec);
+  return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", spec.name),
+              fmt::format("known effects: {}", fmt::join(effect_names(), ", ")));
+}
+
+Result<EffectPtr> make_effect(std::string_view text) {
+  const auto spec = EffectSpec::parse(text);
+  if (!spec) return tl::unexpected(spec.error());
+  return make_effect(*spec);
+}
+
+Result<EffectPtr> make_effect(const EffectSpec& spec, const EffectContext& context) {
+  auto effect = make_effect(spec);
+  if (!effect) return effect;
+  auto bound = (*effect)->bound(context);
+  if (!bound) return tl::unexpected(bound.error());
+  return *bound ? *bound : *effect;
+}
+
+Result<std::vector<EffectPtr>> bound_to_run(const std::vector<EffectPtr>& effects,
+                                            const EffectContext& context) {
+  std::vector<EffectPtr> out;
+  for (const EffectPtr& effect : effects) {
+    auto bound = effect->bound(context);
+    if (!bound) return tl::unexpected(bound.error());
+    out.push_back(*bound ? std::move(*bound) : effect);
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

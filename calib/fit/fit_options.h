@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include "calib/effects/effect.h"
+#include "proto/units.h"
+
+/// What a fit is asked for, and what it is told beside the poses.
+namespace mgtd::calib {
+
+enum class Method { simplified, two_step, joint };
+[[nodiscard]] std::string_view name(Method method);
+[[nodiscard]] std::optional<Method> method_from(std::string_view name);
+
+struct FitOptions {
+  Method method{Method::joint};
+  std::optional<double> field_nT;  ///< total field of every pose that has no f_nT
+  double field_sd_nT{0};           ///< its standard uncertainty, common to those poses
+  /// Direction of the field in the platform frame when all table angles are zero: inclination positive
+  /// towards +Z, declination from X towards Y. Not given: both are estimated (gauge: see Calibration::gauge).
+  std::optional<double> inclination_rad, declination_rad;
+  double baseline_m{0.4};
+  double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
+  std::uint64_t seed{1};             ///< of the draws that judge a fit (criticism); no method draws
+  std::vector<EffectPtr> effects;    ///< beside the twelve parameters a sensor; joint only
+  /// Asked before every step of a solver: a fit that is stopped is refused within that time.
+  std::stop_token stop{};
+};
+
+}  // namespace mgtd::calib

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/accuracy_so_far.h"
+
+#include <algorithm>
+
+#include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/tensor_uncertainty.h"
+
+namespace mgtd::calib {
+
+double AccuracySoFar::worst_nT_per_m() const {
+  const Gradient& g = tensor_sd_nT_per_m;
+  return std::max({g.xx, g.yy, g.zz, g.xy, g.xz, g.yz});
+}
+
+Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,
+                                      const JointState* near) {
+  const JointOptions joint = joint_options(options);
+  Result<JointFit> fit = near != nullptr ? fit_joint(table, joint, *near) : fit_joint(table, joint);
+  // A start that lies in another gauge, or was spoilt by a bad pose, is no reason to know nothing.
+  if (!fit && near != nullptr) fit = fit_joint(table, joint);
+  if (!fit) return tl::unexpected(fit.error());
+  const double f_nT = fit->problem.common_field ? fit->state.f_nT : start_field_nT(fit->problem, joint);
+  return AccuracySoFar{
+      static_cast<int>(fit->problem.poses.size()),
+      calibration_tensor_sd(fit->state.sensors, fit->problem.geometry, fit->covariance, f_nT),
+      std::move(fit->state)};
+}
+
+}  // namespace mgtd::calib

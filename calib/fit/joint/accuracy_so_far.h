@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/fit_report.h"
+#include "calib/fit/joint/joint_fit.h"
+
+/// During a run: what a calibration from the poses measured so far would be worth.
+namespace mgtd::calib {
+
+struct AccuracySoFar {
+  int poses{0};
+  Gradient tensor_sd_nT_per_m;  ///< by the calibration alone, rms over all attitudes
+  JointState state;             ///< where to start when the next pose is there
+
+  /// The component that is known worst.
+  [[nodiscard]] double worst_nT_per_m() const;
+};
+
+/// Joint fit from `near` (null: from nothing). Refuses while the poses do not determine the parameters: too
+/// few, or about one axis so far.
+[[nodiscard]] Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,
+                                                    const JointState* near);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/agreement.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kMadToSd = 1.4826;
+/// Noise with heavy tails (Student's t with three degrees of freedom) reaches 1.6, a smooth law that the
+/// model misses 2.
+constexpr double kMaxTails = 3;
+constexpr double kMaxHeldOut = 3;
+/// Of fewer poses a tenth left out may leave the others too little to be predicted with.
+constexpr int kEnoughPoses = 40;
+constexpr double kMaxMoved = 1;
+/// In variance, of what the noise of the pose does on average: below, it is the design and not the reading.
+constexpr double kByNoise = 16;
+
+/// With S and g of all poses and S_k, g_k of one, the fit without it moves by (S - S_k)^-1 (g - g_k).
+void influence_of_poses(const JointFit& fit, Agreement& out) {
+  const Eigen::MatrixXd S = reduce(fit.problem, fit.state, 0).S;
+  JointProblem alone = fit.problem;
+  alone.priors.clear();
+  alone.known_inclination_rad.reset(), alone.known_declination_rad.reset();
+  alone.poses.resize(1);
+  JointState at = fit.state;
+  at.nuisances.resize(1);
+  for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
+    alone.poses.front() = fit.problem.poses[k];
+    at.nuisances.front() = fit.state.nuisances[k];
+    const Reduced own = reduce(alone, at, 0);
+    Eigen::MatrixXd others = S - own.S;
+    for (Eigen::Index i = 0; i < S.rows(); ++i)
+      if (S(i, i) == 1 && own.S(i, i) == 1) others(i, i) = 1;  // held slots stay held
+    const Eigen::VectorXd d = others.diagonal().cwiseSqrt().cwiseInverse();
+    if (!d.allFinite()) continue;
+    const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * others * d.asDiagonal());
+    if (llt.info() != Eigen::Success) continue;
+    const Eigen::VectorXd g = d.cwiseProduct(own.g) * (fit.worse / fit.spread);
+    const double moved = g.dot(llt.solve(g));
+    const double by_noise = llt.solve(d.asDiagonal() * own.S * d.asDiagonal()).trace();
+    const double size = std::sqrt(moved / static_cast<double>(S.rows()));
+    if (moved > kByNoise * by_noise && size > out.moved)
+      out.moved = size, out.pose = fit.problem.poses[k].pose->number;
+  }
+}
+
+}  // namespace
+
+bool Scatter::few_far_off() const { return residual_nT > kMaxTails * typical_nT; }
+
+Scatter scatter_of(const JointFit& fit) {
+  Scatter out;
+  const PoseResiduals residuals = pose_residuals(fit.problem, fit.state);
+  double squares = 0, count = 0, typical = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> misfits;
+    for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
+      const double t = residuals.t(c, static_cast<Eigen::Index>(k));
+      if (t > 0) misfits.push_back(t / fit.problem.poses[k].weight[c]);
+    }
+    if (misfits.empty()) continue;
+    for (const double x : misfits) squares += x * x, ++count;
+    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
+    std::nth_element(misfits.begin(), middle, misfits.end());
+    typical += std::pow(kMadToSd * *middle, 2) / kChannels;
+  }
+  out.residual_nT = std::sqrt(squares / std::max(1.0, count));
+  out.typical_nT = std::sqrt(typical);
+  return out;
+}
+
+Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT) {
+  Agreement out;
+  out.poses = static_cast<int>(fit.problem.poses.size());
+  out.fitted_nT = fitted_nT;
+  out.held_out_nT = held_out_nT;
+  out.scatter = scatter_of(fit);
+  influence_of_poses(fit, out);
+  return out;
+}
+
+Check agreement_check(const Agreement& a) {
+  const bool tails = a.scatter.few_far_off();
+  const bool unseen = a.poses >= kEnoughPoses && a.held_out_nT && *a.held_out_nT > kMaxHeldOut * a.fitted_nT;
+  const bool moved = a.moved > kMaxMoved;
+  std::string measured = fmt::format("residual {:.3g} nT rms, {:.3g} nT by the median", a.scatter.residual_nT,
+                                     a.scatter.typical_nT);
+  if (a.held_out_nT) measured += fmt::format("; {:.3g} nT on poses left out", *a.held_out_nT);
+  measured += a.pose > 0 ? fmt::format(
+                               "; without pose {} the calibration moves by {:.2g} of its standard "
+                               "deviations",
+                               a.pose, a.moved)
+                         : std::string("; no pose moves it by more than its noise");
+  return {"agreement", !tails && !unseen && !moved, std::move(measured),
+          fmt::format("rms {} times the median's, poses left out {} times, one pose {} standard deviation",
+                      kMaxTails, kMaxHeldOut, kMaxMoved),
+          moved ? fmt::format("the calibration rests on pose {}: measure it again", a.pose)
+          : tails
+              ? std::string("a few readings are far off and bend the others: look at the largest residuals")
+              : std::string("poses that were not fitted are missed: look for a change during the run, and "
+                            "measure more attitudes")};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/cross_validation.h"
+
+#include <Eigen/Cholesky>
+
+#include "calib/fit/joint/pose_residuals.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kFolds = 10;
+
+struct Fold {
+  JointProblem problem;
+  JointState state;  ///< of its own poses
+  Reduced share;     ///< of the normal equations, priors not in it
+};
+
+Fold fold_of(const JointFit& fit, std::size_t k) {
+  const std::size_t n = fit.problem.poses.size(), from = k * n / kFolds, to = (k + 1) * n / kFolds;
+  const auto at = [](auto& x, std::size_t i) { return x.begin() + static_cast<std::ptrdiff_t>(i); };
+  Fold out{.problem = fit.problem, .state = fit.state, .share = {}};
+  out.problem.poses.assign(at(fit.problem.poses, from), at(fit.problem.poses, to));
+  out.problem.priors.clear();
+  out.problem.known_inclination_rad.reset(), out.problem.known_declination_rad.reset();
+  out.state.nuisances.assign(at(fit.state.nuisances, from), at(fit.state.nuisances, to));
+  out.share = reduce(out.problem, out.state, 0);
+  return out;
+}
+
+}  // namespace
+
+std::optional<double> left_out_nT(const JointFit& fit) {
+  const Reduced all = reduce(fit.problem, fit.state, 0);
+  PoseResiduals sums;
+  for (std::size_t k = 0; k < kFolds; ++k) {
+    Fold fold = fold_of(fit, k);
+    // Slots that nothing observes are held by a unit in both: they stay held.
+    Eigen::MatrixXd S = all.S - fold.share.S;
+    for (Eigen::Index i = 0; i < S.rows(); ++i)
+      if (all.S(i, i) == 1 && fold.share.S(i, i) == 1) S(i, i) = 1;
+    const Eigen::VectorXd d = S.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * S * d.asDiagonal());
+    if (!d.allFinite() || llt.info() != Eigen::Success) return std::nullopt;
+    JointState moved = fold.state.moved(d.cwiseProduct(llt.solve(d.cwiseProduct(all.g - fold.share.g))));
+    refit_nuisances(fold.problem, moved);
+    const PoseResiduals more = pose_residuals(fold.problem, moved);
+    sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;
+  }
+  return sums.readings > 0 ? std::optional(sums.unseen_nT()) : std::nullopt;
+}
+
+}  // namespace mgtd::calib

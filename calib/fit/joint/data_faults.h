@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+
+#include "calib/fit/joint/joint_problem.h"
+#include "calib/sensor/channels.h"
+#include "proto/error.h"
+
+/// Faults of the data that no fit mends and that a fit would only meet as something else: asked for before
+/// one is tried. All errors are `bad_input`. Medians over the poses decide, so that single gross readings do
+/// not.
+namespace mgtd::calib {
+
+/// Readings and total field in units a thousand (uT, pT) or a million (mT) times apart. `f_nT`: the field
+/// where the poses have none of their own. Where no field is known at all, it is found from the readings and
+/// nothing can be compared; readings of some tens are then taken for uT, since no site has a field of so few
+/// nT.
+[[nodiscard]] Result<void> check_units(const JointProblem& problem, double f_nT);
+
+/// A sensor whose readings are those of another one, digit for digit, in nearly every pose.
+[[nodiscard]] Result<void> check_copies(const JointProblem& problem);
+
+/// Sensors that did not turn together: no fixed turn brings the directions in which they saw the field
+/// together, pose by pose. `b_nT`: of each sensor, corrected for itself, in its own frame; `to_first` turns
+/// them into that of sensor 1.
+[[nodiscard]] Result<void> check_turned_together(
+    const std::array<Eigen::Matrix3Xd, static_cast<std::size_t>(kSensors)>& b_nT,
+    const std::array<Eigen::Matrix3d, static_cast<std::size_t>(kSensors)>& to_first);
+
+}  // namespace mgtd::calib

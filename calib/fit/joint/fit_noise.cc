@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/fit_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr double kSettled = 0.01;  ///< relative change of a noise estimate that no longer matters
+const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
+
+/// Changes of an estimate that its own uncertainty makes meaningless: a tenth of it.
+double settled(double freedom) { return std::max(kSettled, 0.1 / std::sqrt(2 * std::max(freedom, 1.0))); }
+
+}  // namespace
+
+void FitNoise::apply(JointProblem& problem) const {
+  if (sample_nT) {
+    weight_by_samples(problem, *sample_nT * worse);
+    add_variance(problem, more_nT2 * worse * worse);
+  } else {
+    weight_by_pose(problem, pose_nT);
+  }
+  for (JointPose& pose : problem.poses) {
+    // Loosened attitudes stay loose.
+    if (pose.has_angles && pose.attitude_weight > 1 / kTableCeiling_rad)
+      pose.attitude_weight = 1 / table_sd_rad;
+  }
+}
+
+bool FitNoise::update(const PoseResiduals& residuals, const JointProblem& problem) {
+  bool moved = false;
+  if (!sample_nT) {
+    pose_nT = pose_nT.cwiseProduct(residuals.noise_ratio).cwiseMax(kNoiseFloor_nT);
+    moved = (residuals.noise_ratio.array() - 1).abs().maxCoeff() > kSettled &&
+            pose_nT.maxCoeff() > kNoiseFloor_nT;
+  }
+  if (problem.has_angles) {
+    const double before = table_sd_rad;
+    table_sd_rad = std::clamp(before * residuals.table_ratio, kTableFloor_rad, kTableCeiling_rad);
+    moved = moved || std::abs(table_sd_rad / before - 1) > settled(residuals.attitude_freedom);
+  }
+  return moved;
+}
+
+void settle(FitNoise& noise, JointProblem& problem, JointState& state) {
+  constexpr int kMost = 3;
+  for (int i = 0; i < kMost; ++i) {
+    noise.apply(problem);
+    refit_nuisances(problem, state);
+    if (!noise.update(pose_residuals(problem, state), problem)) return;
+  }
+}
+
+AxisNoise assumed_noise(const JointProblem& problem) {
+  Eigen::Array<double, kChannels, 1> squares = Eigen::Array<double, kChannels, 1>::Zero();
+  Eigen::Array<double, kChannels, 1> count = squares;
+  for (const JointPose& pose : problem.poses) {
+    for (int c = 0; c < kChannels; ++c) {
+      if (!(pose.weight[c] > 0)) continue;
+      squares[c] += 1 / (pose.weight[c] * pose.weight[c]);
+      ++count[c];
+    }
+  }
+  return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(kSensors, 3);
+}
+
+}  // namespace mgtd::calib

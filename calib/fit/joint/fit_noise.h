@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "calib/fit/joint/joint_setup.h"
+#include "calib/fit/joint/joint_solver.h"
+#include "calib/fit/joint/pose_residuals.h"
+
+/// The noise that weighs a joint fit, estimated with it: of the readings from the spreads within the dwells,
+/// else from the residuals; of the table's angles always from what they had to be corrected by.
+namespace mgtd::calib {
+
+/// Estimates do not go below: 0.1 pT.
+inline constexpr double kNoiseFloor_nT = 1e-4;
+
+struct FitNoise {
+  AxisNoise pose_nT{AxisNoise::Constant(kStartNoise_nT)};  ///< of a pose mean, where no dwell tells it
+  std::optional<AxisNoise> sample_nT{};                    ///< of a sample, where the dwells do
+  double table_sd_rad{0};
+  double worse{1};  ///< JointOptions::worse
+  /// Beside the dwells' own, nT^2: of the digitiser's step, and what JointOptions adds.
+  Channels more_nT2{Channels::Zero()};
+
+  /// Weighs the poses; what was left out or loosened has to be left out or loosened again.
+  void apply(JointProblem& problem) const;
+  /// Estimates anew from the residuals of a fit; returns whether anything moved enough to fit again.
+  bool update(const PoseResiduals& residuals, const JointProblem& problem);
+};
+
+/// Weighs, refits the nuisances and estimates in turn while the fixed block stays: a fraction of the cost of
+/// a fit for each.
+void settle(FitNoise& noise, JointProblem& problem, JointState& state);
+
+/// Noise of a pose mean as it was weighted, rms over the poses.
+[[nodiscard]] AxisNoise assumed_noise(const JointProblem& problem);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/identifiability.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/fit/joint/joint_solver.h"
+#include "calib/sensor/sensor_equations.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kMaxWeak = 6, kMaxAdd = 6;
+constexpr double kNamedShare = 0.8;  ///< of a direction's square that its description must cover
+
+/// nT of corrected field per unit of each slot.
+Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
+  Eigen::VectorXd d = Eigen::VectorXd::Constant(problem.fixed(), f_nT);
+  for (int i = 0; i < kSensors; ++i) d.segment<3>(kSensorParameters * i + ix).setOnes();
+  d[kFieldSlot] = 1;
+  int slot = kEffectSlot;
+  for (const EffectPtr& effect : problem.effects) {
+    // An effect of its typical size counts as ten nanotesla: what makes it worth a place in the model.
+    for (const Coefficient& c : effect->coefficients()) d[slot++] = 10 / c.typical;
+  }
+  return d;
+}
+
+/// Orthonormal basis of the common small rotations of all four sensors, nT units, with the site direction
+/// left free.
+Eigen::MatrixXd common_rotation(const JointProblem& problem, const Eigen::VectorXd& d) {
+  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(problem.fixed(), 5);
+  for (int i = 0; i < kSensors; ++i) {
+    for (int j = 0; j < 3; ++j) q(kSensorParameters * i + alpha + j, j) = d[alpha];
+  }
+  q(kSiteSlot, 3) = q(kSiteSlot + 1, 4) = 1;
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(q).householderQ() *
+         Eigen::MatrixXd::Identity(problem.fixed(), 5);
+}
+
+/// What a slot is called: sensor by sensor for a parameter's index alone, `all` for the four together.
+std::string slot_name(const JointProblem& problem, int slot, bool all) {
+  static constexpr std::array<const char*, kSensorParameters> kWords{
+      "angle theta (x-y)", "angle phi (x-z)", "angle psi (y-z)", "scale x",    "scale y",   "scale z",
+      "offset x",          "offset y",        "offset z",        "tilt alpha", "tilt beta", "turn gamma"};
+  if (slot < kSensorBlock) {
+    const char* word = kWords[static_cast<std::size_t>(slot % kSensorParameters)];
+    return all ? fmt::format("{} of all sensors", word)
+               : fmt::format("s{} {}", slot / kSensorParameters + 1, word);
+  }
+  if (slot < kFieldSlot) return "direction of the site's field";
+  if (slot == kFieldSlot) return "strength of the field";
+  int at = kEffectSlot;
+  for (const EffectPtr& effect : problem.effects) {
+    for (const Coefficient& c : effect->coefficients()) {
+      if (at++ == slot) return fmt::format("{} {}", effect->name(), c.name);
+    }
+  }
+  return {};
+}
+
+struct Part {
+  std::string name;
+  double share;
+};
+
+/// A direction by parameters: one that lies in a single sensor keeps its sensor, others are named for all
+/// four.
+std::vector<Part> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
+  std::vector<Part> out;
+  for (int p = 0; p < kSensorParameters; ++p) {
+    Eigen::Vector4d share;
+    for (int i = 0; i < kSensors; ++i) share[i] = v[kSensorParameters * i + p] * v[kSensorParameters * i + p];
+    Eigen::Index most = 0;
+    const bool one = share.maxCoeff(&most) > kNamedShare * share.sum();
+    out.push_back({slot_name(problem, kSensorParameters * static_cast<int>(most) + p, !one), share.sum()});
+  }
+  for (int slot = kSensorBlock; slot < v.size(); ++slot)
+    out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
+  std::sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.share > b.share; });
+  return out;
+}
+
+/// The largest parts of a direction, until they make up most of it.
+std::string describe(const JointProblem& problem, const Eigen::VectorXd& v) {
+  constexpr std::size_t kMaxNames = 4;
+  std::string text;
+  double covered = 0;
+  const std::vector<Part> all = parts(problem, v);
+  for (std::size_t j = 0; j < kMaxNames && covered < kNamedShare; ++j) {
+    text += (text.empty() ? "" : " with ") + all[j].name;
+    covered += all[j].share;
+  }
+  return covered < kNamedShare ? text + " and others" : text;
+}
+
+/// Mean direction of the field in the platform frame and how far it spreads, in degrees.
+std::string coverage_text(const JointProblem& problem, const JointState& state) {
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  std::vector<Eigen::Vector3d> directions;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < kSensors; ++i)
+      b += state.sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i)));
+    directions.push_back(b.normalized());
+  }
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& b : directions) mean += b / static_cast<double>(directions.size());
+  for (const Eigen::Vector3d& b : directions) scatter += (b - mean) * (b - mean).transpose();
+  Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  if (axis.dot(mean) < 0) axis = -axis;
+  double low = 180, high = 0;
+  for (const Eigen::Vector3d& b : directions) {
+    const double angle = to_deg(std::acos(std::clamp(b.dot(axis), -1.0, 1.0)));
+    low = std::min(low, angle);
+    high = std::max(high, angle);
+  }
+  Eigen::Index nearest = 0;
+  const double along = axis.cwiseAbs().maxCoeff(&nearest);
+  const std::string name = fmt::format("{}{}", axis[nearest] < 0 ? '-' : '+', "XYZ"[nearest]);
+  return fmt::format(
+      "seen from the rig the field stays between {:.0f} and {:.0f} deg from platform {}{}", low, high, name,
+      along > 0.95 ? "" : fmt::format(" (axis {:.2f}, {:.2f}, {:.2f})", axis[0], axis[1], axis[2]));
+}
+
+/// Greedy: each time the attitude that takes most variance out of the weak directions.
+std::vector<TableAngles> best_additions(const JointProblem& problem, const JointState& state,
+                                        const Eigen::MatrixXd& S, const Eigen::MatrixXd& weak,
+                                        const Eigen::VectorXd& d, double f_nT,
+                                        const std::vector<TableAngles>& candidates) {
+  // Directions without any information would be infinite; a trace of it makes them comparable.
+  Eigen::MatrixXd information = d.cwiseInverse().asDiagonal() * S * d.cwiseInverse().asDiagonal();
+  information.diagonal().array() += 1e-12 * information.diagonal().maxCoeff();
+  std::vector<Eigen::MatrixXd> offers;
+  for (const TableAngles& angles : candidates) {
+    offers.push_back(d.cwiseInverse().asDiagonal() * information_of(problem, state, angles, f_nT) *
+                     d.cwiseInverse().asDiagonal());
+  }
+  std::vector<TableAngles> out;
+  while (!offers.empty() && static_cast<int>(out.size()) < kMaxAdd) {
+    const Eigen::MatrixXd x = information.ldlt().solve(weak);  // C w: rate of the variances with information
+    std::size_t best = 0;
+    double best_gain = -1;
+    for (std::size_t c = 0; c < offers.size(); ++c) {
+      const double gain = (x.transpose() * offers[c] * x).trace();
+      if (gain > best_gain) {
+        best_gain = gain;
+        best = c;
+      }
+    }
+    information += offers[best];
+    out.push_back(candidates[best]);
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<TableAngles>& candidate_attitudes() {
+  static const std::vector<TableAngles> attitudes = [] {
+    std::vector<TableAngles> out;
+    for (int pitch = -90; pitch <= 90; pitch += 45) {
+      for (int roll = -135; roll <= 180; roll += 45) {
+        for (int azimuth = 0; azimuth < 360; azimuth += 45)
+          out.push_back({to_rad(azimuth), to_rad(pitch), to_rad(roll)});
+      }
+    }
+    return out;
+  }();
+  return attitudes;
+}
+
+std::string to_text(const TableAngles& a) {
+  return fmt::format("azimuth {:.0f}, pitch {:.0f}, roll {:.0f} deg", to_deg(a.azimuth_rad),
+                     to_deg(a.pitch_rad), to_deg(a.roll_rad));
+}
+
+Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& state,
+                               const TableAngles& angles, double f_nT) {
+  JointProblem one;
+  one.geometry = problem.geometry;
+  one.effects = problem.effects;
+  one.common_field = problem.common_field;
+  one.has_angles = problem.has_angles;
+  JointPose pose = problem.poses.front();
+  Pose recorded = *pose.pose;
+  recorded.azimuth_rad = angles.azimuth_rad;
+  recorded.pitch_rad = angles.pitch_rad;
+  recorded.roll_rad = angles.roll_rad;
+  pose.pose = &recorded;
+  pose.T = table_rotation(angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0.0, 0.0);
+  pose.has_angles = problem.has_angles;
+  pose.weight.setConstant(problem.poses.front().weight.maxCoeff());
+  one.poses = {pose};
+  JointState at = state;
+  at.nuisances = {Nuisance(0, 0, 0, f_nT)};
+  if (!pose.has_angles) at.nuisances.front().head<3>() = pose.T * state.direction * f_nT;
+  Eigen::MatrixXd S = reduce(one, at, 0).S;
+  // What reduce holds because nothing observes it is no information.
+  if (!problem.common_field) S(kFieldSlot, kFieldSlot) = 0;
+  if (!problem.has_angles) S(kSiteSlot, kSiteSlot) = S(kSiteSlot + 1, kSiteSlot + 1) = 0;
+  return S;
+}
+
+Identifiability identifiability(const JointProblem& problem, const JointState& state,
+                                const Eigen::MatrixXd& S, double f_nT,
+                                const std::vector<TableAngles>& candidates) {
+  const Eigen::VectorXd d = nanotesla(problem, f_nT);
+  Eigen::MatrixXd information = d.cwiseInverse().asDiagonal() * S * d.cwiseInverse().asDiagonal();
+  // The common rotation is made known, so that only what matters for the tensor can be weak.
+  const Eigen::MatrixXd rotation = common_rotation(problem, d);
+  information += information.diagonal().maxCoeff() * rotation * rotation.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  Identifiability out;
+  const double rounding = 1e-14 * eigen.eigenvalues().tail<1>()[0];
+  const double least = eigen.eigenvalues()[0];
+  out.condition = least > rounding ? std::sqrt(eigen.eigenvalues().tail<1>()[0] / least)
+                                   : std::numeric_limits<double>::infinity();
+  for (int j = 0; j < kMaxWeak; ++j) {
+    const double lambda = eigen.eigenvalues()[j];
+    const double sd = lambda > rounding ? 1 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
+    if (sd < kWeak_nT) break;
+    out.weak.push_back({.sd_nT = sd,
+                        .what = describe(problem, eigen.eigenvectors().col(j)),
+                        .direction = eigen.eigenvectors().col(j)});
+  }
+  out.coverage = coverage_text(problem, state);
+  if (out.weak.empty()) return out;
+  out.add = best_additions(problem, state, S,
+                           eigen.eigenvectors().leftCols(static_cast<Eigen::Index>(out.weak.size())), d, f_nT,
+                           candidates);
+  return out;
+}
+
+}  // namespace mgtd::calib

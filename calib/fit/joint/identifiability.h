@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/fit/joint/joint_problem.h"
+
+/// What the poses do not tell: combinations of parameters with large uncertainty, in the operator's words.
+///
+/// The information matrix is put into nanotesla at the mean field (offsets as they are, scale factors and
+/// angles times F), the common rotation is taken out (it turns the platform frame and leaves the tensor of a
+/// uniform field alone), and the eigenvectors with the least information are described.
+namespace mgtd::calib {
+
+struct WeakDirection {
+  double sd_nT{0};            ///< of the corrected field along it; infinite when nothing is known
+  std::string what;           ///< "s1 offset z with s1 scale z"
+  Eigen::VectorXd direction;  ///< unit vector in the fixed block, nT units
+};
+
+/// Above this a direction is worth naming: 1e-3 of 50 000 nT, which is 125 nT/m across a 0.4 m cross.
+inline constexpr double kWeak_nT = 50;
+/// Above this the calibration has no meaning: half a percent of the field, more than a fluxgate as bought.
+inline constexpr double kUnusable = 0.005;
+
+struct Identifiability {
+  std::vector<WeakDirection> weak;  ///< weakest first, those above kWeak_nT
+  double condition{1};              ///< of what the rig's parameters do to the field; infinite when singular
+  std::string coverage;  ///< where the field went in the platform frame, in degrees; says what is missing
+  std::vector<TableAngles> add;  ///< poses that would help most, best first; empty when nothing is weak
+  [[nodiscard]] double worst_nT() const { return weak.empty() ? 0 : weak.front().sd_nT; }
+};
+
+/// Attitudes over the whole sphere that a two- or three-axis table can take, none twice.
+[[nodiscard]] const std::vector<TableAngles>& candidate_attitudes();
+
+/// `candidates` are the attitudes that may be proposed.
+[[nodiscard]] Identifiability identifiability(
+    const JointProblem& problem, const JointState& state, const Eigen::MatrixXd& S, double f_nT,
+    const std::vector<TableAngles>& candidates = candidate_attitudes());
+
+/// Information about the fixed block that one more pose at these table angles would bring, with the noise,
+/// the scalar reference and the table of the problem's first pose.
+[[nodiscard]] Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& state,
+                                             const TableAngles& angles, double f_nT);
+
+/// "azimuth 90, pitch -45, roll 0 deg"
+[[nodiscard]] std::string to_text(const TableAngles& angles);
+
+}  // namespace mgtd::calib

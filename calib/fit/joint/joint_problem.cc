@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/joint_problem.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "calib/fit/orientation.h"
+#include "calib/sensor/sensor_equations.h"
+
+namespace mgtd::calib {
+
+int JointProblem::coefficients() const {
+  std::size_t sum = 0;
+  for (const EffectPtr& effect : effects) sum += effect->coefficients().size();
+  return static_cast<int>(sum);
+}
+
+Eigen::VectorXd JointState::fixed() const {
+  Eigen::VectorXd x(kEffectSlot + coefficients.size());
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    x.segment<kSensorParameters>(static_cast<int>(i) * kSensorParameters) = sensors[i].parameters();
+  }
+  x.segment<2>(kSiteSlot).setZero();
+  x[kFieldSlot] = f_nT;
+  x.tail(coefficients.size()) = coefficients;
+  return x;
+}
+
+namespace {
+
+/// The sensor's angles after a step, to first order the sum. The step is taken on the rotation group, so that
+/// a turn common to all sensors stays one however long it is: poses whose attitude is weakly known follow it
+/// at no cost.
+void turn(const SensorModel& from, const Eigen::Vector3d& step, SensorModel& to) {
+  const Eigen::Matrix3d z = rotation_z(from.gamma_rad), zy = z * rotation_y(from.beta_rad);
+  const Vector3<double> w = step[2] * Eigen::Vector3d::UnitZ() + step[1] * z.col(1) + step[0] * zy.col(0);
+  const Eigen::Vector3d angles = angles_of(turn_by<double>(w) * zy * rotation_x(from.alpha_rad));
+  to.alpha_rad = angles[0], to.beta_rad = angles[1], to.gamma_rad = angles[2];
+}
+
+}  // namespace
+
+JointState JointState::moved(const Eigen::VectorXd& step) const {
+  JointState next = *this;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const auto part = step.segment<kSensorParameters>(static_cast<int>(i) * kSensorParameters);
+    next.sensors[i] = SensorModel::from_parameters(sensors[i].parameters() + part, sensors[i].mounting);
+    turn(sensors[i], part.tail<3>(), next.sensors[i]);
+  }
+  next.direction = (direction + tangents(direction) * step.segment<2>(kSiteSlot)).normalized();
+  next.f_nT += step[kFieldSlot];
+  next.coefficients += step.tail(coefficients.size());
+  return next;
+}
+
+double inclination_of(const Eigen::Vector3d& n) { return std::atan2(n[2], std::hypot(n[0], n[1])); }
+double declination_of(const Eigen::Vector3d& n) { return std::atan2(n[1], n[0]); }
+
+Eigen::Vector3d direction_of(double inclination_rad, double declination_rad) {
+  const double h = std::cos(inclination_rad);
+  return {h * std::cos(declination_rad), h * std::sin(declination_rad), std::sin(inclination_rad)};
+}
+
+Eigen::Matrix2d inclination_declination_rows(const Eigen::Vector3d& n) {
+  const double h = std::hypot(n[0], n[1]);
+  Eigen::Matrix<double, 2, 3> rows;
+  rows << -n[2] * n[0] / h, -n[2] * n[1] / h, h, -n[1] / (h * h), n[0] / (h * h), 0;
+  return rows * tangents(n);
+}
+
+Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n) {
+  Eigen::Index smallest = 0;
+  n.cwiseAbs().minCoeff(&smallest);
+  Eigen::Matrix<double, 3, 2> t;
+  t.col(0) = n.cross(Eigen::Vector3d::Unit(smallest)).normalized();
+  t.col(1) = n.cross(t.col(0));
+  return t;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "calib/calibration/tensor.h"
+#include "calib/effects/library/library.h"
+#include "calib/sensor/geometry.h"
+#include "calib/sensor/sensor_model.h"
+#include "proto/pose.h"
+#include "proto/units.h"
+
+/// What the joint fit observes and what it solves for (method, section 5).
+///
+/// Observations of pose k, each with its own standard deviation:
+///     12 readings  y_i = axis(C_i A_i R_i' b_i) + I_i,   b_i = platform(R_k B(R_k' r_i))
+///      1 scalar    F_k = |B(0)|; without a scalar reference F_k = F, one unknown for all poses
+///      3 attitude  R_k = turn_by(w_k) T(table angles of k), w_k near 0
+/// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of
+/// effects) and four nuisances a pose: w_k (3) and F_k where B(0) = F_k n; or, for a pose without table
+/// angles, the field b_k (3) itself in the platform frame and one idle slot.
+namespace mgtd::calib {
+
+inline constexpr int kNuisances = 4;
+inline constexpr int kSensorBlock = kSensors * kSensorParameters;
+/// Slots of the fixed block after the sensors: two tangents of n, F, then the effects.
+inline constexpr int kSiteSlot = kSensorBlock, kFieldSlot = kSiteSlot + 2, kEffectSlot = kFieldSlot + 1;
+inline constexpr int kGlobals = kEffectSlot - kSensorBlock;  ///< of every model; effects come behind
+
+using Channels = Eigen::Matrix<double, kChannels, 1>;
+using Nuisance = Eigen::Matrix<double, kNuisances, 1>;
+
+/// Weight of an attitude that is not believed: 30 degrees, enough to keep the turn about the field defined.
+inline constexpr double kLooseAttitude_per_rad = 1 / to_rad(30);
+
+struct JointPose {
+  const Pose* pose{nullptr};
+  const Pose* previous{nullptr};
+  double t_h{0};
+  Channels y_nT;
+  Channels weight;              ///< 1/sd of each reading; 0 leaves it out (outlier node)
+  double f_nT{0}, f_weight{0};  ///< scalar reference of this pose; with `common_field` its spread about F
+  bool has_angles{false};
+  Eigen::Matrix3d T{Eigen::Matrix3d::Identity()};  ///< table rotation at the recorded angles
+  double attitude_weight{0};                       ///< 1/rad, of each component of w_k
+  const CovariateMeans* means{nullptr};            ///< those of the problem
+
+  [[nodiscard]] Conditions conditions() const { return {*pose, t_h, previous, means}; }
+};
+
+/// A Gaussian observation of a linear form of the fixed block: row' x = target.
+struct LinearPrior {
+  Eigen::VectorXd row;
+  double target{0};
+  double weight{0};
+};
+
+struct JointProblem {
+  Geometry geometry;
+  std::vector<EffectPtr> effects;
+  std::shared_ptr<const CovariateMeans> means;  ///< over the poses that are fitted
+  std::vector<JointPose> poses;
+  bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
+  bool has_angles{false};           ///< at least one pose has table angles
+  std::vector<LinearPrior> priors;  ///< gauge, coefficients, known field
+  /// Of the site's field, from the operator; and the weight of both, 1/rad.
+  std::optional<double> known_inclination_rad, known_declination_rad;
+  double direction_weight{0};
+  std::stop_token stop{};  ///< of FitOptions
+
+  [[nodiscard]] int coefficients() const;
+  [[nodiscard]] int fixed() const { return kEffectSlot + coefficients(); }
+};
+
+struct JointState {
+  std::array<SensorModel, kSensors> sensors;
+  Eigen::Vector3d direction{0, 0, 1};  ///< n, unit vector in the site frame
+  double f_nT{0};                      ///< F, used with common_field
+  Eigen::VectorXd coefficients;
+  std::vector<Nuisance> nuisances;
+
+  /// The fixed block as a vector; the two slots of n hold zero (they are steps in its tangent plane).
+  [[nodiscard]] Eigen::VectorXd fixed() const;
+  /// x + step on the manifold: n moves in its tangent plane and is normalised.
+  [[nodiscard]] JointState moved(const Eigen::VectorXd& step) const;
+};
+
+/// Inclination and declination of a direction: positive towards +Z, and from X towards Y.
+[[nodiscard]] double inclination_of(const Eigen::Vector3d& n);
+[[nodiscard]] double declination_of(const Eigen::Vector3d& n);
+[[nodiscard]] Eigen::Vector3d direction_of(double inclination_rad, double declination_rad);
+/// Their derivatives by the two slots of n, rows.
+[[nodiscard]] Eigen::Matrix2d inclination_declination_rows(const Eigen::Vector3d& n);
+
+/// Two orthonormal tangents of the unit sphere at n, columns.
+[[nodiscard]] Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "calib/fit/joint/joint_solver.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Poses eliminated per rank update: enough for a blocked product, small enough for the cache.
+constexpr int kBatch = 32;
+
+/// Slots that no observation reaches are held by a unit information.
+void hold_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
+  if (!problem.has_angles) S(kSiteSlot, kSiteSlot) = S(kSiteSlot + 1, kSiteSlot + 1) = 1;
+  if (!problem.common_field) S(kFieldSlot, kFieldSlot) = 1;
+}
+
+void add_direction_prior(const JointProblem& problem, const Eigen::Vector3d& n, Reduced& out) {
+  const double w = problem.direction_weight;
+  const auto observe = [&](const std::optional<double>& known, double now, const Eigen::RowVector2d& row) {
+    if (!known) return;
+    const double r = w * std::remainder(*known - now, 2 * std::numbers::pi);
+    out.S.block<2, 2>(kSiteSlot, kSiteSlot) += w * w * row.transpose() * row;
+    out.g.segment<2>(kSiteSlot) += w * r * row.transpose();
+    out.cost.priors += r * r;
+  };
+  const Eigen::Matrix2d rows = inclination_declination_rows(n);
+  observe(problem.known_inclination_rad, inclination_of(n), rows.row(0));
+  observe(problem.known_declination_rad, declination_of(n), rows.row(1));
+}
+
+void add_priors(const JointProblem& problem, const JointState& state, Reduced& out) {
+  const Eigen::VectorXd x = state.fixed();
+  for (const LinearPrior& prior : problem.priors) {
+    const double r = prior.weight * (prior.target - prior.row.dot(x));
+    out.S.noalias() += prior.weight * prior.weight * prior.row * prior.row.transpose();
+    out.g += prior.weight * r * prior.row;
+    out.cost.priors += r * r;
+  }
+  if (problem.has_angles) add_direction_prior(problem, state.direction, out);
+}
+
+void scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose,
+                const PoseLinear& linear, ScalarRow& row) {
+  const double w = pose.f_weight;
+  const double observed = problem.common_field ? state.f_nT : pose.f_nT;
+  row.residual = w * (observed - linear.f_nT);
+  row.nuisance = w * linear.f_nuisance;
+  row.global = w * linear.f_global;
+  if (problem.common_field) row.global[kFieldSlot - kSensorBlock] -= w;
+}
+
+/// Those columns of a few rows of the globals that are not zero, each row times its weight: an effect of an
+/// axis is felt by its own sensor only, and a model has a hundred of them.
+struct Felt {
+  std::vector<Eigen::Index> slots;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> rows;
+
+  void take(const PoseLinear& linear, const Channels& weight, int sensor) {
+    slots.clear();
+    rows.resize(3, linear.d_global.cols());
+    for (Eigen::Index j = 0; j < linear.d_global.cols(); ++j) {
+      const Eigen::Vector3d column = linear.d_global.col(j).segment<3>(3 * sensor);
+      if (column.isZero(0)) continue;
+      rows.col(static_cast<Eigen::Index>(slots.size())) = weight.segment<3>(3 * sensor).cwiseProduct(column);
+      slots.push_back(kSensorBlock + j);
+    }
+  }
+};
+
+/// Adds J' J and J' r of the fixed block, lower triangle, reading rows then scalar row.
+void add_fixed(const PoseBlocks& b, const JointPose& pose, Felt& felt, Reduced& out) {
+  for (int i = 0; i < kSensors; ++i) {
+    const auto w = pose.weight.segment<3>(3 * i).asDiagonal();
+    const Eigen::Matrix<double, 3, kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
+    const Eigen::Vector3d r = b.residual.segment<3>(3 * i);
+    const int at = kSensorParameters * i;
+    // lazyProduct: these are too small for blocking to pay.
+    out.S.block<kSensorParameters, kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
+    out.g.segment<kSensorParameters>(at) += A.transpose().lazyProduct(r);
+    felt.take(b.linear, pose.weight, i);
+    for (std::size_t j = 0; j < felt.slots.size(); ++j) {
+      const Eigen::Vector3d column = felt.rows.col(static_cast<Eigen::Index>(j));
+      const Eigen::Index slot = felt.slots[j];
+      out.S.row(slot).segment<kSensorParameters>(at) += column.transpose().lazyProduct(A);
+      for (std::size_t k = j; k < felt.slots.size(); ++k)
+        out.S(felt.slots[k], slot) += column.dot(felt.rows.col(static_cast<Eigen::Index>(k)));
+      out.g[slot] += column.dot(r);
+    }
+  }
+  for (Eigen::Index j = 0; j < b.scalar.global.size(); ++j) {
+    const double x = b.scalar.global[j];
+    if (x == 0) continue;
+    out.S.col(kSensorBlock + j).segment(kSensorBlock + j, b.scalar.global.size() - j) +=
+        x * b.scalar.global.tail(b.scalar.global.size() - j).transpose();
+    out.g[kSensorBlock + j] += b.scalar.residual * x;
+  }
+}
+
+}  // namespace
+
+void assemble(const JointProblem& problem, const PoseModel& model, const JointState& state, std::size_t k,
+              bool with_border, PoseBlocks& out) {
+  const JointPose& pose = problem.poses[k];
+  model.linearise(pose, state.nuisances[k], out.linear);
+  out.residual = pose.weight.cwiseProduct(pose.y_nT - out.linear.y_nT);
+  scalar_row(problem, state, pose, out.linear, out.scalar);
+  out.N = pose.weight.asDiagonal() * out.linear.d_nuisance;
+  out.H = out.N.transpose().lazyProduct(out.N);
+  out.H += out.scalar.nuisance.transpose() * out.scalar.nuisance;
+  out.g = out.N.transpose().lazyProduct(out.residual);
+  out.g += out.scalar.residual * out.scalar.nuisance.transpose();
+  out.cost = {.readings = out.residual.squaredNorm(), .scalar = out.scalar.residual * out.scalar.residual};
+  if (pose.has_angles) {
+    const double w2 = pose.attitude_weight * pose.attitude_weight;
+    out.H.diagonal().head<3>().array() += w2;
+    out.g.head<3>() -= w2 * state.nuisances[k].head<3>();
+    out.cost.attitude = w2 * state.nuisances[k].head<3>().squaredNorm();
+  } else {
+    out.H(3, 3) += 1;                                                    // the idle slot
+    if (pose.weight.isZero(0)) out.H.diagonal().head<3>().array() += 1;  // nothing tells its field
+  }
+  if (!with_border) return;
+  const Eigen::Index globals = out.linear.d_global.cols();
+  out.U.resize(kSensorBlock + globals, kNuisances);
+  for (int i = 0; i < kSensors; ++i) {
+    const Eigen::Matrix<double, 3, kNuisances> wN =
+        pose.weight.segment<3>(3 * i).asDiagonal() * out.N.middleRows<3>(3 * i);
+    out.U.middleRows<kSensorParameters>(kSensorParameters * i) =
+        out.linear.d_sensor.middleRows<3>(3 * i).transpose().lazyProduct(wN);
+  }
+  const Eigen::Matrix<double, kChannels, kNuisances> wN = pose.weight.asDiagonal() * out.N;
+  out.U.bottomRows(globals) = out.linear.d_global.transpose().lazyProduct(wN);
+  out.U.bottomRows(globals) += out.scalar.global.transpose().lazyProduct(out.scalar.nuisance);
+}
+
+Reduced reduce(const JointProblem& problem, const JointState& state, double damping) {
+  const int p = problem.fixed();
+  Reduced out{.S = Eigen::MatrixXd::Zero(p, p), .g = Eigen::VectorXd::Zero(p), .cost = {}};
+  const PoseModel model(problem, state);
+  PoseBlocks b;
+  Felt felt;
+  Eigen::MatrixXd batch(p, kBatch * kNuisances);
+  int filled = 0;
+  const auto flush = [&] {
+    if (filled == 0) return;  // Eigen divides by the size
+    out.S.selfadjointView<Eigen::Lower>().rankUpdate(batch.leftCols(filled * kNuisances), -1);
+    filled = 0;
+  };
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    assemble(problem, model, state, k, true, b);
+    add_fixed(b, problem.poses[k], felt, out);
+    out.cost.readings += b.cost.readings;
+    out.cost.scalar += b.cost.scalar;
+    out.cost.attitude += b.cost.attitude;
+    b.H.diagonal() *= 1 + damping;
+    const Eigen::LLT<Eigen::Matrix4d> llt(b.H);
+    auto Y = batch.middleCols<kNuisances>(filled * kNuisances);
+    Y = llt.matrixL().solve(b.U.transpose()).transpose();
+    const Nuisance half = llt.matrixL().solve(b.g);
+    out.g.noalias() -= Y * half;
+    out.predicted_decrease += half.squaredNorm();
+    if (++filled == kBatch) flush();
+  }
+  flush();
+  out.S.triangularView<Eigen::StrictlyUpper>() = out.S.transpose();
+  hold_idle_slots(problem, out.S);
+  add_priors(problem, state, out);
+  out.S.diagonal() *= 1 + damping;
+  return out;
+}
+
+}  // namespace mgtd::calib

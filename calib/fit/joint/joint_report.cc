@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/joint_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "calib/calibration/array_model.h"
+#include "calib/fit/error_summary.h"
+#include "calib/fit/joint/agreement.h"
+#include "calib/fit/joint/joint_errors.h"
+#include "calib/fit/joint/joint_verdict.h"
+#include "calib/fit/joint/profile_search.h"
+#include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/fit/joint/wandering_text.h"
+#include "calib/fit/report_parts.h"
+#include "calib/fit/two_step/two_step.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Mean strength of the field over the poses.
+double mean_field(const JointFit& fit) {
+  if (fit.problem.common_field) return fit.state.f_nT;
+  double sum = 0;
+  for (const JointPose& pose : fit.problem.poses) sum += pose.f_nT;
+  return sum / static_cast<double>(fit.problem.poses.size());
+}
+
+SiteField site_of(const JointFit& fit) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  SiteField out{.f_nT = mean_field(fit),
+                .inclination_rad = kUnknown,
+                .declination_rad = kUnknown,
+                .inclination_sd_rad = kUnknown,
+                .declination_sd_rad = kUnknown};
+  if (!fit.problem.has_angles) return out;
+  const Eigen::Matrix2d rows = inclination_declination_rows(fit.state.direction);
+  const Eigen::Matrix2d C = rows * fit.covariance.block<2, 2>(kSiteSlot, kSiteSlot) * rows.transpose();
+  out.inclination_rad = inclination_of(fit.state.direction);
+  out.declination_rad = declination_of(fit.state.direction);
+  out.inclination_sd_rad = std::sqrt(C(0, 0));
+  out.declination_sd_rad = std::sqrt(C(1, 1));
+  return out;
+}
+
+/// Poses of which the fit left nothing out.
+std::vector<Eigen::Index> untouched(const JointFit& fit) {
+  std::vector<bool> touched(fit.problem.poses.size(), false);
+  for (const OutlierNode& node : fit.outliers) touched.at(node.place) = true;
+  std::vector<Eigen::Index> out;
+  for (std::size_t k = 0; k < touched.size(); ++k)
+    if (!touched[k]) out.push_back(static_cast<Eigen::Index>(k));
+  return out;
+}
+
+/// Errors of the other methods on the same readings, where those methods can answer.
+void compare_methods(const Readings& readings, const FitOptions& options, const JointFit& fit,
+                     FitReport& report) {
+  const auto errors = [&, counts = counted(fit.problem)](const FieldTable& b_nT) {
+    return summarise(b_nT, readings.f_nT, report.calibration.geometry, counts);
+  };
+  report.before = errors(raw_fields(readings));
+  FieldTable b = raw_fields(readings);
+  const Readings kept = readings.subset(untouched(fit));
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const auto step1 = scalar_calibration(kept.y_nT[i], kept.f_nT);
+    if (!step1) continue;  // the row then shows this sensor as it was read
+    b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        fit.state.sensors[i].mounting * step1->correct(readings.y_nT[i]);
+  }
+  report.after_step1 = errors(b);
+  FitOptions other = options;
+  for (const Method method : {Method::two_step, Method::simplified}) {
+    other.method = method;
+    const auto fitted = two_step(kept, other);
+    if (!fitted) continue;
+    auto& row = method == Method::two_step ? report.two_step : report.simplified;
+    row = errors(corrected_fields(readings, fitted->sensors));
+  }
+}
+
+/// Poses of the set "check", each with its own best field.
+std::optional<ErrorSummary> errors_of_check_poses(const PoseTable& table, const JointOptions& options,
+                                                  const JointFit& fit) {
+  auto problem = joint_problem(table, options, PoseUse::check);
+  if (!problem) return std::nullopt;
+  for (JointPose& pose : problem->poses) {
+    pose.weight = fit.pose_noise_nT.reshaped<Eigen::RowMajor>().cwiseInverse();
+    if (pose.has_angles) pose.attitude_weight = 1 / fit.table_sd_rad;
+  }
+  JointState state = joint_state(*problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  state.coefficients = fit.state.coefficients;
+  refit_nuisances(*problem, state);
+  return joint_errors(*problem, state, FixedBlock::frozen).summary;
+}
+
+std::vector<std::string> weak_texts(const Identifiability& known) {
+  std::vector<std::string> out;
+  for (const WeakDirection& weak : known.weak) {
+    out.push_back(fmt::format("{} ({})", weak.what,
+                              std::isfinite(weak.sd_nT) ? fmt::format("{:.0f} nT of field", weak.sd_nT)
+                                                        : std::string("not at all")));
+  }
+  return out;
+}
+
+void fill_statistics(const JointFit& fit, FitReport& report) {
+  report.chi2 = fit.chi2;
+  report.dof = fit.dof;
+  report.noise_nT = fit.noise_nT();
+  report.noise_told = fit.sample_noise_nT.has_value();
+  report.chi2_table = fit.chi2_table;
+  report.dof_table = fit.dof_table;
+  report.table_sd_rad = fit.table_sd_rad;
+  report.outliers = fit.outliers;
+  report.contradicting = fit.contradicting;
+  report.site = site_of(fit);
+  report.tensor_sd_nT_per_m =
+      calibration_tensor_sd(fit.state.sensors, fit.problem.geometry, fit.covariance, report.site.f_nT);
+  const JointErrors in = joint_errors(fit.problem, fit.state, FixedBlock::fitted);
+  report.after = in.summary;
+  report.residual_nT = in.residual_nT;
+  if (const auto out = held_out_errors(fit)) {
+    report.held_out = out->summary;
+    report.held_out_residual_nT = out->residual_nT;
+  }
+}
+
+/// What an effect does to the corrected components, rms over the poses.
+decltype(CalibratedEffect::size_nT) size_of(const JointFit& fit, const EffectPtr& effect, int first) {
+  const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
+  const ArrayModel alone(fit.state.sensors, fit.problem.geometry, {effect},
+                         fit.state.coefficients.segment(first, m));
+  const ArrayModel none(fit.state.sensors, fit.problem.geometry, {}, {});
+  FieldVector squares = FieldVector::Zero();
+  for (const JointPose& pose : fit.problem.poses) {
+    const Conditions at = pose.conditions();
+    std::optional<Eigen::Matrix3d> R;
+    if (pose.has_angles) R = pose.T;
+    FieldVector change = alone.correct(at, pose.y_nT, R) - none.correct(at, pose.y_nT, R);
+    if (R) change -= alone.site_field(at, *R);
+    squares += change.cwiseAbs2();
+  }
+  decltype(CalibratedEffect::size_nT) out{};
+  FieldVector::Map(out.data()) = (squares / static_cast<double>(fit.problem.poses.size())).cwiseSqrt();
+  return out;
+}
+
+}  // namespace
+
+JointOptions joint_options(const FitOptions& options) {
+  JointOptions out;
+  out.geometry.baseline_m = options.baseline_m;
+  out.effects = options.effects;
+  out.field_nT = options.field_nT;
+  if (options.field_sd_nT > 0) out.field_sd_nT = options.field_sd_nT;
+  out.inclination_rad = options.inclination_rad;
+  out.declination_rad = options.declination_rad;
+  out.table_sd_rad = options.table_sd_rad;
+  out.stop = options.stop;
+  return out;
+}
+
+Result<JointOptions> tuned_options(const PoseTable& table, const FitOptions& options) {
+  JointOptions out = joint_options(options);
+  auto tuned = tune(table, out);
+  if (!tuned) return tl::unexpected(tuned.error());
+  out.effects = *std::move(tuned);
+  return out;
+}
+
+void fill_calibration(const JointFit& fit, Calibration& c) {
+  c.sensors = fit.state.sensors;
+  c.covariance = fit.covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
+  c.pose_noise_nT = fit.pose_noise_nT * fit.spread;
+  c.gauge = fit.gauge_text;
+  const auto m = fit.state.coefficients.size();
+  c.effect_covariance.resize(m, kArrayParameters + m);
+  c.effect_covariance << fit.covariance.block(kEffectSlot, 0, m, kArrayParameters),
+      fit.covariance.bottomRightCorner(m, m);
+  int slot = 0;
+  for (const EffectPtr& effect : fit.problem.effects) {
+    CalibratedEffect out{effect->spec(), {}, size_of(fit, effect, slot)};
+    for (const Coefficient& coefficient : effect->coefficients()) {
+      const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
+      out.coefficients.push_back(
+          {coefficient.name, fit.state.coefficients[slot], std::sqrt(variance), coefficient.unit});
+      ++slot;
+    }
+    c.effects.push_back(std::move(out));
+  }
+}
+
+Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options) {
+  const auto joint = tuned_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  auto fit = fit_joint(table, *joint);
+  if (!fit) return tl::unexpected(fit.error());
+  const WanderingEstimate wandering = wandering_of(*fit);
+  if (wandering.any()) {
+    if (auto covariance = covariance_with_wandering(*fit, wandering))
+      fit->covariance = *std::move(covariance);
+  }
+  FitOptions with_field = options;
+  if (!with_field.field_nT) with_field.field_nT = fit->state.f_nT;  // used only where a pose has none
+  const auto readings = readings_of(table, with_field);
+  if (!readings) return tl::unexpected(readings.error());
+  FitReport report;
+  report.calibration = calibration_frame(table, *readings, options);
+  fill_calibration(*fit, report.calibration);
+  fill_statistics(*fit, report);
+  compare_methods(*readings, with_field, *fit, report);
+  report.check_poses = errors_of_check_poses(table, *joint, *fit);
+  const Eigen::MatrixXd information = reduce(fit->problem, fit->state, 0).S;
+  const Identifiability known = identifiability(fit->problem, fit->state, information, report.site.f_nT);
+  report.weak = weak_texts(known);
+  report.calibration.verdict = joint_verdict(report, known, options);
+  report.calibration.verdict.push_back(
+      agreement_check(agreement(*fit, report.residual_nT, report.held_out_residual_nT)));
+  std::vector<std::string> said = joint_remarks(report, known, fit->spread);
+  if (std::string rough = rough_table_text(report.table_sd_rad, options.table_sd_rad); !rough.empty())
+    said.push_back(std::move(rough));
+  if (wandering.any())
+    said.push_back(wandering_text(wandering) +
+                   ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it, "
+                   "offsets as at the end of the run");
+  if (fit->quantisation.seen())
+    said.push_back(fmt::format("readings stand in steps of {:.3g} nT: the uncertainties contain it",
+                               fit->quantisation.step_nT));
+  conclude(report, std::move(said));
+  return report;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/joint_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/poses/run_time.h"
+#include "calib/sensor/sensor_equations.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// A reference cannot be better than its last digit, and the weights stay finite.
+constexpr double kMinFieldSd_nT = 1e-3;
+/// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
+constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
+
+JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field, const RunTime& time) {
+  JointPose out;
+  out.pose = &pose;
+  out.t_h = time.hours(pose);
+  for (int i = 0; i < kSensors; ++i) out.y_nT.segment<3>(3 * i) = pose.y_nT[static_cast<std::size_t>(i)];
+  out.weight.setConstant(1 / kStartNoise_nT);
+  if (common_field) {
+    out.f_weight = 1 / kCommonFieldSpread_nT;
+  } else {
+    const double sd = pose.f_nT ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
+                                : options.field_sd_nT.value_or(kCommonFieldSpread_nT);
+    out.f_nT = pose.f_nT ? *pose.f_nT : *options.field_nT;
+    out.f_weight = 1 / std::max(sd, kMinFieldSd_nT);
+  }
+  if (const auto angles = pose.angles()) {
+    out.has_angles = true;
+    out.T = table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
+    out.attitude_weight = 1 / options.table_sd_rad;
+  }
+  return out;
+}
+
+LinearPrior mean_of(const JointProblem& problem, std::initializer_list<int> parameters, double target,
+                    double weight) {
+  LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = weight};
+  const double share = 1.0 / (kSensors * static_cast<double>(parameters.size()));
+  for (int i = 0; i < kSensors; ++i) {
+    for (const int p : parameters) prior.row[kSensorParameters * i + p] = share;
+  }
+  return prior;
+}
+
+LinearPrior about_slot(const JointProblem& problem, int slot, double target, double sd) {
+  LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = 1 / sd};
+  prior.row[slot] = 1;
+  return prior;
+}
+
+void add_coefficient_priors(JointProblem& problem) {
+  int slot = kEffectSlot;
+  for (const EffectPtr& effect : problem.effects) {
+    for (const Coefficient& c : effect->coefficients()) {
+      if (c.prior_sd > 0) problem.priors.push_back(about_slot(problem, slot, 0, c.prior_sd));
+      ++slot;
+    }
+  }
+}
+
+}  // namespace
+
+Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options, PoseUse use) {
+  JointProblem problem;
+  problem.geometry = options.geometry;
+  problem.stop = options.stop;
+  auto effects = bound_to_run(options.effects, {.table = &table, .offset_nT = {}});
+  if (!effects) return tl::unexpected(effects.error());
+  problem.effects = std::move(*effects);
+  for (const EffectPtr& effect : problem.effects) {
+    if (const auto ok = effect->check(table); !ok) return tl::unexpected(ok.error());
+  }
+  const auto fitted = [use](const Pose& pose) { return (pose.set == "check") == (use == PoseUse::check); };
+  const auto total = std::count_if(table.poses.begin(), table.poses.end(), fitted);
+  const auto with_f = std::count_if(table.poses.begin(), table.poses.end(),
+                                    [&](const Pose& p) { return fitted(p) && p.f_nT; });
+  if (static_cast<std::size_t>(total) < (use == PoseUse::fit ? kFewestPoses : 1)) {
+    return fail(ErrorCode::refused,
+                fmt::format("{} poses to fit; the joint fit needs at least {}", total, kFewestPoses),
+                "measure at least 12 poses in general position, better 60");
+  }
+  if (with_f != 0 && with_f != total && !options.field_nT) {
+    return fail(ErrorCode::refused, fmt::format("{} of {} poses have a scalar reference f_nT", with_f, total),
+                "give f_nT for every pose, or give the field of the others with --field");
+  }
+  problem.common_field = with_f == 0;
+  problem.means = std::make_shared<const CovariateMeans>(covariate_means(table));
+  const RunTime time = RunTime::of(table);
+  const Pose* previous = nullptr;
+  for (const Pose& pose : table.poses) {
+    if (fitted(pose)) {
+      problem.poses.push_back(joint_pose(pose, options, problem.common_field, time));
+      problem.poses.back().means = problem.means.get();
+      problem.poses.back().previous = previous;
+      problem.has_angles = problem.has_angles || problem.poses.back().has_angles;
+    }
+    previous = &pose;
+  }
+  return problem;
+}
+
+Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
+  Gauge gauge{.angles = angle_coverage(problem),
+              .declination_known = false,
+              .scale_known = !problem.common_field || options.field_nT.has_value(),
+              .constraints = 0};
+  gauge.declination_known = gauge.angles == AngleCoverage::one_axis && options.declination_rad;
+  add_coefficient_priors(problem);
+  // Where the angles decide, what the operator says is compared with the result and does not enter it.
+  if (gauge.angles != AngleCoverage::full) {
+    problem.known_inclination_rad = options.inclination_rad;
+    problem.known_declination_rad = options.declination_rad;
+    problem.direction_weight = 1 / options.table_sd_rad;
+  }
+  if (gauge.angles == AngleCoverage::none) {
+    for (const int p : {alpha, beta, gamma})
+      problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
+    gauge.constraints += 3;
+  } else if (gauge.angles == AngleCoverage::one_axis && !gauge.declination_known) {
+    problem.priors.push_back(mean_of(problem, {gamma}, 0, kAngleConstraint));
+    gauge.constraints += 1;
+  }
+  if (!gauge.scale_known) {
+    problem.priors.push_back(mean_of(problem, {cx, cy, cz}, 1, kScaleConstraint));
+    gauge.constraints += 1;
+  } else if (problem.common_field) {
+    problem.priors.push_back(about_slot(problem, kFieldSlot, *options.field_nT,
+                                        options.field_sd_nT.value_or(kCommonFieldSpread_nT)));
+  }
+  return gauge;
+}
+
+double start_field_nT(const JointProblem& problem, const JointOptions& options) {
+  if (problem.common_field && options.field_nT) return *options.field_nT;
+  double sum = 0;
+  if (!problem.common_field) {
+    for (const JointPose& pose : problem.poses) sum += pose.f_nT;
+    return sum / static_cast<double>(problem.poses.size());
+  }
+  // Readings of unit scale on a sphere about their centre: the spread of all directions together is the
+  // radius.
+  Channels mean = Channels::Zero();
+  for (const JointPose& pose : problem.poses) mean += pose.y_nT / static_cast<double>(problem.poses.size());
+  for (const JointPose& pose : problem.poses) sum += (pose.y_nT - mean).squaredNorm() / kSensors;
+  return std::sqrt(sum / static_cast<double>(problem.poses.size()));
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/calibration/calibration.h"
+#include "calib/fit/joint/joint_problem.h"
+#include "calib/fit/joint/joint_start.h"
+#include "calib/fit/readings.h"
+#include "proto/units.h"
+
+/// From a pose table to the joint problem: which poses take part, what each observation weighs, which gauge
+/// holds.
+namespace mgtd::calib {
+
+struct JointOptions {
+  Geometry geometry;
+  std::vector<EffectPtr> effects;
+  std::optional<double> field_nT;  ///< known field where no scalar reference is in the data
+  /// Of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT.
+  std::optional<double> field_sd_nT;
+  std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
+  double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
+  /// Variance of a pose mean beside what the dwells tell, by channel: of an axis that follows a law which the
+  /// model lacks, so that its misfit is not pressed into what other axes know.
+  Channels more_nT2{Channels::Zero()};
+  /// Readings and scalar reference are taken as so much worse than the table says: for a model that is known
+  /// to be far off, whose misfit would else be pressed into what is weakly known.
+  double worse{1};
+  /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
+  /// is.
+  double most_left_out{1.0 / 3};
+  std::stop_token stop{};  ///< of FitOptions
+};
+
+/// Spread of the true field from pose to pose that is allowed for when no scalar reference follows it.
+inline constexpr double kCommonFieldSpread_nT = 0.05;
+/// Noise of a pose mean until something better is known.
+inline constexpr double kStartNoise_nT = 1.0;
+
+/// Poses of set "check" are left out. Refuses too few poses, a scalar reference in only part of the poses,
+/// and effects whose needs the poses do not meet. Keeps pointers into `table`.
+[[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options,
+                                                 PoseUse use = PoseUse::fit);
+
+/// What holds the freedoms that the data leave.
+struct Gauge {
+  AngleCoverage angles{AngleCoverage::none};
+  bool declination_known{false};
+  bool scale_known{false};
+  int constraints{0};  ///< freedoms fixed by convention
+};
+/// Adds the constraints to `problem`.
+Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
+
+/// Noise of one sample per axis, pooled over the dwells; empty unless every axis has a spread and every pose
+/// a count.
+[[nodiscard]] std::optional<AxisNoise> sample_noise(const PoseTable& table);
+/// Sets the reading weights: `sample` noise by each pose's effective count, or `pose_mean` noise for all
+/// alike. Keeps zero weights.
+void weight_by_samples(JointProblem& problem, const AxisNoise& sample);
+void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean);
+/// Adds a variance to that of every reading, by channel.
+void add_variance(JointProblem& problem, const Channels& nT2);
+
+/// Field to start from: mean scalar reference, or the given field, or the mean size of the readings'
+/// variation.
+[[nodiscard]] double start_field_nT(const JointProblem& problem, const JointOptions& options);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/joint_solver.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kMaxIterations = 200;
+/// A predicted fall of the chi-square below this share of it is rounding, not progress.
+constexpr double kRelativeDecrease = 1e-11;
+constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
+/// A chi-square that fell by less than this over the last iterations only creeps along what is weakly known.
+constexpr double kCreep = 1e-2, kRelativeCreep = 1e-6;
+constexpr int kCreeping = 12;
+
+/// S^-1 g with the diagonal scaled to one, which takes out the units.
+std::optional<Eigen::VectorXd> scaled_solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g) {
+  if (!(S.diagonal().minCoeff() > 0)) return std::nullopt;
+  const Eigen::VectorXd d = S.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * S * d.asDiagonal());
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  return d.cwiseProduct(llt.solve(d.cwiseProduct(g)));
+}
+
+/// Each pose's own step, given the step of the fixed block: its residuals move by J_f step first.
+void move_nuisances(const JointProblem& problem, const JointState& from, const Eigen::VectorXd& step,
+                    double damping, JointState& to) {
+  const PoseModel model(problem, from);
+  PoseBlocks b;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    assemble(problem, model, from, k, false, b);
+    const auto globals = step.tail(b.linear.d_global.cols());
+    Channels moved = b.linear.d_global.lazyProduct(globals);
+    for (int i = 0; i < kSensors; ++i) {
+      moved.segment<3>(3 * i) +=
+          b.linear.d_sensor.middleRows<3>(3 * i) * step.segment<kSensorParameters>(kSensorParameters * i);
+    }
+    b.g -= b.N.transpose() * problem.poses[k].weight.cwiseProduct(moved);
+    b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
+    b.H.diagonal() *= 1 + damping;
+    to.nuisances[k] += b.H.llt().solve(b.g);
+  }
+}
+
+}  // namespace
+
+Result<JointSolution> solve(const JointProblem& problem, JointState start, double enough) {
+  JointSolution best{.state = std::move(start), .reduced = {}, .iterations = 0};
+  double damping = 0;
+  best.reduced = reduce(problem, best.state, damping);
+  double before = best.reduced.cost.total();
+  for (; best.iterations < kMaxIterations; ++best.iterations) {
+    if (problem.stop.stop_requested()) return fail(ErrorCode::state, "the fit was stopped");
+    if (best.iterations == kMaxIterations - kCreeping) before = best.reduced.cost.total();
+    const auto step = scaled_solve(best.reduced.S, best.reduced.g);
+    if (step) {
+      const double decrease = best.reduced.predicted_decrease + step->dot(best.reduced.g);
+      if (decrease < enough + kRelativeDecrease * best.reduced.cost.total()) {
+        if (damping == 0) return best;
+        damping = 0;  // a damped step is short by nature: ask again without
+        best.reduced = reduce(problem, best.state, damping);
+        continue;
+      }
+      JointState next = best.state.moved(*step);
+      move_nuisances(problem, best.state, *step, damping, next);
+      const double softer = damping < kFirstDamping ? 0 : damping / 10;
+      const double limit = best.reduced.cost.total() * (1 + kRelativeDecrease);
+      Reduced reduced = reduce(problem, next, softer);
+      if (reduced.cost.total() > limit) {
+        // A long step along what is weakly known: the poses' own unknowns follow it on a curve.
+        refit_nuisances(problem, next);
+        reduced = reduce(problem, next, softer);
+      }
+      if (reduced.cost.total() <= limit) {
+        damping = softer;
+        best.state = std::move(next);
+        best.reduced = std::move(reduced);
+        continue;
+      }
+    }
+    damping = std::max(kFirstDamping, 10 * damping);
+    if (damping > kMaxDamping) break;
+    best.reduced = reduce(problem, best.state, damping);
+  }
+  const double now = best.reduced.cost.total();
+  if (best.iterations == kMaxIterations && before - now < kCreep + kRelativeCreep * now) {
+    best.reduced = reduce(problem, best.state, 0);
+    return best;
+  }
+  return fail(
+      ErrorCode::refused,
+      fmt::format("the joint fit did not settle in {} iterations: chi-square {:.6g} with {} poses",
+                  best.iterations, best.reduced.cost.total(), problem.poses.size()),
+      "turn the rig through more attitudes on at least two axes, and look for poses with wrong readings");
+}
+
+void refit_nuisances(const JointProblem& problem, JointState& state) {
+  // The field enters almost linearly: two steps settle it, the rest costs nothing when settled.
+  constexpr int kSteps = 8;
+  const PoseModel model(problem, state);
+  PoseBlocks b;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    for (int i = 0; i < kSteps; ++i) {
+      assemble(problem, model, state, k, false, b);
+      const Nuisance step = b.H.llt().solve(b.g);
+      state.nuisances[k] += step;
+      if (step.dot(b.g) < kConverged) break;
+    }
+  }
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "calib/fit/joint/joint_problem.h"
+#include "calib/fit/joint/pose_model.h"
+#include "proto/error.h"
+
+/// Least squares of a JointProblem: Gauss-Newton, damped (Levenberg-Marquardt) only where a step fails.
+///
+/// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block of 51 + m and a 4x4 block per
+/// pose. Each pose is eliminated as it is met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear
+/// in the poses and nothing per pose is kept but its four nuisances.
+namespace mgtd::calib {
+
+/// Chi-squares, kept apart: readings and scalar reference decide about the model, attitude about the table.
+struct JointCost {
+  double readings{0}, scalar{0}, attitude{0}, priors{0};
+  [[nodiscard]] double total() const { return readings + scalar + attitude + priors; }
+};
+
+/// The scalar observation of a pose, whitened: of its own magnetometer, or of the field F common to all
+/// poses.
+struct ScalarRow {
+  double residual{0};
+  Eigen::Matrix<double, 1, kNuisances> nuisance;
+  Eigen::RowVectorXd global;
+};
+
+/// One pose's share of the normal equations, residuals whitened.
+struct PoseBlocks {
+  PoseLinear linear;
+  Channels residual;  ///< w (measured - predicted)
+  ScalarRow scalar;
+  Eigen::Matrix<double, kChannels, kNuisances> N;       ///< w dy/d(nuisances)
+  Eigen::Matrix<double, kNuisances, kNuisances> H;      ///< of the nuisances
+  Nuisance g;                                           ///< descent direction times H: J_n' w^2 (y - y(x))
+  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;  ///< fixed by nuisances
+  JointCost cost;
+};
+
+/// Fills everything but U; `with_border` fills U too.
+void assemble(const JointProblem& problem, const PoseModel& model, const JointState& state, std::size_t pose,
+              bool with_border, PoseBlocks& out);
+
+struct Reduced {
+  Eigen::MatrixXd S;  ///< information of the fixed block, nuisances eliminated; symmetric
+  Eigen::VectorXd g;
+  JointCost cost;
+  double predicted_decrease{0};  ///< of the cost by the nuisances alone; the fixed block adds g' S^-1 g
+};
+
+[[nodiscard]] Reduced reduce(const JointProblem& problem, const JointState& state, double damping);
+
+struct JointSolution {
+  JointState state;
+  Reduced reduced;  ///< at `state`, undamped
+  int iterations{0};
+};
+
+/// Predicted fall of chi-square by the next step at which solve() may stop.
+inline constexpr double kConverged = 1e-9, kNearlyConverged = 0.1;
+/// Stops at `enough`. Refuses when it does not get there, when it is told to stop (ErrorCode::state), or when
+/// the information is not positive definite (which parameters that is about says identifiability.h).
+[[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
+                                          double enough = kConverged);
+
+/// Best nuisances for a fixed block that stays as it is: what a new pose says about its own field.
+void refit_nuisances(const JointProblem& problem, JointState& state);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/joint_start.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "calib/fit/joint/data_faults.h"
+#include "calib/fit/joint/joint_solver.h"
+#include "calib/fit/orientation.h"
+#include "calib/sensor/sensor_equations.h"
+#include "calib/sensor/sensor_start.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr auto kCount = static_cast<std::size_t>(kSensors);
+/// Relative turns within this of one axis leave the origin of the turn about it undecided.
+const double kOneAxis = std::sin(to_rad(1.0));
+
+struct Aligned {
+  std::array<ScalarCalibration, kCount> alone;
+  /// Sensor frame to the frame of sensor 1, reflections allowed.
+  std::array<Eigen::Matrix3d, kCount> to_first;
+  std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
+};
+
+/// Orthogonal matrix nearest to H; det = +1 when `proper`.
+Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d d = Eigen::Vector3d::Ones();
+  if (proper) d[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * d.asDiagonal() * svd.matrixV().transpose();
+}
+
+Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
+  const auto poses = static_cast<Eigen::Index>(problem.poses.size());
+  Eigen::VectorXd f = Eigen::VectorXd::Constant(poses, f_nT);
+  Eigen::Matrix<double, kChannels, Eigen::Dynamic> y(kChannels, poses);
+  for (Eigen::Index k = 0; k < poses; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    y.col(k) = pose.y_nT;
+    if (!problem.common_field) f[k] = pose.f_nT;
+  }
+  Aligned out;
+  std::array<Eigen::Matrix3Xd, kCount> b_S_nT;
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, poses);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Eigen::Matrix3Xd own = y.middleRows<3>(3 * static_cast<int>(i));
+    const auto fitted = sensor_start(own, f);
+    if (!fitted) {
+      return fail(fitted.error().code, fmt::format("sensor {}: {}", i + 1, fitted.error().message),
+                  fitted.error().remedy);
+    }
+    out.alone[i] = *fitted;
+    b_S_nT[i] = fitted->correct(own);
+    out.to_first[i] = nearest_orthogonal(b_S_nT[0] * b_S_nT[i].transpose(), false);
+    sum += out.to_first[i] * b_S_nT[i] / kSensors;
+  }
+  if (const auto ok = check_turned_together(b_S_nT, out.to_first); !ok) return tl::unexpected(ok.error());
+  for (Eigen::Index k = 0; k < poses; ++k) out.u.emplace_back(sum.col(k));
+  return out;
+}
+
+/// +1 when the majority of the sensors has the handedness of sensor 1 (ties: sensor 1 decides), else -1.
+double handedness(const Aligned& aligned) {
+  double sum = 0;
+  for (const Eigen::Matrix3d& Q : aligned.to_first) sum += Q.determinant();
+  return sum < -0.5 ? -1 : 1;
+}
+
+struct Placement {
+  /// Frame of sensor 1 (made right-handed) to the platform, proper.
+  Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
+  Eigen::Vector3d n{0, 0, 1};
+};
+
+/// Maximises tr(Q' sum T_k n u_k'), linear in n and in Q: n is searched on a Fibonacci sphere, then both
+/// alternate.
+Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+  std::array<Eigen::Matrix3d, 3> H{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    if (!problem.poses[k].has_angles) continue;
+    for (int j = 0; j < 3; ++j)
+      H[static_cast<std::size_t>(j)] += problem.poses[k].T.col(j) * u[k].normalized().transpose();
+  }
+  const auto best_turn = [&](const Eigen::Vector3d& n) {
+    return nearest_orthogonal(n[0] * H[0] + n[1] * H[1] + n[2] * H[2], true);
+  };
+  const auto pull = [&](const Eigen::Matrix3d& Q) {
+    return Eigen::Vector3d{Q.cwiseProduct(H[0]).sum(), Q.cwiseProduct(H[1]).sum(),
+                           Q.cwiseProduct(H[2]).sum()};
+  };
+  if (problem.known_inclination_rad && problem.known_declination_rad) {
+    const Eigen::Vector3d n = direction_of(*problem.known_inclination_rad, *problem.known_declination_rad);
+    return {best_turn(n), n};
+  }
+  constexpr int kPoints = 200, kAlternations = 100;
+  constexpr double kSettledTurn_rad = 1e-9;
+  Placement best;
+  double best_gain = -1;
+  for (int i = 0; i < kPoints; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kPoints, turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double h = std::sqrt(1 - z * z);
+    const Eigen::Vector3d n{h * std::cos(turn), h * std::sin(turn), z};
+    const Eigen::Matrix3d Q = best_turn(n);
+    if (pull(Q).dot(n) > best_gain) {
+      best_gain = pull(Q).dot(n);
+      best = {Q, n};
+    }
+  }
+  for (int i = 0; i < kAlternations; ++i) {
+    const Eigen::Vector3d before = best.n;
+    best.n = pull(best.Q).normalized();
+    best.Q = best_turn(best.n);
+    if ((best.n - before).squaredNorm() < kSettledTurn_rad * kSettledTurn_rad) break;
+  }
+  return best;
+}
+
+/// The axis of the relative turns between poses, and how far they leave it.
+struct TurnAxis {
+  Eigen::Vector3d axis_P{0, 0, 1};
+  double off_axis{0};
+  int poses{0};
+};
+
+TurnAxis turn_axis(const JointProblem& problem) {
+  TurnAxis out;
+  std::optional<Eigen::Matrix3d> first;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  std::vector<Eigen::Vector3d> turns;
+  for (const JointPose& pose : problem.poses) {
+    if (!pose.has_angles) continue;
+    ++out.poses;
+    if (!first) first = pose.T;
+    const Eigen::Quaterniond q(Eigen::Matrix3d(pose.T * first->transpose()));
+    turns.push_back(q.vec());
+    scatter += q.vec() * q.vec().transpose();
+  }
+  out.axis_P = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  for (const Eigen::Vector3d& t : turns)
+    out.off_axis = std::max(out.off_axis, (t - t.dot(out.axis_P) * out.axis_P).norm());
+  return out;
+}
+
+/// Turns the placement about the axis that the angles leave open: to the declination where it is known, else
+/// until sensor 1 stands as upright as it can.
+void turn_free(const JointProblem& problem, Placement& p) {
+  constexpr int kSteps = 3600;
+  const TurnAxis turn = turn_axis(problem);
+  const auto first = std::find_if(problem.poses.begin(), problem.poses.end(),
+                                  [](const JointPose& q) { return q.has_angles; });
+  const Placement from = p;
+  double best = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kSteps; ++i) {
+    const Eigen::Matrix3d Z =
+        Eigen::AngleAxisd(2 * std::numbers::pi * i / kSteps, turn.axis_P).toRotationMatrix();
+    // T n = Z' T (n') for turns T about the axis away from the first: n moves by T_1' Z T_1.
+    const Placement turned{Z * from.Q, first->T.transpose() * Z * first->T * from.n};
+    const double merit = problem.known_declination_rad
+                             ? std::cos(declination_of(turned.n) - *problem.known_declination_rad)
+                             : turned.Q.trace();
+    if (merit > best) {
+      best = merit;
+      p = turned;
+    }
+  }
+}
+
+Placement best_placement(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+  Placement p;
+  const AngleCoverage coverage = angle_coverage(problem);
+  if (coverage != AngleCoverage::none) p = place(problem, u);
+  if (coverage == AngleCoverage::one_axis) turn_free(problem, p);
+  return p;
+}
+
+}  // namespace
+
+AngleCoverage angle_coverage(const JointProblem& problem) {
+  const TurnAxis turn = turn_axis(problem);
+  if (turn.poses < 3) return AngleCoverage::none;
+  return turn.off_axis < kOneAxis ? AngleCoverage::one_axis : AngleCoverage::full;
+}
+
+JointState joint_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
+                       const Eigen::Vector3d& direction, double f_nT) {
+  JointState state{.sensors = sensors,
+                   .direction = direction,
+                   .f_nT = f_nT,
+                   .coefficients = Eigen::VectorXd::Zero(problem.coefficients()),
+                   .nuisances = {}};
+  for (const JointPose& pose : problem.poses) {
+    Nuisance x = Nuisance::Zero();
+    if (pose.has_angles) {
+      x[3] = pose.f_weight > 0 && !problem.common_field ? pose.f_nT : f_nT;
+    } else {
+      for (int i = 0; i < kSensors; ++i)
+        x.head<3>() += sensors[static_cast<std::size_t>(i)].correct(pose.y_nT.segment<3>(3 * i)) / kSensors;
+    }
+    state.nuisances.push_back(x);
+  }
+  refit_nuisances(problem, state);
+  return state;
+}
+
+Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
+  if (const auto ok = check_units(problem, f_nT); !ok) return tl::unexpected(ok.error());
+  if (const auto ok = check_copies(problem); !ok) return tl::unexpected(ok.error());
+  auto aligned = align_sensors(problem, f_nT);
+  if (!aligned) return tl::unexpected(aligned.error());
+  const double hand = handedness(*aligned);
+  for (Eigen::Vector3d& u : aligned->u) u *= hand;
+  const Placement p = best_placement(problem, aligned->u);
+  std::array<SensorModel, kSensors> sensors;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    sensors[i] =
+        sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
+  }
+  return joint_state(problem, sensors, p.n, f_nT);
+}
+
+PlacedState placed_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
+                         double f_nT) {
+  std::vector<Eigen::Vector3d> u(problem.poses.size(), Eigen::Vector3d::Zero());
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    for (std::size_t i = 0; i < kCount; ++i)
+      u[k] += sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / kSensors;
+  }
+  const Placement p = best_placement(problem, u);
+  std::array<SensorModel, kSensors> placed = sensors;
+  for (SensorModel& sensor : placed) sensor = turned(sensor, p.Q);
+  return {joint_state(problem, placed, p.n, f_nT), p.Q};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/joint/joint_problem.h"
+#include "proto/error.h"
+
+/// A start for the joint fit from the poses alone, for any mounting, handedness and offset:
+///   1. each sensor by itself: sensor_start.h;
+///   2. sensors to each other: Procrustes over all poses, reflections allowed;
+///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n,
+///      n searched over the whole sphere. (Q, n) and (-Q, -n) fit equally: the majority of the sensors is
+///      taken as right-handed.
+/// Without table angles, or with angles about one axis only, the freedom that is left is spent on turning
+/// sensor 1 upright.
+namespace mgtd::calib {
+
+/// How much of the common rotation the table angles decide.
+enum class AngleCoverage { none, one_axis, full };
+[[nodiscard]] AngleCoverage angle_coverage(const JointProblem& problem);
+
+/// Fills sensors, direction, F and nuisances; the coefficients of effects start at zero. `f_nT` is the field
+/// where a pose has none.
+[[nodiscard]] Result<JointState> joint_start(const JointProblem& problem, double f_nT);
+
+/// A state around given sensors (a two-step result, an earlier calibration, another fold's fit).
+[[nodiscard]] JointState joint_state(const JointProblem& problem,
+                                     const std::array<SensorModel, kSensors>& sensors,
+                                     const Eigen::Vector3d& direction, double f_nT);
+
+/// The same around sensors of an earlier calibration that may stand turned on the table since: they are
+/// turned together by the rotation Q that brings them to these poses' angles (identity without angles).
+struct PlacedState {
+  JointState state;
+  Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
+};
+[[nodiscard]] PlacedState placed_state(const JointProblem& problem,
+                                       const std::array<SensorModel, kSensors>& sensors, double f_nT);
+
+}  // namespace mgtd::calib

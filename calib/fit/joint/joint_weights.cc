@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "calib/fit/joint/joint_setup.h"
+#include "calib/fit/readings.h"
+
+namespace mgtd::calib {
+namespace {
+/// Below this no fluxgate and no digitiser reads, and weights stay finite on noise-free data.
+constexpr double kNoiseFloor_nT = 1e-4;
+
+void set_weight(double& weight, double sd_nT) {
+  if (weight > 0) weight = 1 / std::max(sd_nT, kNoiseFloor_nT);
+}
+}  // namespace
+
+std::optional<AxisNoise> sample_noise(const PoseTable& table) {
+  for (const Pose& pose : table.poses) {
+    if (!pose.n && !pose.n_eff) return std::nullopt;
+  }
+  const AxisNoise pooled = pooled_sample_noise(table);
+  if (!(pooled.minCoeff() > 0)) return std::nullopt;
+  return pooled;
+}
+
+void weight_by_samples(JointProblem& problem, const AxisNoise& sample) {
+  for (JointPose& pose : problem.poses) {
+    const double n = pose.pose->n_eff ? *pose.pose->n_eff : pose.pose->n.value_or(1);
+    for (int c = 0; c < kChannels; ++c) set_weight(pose.weight[c], sample(c / 3, c % 3) / std::sqrt(n));
+  }
+}
+
+void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean) {
+  for (JointPose& pose : problem.poses) {
+    for (int c = 0; c < kChannels; ++c) set_weight(pose.weight[c], pose_mean(c / 3, c % 3));
+  }
+}
+
+void add_variance(JointProblem& problem, const Channels& nT2) {
+  for (JointPose& pose : problem.poses) {
+    for (int c = 0; c < kChannels; ++c) {
+      if (nT2[c] > 0) set_weight(pose.weight[c], std::sqrt(nT2[c] + 1 / std::pow(pose.weight[c], 2)));
+    }
+  }
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/pose_blame.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace mgtd::calib {
+namespace {
+
+/// Robust spreads of a single observation: one false alarm in 10^8 Gaussian observations.
+constexpr double kSingle = 6;
+/// The same for the root of the sum of squares over a sensor and over a pose, where the noise is Gaussian.
+constexpr double kSensor = 7, kPose = 9;
+/// And where it is not: robust spreads of that root above its median.
+constexpr double kAboveMedian = 8;
+/// Many poses that are off by less make a group of their own: above kLow spreads more of them than kGroup of
+/// all, and between kFringe and kLow fewer than a share kInTheGap of those.
+constexpr double kLow = 5, kFringe = 3, kGroup = 0.04, kInTheGap = 0.25;
+constexpr double kMadToSd = 1.4826;
+/// A spread below one is chance, or noise that was estimated with gross readings in it: below this it is
+/// that.
+constexpr double kOverstated = 0.7;
+/// Two more readings must explain so much more of chi-square before a sensor is blamed instead of a reading.
+constexpr double kSensorInstead = 25;
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double limit_of(const std::vector<double>& roots, double gaussian) {
+  std::vector<double> values = roots;
+  const double centre = median(values);
+  for (double& x : values) x = std::abs(x - centre);
+  const double spread = kMadToSd * median(values);
+  if (!std::isfinite(spread)) return gaussian;
+  const double limit = std::max(gaussian, centre + kAboveMedian * spread), low = centre + kLow * spread;
+  const auto above = [&](double x) {
+    return static_cast<double>(std::count_if(roots.begin(), roots.end(), [x](double r) { return r > x; }));
+  };
+  const double lost = above(low), near = above(centre + kFringe * spread) - lost;
+  const bool group = lost > kGroup * static_cast<double>(roots.size()) && near < kInTheGap * lost;
+  return group ? std::min(low, limit) : limit;
+}
+
+double root_of(const Eigen::Array<double, kObservations, 1>& t, int sensor) {
+  return t.segment<3>(3 * sensor).matrix().norm();
+}
+
+Rows rows_of_sensor(int sensor) { return Rows(0b111U << static_cast<unsigned>(3 * sensor)); }
+
+}  // namespace
+
+BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows> left_out) {
+  constexpr double kBeyond = std::numeric_limits<double>::infinity();
+  BlameLimits out;
+  out.single = kSingle;
+  const auto is_out = [&](Eigen::Index k, int row) {
+    return left_out[static_cast<std::size_t>(k)][static_cast<std::size_t>(row)];
+  };
+  for (int row = 0; row < kObservations; ++row) {
+    std::vector<double> values;
+    for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
+      if (is_out(k, row)) values.push_back(kBeyond);
+      if (residuals.t(row, k) > 0) values.push_back(residuals.t(row, k));
+    }
+    const double spread = kMadToSd * median(values);
+    if ((spread > 1 || (spread > 0 && spread < kOverstated)) && std::isfinite(spread))
+      out.spread[row] = spread;
+  }
+  std::array<std::vector<double>, kSensors> sensors;
+  std::vector<double> poses;
+  for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
+    const Eigen::Array<double, kObservations, 1> t = residuals.t.col(k).cast<double>().array() / out.spread;
+    bool any = false;
+    for (int i = 0; i < kSensors; ++i) {
+      const bool gone = (left_out[static_cast<std::size_t>(k)] & rows_of_sensor(i)).any();
+      sensors.at(static_cast<std::size_t>(i)).push_back(gone ? kBeyond : root_of(t, i));
+      any = any || gone;
+    }
+    poses.push_back(any ? kBeyond : t.head<kAttitudeRow>().matrix().norm());
+  }
+  for (int i = 0; i < kSensors; ++i)
+    out.sensor[i] = limit_of(sensors.at(static_cast<std::size_t>(i)), kSensor);
+  out.pose = limit_of(poses, kPose);
+  return out;
+}
+
+double BlameLimits::excess(const Eigen::Array<double, kObservations, 1>& t) const {
+  double worst = std::max(t.maxCoeff() / single, t.head<kAttitudeRow>().matrix().norm() / pose);
+  for (int i = 0; i < kSensors; ++i) worst = std::max(worst, root_of(t, i) / sensor[i]);
+  return worst;
+}
+
+PoseBlame::PoseBlame(const JointProblem& problem, const JointState& state, const BlameLimits& limits)
+    : alone_(problem), at_(state), problem_(problem), state_(state), limits_(limits), model_(problem, state) {
+  alone_.poses.resize(1);
+  at_.nuisances.resize(1);
+}
+
+/// The pose with its own best field and attitude when these rows do not count.
+PoseBlame::Trial PoseBlame::without(const Rows& out) {
+  constexpr int kSteps = 12;
+  constexpr double kSettled = 1e-6;
+  JointPose& pose = alone_.poses.front();
+  pose = whole_;
+  for (int c = 0; c < kChannels; ++c)
+    if (out[static_cast<std::size_t>(c)]) pose.weight[c] = 0;
+  if (out[kScalarRow]) pose.f_weight = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    assemble(alone_, model_, at_, 0, false, blocks_);
+    const Nuisance step = blocks_.H.llt().solve(blocks_.g);
+    at_.nuisances.front() += step;
+    if (step.dot(blocks_.g) < kSettled) break;
+  }
+  assemble(alone_, model_, at_, 0, false, blocks_);
+  const Eigen::LLT<Eigen::Matrix4d> H(blocks_.H);
+  Trial trial{.t = Eigen::Array<double, kObservations, 1>::Zero(),
+              .chi2 = blocks_.cost.readings + blocks_.cost.scalar,
+              .nuisance = at_.nuisances.front()};
+  const auto whitened = [&](double residual, const Eigen::Matrix<double, 1, kNuisances>& row) {
+    const double free = 1 - H.matrixL().solve(row.transpose()).squaredNorm();
+    return free > 1e-6 ? std::abs(residual) / std::sqrt(free) : 0;
+  };
+  for (int c = 0; c < kChannels; ++c)
+    if (pose.weight[c] > 0) trial.t[c] = whitened(blocks_.residual[c], blocks_.N.row(c));
+  if (pose.f_weight > 0) trial.t[kScalarRow] = whitened(blocks_.scalar.residual, blocks_.scalar.nuisance);
+  return trial;
+}
+
+/// The fewest readings without which the others agree.
+Rows PoseBlame::readings_of(double limit) {
+  const Nuisance start = at_.nuisances.front();
+  const auto tried = [&](const Rows& out) {
+    at_.nuisances.front() = start;
+    return without(out);
+  };
+  const auto agrees = [&](const Trial& trial) { return limits_.excess(trial.t) <= limit; };
+  if (agrees(without({}))) return {};
+  struct Candidate {
+    Rows rows;
+    double chi2{std::numeric_limits<double>::infinity()};
+    bool agrees{false};
+  };
+  const auto consider = [&](Candidate& best, const Rows& rows) {
+    const Trial trial = tried(rows);
+    const bool good = agrees(trial);
+    if (good != best.agrees ? good : trial.chi2 < best.chi2) best = {rows, trial.chi2, good};
+  };
+  Candidate single, sensor;
+  std::vector<Candidate> singles;
+  const int last = problem_.common_field ? kChannels : kChannels + 1;
+  for (int row = 0; row < last; ++row) {
+    Candidate one;
+    consider(one, Rows().set(static_cast<std::size_t>(row)));
+    singles.push_back(one);
+    if (one.agrees != single.agrees ? one.agrees : one.chi2 < single.chi2) single = one;
+  }
+  for (int i = 0; i < kSensors; ++i) consider(sensor, rows_of_sensor(i));
+  const bool within = (single.rows & sensor.rows).any();
+  if (single.agrees && !(sensor.agrees && within && sensor.chi2 < single.chi2 - kSensorInstead))
+    return single.rows;
+  if (sensor.agrees) return sensor.rows;
+  constexpr std::size_t kBest = 3;
+  std::sort(singles.begin(), singles.end(), [](const auto& a, const auto& b) { return a.chi2 < b.chi2; });
+  Candidate pair;
+  for (std::size_t j = 0; j < kBest; ++j) {
+    for (int row = 0; row < last; ++row) {
+      Rows rows = singles[j].rows;
+      if (rows[static_cast<std::size_t>(row)]) continue;
+      consider(pair, rows.set(static_cast<std::size_t>(row)));
+    }
+  }
+  if (pair.agrees) return pair.rows;
+  return Rows((1U << static_cast<unsigned>(kChannels)) - 1);
+}
+
+Rows PoseBlame::of(std::size_t k, double strictness) {
+  whole_ = problem_.poses[k];
+  whole_.weight.array() /= limits_.spread.head<kChannels>();
+  whole_.f_weight /= limits_.spread[kScalarRow];
+  const double attitude_weight = whole_.attitude_weight / limits_.spread[kAttitudeRow];
+  // The readings are judged without the table, which may be wrong by more than any of them.
+  whole_.attitude_weight = std::min(whole_.attitude_weight, kLooseAttitude_per_rad);
+  at_.nuisances.front() = state_.nuisances[k];
+  Rows out = readings_of(strictness);
+  if (whole_.has_angles && !(out.count() >= kChannels)) {
+    const Trial rest = without(out);
+    out[kAttitudeRow] = rest.nuisance.head<3>().norm() * attitude_weight > strictness * kSingle;
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <bitset>
+#include <span>
+
+#include "calib/fit/joint/joint_problem.h"
+#include "calib/fit/joint/pose_model.h"
+#include "calib/fit/joint/pose_residuals.h"
+
+/// Which observations of one pose a calibration contradicts: the fewest without which the rest of the pose
+/// agrees with it.
+namespace mgtd::calib {
+
+using Rows = std::bitset<kObservations>;  ///< readings, scalar, attitude
+
+/// What a pose may show before something of it is left out, all in robust spreads of the run's own misfits
+/// (never of the nominal noise alone): a single observation, the three readings of a sensor, all of the pose.
+/// Sensors and poses are judged by the root of the sum of squares.
+struct BlameLimits {
+  Eigen::Array<double, kObservations, 1> spread{Eigen::Array<double, kObservations, 1>::Ones()};
+  double single{0};
+  Eigen::Array<double, kSensors, 1> sensor;
+  double pose{0};
+
+  /// Limits from the misfits of all poses; those of observations that are left out count as beyond any limit,
+  /// so that leaving out does not narrow what is allowed to the rest.
+  [[nodiscard]] static BlameLimits of(const PoseResiduals& residuals, std::span<const Rows> left_out);
+  /// The largest misfit over its limit; above one something of the pose is to be left out. `t` as in
+  /// PoseResiduals, one pose.
+  [[nodiscard]] double excess(const Eigen::Array<double, kObservations, 1>& t) const;
+};
+
+/// Judges poses against a fixed block that stays as it is.
+class PoseBlame {
+ public:
+  /// Keeps references. Every observation of `problem` has its weight, none is left out.
+  PoseBlame(const JointProblem& problem, const JointState& state, const BlameLimits& limits);
+  /// What to leave out of pose k. Tried in this order: nothing, one reading or the scalar reference, a whole
+  /// sensor, two readings, all readings. An attitude is judged by itself. `strictness` multiplies the limits.
+  [[nodiscard]] Rows of(std::size_t k, double strictness = 1);
+
+ private:
+  struct Trial {
+    Eigen::Array<double, kObservations, 1> t;
+    double chi2{0};
+    Nuisance nuisance;
+  };
+  [[nodiscard]] Trial without(const Rows& out);
+  [[nodiscard]] Rows readings_of(double limit);
+
+  JointProblem alone_;  ///< the pose at hand
+  JointState at_;
+  const JointProblem& problem_;
+  const JointState& state_;
+  const BlameLimits& limits_;
+  PoseModel model_;
+  PoseBlocks blocks_;
+  JointPose whole_;  ///< the pose at hand with everything in, weights in spreads
+};
+
+}  // namespace mgtd::calib

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/pose_model.h"
+
+#include <Eigen/Geometry>
+
+#include "calib/sensor/sensor_equations.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Parameters that act through the gain, in the order of SensorGain::d_gain.
+constexpr std::array<int, 9> kGainParameters{theta, phi, psi, cx, cy, cz, alpha, beta, gamma};
+
+Eigen::Matrix3d values(const auto& m) {
+  return m.unaryExpr([](const auto& x) { return x.v; }).template cast<double>();
+}
+
+Eigen::Matrix3d derivatives(const auto& m, int slot) {
+  return m.unaryExpr([slot](const auto& x) { return x.d[slot]; }).template cast<double>();
+}
+
+}  // namespace
+
+/// R and its derivatives by w (3) and by the table state (5), or the field itself for a pose without angles.
+struct PoseModel::Attitude {
+  static constexpr int kAttitude = 3, kTable = 5;
+  bool known{false};
+  double f_nT{0};
+  Eigen::Vector3d b_P_nT;  ///< of a pose without angles
+  Eigen::Matrix3d R;
+  std::array<Eigen::Matrix3d, kAttitude + kTable> dR;
+  Eigen::Matrix<double, kTable, Eigen::Dynamic> state_d_coefficient;
+};
+
+struct PoseModel::Field {
+  Eigen::Vector3d b_P_nT;
+  Eigen::Matrix<double, 3, kNuisances> d_nuisance;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> d_global;
+};
+
+PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
+    : state_(state),
+      table_(problem.effects, Level::table),
+      site_(problem.effects, Level::site),
+      platform_(problem.effects, Level::platform),
+      axis_(problem.effects, Level::axis),
+      reference_(problem.effects, Level::reference),
+      positions_P_m_(problem.geometry.positions_P_m()),
+      tangents_(tangents(state.direction)),
+      globals_(kGlobals + problem.coefficients()),
+      common_field_(problem.common_field) {
+  for (std::size_t i = 0; i < kSensors; ++i) gains_[i] = gain_of(state.sensors[i]);
+}
+
+PoseModel::SensorGain PoseModel::gain_of(const SensorModel& sensor) {
+  using D = Dual<9>;
+  const ParameterVector p = sensor.parameters();
+  std::array<D, 9> x;
+  for (std::size_t j = 0; j < x.size(); ++j) x[j] = D::variable(p[kGainParameters[j]], static_cast<int>(j));
+  const Matrix3<D> turn = turn_z(x[8]) * turn_y(x[7]) * turn_x(x[6]) * sensor.mounting.cast<D>();
+  const Matrix3<D> gain = response_matrix<D>(x[0], x[1], x[2], {x[3], x[4], x[5]}) * turn.transpose();
+  SensorGain out{.gain = values(gain), .d_gain = {}};
+  for (std::size_t j = 0; j < x.size(); ++j) out.d_gain[j] = derivatives(gain, static_cast<int>(j));
+  return out;
+}
+
+void PoseModel::set_attitude(const JointPose& pose, const Nuisance& nuisance, Attitude& a) const {
+  a.known = pose.has_angles;
+  if (!a.known) {
+    a.b_P_nT = nuisance.head<3>();
+    return;
+  }
+  a.f_nT = nuisance[3];
+  using W = Dual<3>;
+  const Matrix3<W> error =
+      turn_by<W>({W::variable(nuisance[0], 0), W::variable(nuisance[1], 1), W::variable(nuisance[2], 2)});
+  const Eigen::Matrix3d E = values(error);
+  Eigen::Matrix3d T = pose.T;
+  if (!table_.empty()) {
+    const TableAngles angles = *pose.pose->angles();
+    const std::array<double, 5> in{angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0, 0};
+    const TermSum terms = table_.sum(pose.conditions(), 0, in, state_.coefficients);
+    a.state_d_coefficient = terms.d_coefficient;
+    using S = Dual<5>;
+    std::array<S, 5> s;
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      s[j] = S::variable(in[j] + terms.value[static_cast<int>(j)], static_cast<int>(j));
+    }
+    const Matrix3<S> table = table_rotation(s[0], s[1], s[2], s[3], s[4]);
+    T = values(table);
+    for (int j = 0; j < 5; ++j) a.dR[static_cast<std::size_t>(3 + j)] = E * derivatives(table, j);
+  }
+  a.R = E * T;
+  for (int j = 0; j < 3; ++j) a.dR[static_cast<std::size_t>(j)] = derivatives(error, j) * T;
+}
+
+/// b = R B(R' r): every variable that turns R moves the direction and, through x = R' r, the place.
+void PoseModel::add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, const Eigen::Matrix3d& dB_dx,
+                                 const Eigen::Vector3d& r_P_m, Field& field) const {
+  const Eigen::Matrix3d through_place = a.R * dB_dx;
+  const auto column = [&](std::size_t j) -> Eigen::Vector3d {
+    return a.dR[j] * B_S + through_place * (a.dR[j].transpose() * r_P_m);
+  };
+  for (int j = 0; j < 3; ++j) field.d_nuisance.col(j) = column(static_cast<std::size_t>(j));
+  field.d_nuisance.col(3) = a.R * state_.direction;
+  field.d_global.leftCols<2>() = a.f_nT * a.R * tangents_;
+  if (table_.empty()) return;
+  for (int j = 0; j < Attitude::kTable; ++j) {
+    field.d_global.rightCols(globals_ - kGlobals) +=
+        column(static_cast<std::size_t>(3 + j)) * a.state_d_coefficient.row(j);
+  }
+}
+
+void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, Field& field) const {
+  field.d_global.setZero(3, globals_);
+  field.d_nuisance.setZero();
+  if (!a.known) {
+    field.b_P_nT = a.b_P_nT;
+    field.d_nuisance.leftCols<3>().setIdentity();
+    return;
+  }
+  const Eigen::Vector3d& r_P_m = positions_P_m_[static_cast<std::size_t>(sensor)];
+  Eigen::Vector3d B_S = a.f_nT * state_.direction;
+  Eigen::Matrix3d dB_dx = Eigen::Matrix3d::Zero();
+  if (!site_.empty()) {
+    const Eigen::Vector3d x_S_m = a.R.transpose() * r_P_m;
+    const TermSum terms = site_.sum(pose.conditions(), sensor, {x_S_m.data(), 3}, state_.coefficients);
+    B_S += terms.value;
+    dB_dx = terms.d_input;
+    field.d_global.rightCols(globals_ - kGlobals) += a.R * terms.d_coefficient;
+  }
+  field.b_P_nT = a.R * B_S;
+  add_site_columns(a, B_S, dB_dx, r_P_m, field);
+}
+
+void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int sensor, Field& field) const {
+  if (platform_.empty()) return;
+  Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
+  in.head<3>() = field.b_P_nT;
+  if (a.known) in.tail<3>() = a.R.col(2);
+  const TermSum terms = platform_.sum(pose.conditions(), sensor, {in.data(), 6}, state_.coefficients);
+  const Eigen::Matrix3d by_b = Eigen::Matrix3d::Identity() + terms.d_input.leftCols<3>();
+  const Eigen::Matrix3d by_g = terms.d_input.rightCols<3>();
+  field.b_P_nT += terms.value;
+  field.d_nuisance = (by_b * field.d_nuisance).eval();
+  field.d_global = (by_b * field.d_global).eval();
+  field.d_global.rightCols(globals_ - kGlobals) += terms.d_coefficient;
+  if (!a.known) return;
+  for (int j = 0; j < 3; ++j) field.d_nuisance.col(j) += by_g * a.dR[static_cast<std::size_t>(j)].col(2);
+  for (int j = 0; j < Attitude::kTable && !table_.empty(); ++j) {
+    field.d_global.rightCols(globals_ - kGlobals) +=
+        by_g * a.dR[static_cast<std::size_t>(3 + j)].col(2) * a.state_d_coefficient.row(j);
+  }
+}
+
+void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const {
+  out.f_nuisance.setZero();
+  out.f_global.setZero(globals_);
+  if (!a.known) {
+    out.f_nT = a.b_P_nT.norm();
+    out.f_nuisance.head<3>() = a.b_P_nT.transpose() / out.f_nT;
+    return;
+  }
+  if (common_field_) {
+    // What is common to the poses is the field that does not drift.
+    out.f_nT = a.f_nT;
+    out.f_nuisance[3] = 1;
+    return;
+  }
+  Eigen::Vector3d B_S = a.f_nT * state_.direction;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> d_coefficient;
+  if (!site_.empty()) {
+    const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    const TermSum terms = site_.sum(pose.conditions(), 0, {centre.data(), 3}, state_.coefficients);
+    B_S += terms.value;
+    d_coefficient = terms.d_coefficient;
+  }
+  out.f_nT = B_S.norm();
+  const auto add = [&](const Eigen::RowVector3d& by_B) {
+    out.f_nuisance[3] += by_B.dot(state_.direction);
+    out.f_global.head<2>() += a.f_nT * by_B * tangents_;
+    if (!site_.empty()) out.f_global.tail(globals_ - kGlobals) += by_B * d_coefficient;
+  };
+  add(B_S.transpose() / out.f_nT);
+  if (!reference_.empty()) add(reference_terms(pose, a, B_S, out));
+}
+
+/// Adds the terms of the scalar reference; gives their derivative by B_S.
+Eigen::RowVector3d PoseModel::reference_terms(const JointPose& pose, const Attitude& a,
+                                              const Eigen::Vector3d& B_S, PoseLinear& out) const {
+  const Eigen::Vector3d u_S = B_S.normalized(), u_P = a.R * u_S;
+  const TermSum terms = reference_.sum(pose.conditions(), 0, {u_P.data(), 3}, state_.coefficients);
+  const Eigen::RowVector3d by_u = terms.d_input;
+  out.f_nT += terms.value[0];
+  out.f_global.tail(globals_ - kGlobals) += terms.d_coefficient;
+  for (int j = 0; j < Attitude::kAttitude; ++j)
+    out.f_nuisance[j] += by_u * (a.dR[static_cast<std::size_t>(j)] * u_S);
+  for (int j = 0; j < Attitude::kTable && !table_.empty(); ++j) {
+    out.f_global.tail(globals_ - kGlobals) +=
+        by_u.dot(a.dR[static_cast<std::size_t>(Attitude::kAttitude + j)] * u_S) *
+        a.state_d_coefficient.row(j);
+  }
+  return by_u * a.R * (Eigen::Matrix3d::Identity() - u_S * u_S.transpose()) / B_S.norm();
+}
+
+void PoseModel::read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const {
+  const auto i = static_cast<std::size_t>(sensor);
+  const int row = 3 * sensor;
+  const SensorGain& g = gains_[i];
+  const Eigen::Vector3d v_nT = g.gain * field.b_P_nT;
+  auto d_sensor = out.d_sensor.middleRows<3>(row);
+  for (std::size_t j = 0; j < kGainParameters.size(); ++j)
+    d_sensor.col(kGainParameters[j]) = g.d_gain[j] * field.b_P_nT;
+  out.y_nT.segment<3>(row) = v_nT + state_.sensors[i].offset_nT;
+  out.d_nuisance.middleRows<3>(row) = g.gain * field.d_nuisance;
+  out.d_global.middleRows<3>(row).noalias() = g.gain * field.d_global;
+  if (!axis_.empty()) {
+    const TermSum terms = axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients);
+    const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
+    out.y_nT.segment<3>(row) += terms.value;
+    d_sensor = (by_v * d_sensor).eval();
+    out.d_nuisance.middleRows<3>(row) = (by_v * out.d_nuisance.middleRows<3>(row)).eval();
+    out.d_global.middleRows<3>(row) = (by_v * out.d_global.middleRows<3>(row)).eval();
+    out.d_global.middleRows<3>(row).rightCols(globals_ - kGlobals) += terms.d_coefficient;
+  }
+  d_sensor.middleCols<3>(ix).setIdentity();
+}
+
+void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const {
+  out.d_global.resize(kChannels, globals_);
+  Attitude a;
+  set_attitude(pose, nuisance, a);
+  scalar_field(pose, a, out);
+  Field field;
+  for (int sensor = 0; sensor < kSensors; ++sensor) {
+    // Without site and platform effects the four sensors share one field.
+    if (sensor == 0 || !site_.empty() || !platform_.empty()) {
+      field_at(pose, a, sensor, field);
+      add_platform(pose, a, sensor, field);
+    }
+    read(pose, sensor, field, out);
+  }
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+
+#include "calib/effects/level_terms.h"
+#include "calib/fit/joint/joint_problem.h"
+
+/// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform,
+/// sensor, axis.
+namespace mgtd::calib {
+
+struct PoseLinear {
+  Channels y_nT;  ///< predicted readings
+  /// Rows of sensor i by the parameters of sensor i.
+  Eigen::Matrix<double, kChannels, kSensorParameters> d_sensor;
+  Eigen::Matrix<double, kChannels, kNuisances> d_nuisance;
+  Eigen::Matrix<double, kChannels, Eigen::Dynamic> d_global;  ///< by slots kSiteSlot .. of the fixed block
+  double f_nT{0};                                             ///< predicted |B(0)|
+  Eigen::Matrix<double, 1, kNuisances> f_nuisance;
+  Eigen::RowVectorXd f_global;
+};
+
+/// Holds everything that depends on the fixed block only; one is made per iteration. Keeps references to both
+/// arguments.
+class PoseModel {
+ public:
+  PoseModel(const JointProblem& problem, const JointState& state);
+  void linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const;
+
+ private:
+  struct Attitude;
+  struct Field;
+  struct SensorGain {
+    Eigen::Matrix3d gain;                   ///< C A R'
+    std::array<Eigen::Matrix3d, 9> d_gain;  ///< by theta, phi, psi, cx, cy, cz, alpha, beta, gamma
+  };
+  [[nodiscard]] static SensorGain gain_of(const SensorModel& sensor);
+  void set_attitude(const JointPose& pose, const Nuisance& nuisance, Attitude& a) const;
+  void add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, const Eigen::Matrix3d& dB_dx,
+                        const Eigen::Vector3d& r_P_m, Field& field) const;
+  void field_at(const JointPose& pose, const Attitude& a, int sensor, Field& field) const;
+  void add_platform(const JointPose& pose, const Attitude& a, int sensor, Field& field) const;
+  void scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const;
+  [[nodiscard]] Eigen::RowVector3d reference_terms(const JointPose& pose, const Attitude& a,
+                                                   const Eigen::Vector3d& B_S, PoseLinear& out) const;
+  void read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const;
+
+  const JointState& state_;
+  LevelTerms table_, site_, platform_, axis_, reference_;
+  std::array<SensorGain, kSensors> gains_;
+  std::array<Eigen::Vector3d, kSensors> positions_P_m_;
+  Eigen::Matrix<double, 3, 2> tangents_;
+  int globals_;
+  bool common_field_;
+};
+
+}  // namespace mgtd::calib

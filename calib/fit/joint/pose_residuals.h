@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/calibration/calibration.h"
+#include "calib/fit/joint/joint_solver.h"
+
+/// What the residuals of a solved joint problem say about its noise and its table.
+namespace mgtd::calib {
+
+/// Observations of one pose in whitened units: 12 readings, scalar, attitude.
+inline constexpr int kObservations = kChannels + 2, kScalarRow = kChannels, kAttitudeRow = kChannels + 1;
+
+struct PoseResiduals {
+  /// |residual| over its own standard deviation, by observation and pose; 0 where left out.
+  Eigen::Matrix<float, kObservations, Eigen::Dynamic> t;
+  AxisNoise noise_ratio;       ///< rms residual over assumed noise, per axis, freedom accounted for
+  double table_ratio{1};       ///< the same of the attitude errors
+  double attitude_freedom{0};  ///< observations of attitude less what was fitted to them
+  int readings{0}, scalars{0};
+
+  double squares_nT2{0};  ///< of reading less prediction, summed over all readings
+  double freedom{0};      ///< of those readings, less what each pose's own attitude and field took
+  double fitted{0};       ///< unknowns of the fixed block that the readings had to tell
+
+  /// What "residual" means in every report: the root of the mean square of reading less prediction, nT, over
+  /// the readings of all twelve channels, each pose with its own best attitude and field; per degree of
+  /// freedom, so that it is the noise of a pose mean where the model is complete.
+  [[nodiscard]] double residual_nT() const;
+  /// The same on poses that the fixed block was not fitted to.
+  [[nodiscard]] double unseen_nT() const;
+};
+
+[[nodiscard]] PoseResiduals pose_residuals(const JointProblem& problem, const JointState& state);
+
+}  // namespace mgtd::calib

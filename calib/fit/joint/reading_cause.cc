@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/reading_cause.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mgtd::calib {
+
+std::vector<std::size_t> at_the_stop(const JointProblem& problem, int channel) {
+  constexpr std::size_t kShared = 3;
+  std::vector<double> y;
+  for (const JointPose& pose : problem.poses) y.push_back(pose.y_nT[channel]);
+  std::vector<std::size_t> out;
+  if (y.empty()) return out;
+  const auto [low, high] = std::minmax_element(y.begin(), y.end());
+  for (const double stop : {*low, *high}) {
+    if (stop == *high && std::abs(stop) == std::abs(*low))
+      break;  // of a range that is symmetric both ends are one
+    std::vector<std::size_t> same;
+    for (std::size_t k = 0; k < y.size(); ++k)
+      if (std::abs(y[k]) == std::abs(stop)) same.push_back(k);
+    if (same.size() >= kShared) out.insert(out.end(), same.begin(), same.end());
+  }
+  return out;
+}
+
+std::string cause_of(const JointProblem& problem, std::size_t pose, int channel) {
+  const std::vector<std::size_t> stop = at_the_stop(problem, channel);
+  if (std::find(stop.begin(), stop.end(), pose) != stop.end()) return "saturated";
+  const auto same = [&](std::size_t other) {
+    return other < problem.poses.size() &&
+           problem.poses[other].y_nT[channel] == problem.poses[pose].y_nT[channel];
+  };
+  return same(pose + 1) || (pose > 0 && same(pose - 1)) ? "stuck" : "";
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/robust_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/fit/consensus.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kMaxRounds = 30;
+/// Of chi-square: less is not worth a step before the weights are known.
+constexpr double kWeightsUnknown = 10;
+
+Result<void> plausible(const JointState& state) {
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const double gain = std::abs(state.sensors[i].response().determinant());
+    if (gain > 0.125 && gain < 8) continue;  // each axis within a factor of two of nominal scale
+    return fail(
+        ErrorCode::refused,
+        fmt::format("sensor {}: the fit wants a volume gain of {:.3g}, a fluxgate at nominal scale has 1 "
+                    "(limit 1/8 to 8)",
+                    i + 1, gain),
+        "check the volts-to-nT scale of this sensor, the known field, and that the poses cover the sphere");
+  }
+  return {};
+}
+
+/// Fits, weighs anew and leaves out in turn until nothing moves. `unsettled` tells that no more than that
+/// went wrong.
+Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNoise& start, Outliers outliers,
+                          bool& unsettled) {
+  RobustFit out;
+  out.outliers = std::move(outliers);
+  out.noise = start;
+  FitNoise& noise = out.noise;
+  // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
+  double enough = kWeightsUnknown;
+  for (int round = 1;; ++round) {
+    out.outliers.restore(problem);
+    noise.apply(problem);
+    out.outliers.leave_out(problem);
+    auto solution = solve(problem, std::move(state), enough);
+    unsettled = !solution;
+    if (!solution) return tl::unexpected(solution.error());
+    if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
+    out.iterations += solution->iterations;
+    out.solution = *std::move(solution);
+    JointState& found = out.solution.state;
+    out.residuals = pose_residuals(problem, found);
+    if (round > kMaxRounds) return out;
+    const bool judged = out.outliers.judge(problem, found, out.residuals);
+    const bool moved = noise.update(out.residuals, problem);
+    if (moved && !judged) {
+      settle(noise, problem, found);
+      enough = kConverged;
+    }
+    if ((!judged && !moved) || round == kMaxRounds) {
+      if (enough == kConverged) return out;
+      enough = kConverged;
+    }
+    state = std::move(found);
+  }
+}
+
+/// Readings and scalar reference of all poses, for the search of those that agree.
+struct AllReadings {
+  ReadingTable y_nT;
+  Eigen::VectorXd f_nT;
+};
+
+AllReadings all_readings(const JointProblem& problem, double f_nT) {
+  const auto n = static_cast<Eigen::Index>(problem.poses.size());
+  AllReadings out{ReadingTable(kChannels, n), Eigen::VectorXd::Constant(n, f_nT)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    out.y_nT.col(k) = pose.y_nT;
+    if (!problem.common_field) out.f_nT[k] = pose.f_nT;
+  }
+  return out;
+}
+
+/// The fit that starts from the poses that agree with each other; empty where they cannot be told or where
+/// nothing comes of it.
+std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings& all, double f_nT,
+                                       const FitNoise& noise, double most_left_out) {
+  const auto agreeing = agreeing_poses(all.y_nT, all.f_nT);
+  if (!agreeing) return std::nullopt;
+  JointProblem some = problem;
+  some.poses.clear();
+  for (const Eigen::Index k : *agreeing) some.poses.push_back(problem.poses[static_cast<std::size_t>(k)]);
+  auto start = joint_start(some, f_nT);
+  if (!start) return std::nullopt;
+  bool unsettled = false;
+  const auto first = weighed(some, *std::move(start), noise, Outliers(most_left_out), unsettled);
+  if (!first) return std::nullopt;
+  const JointState& known = first->solution.state;
+  first->noise.apply(problem);
+  JointState state = joint_state(problem, known.sensors, known.direction, known.f_nT);
+  state.coefficients = known.coefficients;
+  refit_nuisances(problem, state);
+  Outliers outliers(most_left_out);
+  outliers.judge(problem, state, pose_residuals(problem, state));
+  auto out = weighed(problem, std::move(state), first->noise, std::move(outliers), unsettled);
+  if (!out) return std::nullopt;
+  out->iterations += first->iterations;
+  return *std::move(out);
+}
+
+/// What two fits of the same readings are compared by: minus the logarithm of their likelihood with the
+/// spread that the median of each axis tells, a reading left out priced as one three spreads away.
+double cost(const JointProblem& problem, const RobustFit& fit) {
+  constexpr double kMadToSd = 1.4826, kLeftOut = 3 * 3 / 2.0;
+  double sum = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    std::vector<double> misfits;
+    double squares = 0, left_out = 0;
+    for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+      const double weight = problem.poses[k].weight[c];
+      const double t = static_cast<double>(fit.residuals.t(c, static_cast<Eigen::Index>(k)));
+      misfits.push_back(weight > 0 ? t / weight : std::numeric_limits<double>::infinity());
+      if (weight > 0) {
+        squares += std::pow(misfits.back(), 2);
+      } else {
+        ++left_out;
+      }
+    }
+    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
+    std::nth_element(misfits.begin(), middle, misfits.end());
+    const double spread = std::max(kMadToSd * *middle, kNoiseFloor_nT);
+    sum += static_cast<double>(misfits.size()) * std::log(spread) + squares / (2 * spread * spread) +
+           kLeftOut * left_out;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Result<RobustFit> robust_fit_near(JointProblem& problem, JointState near, const FitNoise& noise,
+                                  double most_left_out, bool& unsettled) {
+  Outliers outliers(most_left_out);
+  noise.apply(problem);
+  refit_nuisances(problem, near);
+  outliers.judge(problem, near, pose_residuals(problem, near));
+  return weighed(problem, std::move(near), noise, std::move(outliers), unsettled);
+}
+
+Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, double f_nT,
+                             const FitNoise& noise, double most_left_out, bool& unsettled) {
+  const AllReadings all = all_readings(problem, f_nT);
+  JointProblem other = problem;
+  Result<RobustFit> plain = tl::unexpected(start ? Error{} : start.error());
+  if (start) plain = weighed(problem, *std::move(start), noise, Outliers(most_left_out), unsettled);
+  const bool suspicious = !plain || plain->outliers.any() || plain->outliers.too_many() > 0;
+  if (most_left_out <= 0 || (!suspicious && !looks_spoilt(all.y_nT))) return plain;
+  auto agreed = from_agreeing(other, all, f_nT, noise, most_left_out);
+  if (!agreed) return plain;
+  if (plain && cost(problem, *plain) <= cost(other, *agreed)) return plain;
+  problem = std::move(other);
+  unsettled = false;
+  return *std::move(agreed);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/joint/fit_noise.h"
+#include "calib/fit/joint/outliers.h"
+
+/// Solution, weights and what is left out, in turn until nothing moves.
+///
+/// From all poses; where that, or the readings alone, show that some poses are far from the others, also from
+/// the poses that agree with each other (consensus.h); of the two the more likely.
+namespace mgtd::calib {
+
+struct RobustFit {
+  JointSolution solution;
+  PoseResiduals residuals;
+  Outliers outliers;
+  FitNoise noise;
+  int iterations{0};
+};
+
+/// Weighs `problem` and leaves out of it as it goes. `start` may be an error: then only the poses that agree
+/// can help. `unsettled` tells that no more went wrong than that nothing settled.
+[[nodiscard]] Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, double f_nT,
+                                           const FitNoise& noise, double most_left_out, bool& unsettled);
+
+/// From the end of a fit of these readings: what contradicts there is left out before anything moves.
+[[nodiscard]] Result<RobustFit> robust_fit_near(JointProblem& problem, JointState near, const FitNoise& noise,
+                                                double most_left_out, bool& unsettled);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/tensor_uncertainty.h"
+
+#include <Eigen/LU>
+
+#include "calib/calibration/tensor.h"
+#include "calib/fit/joint/pose_model.h"
+
+namespace mgtd::calib {
+
+Gradient calibration_tensor_sd(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
+                               const Eigen::MatrixXd& covariance, double f_nT) {
+  JointProblem problem;
+  problem.geometry = geometry;
+  JointState state;
+  state.sensors = sensors;
+  const PoseModel model(problem, state);
+  const JointPose anywhere;  // without table angles: the field itself is given
+  const auto rows = gradient_rows(geometry);
+  PoseLinear linear;
+  Eigen::Matrix<double, 6, 1> variance = Eigen::Matrix<double, 6, 1>::Zero();
+  for (int direction = 0; direction < 6; ++direction) {
+    Nuisance b = Nuisance::Zero();
+    b[direction / 2] = direction % 2 == 0 ? f_nT : -f_nT;
+    model.linearise(anywhere, b, linear);
+    Eigen::Matrix<double, 6, kSensorBlock> J;
+    for (int i = 0; i < kSensors; ++i) {
+      const SensorModel& sensor = sensors[static_cast<std::size_t>(i)];
+      const Eigen::Matrix3d gain = sensor.R_PS() * sensor.response().inverse();
+      J.middleCols<kSensorParameters>(kSensorParameters * i) =
+          rows.middleCols<3>(3 * i) * gain * linear.d_sensor.middleRows<3>(3 * i);
+    }
+    variance += (J * covariance.topLeftCorner<kSensorBlock, kSensorBlock>() * J.transpose()).diagonal() / 6;
+  }
+  const Eigen::Matrix<double, 6, 1> sd = variance.cwiseMax(0).cwiseSqrt();
+  return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+}
+
+}  // namespace mgtd::calib

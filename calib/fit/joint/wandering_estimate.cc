@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/wandering_estimate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/fit/joint/pose_residuals.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kJ = kWanderingTerms;
+/// Of the pooled rate, squared: an axis of an array that wanders is never taken as still.
+constexpr double kLeastShare = 0.1;
+constexpr int kClimbs = 12;
+/// Values of a rate that the likelihood is averaged over: four a decade of its square.
+constexpr double kLowest = 0.1, kHighest = 1e7;
+constexpr int kPerDecade = 4;
+
+/// Columns of the channels that wander.
+std::vector<Eigen::Index> active(const Channels& theta) {
+  std::vector<Eigen::Index> out;
+  for (int c = 0; c < kChannels; ++c) {
+    for (int j = 0; theta[c] > 0 && j < kJ; ++j) out.push_back(c * kJ + j);
+  }
+  return out;
+}
+
+/// Everything about one theta: B = I + D G D with D = sqrt(theta), over the active columns.
+struct At {
+  std::vector<Eigen::Index> columns;
+  Eigen::VectorXd root;
+  Eigen::LLT<Eigen::MatrixXd> B;
+  double Q;             ///< r' V^-1 r
+  Eigen::VectorXd sol;  ///< B^-1 D h
+
+  At(const SlowSums& s, const Channels& theta) : columns(active(theta)), root(columns.size()) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      root[static_cast<Eigen::Index>(i)] = std::sqrt(theta[columns[i] / kJ]);
+    Eigen::MatrixXd M = root.asDiagonal() * s.gram(columns, columns) * root.asDiagonal();
+    M.diagonal().array() += 1;
+    B.compute(M);
+    const Eigen::VectorXd h = root.cwiseProduct(s.by_residual(columns));
+    sol = B.solve(h);
+    Q = s.chi2 - h.dot(sol);
+  }
+  [[nodiscard]] double log_det() const {
+    return 2 * Eigen::MatrixXd(B.matrixL()).diagonal().array().log().sum();
+  }
+};
+
+/// The sums as they are once some channels wander.
+SlowSums given(const SlowSums& s, const Channels& theta) {
+  const At at(s, theta);
+  if (at.columns.empty()) return s;
+  const Eigen::MatrixXd GD = s.gram(Eigen::all, at.columns) * at.root.asDiagonal();
+  SlowSums out = s;
+  out.gram -= GD * at.B.solve(GD.transpose());
+  out.by_residual -= GD * at.sol;
+  out.chi2 = at.Q;
+  return out;
+}
+
+struct Place {
+  std::string name;
+  std::vector<int> channels;
+  double price;  ///< 2 ln of how many are alike
+};
+
+std::vector<Place> places() {
+  std::vector<Place> out{{"all", {}, 0}};
+  for (int c = 0; c < kChannels; ++c) out.front().channels.push_back(c);
+  for (int i = 0; i < kSensors; ++i)
+    out.push_back({fmt::format("s{}", i + 1), {3 * i, 3 * i + 1, 3 * i + 2}, 2 * std::log(kSensors)});
+  for (int c = 0; c < kChannels; ++c)
+    out.push_back({fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]), {c}, 2 * std::log(kChannels)});
+  return out;
+}
+
+struct Asked {
+  double evidence{0}, theta{0};
+};
+
+/// One rate for all channels of a place.
+Asked ask(const SlowSums& s, const Place& place) {
+  std::vector<Eigen::Index> columns;
+  for (const int c : place.channels)
+    for (int j = 0; j < kJ; ++j) columns.push_back(c * kJ + j);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(s.gram(columns, columns));
+  const Eigen::ArrayXd mu = eigen.eigenvalues().array().max(0);
+  const Eigen::ArrayXd b2 = (eigen.eigenvectors().transpose() * s.by_residual(columns)).array().square();
+  if (!(mu.maxCoeff() > 0)) return {};
+  std::vector<double> log_likelihood;
+  Asked out;
+  double best = -std::numeric_limits<double>::infinity();
+  const double ratio = std::pow(10.0, 1.0 / kPerDecade);
+  for (double x = kLowest; x <= kHighest; x *= ratio) {
+    const double theta = x / mu.maxCoeff();
+    const double Q = s.chi2 - (theta * b2 / (1 + theta * mu)).sum();
+    const double l = -0.5 * ((1 + theta * mu).log().sum() + s.dof * std::log(Q / s.chi2));
+    log_likelihood.push_back(l);
+    if (l > best) best = l, out.theta = theta;
+  }
+  double sum = 0;
+  for (const double l : log_likelihood) sum += std::exp(l - best);
+  out.evidence = 2 * (best + std::log(sum / static_cast<double>(log_likelihood.size()))) - place.price;
+  return out;
+}
+
+/// Places one after the other, each given those before, while one is worth saying.
+Channels grow(const SlowSums& sums, WanderingEstimate& out) {
+  constexpr int kMost = 6;
+  Channels theta = Channels::Zero();
+  SlowSums left = sums;
+  const std::vector<Place> all = places();
+  for (int round = 0; round < kMost; ++round) {
+    const Place* best = nullptr;
+    Asked found{.evidence = kWanderingEvidence};
+    for (const Place& place : all) {
+      if (place.name != "all" && theta[place.channels.front()] > 0) continue;
+      const Asked asked = ask(left, place);
+      if (asked.evidence > found.evidence) found = asked, best = &place;
+    }
+    if (best == nullptr) break;
+    out.evidence += found.evidence;
+    if (best->name == "all") out.where.clear();
+    out.where.push_back(best->name);
+    for (const int c : best->channels) theta[c] += found.theta;
+    if (best->name == "all") break;
+    left = given(sums, theta);
+  }
+  return theta;
+}
+
+/// What the slow terms add to the normal equations, nuisances eliminated: one column a channel and term.
+struct SlowEquations {
+  Eigen::MatrixXd by_fixed;  ///< fixed block x slow
+  Eigen::MatrixXd gram;      ///< slow x slow
+  Eigen::VectorXd by_residual;
+};
+
+/// Rows of the readings by the fixed block, weighted, of one pose.
+Eigen::MatrixXd fixed_rows(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(kChannels, problem.fixed());
+  for (int i = 0; i < kSensors; ++i)
+    out.block<3, kSensorParameters>(3 * i, kSensorParameters * i) = b.linear.d_sensor.middleRows<3>(3 * i);
+  out.rightCols(b.linear.d_global.cols()) = b.linear.d_global;
+  return pose.weight.asDiagonal() * out;
+}
+
+SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
+                             const WanderingTerms& terms) {
+  constexpr Eigen::Index m = kChannels * kJ;
+  SlowEquations out{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
+                    .gram = Eigen::MatrixXd::Zero(m, m),
+                    .by_residual = Eigen::VectorXd::Zero(m)};
+  const PoseModel model(problem, state);
+  PoseBlocks b;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    const JointPose& pose = problem.poses[k];
+    assemble(problem, model, state, k, true, b);
+    const Eigen::LLT<Eigen::Matrix4d> H(b.H);
+    const Eigen::Matrix<double, kNuisances, kChannels> solved = H.solve(b.N.transpose());
+    // What a reading of a channel, moved by its standard deviation, does once the nuisances have followed.
+    const auto w = pose.weight.asDiagonal();
+    const Eigen::Matrix<double, kChannels, kChannels> M =
+        w * (Eigen::Matrix<double, kChannels, kChannels>::Identity() - b.N * solved) * w;
+    const Eigen::MatrixXd X = (fixed_rows(problem, pose, b).transpose() - b.U * solved) * w;
+    const Channels r = w * (b.residual - solved.transpose() * b.g);
+    const auto at = terms.at(pose.t_h);
+    for (int c = 0; c < kChannels; ++c) {
+      out.by_fixed.middleCols<kJ>(c * kJ) += X.col(c) * at.transpose();
+      out.by_residual.segment<kJ>(c * kJ) += r[c] * at;
+      for (int d = 0; d <= c; ++d) out.gram.block<kJ, kJ>(c * kJ, d * kJ) += M(c, d) * at * at.transpose();
+    }
+  }
+  out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
+  return out;
+}
+
+}  // namespace
+
+SlowSums SlowSums::without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const {
+  return {.gram = gram - by_columns.transpose() * by_columns,
+          .by_residual = by_residual - by_columns.transpose() * r,
+          .chi2 = chi2 - r.squaredNorm(),
+          .dof = dof - static_cast<double>(r.size())};
+}
+
+WanderingTerms wandering_terms(const JointProblem& problem) {
+  const auto [first, last] =
+      std::minmax_element(problem.poses.begin(), problem.poses.end(),
+                          [](const JointPose& a, const JointPose& b) { return a.t_h < b.t_h; });
+  return {first->t_h, last->t_h};
+}
+
+SlowSums slow_sums(const JointFit& fit) {
+  const WanderingTerms terms = wandering_terms(fit.problem);
+  if (!terms.any()) return {};
+  const Reduced all = reduce(fit.problem, fit.state, 0);
+  const SlowEquations slow = slow_equations(fit.problem, fit.state, terms);
+  const Eigen::VectorXd d = all.S.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * all.S * d.asDiagonal());
+  const Eigen::MatrixXd X = llt.matrixL().solve(d.asDiagonal() * slow.by_fixed);
+  const Eigen::VectorXd y = llt.matrixL().solve(d.cwiseProduct(all.g));
+  return {.gram = slow.gram - X.transpose() * X,
+          .by_residual = slow.by_residual - X.transpose() * y,
+          .chi2 = all.cost.total() - y.squaredNorm(),
+          .dof = fit.dof + fit.dof_table};
+}
+
+double SlowLikelihood::deviance(const Channels& theta) const {
+  const At at(sums_, theta);
+  return sums_.dof * std::log(at.Q / sums_.dof) + at.log_det();
+}
+
+double SlowLikelihood::quadratic(const Channels& theta) const { return At(sums_, theta).Q; }
+
+double SlowLikelihood::noise_variance(const Channels& theta) const { return quadratic(theta) / sums_.dof; }
+
+void SlowLikelihood::climb(Channels& theta, int steps) const {
+  for (int step = 0; step < steps; ++step) {
+    const At at(sums_, theta);
+    if (at.columns.empty()) return;
+    const double sigma2 = at.Q / sums_.dof;
+    // V^-1 seen by the columns: U'V^-1 U = D^-1 (I - B^-1) D^-1, U'V^-1 r = D^-1 B^-1 D h.
+    const Eigen::VectorXd inverse =
+        at.B.solve(Eigen::MatrixXd::Identity(at.root.size(), at.root.size())).diagonal();
+    Channels squares = Channels::Zero(), trace = Channels::Zero();
+    for (std::size_t i = 0; i < at.columns.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const Eigen::Index c = at.columns[i] / kJ;
+      squares[c] += std::pow(at.sol[k] / at.root[k], 2);
+      trace[c] += (1 - inverse[k]) / (at.root[k] * at.root[k]);
+    }
+    for (int c = 0; c < kChannels; ++c)
+      if (theta[c] > 0 && trace[c] > 0) theta[c] *= std::sqrt(squares[c] / sigma2 / trace[c]);
+  }
+}
+
+WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
+  WanderingEstimate out;
+  if (likelihood.sums().gram.size() == 0) return out;
+  Channels theta = grow(likelihood.sums(), out);
+  if (!out.any()) return out;
+  const double least = kLeastShare * theta.minCoeff();
+  likelihood.climb(theta, kClimbs);
+  theta = theta.cwiseMax(least);
+  const double sigma2 = likelihood.noise_variance(theta);
+  out.nT_per_sqrt_h = (theta * sigma2).cwiseSqrt();
+  out.noise_scale2 = sigma2;
+  for (int c = 0; c < kChannels; ++c) {
+    if (!(theta[c] > 0)) continue;
+    double freedom = 0;
+    for (int j = 0; j < kJ; ++j) {
+      const double x = theta[c] * likelihood.sums().gram(c * kJ + j, c * kJ + j);
+      freedom += std::pow(x / (1 + x), 2);
+    }
+    out.sd[c] = out.nT_per_sqrt_h[c] / std::sqrt(2 * std::max(freedom, 0.5));
+  }
+  return out;
+}
+
+double unequal_noise_evidence(const JointFit& fit) {
+  const Eigen::ArrayXd squares =
+      pose_residuals(fit.problem, fit.state).noise_ratio.reshaped().array().square();
+  return std::max(0.0, fit.dof * (std::log(squares.mean()) - squares.log().mean()));
+}
+
+WanderingEstimate wandering_of(const JointFit& fit) {
+  WanderingEstimate out = estimate_wandering(SlowLikelihood(slow_sums(fit)));
+  return out.evidence < kWanderingEvidence + unequal_noise_evidence(fit) ? WanderingEstimate{} : out;
+}
+
+std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, const WanderingEstimate& w) {
+  const WanderingTerms terms = wandering_terms(fit.problem);
+  const auto inverse = covariance_of(reduce(fit.problem, fit.state, 0).S);
+  if (!inverse || !terms.any()) return std::nullopt;
+  Eigen::MatrixXd errors = *inverse * slow_equations(fit.problem, fit.state, terms).by_fixed;
+  Eigen::MatrixXd out = w.noise_scale2 * *inverse;
+  const auto at_end = terms.at(terms.to_h());
+  for (int c = 0; c < kChannels; ++c) {
+    const int offset = kSensorParameters * (c / 3) + ix + c % 3;
+    errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
+    errors.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];
+    out(offset, offset) += std::pow(w.nT_per_sqrt_h[c], 2) * (terms.variance_at_end() - at_end.squaredNorm());
+  }
+  return Eigen::MatrixXd(out + errors * errors.transpose());
+}
+
+}  // namespace mgtd::calib

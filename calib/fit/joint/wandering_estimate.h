@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/wandering.h"
+
+/// Which offsets wander, and how fast, from the residual of a joint fit (wandering.h).
+///
+/// With everything else of the model projected out, the residual r has covariance sigma^2 (I + sum_c theta_c
+/// U_c U_c'), U_c the terms of channel c for a rate of 1 nT per root hour. The rates are those of the largest
+/// restricted likelihood (REML), in which sigma^2 is profiled: what a dwell says of the noise does not enter.
+/// The evidence is 2 ln of the odds against white noise, the likelihood averaged over the rate, less 2 ln of
+/// the number of places that were asked (all channels, one of four sensors, one of twelve channels).
+///
+/// A law that the model lacks and that follows time makes an offset wander too. This says how well a walk
+/// describes the residual, never that nothing better does: see criticism/wandering_rival.h.
+namespace mgtd::calib {
+
+/// Sums of the linearised fit, one column per channel and term, for rates of 1 nT per root hour.
+struct SlowSums {
+  Eigen::MatrixXd gram;         ///< U' U
+  Eigen::VectorXd by_residual;  ///< U' r
+  double chi2{0};               ///< r' r
+  double dof{0};                ///< dimensions of r
+
+  /// With the directions of some orthonormal columns taken out: `by_columns` = Q'U, `r` = Q'r.
+  [[nodiscard]] SlowSums without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const;
+};
+
+/// The terms of the run of these poses.
+[[nodiscard]] WanderingTerms wandering_terms(const JointProblem& problem);
+/// Empty gram where the poses have no time.
+[[nodiscard]] SlowSums slow_sums(const JointFit& fit);
+
+/// The restricted likelihood of relative variances theta_c = (rate_c / sigma)^2.
+class SlowLikelihood {
+ public:
+  explicit SlowLikelihood(SlowSums sums) : sums_(std::move(sums)) {}
+  [[nodiscard]] const SlowSums& sums() const { return sums_; }
+  /// -2 ln L, up to a constant.
+  [[nodiscard]] double deviance(const Channels& theta) const;
+  /// r' V^-1 r with V = I + sum theta_c U_c U_c'.
+  [[nodiscard]] double quadratic(const Channels& theta) const;
+  /// sigma^2 at theta.
+  [[nodiscard]] double noise_variance(const Channels& theta) const;
+  /// Steps uphill over the channels that wander already (minorise-maximise: never downhill).
+  void climb(Channels& theta, int steps) const;
+
+ private:
+  SlowSums sums_;
+};
+
+struct WanderingEstimate {
+  WanderingRates nT_per_sqrt_h{WanderingRates::Zero()}, sd{WanderingRates::Zero()};
+  double evidence{0};                ///< 2 ln odds against white noise, places priced
+  double noise_scale2{1};            ///< variance of the white noise over that of the weights
+  std::vector<std::string> where{};  ///< "all", or those that wander: "s2", "s3.z"
+  [[nodiscard]] bool any() const { return evidence > 0; }
+};
+
+/// Evidence from which offsets are said to wander: odds of a hundred.
+inline constexpr double kWanderingEvidence = 9.2;
+[[nodiscard]] WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood);
+
+/// 2 ln of the odds of channels with white noise of their own against the same factor for all: a channel that
+/// is noisier than the others, or follows a law without time, looks like one that wanders. Less than this no
+/// walk is worth.
+[[nodiscard]] double unequal_noise_evidence(const JointFit& fit);
+
+/// Covariance of the fixed block of an ordinary fit whose offsets wander, each offset as it is at the end of
+/// the run, where the calibration begins to be used. The estimates are those of least squares; with S the
+/// information of the fixed block, X its products with the slow terms, D their variance and E their values at
+/// the end of the run in the rows of the offsets,
+///     sigma^2 S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms beyond the last add to the offsets.
+/// How much further an offset wanders after the run is not in it. Empty where S is not positive definite.
+[[nodiscard]] std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit,
+                                                                       const WanderingEstimate& wandering);
+
+/// What wanders in a fit and is worth saying: estimate_wandering() against unequal_noise_evidence().
+[[nodiscard]] WanderingEstimate wandering_of(const JointFit& fit);
+
+}  // namespace mgtd::calib

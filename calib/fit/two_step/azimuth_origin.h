@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "calib/fit/two_step/step2.h"
+
+/// The gauge of step 2. The standard set leaves one turn about Z common to the four sensors: the direction D
+/// of the horizontal field in the platform frame at azimuth zero. It is, in this order,
+///   - given (the operator's declination),
+///   - found from poses that tilt: their table angles T_k say where the field was, T_k B_site = b_k,
+///   - set so that the mean gamma of the four sensors is zero.
+/// The tensor of a uniform field does not depend on it.
+namespace mgtd::calib {
+
+enum class AzimuthGauge { declination_given, table_frame, mean_gamma_zero };
+
+struct AzimuthOrigin {
+  AzimuthGauge gauge{AzimuthGauge::mean_gamma_zero};
+  double declination_rad{0};
+  /// Rms angle between where the tilted poses put the field and where it was; 0 without such poses. Large:
+  /// wrong sense of an angle.
+  double misfit_rad{0};
+};
+
+/// `alignment` has D = 0.
+[[nodiscard]] AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignment,
+                                           const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+                                           std::optional<double> declination_rad);
+
+/// The same alignment with the field at azimuth zero in the direction D.
+void turn_to(Alignment& alignment, double declination_rad);
+
+/// Site frame to platform frame (passive): Rz(azimuth) Ry(pitch) Rx(roll).
+[[nodiscard]] Eigen::Matrix3d table_rotation(const TableAngles& angles);
+
+/// The angles are known and turn the platform away from Z by two degrees or more.
+[[nodiscard]] bool is_tilted(const std::optional<TableAngles>& angles);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/poses/pose_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "calib/poses/pose_columns.h"
+#include "calib/poses/pose_list.h"
+#include "proto/number.h"
+#include "proto/sha256.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+
+struct Cell {
+  std::string_view text;
+  std::size_t column{1};  ///< 1-based position of its first character in the line
+};
+
+std::string_view trimmed(std::string_view text) {
+  const auto from = text.find_first_not_of(" \t\r");
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
+}
+
+std::vector<Cell> cells_of(std::string_view line) {
+  std::vector<Cell> cells;
+  std::size_t from = 0;
+  while (true) {
+    const std::size_t comma = std::min(line.find(',', from), line.size());
+    cells.push_back({trimmed(line.substr(from, comma - from)), from + 1});
+    if (comma == line.size()) return cells;
+    from = comma + 1;
+  }
+}
+
+/// What every row must have: readings, or the attitude at which they will be taken.
+enum class Rows { measured, planned };
+
+bool is_angle(std::string_view name) {
+  return name == "azimuth_deg" || name == "pitch_deg" || name == "roll_deg";
+}
+
+/// Reads line by line; knows where it is for every complaint.
+class Reader {
+ public:
+  Reader(std::string_view text, std::string_view file, Rows rows) : text_(text), file_(file), rows_(rows) {
+    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  }
+  [[nodiscard]] Result<PoseTable> read();
+  /// Where each pose stands.
+  [[nodiscard]] const std::vector<int>& lines() const { return lines_; }
+  /// Of a list: what a hand has to do before each pose.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  bool next_line();
+  Result<void> read_header();
+  Result<Pose> read_row(const std::vector<Cell>& cells);
+  Result<void> read_names(Pose& pose, const std::vector<Cell>& cells);
+  [[nodiscard]] tl::unexpected<Error> complain(std::size_t column, std::string message,
+                                               std::string remedy) const {
+    return fail(ErrorCode::bad_input, fmt::format("{}:{}:{}: {}", file_, line_number_, column, message),
+                std::move(remedy));
+  }
+  [[nodiscard]] std::size_t column_of(std::string_view name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    return found == names_.end() ? kNowhere : static_cast<std::size_t>(found - names_.begin());
+  }
+
+  [[nodiscard]] bool is_note(std::string_view name) const { return rows_ == Rows::planned && name == "note"; }
+  [[nodiscard]] bool required(const PoseColumn* column) const {
+    if (column == nullptr) return false;
+    return rows_ == Rows::measured ? column->required : is_angle(column->name);
+  }
+
+  std::string_view text_, file_, line_;
+  Rows rows_;
+  std::size_t line_number_{0};
+  std::vector<int> lines_;
+  std::vector<std::string> notes_;  ///< beside lines_
+  std::string note_;                ///< of the row under way
+  std::vector<std::string> names_;
+  std::vector<const PoseColumn*> known_;  ///< beside names_; null: not one of pose_columns()
+};
+
+bool Reader::next_line() {
+  while (!text_.empty()) {
+    const std::size_t end = std::min(text_.find('\n'), text_.size());
+    line_ = text_.substr(0, end);
+    text_.remove_prefix(std::min(end + 1, text_.size()));
+    ++line_number_;
+    const std::string_view content = trimmed(line_);
+    if (!content.empty() && !content.starts_with('#')) return true;
+  }
+  return false;
+}
+
+/// What a file is whose first line cannot be a header; empty where it can.
+std::string_view no_table(std::string_view line) {
+  if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")) return "the file is UTF-16 text";
+  if (line.find('\0') != std::string_view::npos) return "the file is no text: it holds zero bytes";
+  if (line.starts_with('{')) return "the file is JSON, not a table";
+  if (line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos)
+    return "its columns are separated by semicolons";
+  if (line.find(',') == std::string_view::npos && line.find('\t') != std::string_view::npos)
+    return "its columns are separated by tabs";
+  return {};
+}
+
+Result<void> Reader::read_header() {
+  if (!next_line()) {
+    return fail(ErrorCode::bad_input, fmt::format("{}: the file is empty", file_),
+                "a header row and one row per pose are needed");
+  }
+  if (const std::string_view what = no_table(line_); !what.empty()) {
+    return fail(
+        ErrorCode::bad_input, fmt::format("{}: {}", file_, what),
+        "give a *.mgtrun, or a pose table in CSV: commas between the columns, a decimal point, UTF-8");
+  }
+  for (const Cell& cell : cells_of(line_)) {
+    if (cell.text.empty()) return complain(cell.column, "a column has no name", "name it in the header row");
+    if (column_of(cell.text) != kNowhere) {
+      return complain(cell.column, fmt::format("column '{}' stands here twice", cell.text),
+                      "remove or rename one of them");
+    }
+    names_.emplace_back(cell.text);
+    const auto& columns = pose_columns();
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == cell.text; });
+    known_.push_back(found == columns.end() ? nullptr : &*found);
+  }
+  std::string missing;
+  for (const PoseColumn& column : pose_columns()) {
+    if (required(&column) && column_of(column.name) == kNowhere)
+      missing += (missing.empty() ? "" : ", ") + column.name;
+  }
+  if (column_of("pose") == kNowhere) missing = "pose" + (missing.empty() ? "" : ", " + missing);
+  if (!missing.empty()) {
+    return complain(
+        1, fmt::format("missing column: {}", missing),
+        column_of("s1_x_uT") == kNowhere
+            ? "add it to the header row; docs/pose-table.md lists every column"
+            : "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...");
+  }
+  return {};
+}
+
+Result<void> Reader::read_names(Pose& pose, const std::vector<Cell>& cells) {
+  const Cell& number = cells[column_of("pose")];
+  const auto value = parse_integer(number.text);
+  if (!value || std::abs(*value) > 1'000'000'000) {
+    return complain(number.column, fmt::format("pose '{}' is not a whole number", number.text),
+                    "number the poses 1, 2, 3, ...");
+  }
+  pose.number = static_cast<int>(*value);
+  if (const std::size_t at = column_of("set"); at != kNowhere) pose.set = cells[at].text;
+  if (const std::size_t at = column_of("note"); at != kNowhere && is_note("note")) note_ = cells[at].text;
+  if (const std::size_t at = column_of("t_utc"); at != kNowhere && !cells[at].text.empty()) {
+    const auto t = parse_utc(cells[at].text);
+    if (!t) return complain(cells[at].column, t.error().message, t.error().remedy);
+    pose.t_utc = *t;
+  }
+  return {};
+}
+
+Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
+  if (cells.size() != names_.size()) {
+    return complain(
+        1, fmt::format("{} cells, but the header names {} columns", cells.size(), names_.size()),
+        "give every row as many commas as the header; leave a cell empty when nothing was measured");
+  }
+  Pose pose;
+  if (auto read = read_names(pose, cells); !read) return tl::unexpected(read.error());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string& name = names_[i];
+    if (name == "pose" || name == "set" || name == "t_utc" || is_note(name)) continue;
+    if (cells[i].text.empty()) {
+      if (!required(known_[i])) continue;
+      return complain(cells[i].column, fmt::format("{} is empty", name),
+                      rows_ == Rows::measured ? "leave the whole pose out when a sensor was not read"
+                                              : "every planned pose needs its three angles");
+    }
+    const auto value = parse_number(cells[i].text);
+    if (!value) {
+      return complain(cells[i].column, fmt::format("'{}' in column {} is not a number", cells[i].text, name),
+                      "write it with a decimal point, or leave the cell empty when it was not measured");
+    }
+    if (known_[i] != nullptr && known_[i]->whole &&
+        !(std::abs(*value) < 1e9 && std::floor(*value) == *value)) {
+      return complain(cells[i].column,
+                      fmt::format("{} in column {} is not a whole number", cells[i].text, name),
+                      "write it without decimals, or leave the cell empty");
+    }
+    if (known_[i] != nullptr && !known_[i]->limits.hold(*value)) {
+      return complain(cells[i].column,
+                      fmt::format("{} in column {} is not possible: it must be {}", cells[i].text, name,
+                                  known_[i]->limits.words()),
+                      known_[i]->required
+                          ? "check unit and column; leave the whole pose out when it is wrong"
+                          : "check unit and column; leave the cell empty when it was not measured");
+    }
+    if (known_[i] != nullptr) {
+      known_[i]->set(pose, *value);
+    } else {
+      pose.covariates[name] = *value;
+    }
+  }
+  return pose;
+}
+
+Result<PoseTable> Reader::read() {
+  if (auto header = read_header(); !header) return tl::unexpected(header.error());
+  PoseTable table;
+  table.source = file_;
+  std::map<int, std::size_t> line_of_pose;
+  while (next_line()) {
+    auto pose = read_row(cells_of(line_));
+    if (!pose) return tl::unexpected(pose.error());
+    const auto [where, fresh] = line_of_pose.emplace(pose->number, line_number_);
+    if (!fresh) {
+      return complain(1, fmt::format("pose {} was already given in line {}", pose->number, where->second),
+                      "give every pose a number of its own; equal angles may repeat");
+    }
+    table.poses.push_back(*std::move(pose));
+    notes_.push_back(std::exchange(note_, {}));
+    lines_.push_back(static_cast<int>(line_number_));
+  }
+  if (table.poses.empty()) {
+    return fail(ErrorCode::bad_input, fmt::format("{}: a header but no pose", file_),
+                "one row per pose is needed");
+  }
+  return table;
+}
+
+}  // namespace
+
+Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file) {
+  return Reader(text, file, Rows::measured).read();
+}
+
+Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file) {
+  return Reader(text, file, Rows::planned).read();
+}
+
+Result<PoseList> read_pose_list(std::string_view text, std::string_view file) {
+  Reader reader(text, file, Rows::planned);
+  auto table = reader.read();
+  if (!table) return tl::unexpected(table.error());
+  return PoseList{*std::move(table), reader.lines(), reader.notes()};
+}
+
+std::string format_pose_table(const PoseTable& table) {
+  const auto any = [&](const auto& has) { return std::any_of(table.poses.begin(), table.poses.end(), has); };
+  const bool with_utc = any([](const Pose& p) { return p.t_utc.has_value(); });
+  std::vector<const PoseColumn*> columns;
+  for (const PoseColumn& column : pose_columns()) {
+    if (any([&](const Pose& p) { return column.get(p).has_value(); })) columns.push_back(&column);
+  }
+  std::set<std::string> covariates;
+  for (const Pose& pose : table.poses) {
+    for (const auto& [name, value] : pose.covariates) covariates.insert(name);
+  }
+  std::string out = with_utc ? "pose,set,t_utc" : "pose,set";
+  for (const PoseColumn* column : columns) out += "," + column->name;
+  for (const std::string& name : covariates) out += "," + name;
+  out += "\n";
+  for (const Pose& pose : table.poses) {
+    out += fmt::format("{},{}", pose.number, pose.set);
+    if (with_utc) out += "," + (pose.t_utc ? format_utc(*pose.t_utc) : std::string{});
+    for (const PoseColumn* column : columns) {
+      const auto value = column->get(pose);
+      out += value ? fmt::format(",{}", *value) : ",";
+    }
+    for (const std::string& name : covariates) {
+      const auto found = pose.covariates.find(name);
+      out += found == pose.covariates.end() ? "," : fmt::format(",{}", found->second);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+std::string data_hash(const PoseTable& table) { return sha256_hex(format_pose_table(table)); }
+
+}  // namespace mgtd::calib

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/comparison_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "calib/fit/residual_words.h"
+#include "calib/report/explain_json.h"
+#include "calib/report/noise_text.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json axes_json(const AxisNoise& n) {
+  json out = json::array();
+  for (int i = 0; i < kSensors; ++i) out.push_back({n(i, 0), n(i, 1), n(i, 2)});
+  return out;
+}
+
+json channel_json(const ResidualChannel& c) {
+  json against = json::array();
+  for (const Dependence& d : c.against) {
+    against.push_back({{"covariate", d.covariate},
+                       {"component", d.component},
+                       {"p", std::pow(10.0, d.log10_p)},
+                       {"log10_p", d.log10_p},
+                       {"means", d.means},
+                       {"from", d.from},
+                       {"to", d.to}});
+  }
+  return {{"channel", c.name},
+          {"unit", c.unit},
+          {"meaning", c.meaning},
+          {"rms", c.rms},
+          {"against", std::move(against)}};
+}
+
+/// Means as a row of blocks, lowest to highest of the row.
+std::string plot(const std::vector<double>& means) {
+  static constexpr std::array<const char*, 8> kBlocks{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  if (means.empty()) return "";
+  const auto [low, high] = std::minmax_element(means.begin(), means.end());
+  std::string out;
+  for (const double m : means) {
+    const double share = *high > *low ? (m - *low) / (*high - *low) : 0.5;
+    out += kBlocks[static_cast<std::size_t>(std::min(7.0, 8 * share))];
+  }
+  return out;
+}
+
+std::string noise_text(const Comparison& c) {
+  std::string out = fmt::format("residual   {:.3g} nT: {}\n", c.residual_nT, kResidualIs);
+  out += fmt::format("noise      {:.3g} nT of a pose mean, {}\n", c.noise_nT, noise_source(c.noise.told));
+  if (const std::string tests = noise_of_tests(c.noise); !tests.empty())
+    out += fmt::format("           {}\n", tests);
+  out += fmt::format(
+      "chi-square {:.4g} with {:.0f} degrees of freedom, of readings, scalar reference and table angles{}\n",
+      c.chi2, c.dof, c.log10_p ? "; " + p_phrase(*c.log10_p) : "");
+  if (c.noise.revisits) {
+    const PureError& p = *c.noise.revisits;
+    out += fmt::format(
+        "revisits   {} pairs of one attitude scatter {:.2f} times that noise; lack of fit F = {:.2f}, {}: ",
+        p.pairs, std::sqrt(p.ratio), p.F, p_phrase(p.log10_p));
+    out += fmt::format("the model misses {:.2g} nT rms beyond that scatter\n", p.model_nT);
+  } else {
+    out +=
+        "revisits   none: without one, lack of fit cannot be told from an assumed noise that is too small\n";
+  }
+  out += fmt::format("poses      correlated {:.2f} from one to the next", c.noise.rho);
+  if (c.table_sd_deg > 0)
+    out += fmt::format("; table angles good to {:.3g} deg each, estimated", c.table_sd_deg);
+  return out + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> alike_text(const Comparison& c) {
+  std::map<std::string, std::vector<std::string>> by_shown;
+  for (const auto& [name, shown] : c.alike) by_shown[shown].push_back(name);
+  std::vector<std::string> out;
+  for (const auto& [shown, names] : by_shown) {
+    out.push_back(fmt::format("{} {} the poses as {} does: shown once, these poses do not tell them apart",
+                              fmt::join(names, ", "), names.size() == 1 ? "orders" : "order", shown));
+  }
+  return out;
+}
+
+json to_json(const Comparison& c) {
+  json channels = json::array(), maps = json::array(), outliers = json::array(), lack, alike = json::array();
+  for (const auto& [name, shown] : c.alike) alike.push_back({{"covariate", name}, {"as", shown}});
+  for (const ResidualChannel& channel : c.channels) channels.push_back(channel_json(channel));
+  for (const MapScore& map : c.maps) maps.push_back(to_json(map));
+  for (const OutlierNode& o : c.outliers)
+    outliers.push_back({{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}});
+  if (c.noise.revisits) {
+    const PureError& p = *c.noise.revisits;
+    lack = {{"F", p.F}, {"p", std::pow(10.0, p.log10_p)}, {"model_nT", p.model_nT}, {"pairs", p.pairs}};
+  }
+  return {{"schema", "mgt.compare/1"},
+          {"fits", c.fits},
+          {"residual_nT", c.residual_nT},
+          {"noise_nT", c.noise_nT},
+          {"noise", to_json(c.noise)},
+          {"axis_noise_nT", axes_json(c.axis_noise_nT)},
+          {"axis_residual_nT", axes_json(c.axis_residual_nT)},
+          {"chi2", c.chi2},
+          {"dof", c.dof},
+          {"p", c.log10_p ? json(std::pow(10.0, *c.log10_p)) : json()},
+          {"log10_p", c.log10_p ? json(*c.log10_p) : json()},
+          {"table_sd_deg", c.table_sd_deg},
+          {"lack_of_fit", std::move(lack)},
+          {"channels", std::move(channels)},
+          {"alike", std::move(alike)},
+          {"maps", std::move(maps)},
+          {"outliers", std::move(outliers)}};
+}
+
+std::string to_text(const Comparison& c) {
+  std::string out = noise_text(c);
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "\n{:<13} {:>12}   {:<12} {:<9} {:>8}  means over it, lowest to highest\n", "channel",
+                 "rms", "against", "strongest", "p");
+  for (const ResidualChannel& channel : c.channels) {
+    std::string head = fmt::format("{:<13} {:>8.3g} {:<4}", channel.name, channel.rms, channel.unit);
+    for (const Dependence& d : channel.against) {
+      fmt::format_to(to, "{:<26}  {:<12} {:<9} {:>8}  {}\n", head, d.covariate, d.component,
+                     p_text(d.log10_p), plot(d.means));
+      head.clear();
+    }
+    if (!head.empty()) fmt::format_to(to, "{:<26}  nothing recorded that it could depend on\n", head);
+  }
+  for (const std::string& line : alike_text(c)) fmt::format_to(to, "  {}\n", line);
+  for (const ResidualChannel& channel : c.channels)
+    fmt::format_to(to, "  {:<13} {}\n", channel.name, channel.meaning);
+  fmt::format_to(to, "\n{:<26}  {:<12} {:>3} {:>8}\n", "map of the residual", "where", "k", "p");
+  for (const MapScore& m : c.maps)
+    fmt::format_to(to, "{:<26}  {:<12} {:>3} {:>8}\n", m.map, m.where, m.k, p_text(m.log10_p));
+  for (const std::string& text : outlier_texts(c.outliers)) fmt::format_to(to, "left out: {}\n", text);
+  out += c.fits ? "\nthe model fits to the noise\n" : "\nthe model does not fit: mgt explain asks why\n";
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/explain_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calib/report/verdict_text.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json coefficient_json(const EffectCoefficient& c) {
+  return {{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}};
+}
+
+json candidate_json(const Candidate& c) {
+  json coefficients = json::array(), rivals = json::array();
+  for (const EffectCoefficient& x : c.coefficients) coefficients.push_back(coefficient_json(x));
+  for (const Rival& r : c.rivals) {
+    rivals.push_back({{"effect", r.effect},
+                      {"where", r.where},
+                      {"p_behind", r.p_behind},
+                      {"p_right", r.p_right},
+                      {"possible", r.possible}});
+  }
+  return {{"effect", c.effect},
+          {"where", c.where},
+          {"spec", c.spec},
+          {"k", c.k},
+          {"log10_p", c.log10_p},
+          {"p", std::pow(10.0, c.log10_p)},
+          {"d", c.d},
+          {"predicted_fall", c.fall},
+          {"share", std::isfinite(c.share) ? json(c.share) : json()},
+          {"coefficients", std::move(coefficients)},
+          {"rivals", std::move(rivals)},
+          {"plausible", c.plausible},
+          {"poses", c.poses},
+          {"largest_pose_share", c.largest_pose}};
+}
+
+json round_json(const Round& r) {
+  return {{"added", candidate_json(r.added)}, {"possible", r.possible},
+          {"chi2_before", r.chi2_before},     {"chi2_after", r.chi2_after},
+          {"rms_before_nT", r.rms_before_nT}, {"rms_after_nT", r.rms_after_nT}};
+}
+
+template <class T, class F>
+json array_of(const std::vector<T>& values, F&& make) {
+  json out = json::array();
+  for (const T& value : values) out.push_back(make(value));
+  return out;
+}
+
+}  // namespace
+
+json to_json(const MapScore& m) {
+  return {{"map", m.map},         {"where", m.where}, {"p", std::pow(10.0, m.log10_p)},
+          {"log10_p", m.log10_p}, {"chi2", m.S},      {"k", m.k}};
+}
+
+json to_json(const NoiseModel& n) {
+  json out{{"from", !n.reference.known           ? "residual"
+                    : std::isinf(n.reference.nu) ? "dwells"
+                                                 : "revisits"},
+           {"pose_mean_from", n.told ? "dwells" : "residual"},
+           {"pose_correlation", n.rho},
+           {"scale", std::sqrt(n.reference.scale2)},
+           {"beyond_dwells", n.beyond_dwells},
+           {"quantisation_nT", n.quantisation_nT},
+           {"slow_nT_per_sqrt_h", n.wandering.any() ? n.wandering.nT_per_sqrt_h.maxCoeff() : 0.0},
+           {"slow_where", n.wandering.where}};
+  out["between_revisits"] =
+      n.revisits ? json{{"pairs", n.revisits->pairs}, {"ratio", n.revisits->ratio}, {"dof", n.revisits->nu}}
+                 : json();
+  return out;
+}
+
+json to_json(const ExplainReport& r) {
+  json lack;
+  if (r.noise.revisits) {
+    const PureError& p = *r.noise.revisits;
+    lack = {{"F", p.F}, {"p", std::pow(10.0, p.log10_p)}, {"model_nT", p.model_nT}, {"pairs", p.pairs}};
+  }
+  return {
+      {"schema", "mgt.explain/1"},
+      {"verdict", to_string(r.finding)},
+      {"candidates", array_of(r.candidates, candidate_json)},
+      {"named", r.named},
+      {"rounds", array_of(r.rounds, round_json)},
+      {"maps", array_of(r.maps, [](const MapScore& m) { return to_json(m); })},
+      {"maps_left", array_of(r.maps_left, [](const MapScore& m) { return to_json(m); })},
+      {"noise", to_json(r.noise)},
+      {"noise_nT", r.noise_nT},
+      {"residual_nT", r.residual_nT},
+      {"chi2", r.chi2},
+      {"dof", r.dof},
+      {"omnibus_p", std::pow(10.0, r.omnibus_log10_p)},
+      {"share_of", share_of(r)},
+      {"lack_of_fit", std::move(lack)},
+      {"detectable_above",
+       array_of(r.detectable,
+                [](const Detectable& d) {
+                  return json{{"effect", d.effect}, {"where", d.where}, {"value", d.value}, {"unit", d.unit}};
+                })},
+      {"untestable", array_of(r.untestable,
+                              [](const Untestable& u) {
+                                return json{{"effect", u.effect}, {"why", u.why}};
+                              })},
+      {"next", array_of(r.next,
+                        [](const NextMeasurement& n) {
+                          return json{{"action", n.action},
+                                      {"minutes", n.minutes},
+                                      {"p_right_before", n.p_right_before},
+                                      {"p_right_after", n.p_right_after}};
+                        })},
+      {"notes", r.notes},
+      {"text", sentence(r)}};
+}
+
+}  // namespace mgtd::calib

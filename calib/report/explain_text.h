@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "calib/criticism/verdict/explain_report.h"
+
+namespace mgtd::calib {
+
+/// For the terminal: verdict, table of suspects, what could have been seen, what cannot be told.
+[[nodiscard]] std::string to_text(const ExplainReport& report);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/improve_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "calib/fit/fit_report_json.h"
+#include "calib/fit/residual_words.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kBar_characters = 40;
+constexpr std::size_t kName_characters = 34;
+
+json maybe(const std::optional<double>& x) { return x ? json(*x) : json(); }
+
+json round_json(const ImproveRound& r) {
+  return {{"added", r.added.effect},
+          {"spec", r.added.spec},
+          {"where", r.added.where},
+          {"d", r.added.d},
+          {"log10_p", r.added.log10_p},
+          {"possible", r.possible},
+          {"rms_before_nT", r.rms_before_nT},
+          {"rms_after_nT", r.rms_after_nT},
+          {"held_out_before_nT", maybe(r.held_out_before_nT)},
+          {"held_out_after_nT", maybe(r.held_out_after_nT)},
+          {"predicted_fall", r.predicted_fall},
+          {"realised_fall", r.realised_fall},
+          {"variance_price", {{"growth_of_sd", r.price.growth}, {"parameter", r.price.parameter}}}};
+}
+
+std::string held_out(const std::optional<double>& x) { return x ? fmt::format("{:.3f}", *x) : "-"; }
+
+}  // namespace
+
+json to_json(const ImproveReport& r) {
+  json rounds = json::array();
+  for (const ImproveRound& round : r.rounds) rounds.push_back(round_json(round));
+  const json fit = to_json(r.fit);
+  return {{"schema", "mgt.improve/1"},
+          {"rounds", std::move(rounds)},
+          {"verdict", to_string(r.finding)},
+          {"stopped", r.stopped},
+          {"notes", r.notes},
+          {"effects", fit["effects"]},
+          {"fit", fit}};
+}
+
+std::string to_text(const ImproveReport& r) {
+  std::string out;
+  const auto to = std::back_inserter(out);
+  const double top = r.rounds.empty() ? r.fit.residual_nT : r.rounds.front().rms_before_nT;
+  const auto bar = [&](double rms) {
+    return std::string(static_cast<std::size_t>(std::clamp(rms / top, 0.0, 1.0) * kBar_characters), '#');
+  };
+  fmt::format_to(to, "{:<34} {:>8} {:>8} {:>9} {:>9} {:>6}\n", "added", "d", "p", "residual", "held out",
+                 "price");
+  const auto before = r.rounds.empty() ? r.fit.held_out_residual_nT : r.rounds.front().held_out_before_nT;
+  fmt::format_to(to, "{:<34} {:>8} {:>8} {:>9.3f} {:>9} {:>6}  {}\n", "(nothing)", "", "", top,
+                 held_out(before), "", bar(top));
+  for (const ImproveRound& x : r.rounds) {
+    std::string name = x.added.spec;
+    if (name.size() > kName_characters) fmt::format_to(to, "{}\n", std::exchange(name, {}));
+    fmt::format_to(to, "{:<34} {:>8.1f} {:>8} {:>9.3f} {:>9} {:>6.2f}  {}\n", name, x.added.d,
+                   p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT), x.price.growth,
+                   bar(x.rms_after_nT));
+    if (!x.possible.empty()) fmt::format_to(to, "    could also be {}\n", fmt::join(x.possible, ", "));
+  }
+  fmt::format_to(to, "residual: nT, {}\n", kResidualIs);
+  fmt::format_to(to,
+                 "held out: nT, the same on poses that the fit had not seen, a tenth of the run at a time\n");
+  if (!r.rounds.empty())
+    out +=
+        "d: size of the effect in its own standard deviations; price: growth of the standard deviation of "
+        "that\n"
+        "   parameter of the sensors that loses most\n";
+  fmt::format_to(to, "noise of a pose mean: {:.3g} nT\n", r.fit.noise_nT);
+  fmt::format_to(to, "stopped: {}\n", r.stopped);
+  for (const std::string& note : r.notes) fmt::format_to(to, "note: {}\n", note);
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "calib/criticism/search/model_change.h"
+#include "calib/fit/residual_words.h"
+#include "calib/report/text_bar.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json maybe(const std::optional<double>& x) { return x ? json(*x) : json(); }
+
+std::string line(const char* what, double before, double after, const char* unit) {
+  const double top = std::max(before, after);
+  return fmt::format("{:<22} before {:>9.3f} {:<5} {}\n{:<22} after  {:>9.3f} {:<5} {}\n", what, before, unit,
+                     bar(before, top), "", after, unit, bar(after, top));
+}
+
+const char* name_of(Veto veto) {
+  switch (veto) {
+    case Veto::held_out:
+      return "poses left out get worse";
+    case Veto::not_shown:
+      return "not shown to be there";
+    case Veto::price:
+      return "price";
+  }
+  return "";
+}
+
+}  // namespace
+
+json to_json(const ModelChange& c) {
+  json coefficients = json::array();
+  for (const EffectCoefficient& x : c.coefficients)
+    coefficients.push_back({{"name", x.name}, {"value", x.value}, {"sd", x.sd}, {"unit", x.unit}});
+  json vetoes = json::array();
+  for (const Veto veto : c.vetoes()) vetoes.push_back(name_of(veto));
+  return {{"schema", "mgt.model-change/1"},
+          {"action", c.adding ? "add" : "drop"},
+          {"effect", c.effect},
+          {"spec", c.spec},
+          {"model", c.model},
+          {"coefficients", std::move(coefficients)},
+          {"k", c.k},
+          {c.adding ? "predicted_fall" : "predicted_rise", c.predicted},
+          {c.adding ? "realised_fall" : "realised_rise", c.realised},
+          {"log10_p", c.log10_p},
+          {"residual_over_noise", c.spread},
+          {"chi2_before", c.chi2_before},
+          {"chi2_after", c.chi2_after},
+          {"dof_before", c.dof_before},
+          {"dof_after", c.dof_after},
+          {"rms_before_nT", c.rms_before_nT},
+          {"rms_after_nT", c.rms_after_nT},
+          {"tensor_before_nT_per_m", c.tensor_before_nT_per_m},
+          {"tensor_after_nT_per_m", c.tensor_after_nT_per_m},
+          {"noise_nT", c.noise_nT},
+          {"held_out_before_nT", maybe(c.held_out_before_nT)},
+          {"held_out_after_nT", maybe(c.held_out_after_nT)},
+          {"variance_price", {{"growth_of_sd", c.price.growth}, {"parameter", c.price.parameter}}},
+          {"vetoes", std::move(vetoes)},
+          {"vetoed", c.vetoed()}};
+}
+
+std::string to_text(const ModelChange& c) {
+  std::string out = fmt::format("{} {}\n", c.adding ? "with" : "without", c.spec);
+  const auto to = std::back_inserter(out);
+  out += line("residual", c.rms_before_nT, c.rms_after_nT, "nT");
+  if (c.held_out_before_nT && c.held_out_after_nT)
+    out += line("on poses held out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
+  out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
+  fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
+  fmt::format_to(to, "chi-square {} by {:.5g} where {:.5g} was predicted; chance alone: {}{}\n",
+                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_phrase(c.log10_p),
+                 c.spread > 1
+                     ? fmt::format(" (what is left {} is {:.3g} times the noise, and so is a fall by chance)",
+                                   c.adding ? "with it" : "before", c.spread)
+                     : "");
+  if (c.price.parameter.empty()) {
+    out += "price: no standard deviation of the calibration is larger for it\n";
+  } else {
+    fmt::format_to(to, "price: the standard deviation of {} is {:.2f} times what it is without\n",
+                   c.price.parameter, c.price.growth);
+  }
+  for (const EffectCoefficient& x : c.coefficients)
+    fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", x.name, x.value, x.sd, x.unit);
+  constexpr double kWeak_log10_p = -2;
+  if (c.adding && c.log10_p > std::log10(kVetoChance)) {
+    fmt::format_to(to, "it is not shown to be there: the limit is p = {}\n", kVetoChance);
+  } else if (c.adding && c.log10_p > kWeak_log10_p) {
+    out += "weak evidence: chance alone brings such a fall in more than one run of a hundred\n";
+  }
+  return out;
+}
+
+std::string to_text(const ModelChange& c, Veto veto) {
+  switch (veto) {
+    case Veto::held_out:
+      return fmt::format("on poses left out the error rises from {:.4g} to {:.4g} nT",
+                         c.held_out_before_nT.value_or(0), c.held_out_after_nT.value_or(0));
+    case Veto::not_shown:
+      return fmt::format("it is not shown to be there: chance alone has {}, and the limit is {}",
+                         p_phrase(c.log10_p), kVetoChance);
+    case Veto::price:
+      return fmt::format(
+          "the standard deviation of {} would be {:.0f} times what it is without, and the "
+          "limit is {:.0f}",
+          c.price.parameter, c.price.growth, kVetoPrice);
+  }
+  return {};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/verdict_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "calib/criticism/search/candidate.h"
+#include "calib/effects/effect_spec.h"
+#include "calib/effects/library/effect_family.h"
+#include "calib/fit/residual_words.h"
+#include "calib/report/noise_text.h"
+#include "calib/stats/probability.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+std::string place(const Candidate& c) {
+  if (c.where == "site" || c.where == "table" || c.where == "platform") return "";
+  if (c.where == "all") return " with one coefficient for all axes";
+  if (c.where == "each-axis" || c.where == "each-sensor") return " in several axes";
+  return fmt::format(" in {}", c.where);
+}
+
+std::string noise_text(const ExplainReport& r) {
+  std::string out = fmt::format("The residual is {:.3g} nT", r.residual_nT);
+  if (r.noise.told)
+    out += fmt::format(" where the noise of a pose mean is {:.3g} nT, {}", r.noise_nT,
+                       noise_source(r.noise.told));
+  if (const std::string tests = noise_of_tests(r.noise); !tests.empty()) out += "; " + tests;
+  if (r.noise.quantisation_nT > 0)
+    out += fmt::format("; readings stand in steps of {:.3g} nT, which is part of the noise",
+                       r.noise.quantisation_nT);
+  return out + ".";
+}
+
+/// The candidate with its coefficients of the fit that holds it. Before it everything that is missing counts
+/// as noise, so that no size is better known than to one part in the root of the number of poses.
+Candidate as_fitted(const Round& round) {
+  Candidate out = round.added;
+  if (round.fit == nullptr) return out;
+  std::vector<EffectCoefficient> found;
+  Eigen::Index slot = 0;
+  for (const EffectPtr& effect : round.fit->problem.effects) {
+    for (const Coefficient& c : effect->coefficients()) {
+      const double variance = round.fit->covariance(kEffectSlot + slot, kEffectSlot + slot);
+      if (effect->name() == out.effect)
+        found.push_back({c.name, round.fit->state.coefficients[slot], std::sqrt(variance), c.unit});
+      ++slot;
+    }
+  }
+  if (!found.empty()) out.coefficients = std::move(found);
+  return out;
+}
+
+/// What adding it did; `before`: the fit without it. Wrong angles hardly show in the readings, which tell
+/// each pose its own attitude.
+std::string fall_text(const Round& round, const JointFit* before) {
+  if (before != nullptr && round.fit && round.added.where == "table")
+    return fmt::format("the angles of the table scatter by {:.3g} instead of {:.3g} deg",
+                       to_deg(round.fit->table_sd_rad), to_deg(before->table_sd_rad));
+  const std::string from = fmt::format("{:.3g}", round.rms_before_nT),
+                    to = fmt::format("{:.3g}", round.rms_after_nT);
+  if (from == to) return fmt::format("the residual stays at {} nT", to);
+  return fmt::format("the residual {} from {} to {} nT",
+                     round.rms_after_nT < round.rms_before_nT ? "falls" : "goes", from, to);
+}
+
+/// Numbers that were searched for, as fitted: " (ts = 0.383 h)".
+std::string searched_text(const Round& round) {
+  const EffectFamily* const family = find_family(round.added.effect);
+  if (family == nullptr || !family->scan) return {};
+  std::set<std::string> numbers;
+  for (const EffectPtr& effect : round.model) {
+    if (effect->name() != family->name) continue;
+    const auto spec = EffectSpec::parse(effect->spec());
+    if (!spec) continue;
+    for (const auto& [name, value] : spec->parameters)
+      if (name == family->scan->parameter)
+        numbers.insert(fmt::format("{} = {} {}", name, value, family->scan->unit));
+  }
+  return numbers.empty() ? "" : fmt::format(" ({})", fmt::join(numbers, ", "));
+}
+
+std::string round_text(const Round& round, const JointFit* before) {
+  const Candidate& a = round.added;
+  return fmt::format("It behaves like {}{}: {:.1f} sigma, {}. With it in the model{} {}, and its size is {}.",
+                     a.effect, place(a), a.d, p_phrase(a.log10_p), searched_text(round),
+                     fall_text(round, before), size_text(as_fitted(round)));
+}
+
+/// Where what was found is the lesser part of what is there.
+std::string lesser_part_text(const ExplainReport& r) {
+  constexpr double kHalf = 0.5;
+  if (r.finding != Finding::partial || !r.noise.told || r.rounds.empty()) return {};
+  const auto beyond = [&](double rms_nT) { return rms_nT * rms_nT - r.noise_nT * r.noise_nT; };
+  const double before = beyond(r.rounds.front().rms_before_nT), after = beyond(r.rounds.back().rms_after_nT);
+  if (!(before > 0) || after < kHalf * before) return {};
+  return fmt::format(
+      "What is named below takes away only {:.0f} % of what is beyond the noise: most of it is something "
+      "else.",
+      100 * std::max(0.0, 1 - after / before));
+}
+
+std::string rivals_text(const Round& round) {
+  if (!round.possible.empty()) {
+    return fmt::format("These poses do not tell it from {}.", fmt::join(round.possible, ", "));
+  }
+  const auto& rivals = round.added.rivals;
+  if (rivals.empty()) return "Nothing else in the library looks like it.";
+  const auto nearest = std::min_element(rivals.begin(), rivals.end(),
+                                        [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; });
+  return fmt::format("Nearest rival: {}, told apart with probability {:.4g} at this size.", nearest->effect,
+                     nearest->p_right);
+}
+
+std::string left_text(const std::vector<MapScore>& maps) {
+  if (maps.empty()) return "";
+  const MapScore& m = maps.front();
+  return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where, p_phrase(m.log10_p));
+}
+
+/// What an operator can do about a residual that no effect of the library stands for.
+std::string next_step_text(const std::vector<MapScore>& maps) {
+  if (maps.empty() || maps.front().log10_p > -2)
+    return "What to do next: measure a second run with the poses in another order and record what may switch "
+           "or change between poses (supplies, motors, temperatures); nothing that was recorded orders this "
+           "residual.";
+  const MapScore& m = maps.front();
+  static const std::map<std::string, std::string> kTry{
+      {"time", "sin(2*_pi*t_h/0.5)"},       {"azimuth", "cosd(3*azimuth_deg)"},
+      {"temperature", "max(0, T_degC-24)"}, {"own reading", "(u/50000)^4"},
+      {"direction", "ux*uy/50000^2"},       {"previous pose", "exp(-since_stop_s/20)"},
+  };
+  const auto formula = kTry.find(m.map);
+  return fmt::format(
+      "What to do next: look at the residual of {} over {} (mgt report draws it). If its shape suggests a "
+      "law, write it down and try it: mgt define RUN my.law '{}' --scale {}, then mgt explain again.",
+      m.where, m.map, formula == kTry.end() ? m.map : formula->second, m.where);
+}
+
+std::string outliers_text(const std::vector<OutlierNode>& outliers) {
+  if (outliers.empty()) return {};
+  std::set<int> poses;
+  for (const OutlierNode& o : outliers) poses.insert(o.pose);
+  return fmt::format(
+      "{} that the others contradict {} left out, in pose {} (listed at the end).",
+      outliers.size() == 1 ? "One observation" : fmt::format("{} observations", outliers.size()),
+      outliers.size() == 1 ? "is" : "are", fmt::join(poses, ", "));
+}
+
+}  // namespace
+
+std::string detectable_text(const Detectable& d) {
+  constexpr double kBeyondAll = 1e9;  // in any unit of the library
+  if (!(d.value < kBeyondAll)) return "at no size: what is in the model takes it up";
+  return fmt::format("{:.3g} {} ({})", d.value, d.unit, d.where);
+}
+
+std::string as_sentence(std::string clause) {
+  if (clause.empty()) return clause;
+  const std::string_view first = std::string_view(clause).substr(0, clause.find(' '));
+  if (first.find_first_of(".0123456789") == std::string_view::npos)
+    clause.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(clause.front())));
+  return clause + ".";
+}
+
+std::string_view share_of(const ExplainReport& r) {
+  if (r.noise.reference.from_dwells()) return "chi-square beyond the noise";
+  return r.rounds.empty() ? "nothing, because the noise is not known and nothing was added"
+                          : "chi-square beyond what is left after the last round";
+}
+
+std::string sentence(const ExplainReport& r) {
+  const std::string lesser_part = lesser_part_text(r);
+  std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part};
+  const JointFit* before = r.fit.get();
+  for (const Round& round : r.rounds) {
+    parts.push_back(round_text(round, before));
+    if (lesser_part.empty() || !round.possible.empty()) parts.push_back(rivals_text(round));
+    before = round.fit.get();
+  }
+  switch (r.finding) {
+    case Finding::pass:
+      parts.emplace_back(
+          "Nothing stands out beyond chance. That excludes only effects above the sizes listed, and nothing "
+          "of "
+          "what cannot be tested.");
+      break;
+    case Finding::unknown:
+      parts.emplace_back("Something is there, and no effect of the library looks like it.");
+      parts.push_back(left_text(r.maps));
+      parts.push_back(next_step_text(r.maps));
+      break;
+    case Finding::partial:
+      if (r.left == Finding::pass) break;
+      parts.push_back(left_text(r.maps_left));
+      parts.push_back(next_step_text(r.maps_left));
+      break;
+    case Finding::ambiguous:
+      if (!r.next.empty()) {
+        const NextMeasurement& n = r.next.front();
+        parts.push_back(
+            fmt::format("To settle it: {}, {:.0f} minutes; the right name then wins with probability {:.3f} "
+                        "instead of {:.2f}.",
+                        n.action, n.minutes, n.p_right_after, n.p_right_before));
+      }
+      break;
+    case Finding::explained:
+      parts.emplace_back("Nothing else stands out after that. The name is a hypothesis about the cause.");
+      break;
+    default:
+      break;
+  }
+  for (const std::string& note : r.notes) {
+    // A user's formula has any name.
+    const bool named = std::any_of(r.candidates.begin(), r.candidates.end(),
+                                   [&](const Candidate& c) { return note.starts_with(c.effect + " "); });
+    parts.push_back(named ? note + "." : as_sentence(note));
+  }
+  std::erase(parts, "");
+  return fmt::format("{}", fmt::join(parts, " "));
+}
+
+}  // namespace mgtd::calib

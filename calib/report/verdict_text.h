@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "calib/criticism/verdict/explain_report.h"
+
+namespace mgtd::calib {
+
+/// The verdict as one paragraph for a person, made of the report's figures and nothing else.
+[[nodiscard]] std::string sentence(const ExplainReport& report);
+
+/// "0.14 nT (s3.z)"; in words where no size would be seen.
+[[nodiscard]] std::string detectable_text(const Detectable& detectable);
+
+/// A clause with a capital letter and a full stop. A first word with a dot or a digit in it is a name and
+/// stays.
+[[nodiscard]] std::string as_sentence(std::string clause);
+
+/// What the share of a candidate is a share of.
+[[nodiscard]] std::string_view share_of(const ExplainReport& report);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/stats/chi_square.h"
+
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kTerms = 10'000;
+constexpr double kExact = 1e-16;
+
+double log_front(double a, double x) { return a * std::log(x) - x - std::lgamma(a); }
+
+/// ln P(a, x), x < a + 1.
+double log_lower(double a, double x) {
+  double term = 1 / a, sum = term;
+  for (int n = 1; n < kTerms && term > kExact * sum; ++n) {
+    term *= x / (a + n);
+    sum += term;
+  }
+  return log_front(a, x) + std::log(sum);
+}
+
+/// ln Q(a, x), x >= a + 1 (Lentz).
+double log_upper(double a, double x) {
+  constexpr double kTiny = 1e-300;
+  double b = x + 1 - a, c = 1 / kTiny, d = 1 / b, h = d;
+  for (int n = 1; n < kTerms; ++n) {
+    const double an = -n * (n - a);
+    b += 2;
+    d = an * d + b;
+    d = 1 / (std::abs(d) < kTiny ? kTiny : d);
+    c = b + an / c;
+    if (std::abs(c) < kTiny) c = kTiny;
+    h *= d * c;
+    if (std::abs(d * c - 1) < kExact) break;
+  }
+  return log_front(a, x) + std::log(h);
+}
+
+double log_p(double x, double dof) {
+  if (!(x > 0) || !(dof > 0)) return 0;
+  const double a = dof / 2, half = x / 2;
+  return half < a + 1 ? std::log1p(-std::exp(log_lower(a, half))) : log_upper(a, half);
+}
+
+}  // namespace
+
+double chi_square_p(double x, double dof) { return std::exp(log_p(x, dof)); }
+double chi_square_log10_p(double x, double dof) { return log_p(x, dof) / std::log(10.0); }
+
+double chi_square_limit(double p, double dof) {
+  double low = 0, high = dof + 1;
+  while (log_p(high, dof) > std::log(p)) high *= 2;
+  while (high - low > 1e-11 * high) {
+    const double middle = 0.5 * (low + high);
+    (log_p(middle, dof) > std::log(p) ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace mgtd::calib

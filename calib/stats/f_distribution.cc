@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/stats/f_distribution.h"
+
+#include <cmath>
+
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr int kTerms = 10'000;
+constexpr double kExact = 1e-15, kTiny = 1e-300;
+
+/// Continued fraction of the incomplete beta function (Lentz), for x < (a + 1)/(a + b + 2).
+double fraction(double a, double b, double x) {
+  const auto away = [](double v) { return std::abs(v) < kTiny ? kTiny : v; };
+  double c = 1, d = 1 / away(1 - (a + b) * x / (a + 1)), h = d;
+  for (int m = 1; m < kTerms; ++m) {
+    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+    d = 1 / away(1 + even * d);
+    c = away(1 + even / c);
+    h *= d * c;
+    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+    d = 1 / away(1 + odd * d);
+    c = away(1 + odd / c);
+    h *= d * c;
+    if (std::abs(d * c - 1) < kExact) break;
+  }
+  return h;
+}
+
+double log_front(double a, double b, double x) {
+  return std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
+}
+
+}  // namespace
+
+double f_log10_p(double f, double k, double nu) {
+  if (!(f > 0) || !(k > 0)) return 0;
+  if (std::isinf(nu)) return chi_square_log10_p(k * f, k);
+  const double a = nu / 2, b = k / 2, x = nu / (nu + k * f);
+  if (x < (a + 1) / (a + b + 2))
+    return (log_front(a, b, x) + std::log(fraction(a, b, x) / a)) / std::log(10.0);
+  const double lower = std::exp(log_front(b, a, 1 - x)) * fraction(b, a, 1 - x) / b;
+  return std::log1p(-lower) / std::log(10.0);
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/validity/change.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/fit/fit_report_json.h"
+#include "calib/fit/orientation.h"
+#include "calib/sensor/sensor_equations.h"
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Correlation eigenvalues below this are a direction both sides fixed by convention.
+constexpr double kSingular = 1e-9;
+/// Share of a parameter's evidence that must be its own before it can be told from those already named.
+constexpr double kOwnEvidence = 1e-4;
+constexpr std::size_t kMaxNamed = 8;
+constexpr double kPower80 = 0.8416212;  ///< upper 20 % point of the normal distribution
+
+/// Weight of a difference with the common freedoms projected out: N (N' C N)^-1 N', N orthogonal to them.
+Inverse weight_of(const Evidence& e) {
+  const Eigen::Index n = e.difference.size();
+  const Eigen::VectorXd sd = e.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 1.0);
+  Eigen::MatrixXd N = scale.asDiagonal();
+  if (e.common.cols() > 0) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scale.asDiagonal() * e.common);
+    const Eigen::MatrixXd Q = qr.householderQ();
+    N *= Q.rightCols(n - qr.rank());
+  }
+  const Inverse inner = inverse_of(N.transpose() * e.covariance * N);
+  return {N * inner.W * N.transpose(), inner.rank};
+}
+
+/// W with the columns X fitted and taken out.
+Eigen::MatrixXd without(const Eigen::MatrixXd& W, const Eigen::MatrixXd& X) {
+  if (X.cols() == 0) return W;
+  const Eigen::MatrixXd WX = W * X;
+  return W - WX * inverse_of(X.transpose() * WX).W * WX.transpose();
+}
+
+/// Chi-square of the change of one parameter alone; 0 when it cannot be told from what was taken out of W.
+Eigen::VectorXd single_chi2(const Evidence& e, const Eigen::MatrixXd& W, const Eigen::MatrixXd& M) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(e.gain.cols());
+  const Eigen::VectorXd pull = e.gain.transpose() * (M * e.difference);
+  for (Eigen::Index j = 0; j < out.size(); ++j) {
+    const auto a = e.gain.col(j);
+    const double own = a.dot(M * a);
+    if (own > kOwnEvidence * a.dot(W * a)) out[j] = pull[j] * pull[j] / own;
+  }
+  return out;
+}
+
+double corrected_log10_p(double chi2, Eigen::Index choices) {
+  return std::min(0.0, chi_square_log10_p(chi2, 1) + std::log10(static_cast<double>(choices)));
+}
+
+/// One parameter after the other, as long as the next is beyond chance.
+std::vector<Eigen::Index> account_for(const Evidence& e, const Eigen::MatrixXd& W) {
+  std::vector<Eigen::Index> chosen;
+  Eigen::MatrixXd X(e.difference.size(), 0);
+  while (chosen.size() < kMaxNamed) {
+    Eigen::Index best = 0;
+    const double chi2 = single_chi2(e, W, without(W, X)).maxCoeff(&best);
+    if (corrected_log10_p(chi2, e.gain.cols()) > std::log10(kChanged / 2)) break;
+    chosen.push_back(best);
+    X.conservativeResize(Eigen::NoChange, X.cols() + 1);
+    X.rightCols<1>() = e.gain.col(best);
+  }
+  return chosen;
+}
+
+ParameterChange shown(const ShownSlot& slot, double change, double sd, Eigen::Index choices) {
+  const double sigmas = std::isfinite(sd) && sd > 0 ? change / sd : 0;
+  return {.name = slot.name,
+          .change = change * slot.factor,
+          .sd = sd * slot.factor,
+          .unit = slot.unit,
+          .sigmas = sigmas,
+          .log10_p = corrected_log10_p(sigmas * sigmas, choices)};
+}
+
+std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::MatrixXd& W) {
+  const std::vector<Eigen::Index> chosen = account_for(e, W);
+  if (chosen.empty()) return {};
+  const Eigen::MatrixXd A = e.gain(Eigen::all, chosen);
+  const Eigen::MatrixXd C = inverse_of(A.transpose() * W * A).W;
+  const Eigen::VectorXd x = C * (A.transpose() * (W * e.difference));
+  std::vector<ParameterChange> out;
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    const auto at = static_cast<Eigen::Index>(n);
+    out.push_back(
+        shown(e.slots[static_cast<std::size_t>(chosen[n])], x[at], std::sqrt(C(at, at)), e.gain.cols()));
+  }
+  return out;
+}
+
+/// What is left when one sensor may have changed in any way.
+double others_log10_p(const Evidence& e, const Eigen::MatrixXd& W, Eigen::Index rank, int sensor) {
+  const Eigen::MatrixXd A = e.gain.middleCols<kSensorParameters>(kSensorParameters * sensor);
+  const Inverse spread = inverse_of(A.transpose() * W * A);
+  const Eigen::VectorXd pull = A.transpose() * (W * e.difference);
+  return chi_square_log10_p(e.difference.dot(W * e.difference) - pull.dot(spread.W * pull),
+                            static_cast<double>(rank - spread.rank));
+}
+
+}  // namespace
+
+Inverse inverse_of(const Eigen::MatrixXd& C) {
+  const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * C * scale.asDiagonal());
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(C.rows());
+  Inverse out;
+  for (Eigen::Index j = 0; j < C.rows(); ++j) {
+    if (eigen.eigenvalues()[j] < kSingular) continue;
+    inverse[j] = 1 / eigen.eigenvalues()[j];
+    ++out.rank;
+  }
+  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  out.W = V * inverse.asDiagonal() * V.transpose();
+  return out;
+}
+
+double Change::p() const { return std::min(1.0, 2 * std::pow(10.0, std::min(log10_p, log10_p_single))); }
+
+std::vector<ShownSlot> shown_slots(const std::vector<CalibratedEffect>& effects) {
+  std::vector<ShownSlot> out;
+  for (int i = 1; i <= kSensors; ++i) {
+    for (const ShownParameter& p : shown_parameters())
+      out.push_back({fmt::format("s{} {}", i, p.name), p.unit, p.factor});
+  }
+  for (const CalibratedEffect& effect : effects) {
+    for (const EffectCoefficient& c : effect.coefficients)
+      out.push_back({fmt::format("{} {}", effect.effect, c.name), c.unit, 1});
+  }
+  return out;
+}
+
+double small_sample_factor(int poses) {
+  // Twelve readings a pose less three of its field, less the four that each axis fits.
+  const double freedom = 0.75 * poses - 4;
+  return freedom > 4 ? freedom / (freedom - 2) : 2;
+}
+
+TurnedArray turned(const std::array<SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q) {
+  constexpr double h = 1e-6;  // angles, in which alone the turn is not linear
+  TurnedArray out{.sensors = sensors, .jacobian = ArrayCovariance::Identity()};
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    out.sensors[i] = turned(sensors[i], Q);
+    const auto at = static_cast<Eigen::Index>(i) * kSensorParameters;
+    for (const int p : {alpha, beta, gamma}) {
+      ParameterVector up = sensors[i].parameters(), down = up;
+      up[p] += h;
+      down[p] -= h;
+      const auto moved = [&](const ParameterVector& x) {
+        return turned(SensorModel::from_parameters(x, sensors[i].mounting), Q).parameters();
+      };
+      out.jacobian.block<3, 1>(at + alpha, at + p) = (moved(up) - moved(down)).tail<3>() / (2 * h);
+    }
+  }
+  return out;
+}
+
+Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors, Eigen::Index slots,
+                                bool free_scale) {
+  constexpr double h = 1e-6;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(slots, free_scale ? 4 : 3);
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const auto at = static_cast<Eigen::Index>(i) * kSensorParameters;
+    for (int j = 0; j < 3; ++j) {
+      const Eigen::Vector3d w = h * Eigen::Vector3d::Unit(j);
+      const ParameterVector up = turned(sensors[i], turn_by<double>(w)).parameters();
+      const ParameterVector down = turned(sensors[i], turn_by<double>(-w)).parameters();
+      out.block<3, 1>(at + alpha, j) = (up - down).tail<3>() / (2 * h);
+    }
+    if (free_scale) out.block<3, 1>(at + cx, 3) = sensors[i].scale;
+  }
+  return out;
+}
+
+Change judge(const Evidence& e) {
+  const auto [W, rank] = weight_of(e);
+  const Eigen::Index choices = e.gain.cols();
+  Change out;
+  out.chi2 = e.difference.dot(W * e.difference);
+  out.dof = static_cast<double>(rank);
+  out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+  out.log10_p_single = corrected_log10_p(single_chi2(e, W, W).maxCoeff(), choices);
+  out.named = named_changes(e, W);
+  for (int i = 0; i < kSensors; ++i)
+    out.others_log10_p[static_cast<std::size_t>(i)] = others_log10_p(e, W, rank, i);
+  const double limit = std::sqrt(chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
+  for (Eigen::Index j = 0; j < choices; ++j) {
+    const auto a = e.gain.col(j);
+    const double information = a.dot(W * a), sd = 1 / std::sqrt(information);
+    const ShownSlot& slot = e.slots[static_cast<std::size_t>(j)];
+    out.parameters.push_back(shown(slot, a.dot(W * e.difference) / information, sd, choices));
+    out.parameters.back().seen = (limit + kPower80) * sd * slot.factor;
+  }
+  std::stable_sort(out.parameters.begin(), out.parameters.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.sigmas) > std::abs(b.sigmas); });
+  return out;
+}
+
+}  // namespace mgtd::calib

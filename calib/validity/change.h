@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "calib/calibration/calibration.h"
+
+/// A difference of two sets of parameters, judged against its covariance.
+namespace mgtd::calib {
+
+/// Probability below which a difference is called a change.
+inline constexpr double kChanged = 0.01;
+
+/// A change of one parameter, all others as they were: what it would have to be, and how likely.
+struct ParameterChange {
+  std::string name;  ///< "s3 iz", "site.gradient Gxx"
+  double change{0}, sd{0};
+  std::string unit;   ///< "deg", "nT", "" for scale factors
+  double sigmas{0};   ///< change / sd, signed
+  double log10_p{0};  ///< of so many sigmas or more somewhere among all parameters compared
+  double seen{0};     ///< smallest change that is found in 80 of 100 cases; infinite when it cannot show
+};
+
+struct Change {
+  double chi2{0}, dof{0}, log10_p{0};  ///< that nothing changed: all parameters together
+  double log10_p_single{0};  ///< the same by the parameter that accounts for most, corrected for the choice
+  std::array<double, kSensors> others_log10_p{};  ///< that nothing but this sensor changed
+  std::vector<ParameterChange> parameters;        ///< largest |sigmas| first
+  /// The fewest parameters that account for the difference, in the order in which they were found, each with
+  /// its change when these alone changed. Empty when nothing changed or when it is spread over many.
+  std::vector<ParameterChange> named;
+
+  /// That nothing changed: the better of both tests, corrected for having two. Changed below kChanged.
+  [[nodiscard]] double p() const;
+};
+
+/// Names and units of the 48 parameters and of these effects, with the factor from the inside unit to the
+/// one shown.
+struct ShownSlot {
+  std::string name, unit;
+  double factor;
+};
+[[nodiscard]] std::vector<ShownSlot> shown_slots(const std::vector<CalibratedEffect>& effects);
+
+/// Expected true over estimated variance when the noise of each axis comes from the residuals of so many
+/// poses: a covariance taken at its word would call an unchanged rig changed a little too often.
+[[nodiscard]] double small_sample_factor(int poses);
+
+/// Four sensors in a platform frame turned by Q, and what that does to their 48 parameters.
+struct TurnedArray {
+  std::array<SensorModel, kSensors> sensors;
+  ArrayCovariance jacobian;
+};
+[[nodiscard]] TurnedArray turned(const std::array<SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q);
+
+/// Columns: what a small common rotation of the array (and, with `free_scale`, a common scale) does to the
+/// parameters.
+[[nodiscard]] Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors,
+                                              Eigen::Index slots, bool free_scale);
+
+/// Inverse on the range of a covariance or an information, in units of its diagonal: directions whose
+/// eigenvalue is nothing but rounding (or a convention) are left out.
+struct Inverse {
+  Eigen::MatrixXd W;
+  Eigen::Index rank{0};
+};
+[[nodiscard]] Inverse inverse_of(const Eigen::MatrixXd& C);
+
+/// Observed: difference = gain * (what changed) + common * (anything) + an error with this covariance.
+struct Evidence {
+  Eigen::VectorXd difference;
+  Eigen::MatrixXd covariance, gain, common;
+  std::vector<ShownSlot> slots;
+};
+
+/// Likelihood ratios, with the common freedoms projected out. Directions in which the covariance vanishes (a
+/// convention both sides share) carry no evidence.
+[[nodiscard]] Change judge(const Evidence& evidence);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/validity/diff.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/validity/change_report.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// The 48 parameters and the coefficients of these effects, with their covariance.
+struct Side {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd C;
+};
+
+Side side_of(const Calibration& c, const std::array<SensorModel, kSensors>& sensors,
+             const std::vector<CalibratedEffect>& shared) {
+  std::vector<double> x;
+  std::vector<Eigen::Index> slots;
+  for (const SensorModel& sensor : sensors) {
+    for (const double value : sensor.parameters()) x.push_back(value);
+  }
+  for (Eigen::Index slot = 0; slot < kArrayParameters; ++slot) slots.push_back(slot);
+  for (const CalibratedEffect& wanted : shared) {
+    Eigen::Index slot = kArrayParameters;
+    for (const CalibratedEffect& own : c.effects) {
+      for (const EffectCoefficient& coefficient : own.coefficients) {
+        if (own.effect == wanted.effect) {
+          x.push_back(coefficient.value);
+          slots.push_back(slot);
+        }
+        ++slot;
+      }
+    }
+  }
+  return {Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())),
+          full_covariance(c)(slots, slots)};
+}
+
+std::vector<CalibratedEffect> shared_effects(const Calibration& a, const Calibration& b,
+                                             std::vector<std::string>& remarks) {
+  std::vector<CalibratedEffect> out;
+  const auto has = [](const Calibration& c, const CalibratedEffect& e) {
+    return std::any_of(c.effects.begin(), c.effects.end(), [&](const CalibratedEffect& o) {
+      return o.effect == e.effect && o.coefficients.size() == e.coefficients.size();
+    });
+  };
+  const char* advice = "the model of both must be the same for its parameters to be compared";
+  for (const CalibratedEffect& e : a.effects) {
+    if (has(b, e)) {
+      out.push_back(e);
+    } else {
+      remarks.push_back(fmt::format("{} is in the first calibration only: {}", e.effect, advice));
+    }
+  }
+  for (const CalibratedEffect& e : b.effects) {
+    if (!has(a, e))
+      remarks.push_back(fmt::format("{} is in the second calibration only: {}", e.effect, advice));
+  }
+  return out;
+}
+
+bool scale_is_free(const Calibration& c) { return c.gauge.find(kScaleIsFree) != std::string::npos; }
+
+/// The rotation that brings the platform frame of b onto that of a, as most of the sensors see it: one that
+/// was turned by itself or rewired does not count.
+Eigen::Matrix3d common_turn(const Calibration& a, const Calibration& b) {
+  constexpr double kTogether_rad = 5 * kRadiansPerDegree;
+  std::array<Eigen::Matrix3d, kSensors> each;
+  for (std::size_t i = 0; i < kSensors; ++i) each[i] = a.sensors[i].R_PS() * b.sensors[i].R_PS().transpose();
+  const auto together = [&](const Eigen::Matrix3d& P, const Eigen::Matrix3d& Q) {
+    return std::acos(std::clamp(((P.transpose() * Q).trace() - 1) / 2, -1.0, 1.0)) < kTogether_rad;
+  };
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Identity();
+  std::ptrdiff_t most = 0;
+  for (const Eigen::Matrix3d& centre : each) {
+    if (centre.determinant() < 0) continue;
+    const auto count =
+        std::count_if(each.begin(), each.end(), [&](const auto& Q) { return together(centre, Q); });
+    if (count <= most) continue;
+    most = count;
+    sum.setZero();
+    for (const Eigen::Matrix3d& Q : each) {
+      if (together(centre, Q)) sum += Q;
+    }
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+bool name_remounted(const Calibration& a, const TurnedArray& b, std::vector<std::string>& remarks) {
+  bool any = false;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    if (a.sensors[i].mounting == b.sensors[i].mounting) continue;
+    any = true;
+    remarks.push_back(
+        fmt::format("sensor s{} stands differently: its axes were turned, mirrored or rewired", i + 1));
+  }
+  return any;
+}
+
+/// The turn of the platform frame, with the uncertainty of the four sensors' mean.
+std::string turn_text(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) {
+  const Eigen::AngleAxisd turn(Q);
+  std::string out = "turn of the whole array on its table, which is no change of it:";
+  for (int axis = 0; axis < 3; ++axis) {
+    double variance = 0;
+    for (int i = 0; i < kSensors; ++i) {
+      for (int j = 0; j < kSensors; ++j) {
+        variance += covariance(kSensorParameters * i + alpha + axis, kSensorParameters * j + alpha + axis) /
+                    (kSensors * kSensors);
+      }
+    }
+    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.angle() * turn.axis()[axis]),
+                       to_deg(std::sqrt(variance)));
+  }
+  return out + " deg about X, Y, Z";
+}
+
+std::string conclusion_of(const DiffReport& report, bool remounted) {
+  const Change& c = report.change;
+  const std::string figures = figures_text(c);
+  if (!report.changed) return fmt::format("nothing changed that these runs can tell ({})", figures);
+  if (remounted) return "changed: a sensor stands differently";
+  if (c.named.empty()) return fmt::format("changed, spread over many parameters ({})", figures);
+  return fmt::format("changed: {} ({})", named_text(c), figures);
+}
+
+}  // namespace
+
+DiffReport diff(const Calibration& a, const Calibration& b) {
+  DiffReport out;
+  const auto shared = shared_effects(a, b, out.remarks);
+  const Eigen::Matrix3d Q = common_turn(a, b);
+  const TurnedArray placed = turned(b.sensors, Q);
+  const bool remounted = name_remounted(a, placed, out.remarks);
+  const Side from = side_of(a, a.sensors, shared), to = side_of(b, placed.sensors, shared);
+  const Eigen::Index n = to.x.size();
+  Eigen::MatrixXd J = Eigen::MatrixXd::Identity(n, n);
+  J.topLeftCorner<kArrayParameters, kArrayParameters>() = placed.jacobian;
+  const bool free_scale = scale_is_free(a) || scale_is_free(b);
+  if (free_scale) out.remarks.emplace_back("a common scale is taken out, because one of them knows no field");
+  const Eigen::MatrixXd C =
+      small_sample_factor(a.poses) * from.C + small_sample_factor(b.poses) * (J * to.C * J.transpose());
+  out.change = judge({.difference = to.x - from.x,
+                      .covariance = C,
+                      .gain = Eigen::MatrixXd::Identity(n, n),
+                      .common = common_freedoms(a.sensors, n, free_scale),
+                      .slots = shown_slots(shared)});
+  out.changed = remounted || out.change.p() < kChanged;
+  out.remarks.push_back(turn_text(Q, C));
+  out.conclusion = conclusion_of(out, remounted);
+  return out;
+}
+
+}  // namespace mgtd::calib

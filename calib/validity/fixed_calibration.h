@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/calibration/calibration.h"
+#include "calib/effects/library/library.h"
+
+namespace mgtd::calib {
+
+/// A calibration as poses that it was not fitted to see it: which slots of the joint fit's fixed block are
+/// under test, which are free because they belong to the site.
+struct FixedCalibration {
+  std::vector<EffectPtr> effects;  ///< its own, then those of the site that the operator adds
+  Eigen::VectorXd coefficients;
+  std::vector<CalibratedEffect> instrument;    ///< those under test
+  std::vector<Eigen::Index> tested, nuisance;  ///< slots of the fixed block
+  Eigen::MatrixXd covariance;                  ///< of the tested slots
+  bool needs_angles{false};
+};
+
+/// Refuses an effect that the library does not know, and an `added` one that does not belong to the site.
+[[nodiscard]] Result<FixedCalibration> freeze(const Calibration& calibration,
+                                              const std::vector<EffectPtr>& added);
+
+}  // namespace mgtd::calib

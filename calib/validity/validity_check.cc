@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/validity/validity_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/fit/joint/joint_errors.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/outliers.h"
+#include "calib/poses/run_time.h"
+#include "calib/validity/change_report.h"
+#include "calib/validity/fixed_calibration.h"
+
+namespace mgtd::calib {
+namespace {
+
+/// Scatter beyond the noise that a calibration may show and still be called valid: its own run set the noise,
+/// so more than this is something new.
+constexpr double kMaxExcess = 1.5;
+constexpr double kLeastNoise_nT = 1e-3;
+constexpr std::size_t kMinPoses = 4;
+/// Of the poses: what more of them contradict is the calibration.
+constexpr double kMostLeftOut = 0.1;
+
+/// The poses as the test wants them: all alike, and without table angles unless an effect needs them.
+PoseTable prepared(const PoseTable& table, bool needs_angles) {
+  PoseTable out = table;
+  for (Pose& pose : out.poses) {
+    pose.set = "check";  // predicted, never fitted: as few as there are
+    if (!needs_angles) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
+  }
+  return out;
+}
+
+/// Each axis as noisy as its dwells say, and no less than it scattered in the calibration's own run: what
+/// that run's model left out is not news.
+bool weight(const Calibration& c, const PoseTable& poses, JointProblem& problem) {
+  const AxisNoise own = c.pose_noise_nT.cwiseMax(kLeastNoise_nT);
+  weight_by_pose(problem, own);
+  const auto sample = sample_noise(poses);
+  if (!sample) return false;
+  weight_by_samples(problem, *sample);
+  for (JointPose& pose : problem.poses)
+    pose.weight = pose.weight.cwiseMin(own.reshaped<Eigen::RowMajor>().cwiseInverse());
+  return true;
+}
+
+/// A gauge is no evidence; a known field and what is known of the site are.
+void keep_site_priors(const std::vector<Eigen::Index>& tested, JointProblem& problem) {
+  std::erase_if(problem.priors, [&](const LinearPrior& prior) { return !prior.row(tested).isZero(); });
+}
+
+/// Effects of time and of currents count from where they counted in the run that was fitted.
+void as_in_its_run(const Calibration& c, JointProblem& problem) {
+  RunTime time;
+  if (const auto start = parse_utc(c.reference.t_utc)) time.start = *start;
+  problem.means = std::make_shared<const CovariateMeans>(c.reference.currents_A);
+  for (JointPose& pose : problem.poses) {
+    pose.t_h = time.hours(*pose.pose);
+    pose.means = problem.means.get();
+  }
+}
+
+/// Best site and field for sensors that stay as they are.
+void refit_site(const JointProblem& problem, const std::vector<Eigen::Index>& slots, JointState& state) {
+  constexpr int kSteps = 4;  // almost linear
+  for (int i = 0; i < kSteps; ++i) {
+    const Reduced reduced = reduce(problem, state, 0);
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(problem.fixed());
+    step(slots) = inverse_of(reduced.S(slots, slots)).W * reduced.g(slots);
+    state = state.moved(step);
+    refit_nuisances(problem, state);
+  }
+}
+
+/// Score and information of the tested slots, everything else eliminated.
+struct Score {
+  Eigen::MatrixXd S;
+  Eigen::VectorXd g;
+  JointCost cost;
+};
+
+Score score_of(const Reduced& reduced, const FixedCalibration& frozen) {
+  const auto &t = frozen.tested, &n = frozen.nuisance;
+  const Eigen::MatrixXd border = reduced.S(t, n);
+  const Eigen::MatrixXd corner = inverse_of(reduced.S(n, n)).W;
+  return {reduced.S(t, t) - border * corner * border.transpose(),
+          reduced.g(t) - border * corner * reduced.g(n), reduced.cost};
+}
+
+/// The directions of the tested slots that these poses see, whitened: z = A (change) + unit noise.
+struct Seen {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd z;
+};
+
+Seen seen_of(const Score& score) {
+  constexpr double kUnseen = 1e-10;  // of the largest eigenvalue; rounding leaves 1e-13
+  const Eigen::VectorXd d = score.S.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (d.array() > 0).select(d.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * score.S *
+                                                             inverse.asDiagonal());
+  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const auto unseen = (values.array() < kUnseen * values.maxCoeff()).count();
+  const Eigen::Index seen = values.size() - unseen;
+  const Eigen::MatrixXd V = eigen.eigenvectors().rightCols(seen);
+  const Eigen::VectorXd root = values.tail(seen).cwiseSqrt();
+  return {root.asDiagonal() * V.transpose() * d.asDiagonal(),
+          root.cwiseInverse().asDiagonal() * (V.transpose() * inverse.cwiseProduct(score.g))};
+}
+
+bool field_known(const JointProblem& problem) {
+  return std::any_of(problem.priors.begin(), problem.priors.end(),
+                     [](const LinearPrior& prior) { return prior.row[kFieldSlot] != 0; });
+}
+
+/// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance.
+double excess_of(const JointProblem& problem, const JointState& state, const FixedCalibration& frozen,
+                 const JointCost& cost, const Seen& seen) {
+  const PoseResiduals residuals = pose_residuals(problem, state);
+  double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
+  for (const JointPose& pose : problem.poses)
+    observed += (pose.has_angles ? -1 : -3) + (problem.common_field ? 1 : 0);
+  const double site = (problem.has_angles ? 2 : 0) + (problem.common_field && !field_known(problem) ? 1 : 0) +
+                      static_cast<double>(frozen.nuisance.size()) - kGlobals;
+  const double dof = observed - site - static_cast<double>(seen.z.size());
+  const double chi2 = cost.readings + cost.scalar - seen.z.squaredNorm();
+  return dof > 0 && std::abs(chi2 / dof - 1) > 3 * std::sqrt(2 / dof) ? std::sqrt(chi2 / dof) : 1;
+}
+
+Evidence evidence_of(const FixedCalibration& frozen, const std::array<SensorModel, kSensors>& sensors,
+                     const Score& score, const Seen& seen, double noise, bool free_scale) {
+  const Eigen::MatrixXd A = seen.A / noise;
+  const Eigen::Index n = A.rows();
+  const Eigen::MatrixXd freedoms = common_freedoms(sensors, A.cols(), free_scale);
+  // A freedom that these poses do not see at all is out already.
+  std::vector<Eigen::Index> visible;
+  for (Eigen::Index j = 0; j < freedoms.cols(); ++j) {
+    const double whole = freedoms.col(j).cwiseAbs2().dot(score.S.diagonal());
+    if ((seen.A * freedoms.col(j)).squaredNorm() > 1e-8 * whole) visible.push_back(j);
+  }
+  return {.difference = seen.z / noise,
+          .covariance = Eigen::MatrixXd::Identity(n, n) + A * frozen.covariance * A.transpose(),
+          .gain = A,
+          .common = A * freedoms(Eigen::all, visible),
+          .slots = shown_slots(frozen.instrument)};
+}
+
+std::string verdict_text(const ValidityReport& r, bool changed) {
+  const Change& c = r.change;
+  const std::string figures = figures_text(c);
+  if (changed) {
+    const auto best = std::max_element(c.others_log10_p.begin(), c.others_log10_p.end());
+    const std::string where = *best > std::log10(kChanged) ? fmt::format("sensor s{} alone would explain it",
+                                                                         best - c.others_log10_p.begin() + 1)
+                                                           : std::string("more than one sensor");
+    return fmt::format(
+        "no longer valid ({}): {}{}; calibrate again", figures, where,
+        c.named.empty() ? ", spread over many parameters" : ", accounted for by " + named_text(c));
+  }
+  if (!r.valid) {
+    return fmt::format(
+        "no longer valid: the poses scatter {:.1f} times more than the noise, and no change of the "
+        "parameters explains "
+        "it; a disturbance while they were measured, or an effect that is not in the model",
+        r.excess);
+  }
+  return fmt::format("still valid ({})", figures);
+}
+
+void explain(ValidityReport& r) {
+  const bool changed = r.change.p() < kChanged;
+  r.valid = !changed && r.excess <= kMaxExcess;
+  r.reasons.push_back(verdict_text(r, changed));
+  r.reasons.push_back("smallest change that these poses show in 80 of 100 cases: " + seen_text(r.change));
+  if (r.excess > 1 && r.valid) {
+    r.reasons.push_back(
+        fmt::format("the poses scatter {:.2f} times more than the noise; the test allows for it", r.excess));
+  }
+  if (!r.noise_from_dwells)
+    r.reasons.emplace_back(
+        "the noise is that of the calibration's own run: the poses have no spreads or counts");
+  for (const std::string& text : outlier_texts(r.outliers))
+    r.reasons.push_back(text + "; left out, measure again");
+}
+
+double rms_noise(const JointProblem& problem) {
+  double variance = 0;
+  for (const JointPose& pose : problem.poses)
+    variance += pose.weight.cwiseMax(1e-9).cwiseAbs2().cwiseInverse().mean();
+  return std::sqrt(variance / static_cast<double>(problem.poses.size()));
+}
+
+/// The frozen calibration among the poses: problem and state, poses that contradict set aside.
+struct Settled {
+  JointProblem problem;
+  PlacedState placed;
+  Outliers outliers;
+};
+
+Result<Settled> settle(const Calibration& c, const PoseTable& poses, const FixedCalibration& frozen,
+                       const FitOptions& options, ValidityReport& report) {
+  JointOptions joint = joint_options(options);
+  joint.inclination_rad = joint.declination_rad = std::nullopt;
+  joint.geometry = c.geometry;
+  joint.effects = frozen.effects;
+  auto problem = joint_problem(poses, joint, PoseUse::check);
+  if (!problem) return tl::unexpected(problem.error());
+  as_in_its_run(c, *problem);
+  fix_gauge(*problem, joint);
+  keep_site_priors(frozen.tested, *problem);
+  report.noise_from_dwells = weight(c, poses, *problem);
+  report.noise_nT = rms_noise(*problem);
+  const double f_nT = options.field_nT.value_or(c.reference.f_nT.value_or(start_field_nT(*problem, joint)));
+  Settled out{.problem = std::move(*problem), .placed = {}, .outliers = Outliers(kMostLeftOut)};
+  out.placed = placed_state(out.problem, c.sensors, f_nT);
+  JointState& state = out.placed.state;
+  state.coefficients = frozen.coefficients;
+  refit_nuisances(out.problem, state);
+  do {
+    refit_site(out.problem, frozen.nuisance, state);
+  } while (out.outliers.judge(out.problem, state, pose_residuals(out.problem, state)));
+  return out;
+}
+
+/// The covariance in the platform frame in which the array stands now.
+void turn_covariance(const Calibration& c, const Eigen::Matrix3d& Q, FixedCalibration& frozen) {
+  const ArrayCovariance J = turned(c.sensors, Q).jacobian;
+  const Eigen::MatrixXd rows = J * frozen.covariance.topRows<kArrayParameters>();
+  frozen.covariance.topRows<kArrayParameters>() = rows;
+  const Eigen::MatrixXd columns = frozen.covariance.leftCols<kArrayParameters>() * J.transpose();
+  frozen.covariance.leftCols<kArrayParameters>() = columns;
+}
+
+}  // namespace
+
+Result<ValidityReport> check(const Calibration& calibration, const PoseTable& table,
+                             const FitOptions& options) {
+  if (table.poses.size() < kMinPoses) {
+    return fail(ErrorCode::refused,
+                fmt::format("{} poses to check with; at least {} are needed", table.poses.size(), kMinPoses),
+                "measure a dozen poses with the field in different directions");
+  }
+  auto frozen = freeze(calibration, options.effects);
+  if (!frozen) return tl::unexpected(frozen.error());
+  const PoseTable poses = prepared(table, frozen->needs_angles);
+  ValidityReport report;
+  report.calibration = calibration.id;
+  report.poses = static_cast<int>(poses.poses.size());
+  const auto settled = settle(calibration, poses, *frozen, options, report);
+  if (!settled) return tl::unexpected(settled.error());
+  const JointProblem& problem = settled->problem;
+  const JointState& state = settled->placed.state;
+  report.outliers = settled->outliers.nodes(problem, state);
+  turn_covariance(calibration, settled->placed.Q, *frozen);
+  const Score score = score_of(reduce(problem, state, 0), *frozen);
+  const Seen seen = seen_of(score);
+  report.excess = excess_of(problem, state, *frozen, score.cost, seen);
+  const double factor = small_sample_factor(calibration.poses);
+  frozen->covariance *= factor;
+  const double noise = report.excess * std::sqrt(factor);
+  const bool free_scale = problem.common_field && !options.field_nT;
+  report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
+  const JointErrors errors = joint_errors(problem, state, FixedBlock::frozen);
+  report.errors = errors.summary;
+  report.residual_nT = errors.residual_nT;
+  explain(report);
+  return report;
+}
+
+}  // namespace mgtd::calib

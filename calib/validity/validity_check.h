@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/methods/fit.h"
+#include "calib/validity/change.h"
+
+/// Is an earlier calibration still valid? From a dozen poses, which need not determine a calibration of their
+/// own.
+///
+/// The calibration is frozen and each pose fits its own field. What remains is compared with what the noise
+/// of these poses *and* the covariance of the calibration allow: score test of all its parameters together,
+/// and of each alone. The attitude of the whole array on its table is free (it may have been mounted again),
+/// and so is the site: its field, and the coefficients of effects of the site.
+namespace mgtd::calib {
+
+struct ValidityReport {
+  std::string calibration;  ///< its id
+  int poses{0};
+  bool valid{false};              ///< no change (kChanged), and the poses follow the model
+  Change change;                  ///< new less old, as far as these poses tell it
+  ErrorSummary errors;            ///< of the frozen calibration on these poses
+  double residual_nT{0};          ///< as PoseResiduals tells it, calibration frozen
+  double noise_nT{0};             ///< of a pose mean, as weighted
+  double excess{1};               ///< scatter that no change of the calibration explains, over the noise
+  bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run
+  std::vector<OutlierNode> outliers;
+  std::vector<std::string> reasons;  ///< sentences: the verdict first
+};
+
+/// All poses count, whatever their set. Of `options` the field, the table's uncertainty and further effects
+/// of the site are used. Refuses too few poses and effects that need what the poses do not have.
+[[nodiscard]] Result<ValidityReport> check(const Calibration& calibration, const PoseTable& table,
+                                           const FitOptions& options);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/acquire/live_pipeline.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "daemon/acquire/calibrated_with.h"
+#include "daemon/acquire/instruments.h"
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr auto kFreshAngles = std::chrono::seconds(10);
+
+}  // namespace
+
+SamplerConfig sampler_config(const Config& config) {
+  SamplerConfig out;
+  out.rate_hz = config.rate_hz;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const DeviceConfig& sensor = config.sensors.at(i);
+    out.latency_s.at(i) = sensor.latency_s;
+    out.wire_s.at(i) = wire_s(sensor.device->line_bytes(), sensor.device->baud());
+  }
+  for (std::size_t i = 0; i < kSensors; ++i)
+    out.step_s.at(i) = config.sensors.at(i).delivery_s * config.speed_up;
+  out.scheduling_s *= config.speed_up;
+  out.silence_s *= config.speed_up;
+  return out;
+}
+
+LatestInputs inputs_of(const Config& config) {
+  std::vector<std::string> columns;
+  for (const DeviceConfig* device : devices_of(config)) {
+    if (device == nullptr) continue;
+    for (const drivers::InputChannel& input : device->device->inputs()) columns.push_back(input.column);
+  }
+  return LatestInputs(std::move(columns));
+}
+
+LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs)
+    : baseline_m_(baseline_m),
+      sampler_(sampler),
+      live_(calib::Geometry{baseline_m}),
+      raw_(calib::Geometry{baseline_m}),
+      inputs_(std::move(inputs)) {}
+
+void LivePipeline::use(std::shared_ptr<const calib::Calibration> calibration) {
+  instruments_.want(calibration ? instruments_among(calibration->verdict)
+                                : std::vector<InstrumentIdentity>{});
+  if (calibration == nullptr) {
+    criticism_ = {};
+    rearranged_ = {};
+    live_ = calib::LiveTensor(calib::Geometry{baseline_m_});
+    return;
+  }
+  criticism_ = calib::LiveCriticism(*calibration);
+  rearranged_ = calib::RearrangementWatch(calibration);
+  live_ = calib::LiveTensor(calibration);
+}
+
+void LivePipeline::answers(int slot, const std::string& told) {
+  std::string& known = told_.at(static_cast<std::size_t>(slot));
+  if (known == told) return;
+  known = told;
+  instruments_.answers({fmt::format("s{}", slot + 1), told});
+}
+
+/// Where the array stands is known while a referenced table stands still and says so.
+calib::LiveConditions LivePipeline::conditions(Instant at) const {
+  calib::LiveConditions out;
+  if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
+    out.angles = table_->angles;
+  out.covariates = &inputs_.covariates();
+  return out;
+}
+
+TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
+  inputs_.advance(epoch.t.mono);
+  TensorSample sample;
+  if (!instruments_.another()) sample = judged(epoch, verdict_changed);
+  if (instruments_.another() || rearranged_.verdict()) {
+    sample = raw_.apply(epoch);
+    sample.flags |= Flag::identity;
+  } else if (const auto& used = live_.calibration(); used && !used->accepted_by_checks) {
+    sample.flags |= Flag::forced;
+  }
+  if (calibrating_) sample.flags |= Flag::calibrating;
+  return sample;
+}
+
+/// With the calibration, and what that says of the calibration.
+TensorSample LivePipeline::judged(const Epoch& epoch, bool& verdict_changed) {
+  TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
+  const bool before = rearranged_.verdict().has_value();
+  verdict_changed = criticism_.add(sample, epoch.T_degC);
+  rearranged_.add(epoch, criticism_.beyond());
+  verdict_changed = verdict_changed || before != rearranged_.verdict().has_value();
+  const calib::LiveState state = criticism_.verdict().state;
+  if (state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
+  if (state == calib::LiveState::suspect ||
+      (criticism_.beyond().value_or(false) && state != calib::LiveState::near_source))
+    sample.flags |= Flag::suspect;
+  return sample;
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rig answers on its control socket.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "calib/calibration/calibration_json.h"
+#include "daemon/app/daemon_app.h"
+#include "daemon/plan/run_plan_json.h"
+#include "proto/calibration_request.h"
+#include "proto/status_codec.h"
+
+namespace mgtd::daemon {
+
+using Reply = Result<nlohmann::ordered_json>;
+
+constexpr double kSameBaseline_m = 1e-6;
+
+Reply DaemonApp::answer(const ControlRequest& request) {
+  switch (request.command) {
+    case ControlCommand::version:
+      return nlohmann::ordered_json{
+          {"software", "mgtd " MGTD_VERSION},
+          {"rig", config_.rig_name},
+          {"protocol", {{"major", kControlProtocolMajor}, {"minor", kControlProtocolMinor}}},
+          {"stream_tcp", config_.stream_tcp},
+          {"stream_unix", config_.stream_unix}};
+    case ControlCommand::status:
+      return to_json(report());
+    case ControlCommand::run_start:
+    case ControlCommand::run_dry_run:
+    case ControlCommand::run_pause:
+    case ControlCommand::run_resume:
+    case ControlCommand::run_finish:
+    case ControlCommand::run_abort:
+    case ControlCommand::run_status:
+    case ControlCommand::run_enter:
+    case ControlCommand::run_redo:
+      return answer_run(request);
+    case ControlCommand::calibrations_list:
+    case ControlCommand::calibrations_show:
+    case ControlCommand::calibrations_accept:
+    case ControlCommand::calibrations_import:
+    case ControlCommand::calibrations_rollback:
+      return answer_calibrations(request);
+    case ControlCommand::magnet_start:
+    case ControlCommand::magnet_status:
+    case ControlCommand::magnet_stop:
+      return answer_magnet(request);
+    case ControlCommand::control_take:
+    case ControlCommand::control_release:
+    case ControlCommand::control_break:
+      break;  // answered by the control server
+  }
+  return fail(ErrorCode::internal, "a command without an answer");
+}
+
+Reply DaemonApp::answer_run(const ControlRequest& request) {
+  const Stamp now = clock_.now();
+  Result<void> done;
+  if (request.command == ControlCommand::run_start || request.command == ControlCommand::run_dry_run) {
+    const auto wanted = parse_run_request(request.args);
+    if (!wanted) return tl::unexpected(wanted.error());
+    if (request.command == ControlCommand::run_dry_run) return dry_run(*wanted);
+    if (magnet_ && !magnet_->ended())
+      return fail(ErrorCode::state, "a magnet test is going on", "wait for its end, or: mgt run abort");
+    done = run_.start(*wanted, now);
+  } else if (request.command == ControlCommand::run_pause) {
+    done = run_.request(Request::pause, now);
+  } else if (request.command == ControlCommand::run_resume) {
+    done = run_.request(Request::resume, now);
+  } else if (request.command == ControlCommand::run_finish) {
+    done = run_.request(Request::finish, now);
+  } else if (request.command == ControlCommand::run_redo) {
+    done = run_.request(Request::redo, now);
+  } else if (request.command == ControlCommand::run_enter) {
+    const auto scales = parse_scale_entry(request.args);
+    if (!scales) return tl::unexpected(scales.error());
+    done = run_.enter(*scales, now);
+  } else if (request.command == ControlCommand::run_abort) {
+    if (magnet_ && !magnet_->ended()) return abort_magnet(now);
+    done = run_.request(Request::abort, now);
+  }
+  if (!done) return tl::unexpected(done.error());
+  watch_links(now);
+  return to_json(run_.status(now.mono));
+}
+
+Reply DaemonApp::answer_magnet(const ControlRequest& request) {
+  const bool under_way = magnet_ && !magnet_->ended();
+  if (request.command == ControlCommand::magnet_start) {
+    if (under_way)
+      return fail(ErrorCode::state, "a magnet test is going on", "Ctrl-C where it runs, or: mgt run abort");
+    if (run_.active())
+      return fail(ErrorCode::state, "a run is going on: a magnet would spoil it",
+                  "wait for it, or: mgt run abort");
+    if (auto ready = ready_for_magnet(instruments_.status()); !ready) return tl::unexpected(ready.error());
+    spdlog::info("magnet test: begun");
+    magnet_.emplace(clock_.now().mono, config_.speed_up);
+  } else if (request.command == ControlCommand::magnet_stop && under_way) {
+    magnet_->stop();
+  }
+  if (!magnet_) return fail(ErrorCode::state, "there was no magnet test", "mgt run magnet-test begins one");
+  return to_json(magnet_->status());
+}
+
+/// Whose client is gone, too.
+Reply DaemonApp::abort_magnet(Stamp now) {
+  magnet_->stop();
+  spdlog::info("magnet test: {}", magnet_->status().text);
+  RunStatus run = run_.status(now.mono);
+  run.message = "the magnet test is ended: " + magnet_->status().text;
+  return to_json(run);
+}
+
+Reply DaemonApp::dry_run(const RunRequest& request) const {
+  const auto plan = run_.plan(request);
+  if (!plan) return tl::unexpected(plan.error());
+  const nlohmann::json whole = to_json(*plan);
+  return nlohmann::ordered_json{{"poses", plan->poses.size()},
+                                {"minutes", total_s(run_.pace(), *plan) / 60},
+                                {"text", describe(*plan, run_.pace())},
+                                {"list", whole["poses"]},
+                                {"options", whole["options"]},
+                                {"limits_deg", to_json(run_.limits())},
+                                {"config", config_.text}};
+}
+
+Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
+  const WallTime now = clock_.now().wall;
+  if (request.command == ControlCommand::calibrations_list) {
+    auto list = nlohmann::ordered_json::array();
+    for (const CalibrationEntry& e : store_.list()) {
+      list.push_back({{"id", e.id},
+                      {"state", name(e.state)},
+                      {"since", format_utc(e.since)},
+                      {"origin", e.origin},
+                      {"forced", e.forced}});
+    }
+    return nlohmann::ordered_json{{"calibrations", std::move(list)}};
+  }
+  if (request.command == ControlCommand::calibrations_rollback) {
+    const auto back = store_.rollback(now);
+    if (!back) return tl::unexpected(back.error());
+    use_active_calibration();
+    return nlohmann::ordered_json{{"active", *back}};
+  }
+  if (request.command == ControlCommand::calibrations_import) return import_calibration(request);
+  if (request.command == ControlCommand::calibrations_show) {
+    const auto id = parse_calibration_id(request.args);
+    if (!id) return tl::unexpected(id.error());
+    const auto calibration = store_.show(*id);
+    if (!calibration) return tl::unexpected(calibration.error());
+    return nlohmann::ordered_json(calib::to_json(*calibration));
+  }
+  const auto wanted = parse_accept_request(request.args);
+  if (!wanted) return tl::unexpected(wanted.error());
+  if (auto accepted = store_.accept(wanted->id, now, wanted->force); !accepted)
+    return tl::unexpected(accepted.error());
+  use_active_calibration();
+  return nlohmann::ordered_json{{"active", wanted->id}};
+}
+
+Reply DaemonApp::import_calibration(const ControlRequest& request) {
+  const WallTime now = clock_.now().wall;
+  const auto wanted = parse_import_request(request.args);
+  if (!wanted) return tl::unexpected(wanted.error());
+  const auto calibration = calib::calibration_from_json(wanted->calibration);
+  if (!calibration) return tl::unexpected(calibration.error());
+  if (const double baseline_m = calibration->geometry.baseline_m;
+      std::abs(baseline_m - config_.baseline_m) > kSameBaseline_m) {
+    return fail(ErrorCode::refused,
+                fmt::format("calibration {} is of an array with a baseline of {:g} m, this rig has {:g} m",
+                            calibration->id, baseline_m, config_.baseline_m),
+                "fit again with --baseline, or correct [rig] baseline_m");
+  }
+  if (auto done = store_.import(*calibration, wanted->origin, wanted->force, now); !done)
+    return tl::unexpected(done.error());
+  spdlog::info("calibration {} imported from {}", calibration->id, wanted->origin);
+  nlohmann::ordered_json reply{{"id", calibration->id}, {"forced", !calibration->accepted_by_checks}};
+  if (wanted->accept) {
+    if (auto done = store_.accept(calibration->id, now, wanted->force); !done)
+      return tl::unexpected(done.error());
+    use_active_calibration();
+  }
+  if (store_.active_id() == calibration->id) reply["active"] = calibration->id;
+  return reply;
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "calib/poses/pose_list.h"
+#include "daemon/plan/run_plan.h"
+#include "proto/run_request.h"
+
+namespace mgtd::daemon {
+
+/// What a list asks for.
+[[nodiscard]] std::vector<RequestedPose> requested_poses(const calib::PoseList& list);
+
+/// A plan of the poses that a list names, in its order: what `mgt next -o` and `mgt plan` speak of becomes a
+/// run. A dwell that the list leaves out is `options.dwell_short_s`; an angle may be given by whole turns
+/// beside the table's travel.
+///
+/// Refuses, with file, line and column: a pose outside the table's limits, a number twice; a list for a table
+/// on which the array is mounted by hand, since a list says nothing of that.
+[[nodiscard]] Result<RunPlan> listed_plan(const RunRequest& request, const PlanOptions& options,
+                                          const drivers::TableLimits& limits);
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/field_disturbance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/stats/f_distribution.h"
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr double kMemory = 400;              // degrees of freedom
+constexpr double kScalarPrior = 4;           // readings' worth of the configured scatter
+constexpr double kSmallestNoise_nT2 = 1e-8;  // of a block: below any instrument's resolution
+constexpr std::size_t kScalarReadings = 3;   // fewer make no scatter
+constexpr double kAxes = 3 * kSensors;
+
+/// Of the quotient S / (12 (B - 1)): counted as if all sensors saw the same.
+double dof_of(std::size_t blocks) { return 3 * (static_cast<double>(blocks) - 1); }
+
+double square_sum(const std::vector<double>& f_nT) {
+  double mean = 0, sum = 0;
+  for (const double f : f_nT) mean += (f - f_nT.front()) / static_cast<double>(f_nT.size());
+  for (const double f : f_nT) sum += (f - f_nT.front() - mean) * (f - f_nT.front() - mean);
+  return sum;
+}
+
+/// Of the axes of all sensors, per sensor: change of the vector.
+double per_sensor(const FieldBlocks::Axes& nT2) { return nT2.sum() / kSensors; }
+
+}  // namespace
+
+FieldNoise::FieldNoise(double scalar_sd_nT)
+    : scalar_sum_nT2_(kScalarPrior * scalar_sd_nT * scalar_sd_nT), scalar_dof_(kScalarPrior) {}
+
+void FieldNoise::begin(const FieldBlocks& at_rest) {
+  sum_ = dof_ = 0;
+  if (at_rest.blocks() < 2) return;
+  weight_nT2_ = at_rest.expected_nT2().cwiseMax(kSmallestNoise_nT2);
+  add(at_rest);
+}
+
+void FieldNoise::add(const FieldBlocks& at_rest) {
+  if (at_rest.blocks() < 2) return;
+  sum_ += at_rest.scatter_nT2().cwiseQuotient(weight_nT2_).sum() * 3 / kAxes;
+  dof_ += dof_of(at_rest.blocks());
+  if (const auto n = static_cast<double>(at_rest.scalar_nT().size()); n >= 2) {
+    scalar_sum_nT2_ += square_sum(at_rest.scalar_nT());
+    scalar_dof_ += n - 1;
+  }
+  const double keep = std::min(1.0, kMemory / dof_), keep_scalar = std::min(1.0, kMemory / scalar_dof_);
+  sum_ *= keep;
+  dof_ *= keep;
+  scalar_sum_nT2_ *= keep_scalar;
+  scalar_dof_ *= keep_scalar;
+}
+
+double FieldNoise::block_nT() const { return known() ? std::sqrt(sum_ / dof_ * per_sensor(weight_nT2_)) : 0; }
+
+std::string FieldDisturbance::in_words() const {
+  return fmt::format("the field changed by {:.2g} nT{} while the table stood (limit {:.2g} nT)", change_nT,
+                     scalar ? " at the scalar reference" : "", limit_nT);
+}
+
+/// Reads the noise.
+struct UnrestTest {
+  const FieldBlocks& field;
+  const FieldNoise& noise;
+  double log10_p;  ///< limit of one look at one of the two
+  double limit_nT;
+
+  [[nodiscard]] std::optional<FieldDisturbance> array() const {
+    if (field.blocks() < 2 || !noise.known()) return std::nullopt;
+    const double n = static_cast<double>(field.blocks()) - 1;
+    const FieldBlocks::Axes scatter_nT2 = field.scatter_nT2();
+    const double f =
+        scatter_nT2.cwiseQuotient(noise.weight_nT2_).sum() / (kAxes * n) / (noise.sum_ / noise.dof_);
+    const double noise_nT = noise.block_nT();
+    const double change_nT = std::sqrt(std::max(0.0, per_sensor(scatter_nT2) / n - noise_nT * noise_nT));
+    return verdict(change_nT, f, dof_of(field.blocks()), noise.dof_, false);
+  }
+  [[nodiscard]] std::optional<FieldDisturbance> scalar() const {
+    if (field.scalar_nT().size() < kScalarReadings) return std::nullopt;
+    const double n = static_cast<double>(field.scalar_nT().size()) - 1;
+    const double square_nT2 = square_sum(field.scalar_nT()) / n,
+                 at_rest_nT2 = noise.scalar_sum_nT2_ / noise.scalar_dof_;
+    return verdict(std::sqrt(std::max(0.0, square_nT2 - at_rest_nT2)), square_nT2 / at_rest_nT2, n,
+                   noise.scalar_dof_, true);
+  }
+  [[nodiscard]] std::optional<FieldDisturbance> verdict(double change_nT, double f, double k, double nu,
+                                                        bool by_scalar) const {
+    if (change_nT <= limit_nT || calib::f_log10_p(f, k, nu) > log10_p) return std::nullopt;
+    return FieldDisturbance{change_nT, limit_nT, by_scalar};
+  }
+};
+
+std::optional<FieldDisturbance> unrest(const FieldBlocks& field, const FieldNoise& noise,
+                                       const DisturbanceLimits& limits, std::size_t looks) {
+  const double share = limits.false_alarm / (2 * static_cast<double>(std::max<std::size_t>(looks, 1)));
+  const UnrestTest test{field, noise, std::log10(share), limits.limit_nT};
+  if (auto seen = test.array()) return seen;
+  return test.scalar();
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "daemon/run/field_blocks.h"
+
+/// Does the field change while the table stands: has something magnetic passed by?
+///
+///   array    S = sum over 12 axes and B blocks of (block - mean)^2 / w,  w = expected variance of a block
+///            F = S / (12 (B - 1)) / kappa,  kappa the same quotient at rest: preflight and good dwells
+///
+///   scalar   F = scatter of its readings / that at rest
+///
+/// Disturbed when F is exceeded by chance with less than `false_alarm` / looks, and the change is above
+/// `limit_nT`. What is common to all axes counts once: the degrees of freedom are those of three axes, so
+/// that ambient noise, which the twelve share, raises no alarm; where the axes are independent the rate of
+/// false alarms is smaller than stated.
+namespace mgtd::daemon {
+
+struct DisturbanceLimits {
+  double limit_nT{0.5};      ///< rms change of the field, below which nothing matters
+  double false_alarm{1e-4};  ///< of a dwell, at most, where nothing disturbs
+};
+
+/// How much blocks and readings scatter when nothing disturbs.
+class FieldNoise {
+ public:
+  /// One reading of the scalar reference scatters by so much, until readings say otherwise.
+  explicit FieldNoise(double scalar_sd_nT);
+
+  void begin(const FieldBlocks& at_rest);
+  /// A good dwell. The latest few hundred degrees of freedom count.
+  void add(const FieldBlocks& at_rest);
+  /// False: too little was seen to judge by.
+  [[nodiscard]] bool known() const { return dof_ > 0; }
+  /// Of the field's magnitude, one block.
+  [[nodiscard]] double block_nT() const;
+
+ private:
+  friend struct UnrestTest;
+  FieldBlocks::Axes weight_nT2_{FieldBlocks::Axes::Ones()};
+  double sum_{0}, dof_{0};
+  double scalar_sum_nT2_, scalar_dof_;
+};
+
+struct FieldDisturbance {
+  double change_nT{0};
+  double limit_nT{0};  ///< that change_nT had to exceed to be no noise
+  bool scalar{false};  ///< seen by the scalar reference
+  [[nodiscard]] std::string in_words() const;
+};
+
+/// `looks`: how often one dwell is judged. Nothing while there are fewer than two blocks.
+[[nodiscard]] std::optional<FieldDisturbance> unrest(const FieldBlocks& field, const FieldNoise& noise,
+                                                     const DisturbanceLimits& limits, std::size_t looks);
+
+}  // namespace mgtd::daemon

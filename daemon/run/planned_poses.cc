@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/planned_poses.h"
+
+#include <numbers>
+#include <utility>
+
+#include "daemon/plan/approach.h"
+#include "daemon/plan/mounting.h"
+#include "daemon/plan/run_duration.h"
+#include "daemon/plan/run_plan.h"
+
+namespace mgtd::daemon {
+namespace {
+
+/// Ends at `end_s`.
+Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pace) {
+  Pose pose;
+  pose.number = planned.number;
+  pose.set = planned.set;
+  pose.t_s = end_s - planned.dwell_s / 2;
+  const TableAngles a = planned.mount ? platform_angles(planned.mounting, planned.target) : planned.target;
+  pose.azimuth_rad = a.azimuth_rad;
+  pose.pitch_rad = a.pitch_rad;
+  pose.roll_rad = a.roll_rad;
+  pose.mount = planned.mount;
+  pose.dwell_s = planned.dwell_s;
+  pose.since_stop_s = pace.settle_s + planned.dwell_s / 2;
+  if (sense != 0) pose.sense = sense;
+  return pose;
+}
+
+}  // namespace
+
+drivers::TableLimits table_limits(const Config& config) {
+  constexpr double kPi = std::numbers::pi;
+  const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
+  if (table != nullptr) return table->limits();
+  return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
+}
+
+PlanOptions plan_options(const Config& config) {
+  const RunDefaults& d = config.run;
+  return {.step_deg = d.step_deg,
+          .random = d.random,
+          .revisits = d.revisits,
+          .dwell_short_s = d.dwell_short_s,
+          .dwell_long_s = d.dwell_long_s,
+          .seed = d.seed,
+          .mounts = config.mounts,
+          .by_hand = config.by_hand()};
+}
+
+Result<PoseTable> planned_poses(const Config& config) {
+  const drivers::TableLimits limits = table_limits(config);
+  if (limits.azimuth.max_rad <= limits.azimuth.min_rad)
+    return fail(
+        ErrorCode::refused,
+        config.file +
+            ": how far the table turns is not in the configuration; the daemon learns it from "
+            "the controller",
+        "state limits.azimuth, limits.pitch and limits.roll in [table], or ask the running daemon: mgt "
+        "run dry-run");
+  return planned_poses(plan_options(config), limits);
+}
+
+Result<PoseTable> planned_poses(const PlanOptions& options, const drivers::TableLimits& limits) {
+  const auto plan = make_plan(options, limits);
+  if (!plan) return tl::unexpected(plan.error());
+  const Pace pace;
+  PoseTable out;
+  double t_s = 0;
+  TableAngles at;
+  int sense = 0;
+  for (std::size_t k = 0; k < plan->poses.size(); ++k) {
+    const PlannedPose& planned = plan->poses[k];
+    const double begun_s = t_s;
+    t_s += pose_s(pace, *plan, k);
+    const auto by_way_of = waypoint(at, sense, planned.target, planned.sense, kApproach_rad, limits);
+    if (by_way_of && !planned.mount) out.path.push_back({begun_s + move_s(pace, at, *by_way_of), *by_way_of});
+    const int last = sense_of(by_way_of.value_or(at).azimuth_rad, planned.target.azimuth_rad);
+    if (last != 0) sense = last;
+    at = planned.target;
+    out.poses.push_back(pose_of(planned, t_s, sense, pace));
+  }
+  return out;
+}
+
+void assume(const Config& config, calib::PlanRequest& request) {
+  request.candidates = reachable(config, std::move(request.candidates));
+  request.geometry.baseline_m = config.baseline_m;
+  request.table_sd_rad = to_rad(config.table_sd_deg);
+  request.f_nT = config.field_nT.value_or(request.f_nT);
+  if (!config.scalar) request.scalar_sd_nT = std::nullopt;
+  request.field_known = config.field_nT.has_value();
+  request.field_sd_nT = config.field_sd_nT;
+  if (config.inclination_deg) request.inclination_rad = to_rad(*config.inclination_deg);
+  if (config.declination_deg) request.declination_rad = to_rad(*config.declination_deg);
+}
+
+std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles> attitudes) {
+  constexpr double kSlack_rad = 1e-9;
+  const drivers::TableLimits limits = table_limits(config);
+  // 270 degrees is -90 to a table that ends at 180.
+  const auto inside = [](double& angle_rad, const drivers::TableLimits::Range& range) {
+    for (const double turns : {0.0, -1.0, 1.0}) {
+      const double other = angle_rad + 2 * std::numbers::pi * turns;
+      if (other < range.min_rad - kSlack_rad || other > range.max_rad + kSlack_rad) continue;
+      angle_rad = other;
+      return true;
+    }
+    return false;
+  };
+  std::erase_if(attitudes, [&](TableAngles& a) {
+    return !inside(a.azimuth_rad, limits.azimuth) || !inside(a.pitch_rad, limits.pitch) ||
+           !inside(a.roll_rad, limits.roll);
+  });
+  return attitudes;
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/run_executor.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "calib/fit/joint/joint_fit.h"
+#include "daemon/acquire/calibrated_with.h"
+#include "daemon/plan/plan_from_list.h"
+#include "daemon/plan/run_plan_json.h"
+#include "daemon/run/planned_poses.h"
+#include "daemon/run/solver.h"
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr const char* kSuffix = ".mgtrun";
+
+/// "20261121T100000Z": sorts by time, names the file.
+std::string run_id_at(WallTime t) {
+  std::string id = format_utc(t).substr(0, 19);
+  std::erase_if(id, [](char c) { return c == '-' || c == ':'; });
+  return id + "Z";
+}
+
+PlanOptions plan_options(const Config& config, const RunRequest& r) {
+  PlanOptions out = plan_options(config);
+  out.step_deg = r.step_deg.value_or(out.step_deg);
+  out.random = r.random.value_or(out.random);
+  out.revisits =
+      r.revisits.value_or(r.random ? std::min(out.revisits, std::max(0, (*r.random - 2) / 2)) : out.revisits);
+  out.dwell_short_s = r.dwell_short_s.value_or(out.dwell_short_s);
+  out.dwell_long_s = r.dwell_long_s.value_or(std::max(out.dwell_long_s, r.dwell_short_s.value_or(0)));
+  out.seed = r.seed.value_or(out.seed);
+  return out;
+}
+
+RunOptions run_options(const Config& c, const RunRequest& r) {
+  RunOptions out;
+  out.baseline_m = c.baseline_m;
+  out.field_nT = c.field_nT;
+  if (c.field_nT) out.field_sd_nT = c.field_sd_nT;
+  if (c.inclination_deg) out.inclination_rad = to_rad(*c.inclination_deg);
+  if (c.declination_deg) out.declination_rad = to_rad(*c.declination_deg);
+  out.table_sd_rad = to_rad(c.table_sd_deg);
+  out.until_tensor_sd_nT_per_m = r.until_tensor_sd_nT_per_m;
+  return out;
+}
+
+}  // namespace
+
+RunExecutor::RunExecutor(const Config& config, std::filesystem::path directory, CalibrationStore& store,
+                         Worker& worker, RunHooks hooks)
+    : config_(config),
+      directory_(std::move(directory)),
+      store_(store),
+      worker_(worker),
+      hooks_(std::move(hooks)) {}
+
+/// Nothing for a file whose plan cannot be read.
+std::optional<RunExecutor::Interrupted> RunExecutor::resumable(const std::filesystem::path& path,
+                                                               const RunFile& file) const {
+  const auto plan = plan_from_json(file.header().plan);
+  if (!plan) return std::nullopt;
+  return Interrupted{path, file.header().run_id, static_cast<int>(file.pose_count().value_or(0)),
+                     static_cast<int>(plan->poses.size())};
+}
+
+void RunExecutor::find_interrupted() {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_, ignored)) {
+    if (entry.path().extension() == kSuffix) files.push_back(entry.path());
+  }
+  std::sort(files.rbegin(), files.rend());
+  for (const auto& path : files) {
+    const auto file = RunFile::open(path, Access::read_only);
+    if (!file) {
+      spdlog::warn("{}: {}", path.string(), file.error().text());
+      continue;
+    }
+    const auto state = file->state();
+    if (!state) continue;
+    if (state->state == RunState::failed && path == files.front()) failed_ = resumable(path, *file);
+    if (!is_active(state->state)) continue;
+    interrupted_ = resumable(path, *file);
+    if (!interrupted_) continue;
+    failed_.reset();
+    spdlog::warn(
+        "run {} was interrupted with {} of {} poses on disk: mgt run resume goes on with it, mgt run abort "
+        "gives it up",
+        interrupted_->run_id, interrupted_->stored, interrupted_->planned);
+    return;
+  }
+}
+
+Result<RunPlan> RunExecutor::plan(const RunRequest& request) const {
+  const PlanOptions options = plan_options(config_, request);
+  const drivers::TableLimits& limits = hooks_.table().limits();
+  return request.poses.empty() ? make_plan(options, limits) : listed_plan(request, options, limits);
+}
+
+Pace RunExecutor::pace() const { return {}; }
+
+RunConfig RunExecutor::run_config(const std::string& run_id, const RunRequest& request) const {
+  RunConfig out;
+  out.run_id = run_id;
+  out.fewest_poses = calib::kFewestPoses;
+  out.limits = hooks_.table().limits();
+  out.preflight.length_s = config_.run.preflight_s;
+  out.preflight.field_nT = config_.field_nT;
+  out.preflight.scalar = config_.scalar.has_value();
+  out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config_.rate_hz;
+  out.settle.min_s = config_.run.settle_min_s;
+  out.settle.max_s = config_.run.settle_max_s;
+  out.unrest = {.limit_nT = config_.run.disturbance_nT, .false_alarm = config_.run.false_alarm};
+  out.field_step_nT = config_.run.field_step_nT;
+  out.calm_s = config_.run.calm_s;
+  out.calm_max_s = config_.run.calm_max_s;
+  // A sped-up clock makes the host's own delays longer: 1 ms of scheduling or disk is that many ms of the
+  // rig's time.
+  // What the clocks then show is the host, not the rig.
+  if (config_.speed_up > 1) out.preflight.max_skew_s = 60;
+  for (double* limit :
+       {&out.preflight.wait_s, &out.store_max_s, &out.solve_max_s, &out.stop_max_s, &out.dwell.grace_s}) {
+    *limit *= config_.speed_up;
+  }
+  if (const auto active = store_.active(); active && *active)
+    out.calibrated = instruments_among((*active)->verdict);
+  out.retries = request.retries.value_or(config_.run.retries);
+  out.pace = pace();
+  out.by_hand = config_.by_hand();
+  out.answer_max_s = config_.run.answer_max_s * config_.speed_up;  // hands and eyes keep their own time
+  return out;
+}
+
+Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
+  if (const RunStatus run = status(now.mono); run.state == RunState::paused && !run.goes_on)
+    return fail(ErrorCode::state, fmt::format("run {} is paused: {}", run.run_id, run.message),
+                "mgt run resume goes on with it, mgt run abort ends it");
+  if (active())
+    return fail(ErrorCode::state, fmt::format("run {} is going on", status(now.mono).run_id),
+                "wait for it, or: mgt run abort");
+  if (interrupted_) {
+    return fail(ErrorCode::state,
+                fmt::format("run {} was interrupted with {} of {} poses", interrupted_->run_id,
+                            interrupted_->stored, interrupted_->planned),
+                "mgt run resume goes on with it, mgt run abort gives it up");
+  }
+  if (auto there = table_is_there(); !there) return there;
+  auto planned = plan(request);
+  if (!planned) return tl::unexpected(planned.error());
+  failed_.reset();
+  const std::string id = run_id_at(now.wall);
+  auto file = RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
+                                                            .rig = config_.rig_name,
+                                                            .started_utc = now.wall,
+                                                            .software = "mgtd " MGTD_VERSION,
+                                                            .config = config_.text,
+                                                            .plan = to_json(*planned).dump(),
+                                                            .seed = planned->options.seed,
+                                                            .source = "measured",
+                                                            .options = run_options(config_, request)});
+  if (!file) return tl::unexpected(file.error());
+  for (const std::string& effect : config_.effects) {
+    if (auto put = file->append_model_step({now.wall, "mgtd configuration", "add", effect, "{}"}); !put)
+      return put;
+  }
+  begin(*std::move(file), run_config(id, request), *std::move(planned), now, std::nullopt);
+  return {};
+}
+
+void RunExecutor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
+                        const std::optional<EarlierLife>& earlier) {
+  file_ = std::move(file);
+  given_up_.reset();
+  config.until_tensor_sd_nT_per_m = file_->header().options.until_tensor_sd_nT_per_m;
+  auto stored = file_->poses();
+  poses_ = stored ? *std::move(stored) : PoseTable{};
+  near_.reset();
+  learning_ = false;
+  learning_job_.request_stop();
+  solving_job_.request_stop();
+  solved_.reset();
+  answers_.clear();
+  ++generation_;
+  spdlog::info("run {}: {} poses into {}", config.run_id, plan.poses.size(), file_->path().string());
+  fsm_ = std::make_unique<RunFsm>(std::move(config), std::move(plan), now, earlier);
+  feed(Tick{}, now);
+}
+
+/// How far it may turn is known from itself.
+Result<void> RunExecutor::table_is_there() const {
+  const LinkHealth& table = hooks_.table().health();
+  if (table.state == LinkState::live) return {};
+  return fail(ErrorCode::state, "the table is not connected: " + table.detail,
+              "when mgt status shows it live, say it again");
+}
+
+Result<void> RunExecutor::resume_interrupted(Stamp now) {
+  if (auto there = table_is_there(); !there) return there;
+  auto file = RunFile::open(interrupted_->file, Access::resume);
+  if (!file) return tl::unexpected(file.error());
+  auto plan = plan_from_json(file->header().plan);
+  if (!plan) return tl::unexpected(plan.error());
+  const auto poses = file->poses();
+  if (!poses) return tl::unexpected(poses.error());
+  EarlierLife earlier;
+  earlier.started_utc = file->header().started_utc;
+  for (const Pose& pose : poses->poses) {
+    earlier.stored.insert(pose.number);
+    earlier.poses.push_back(pose);
+    earlier.last_t_s = std::max(earlier.last_t_s, pose.t_s.value_or(0));
+  }
+  if (const auto known = file->checks(kInstrumentsStage)) earlier.instruments = instruments_among(*known);
+  RunConfig config = run_config(file->header().run_id, {});
+  interrupted_.reset();
+  begin(*std::move(file), std::move(config), *std::move(plan), now, earlier);
+  return {};
+}
+
+Result<void> RunExecutor::drop_interrupted() {
+  auto file = RunFile::open(interrupted_->file, Access::resume);
+  if (!file) return tl::unexpected(file.error());
+  if (auto set = file->set_state(RunState::aborted, "interrupted, then given up by the operator"); !set)
+    return set;
+  const std::string rest =
+      interrupted_->stored == 0
+          ? fmt::format("no pose was measured, {} holds nothing to fit; mgt run start begins another run",
+                        interrupted_->file.string())
+          : fmt::format("its {0} of {1} poses are kept in {2}: mgt fit {2} -o CAL.json fits them",
+                        interrupted_->stored, interrupted_->planned, interrupted_->file.string());
+  given_up_ = status_of(*interrupted_, RunState::aborted, "given up; " + rest);
+  spdlog::info("run {}: {}", given_up_->run_id, given_up_->message);
+  interrupted_.reset();
+  fsm_.reset();
+  return {};
+}
+
+Result<void> RunExecutor::request(Request request, Stamp now) {
+  if (!active() && failed_ && request == Request::resume) {
+    interrupted_ = std::exchange(failed_, std::nullopt);
+    auto resumed = resume_interrupted(now);
+    if (!resumed) failed_ = std::exchange(interrupted_, std::nullopt);  // as it was
+    return resumed;
+  }
+  if (interrupted_ && request == Request::resume) return resume_interrupted(now);
+  if (interrupted_ && request == Request::abort) return drop_interrupted();
+  if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
+  if (auto possible = fsm_->possible(request); !possible) return possible;
+  feed(request, now);
+  return {};
+}
+
+Result<void> RunExecutor::enter(const TableAngles& scales, Stamp now) {
+  if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
+  const ScaleEntered entered{scales};
+  if (auto possible = fsm_->possible(entered); !possible) return possible;
+  feed(entered, now);
+  return {};
+}
+
+void RunExecutor::feed(const Event& event, Stamp now) {
+  if (!active()) return;
+  carry_out(fsm_->step(event, now), now);
+  while (!answers_.empty()) {
+    const std::vector<Event> answers = std::exchange(answers_, {});
+    for (const Event& answer : answers) carry_out(fsm_->step(answer, now), now);
+  }
+}
+
+void RunExecutor::carry_out(const std::vector<Action>& actions, Stamp now) {
+  for (const Action& action : actions) std::visit([&](const auto& a) { act(a, now); }, action);
+}
+
+RunStatus RunExecutor::status(Instant now) const {
+  if (fsm_ != nullptr) return fsm_->status(now);
+  if (interrupted_)
+    return status_of(
+        *interrupted_, RunState::interrupted,
+        "the daemon ended during this run: mgt run resume goes on with it, mgt run abort gives it up");
+  if (failed_)
+    return status_of(*failed_, RunState::failed,
+                     "the last run failed: mgt run resume goes on with it, mgt run start begins another");
+  return given_up_.value_or(RunStatus{});
+}
+
+void RunExecutor::abandon() {
+  if (!active()) return;
+  hooks_.order({TableOrder::What::stop, {}});
+  spdlog::warn("run {} is left with its poses on disk; it can be resumed when the daemon is back",
+               file_->header().run_id);
+}
+
+}  // namespace mgtd::daemon

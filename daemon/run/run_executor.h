@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+
+#include "calib/fit/joint/accuracy_so_far.h"
+#include "daemon/config/config.h"
+#include "daemon/plan/run_duration.h"
+#include "daemon/run/run_fsm.h"
+#include "daemon/store/calibration_store.h"
+#include "daemon/store/run_file.h"
+#include "daemon/store/worker.h"
+#include "proto/journal_note.h"
+#include "proto/run_request.h"
+
+/// Carries out what the run's state machine asks for: moves the table, keeps the run file, has the worker
+/// solve, proposes the calibration. One run at a time; the last one stays readable. A run that a dead daemon
+/// left behind is found at start and offered. After each pose the worker says what the calibration would be
+/// worth so far.
+namespace mgtd::daemon {
+
+struct RunHooks {
+  std::function<drivers::Turntable&()> table;
+  std::function<void(const TableOrder&)> order;
+  std::function<void(const RunStatus&)> publish;
+  /// What repeats is for the owner's QuietLog: topic, message.
+  std::function<void(std::string_view, const std::string&, Instant)> warn;
+};
+
+class RunExecutor {
+ public:
+  RunExecutor(const Config& config, std::filesystem::path directory, CalibrationStore& store, Worker& worker,
+              RunHooks hooks);
+
+  /// Looks for a run that was under way when the daemon died.
+  void find_interrupted();
+
+  [[nodiscard]] Result<RunPlan> plan(const RunRequest& request) const;
+  [[nodiscard]] Pace pace() const;
+  /// As the table knows them by now.
+  [[nodiscard]] const drivers::TableLimits& limits() const { return hooks_.table().limits(); }
+  /// Refused while a run is active, or one is waiting to be resumed or aborted.
+  [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
+  /// Resume and abort also settle an interrupted run; resume takes up the last run when it failed. A new run
+  /// leaves a failed one where it is.
+  [[nodiscard]] Result<void> request(Request request, Stamp now);
+
+  /// What the scales say that the run asks for. Refused when it asks for nothing.
+  [[nodiscard]] Result<void> enter(const TableAngles& scales, Stamp now);
+
+  void feed(const Event& event, Stamp now);
+  [[nodiscard]] RunStatus status(Instant now) const;
+  [[nodiscard]] bool active() const { return fsm_ != nullptr && !fsm_->ended(); }
+  /// The daemon ends: the table stops, the run file is left to be resumed.
+  void abandon();
+
+ private:
+  struct Interrupted {
+    std::filesystem::path file;
+    std::string run_id;
+    int stored{0}, planned{0};
+  };
+
+  [[nodiscard]] RunConfig run_config(const std::string& run_id, const RunRequest& request) const;
+  [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
+                                                     const RunFile& file) const;
+  [[nodiscard]] Result<void> table_is_there() const;
+  [[nodiscard]] Result<void> resume_interrupted(Stamp now);
+  [[nodiscard]] Result<void> drop_interrupted();
+  [[nodiscard]] static RunStatus status_of(const Interrupted& run, RunState state, std::string message) {
+    RunStatus out;
+    out.run_id = run.run_id;
+    out.state = state;
+    out.pose = run.stored;
+    out.poses = run.planned;
+    out.message = std::move(message);
+    return out;
+  }
+  void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
+             const std::optional<EarlierLife>& earlier);
+  void carry_out(const std::vector<Action>& actions, Stamp now);
+  void learn_accuracy();
+  void act(const HomeTable&, Stamp);
+  void act(const MoveTable& action, Stamp);
+  void act(const SetTable& action, Stamp);
+  void act(const DropPoses& action, Stamp);
+  void act(const StopTable&, Stamp);
+  void act(const StorePose& action, Stamp now);
+  void act(const StorePath& action, Stamp now);
+  void act(const StoreChecks& action, Stamp now);
+  void act(const StartSolve&, Stamp now);
+  void act(const CancelSolve&, Stamp);
+  void act(const ProposeCalibration& action, Stamp now);
+  void act(const PublishStatus& action, Stamp now);
+  void act(const Record& action, Stamp now);
+  void act(const Finish& action, Stamp);
+
+  const Config& config_;
+  std::filesystem::path directory_;
+  CalibrationStore& store_;
+  Worker& worker_;
+  RunHooks hooks_;
+  std::unique_ptr<RunFsm> fsm_;
+  std::optional<RunFile> file_;
+  PoseTable poses_;                                ///< stored so far; the worker gets copies
+  std::shared_ptr<const calib::JointState> near_;  ///< of the last fit while measuring
+  bool learning_{false};                           ///< the worker is at such a fit
+  std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};
+  std::optional<calib::Calibration> solved_;
+  std::optional<Interrupted> interrupted_;
+  std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins
+  /// The last run, when it failed with poses on disk: resume takes it up.
+  std::optional<Interrupted> failed_;
+  std::vector<Event> answers_;  ///< of actions carried out at once, fed after them
+  std::uint64_t generation_{0};
+};
+
+}  // namespace mgtd::daemon

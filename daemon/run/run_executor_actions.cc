@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the run asks to be done: orders to the table, poses and checks to disk, fits to the worker.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "calib/fit/joint/accuracy_so_far.h"
+#include "calib/fit/two_step/verdict.h"
+#include "daemon/acquire/calibrated_with.h"
+#include "daemon/run/run_executor.h"
+#include "daemon/run/solver.h"
+#include "drivers/hand_table.h"
+
+namespace mgtd::daemon {
+
+void RunExecutor::act(const HomeTable&, Stamp) { hooks_.order({TableOrder::What::home, {}}); }
+
+void RunExecutor::act(const MoveTable& action, Stamp) {
+  hooks_.order({TableOrder::What::move, action.target});
+}
+
+void RunExecutor::act(const SetTable& action, Stamp) {
+  if (auto* const table = dynamic_cast<drivers::HandTable*>(&hooks_.table())) table->set(action.angles);
+}
+
+void RunExecutor::act(const DropPoses& action, Stamp) {
+  if (auto dropped = file_->remove_poses(action.numbers); !dropped) {
+    spdlog::error("poses to be measured again could not be taken out: {}", dropped.error().text());
+    return;
+  }
+  std::erase_if(poses_.poses, [&](const Pose& pose) {
+    return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
+  });
+}
+
+void RunExecutor::act(const StopTable&, Stamp) { hooks_.order({TableOrder::What::stop, {}}); }
+
+void RunExecutor::act(const StorePose& action, Stamp) {
+  auto stored = file_->append_pose(action.pose);
+  if (stored) {
+    poses_.poses.push_back(action.pose);
+    learn_accuracy();
+  }
+  answers_.push_back(PoseStored{action.pose.number, std::move(stored)});
+}
+
+/// One fit at a time; what was stored meanwhile is fitted after it.
+void RunExecutor::learn_accuracy() {
+  if (learning_) return;
+  learning_ = true;
+  learning_job_ = worker_.run(
+      [poses = poses_, near = near_,
+       options = fit_options(file_->header().options)](std::stop_token stop) mutable {
+        options.stop = std::move(stop);
+        return calib::accuracy_so_far(poses, options, near.get());
+      },
+      [this, generation = generation_, count = poses_.poses.size()](Result<calib::AccuracySoFar> known) {
+        if (generation != generation_ || !active()) return;
+        learning_ = false;
+        if (known) {
+          answers_.push_back(AccuracyKnown{known->poses, known->worst_nT_per_m()});
+          near_ = std::make_shared<const calib::JointState>(std::move(known->state));
+        }
+        if (poses_.poses.size() != count) learn_accuracy();
+      });
+}
+
+void RunExecutor::act(const StorePath& action, Stamp now) {
+  if (auto stored = file_->append_path(action.readings); !stored)
+    hooks_.warn("table path", stored.error().text(), now.mono);
+}
+
+void RunExecutor::act(const StoreChecks& action, Stamp now) {
+  if (auto stored = file_->set_checks(action.stage, action.checks); !stored)
+    hooks_.warn("checks", stored.error().text(), now.mono);
+}
+
+void RunExecutor::act(const StartSolve&, Stamp) {
+  learning_job_.request_stop();  // what it would say is part of what follows
+  solving_job_ =
+      worker_.run([path = file_->path()](std::stop_token stop) { return solve_run(path, std::move(stop)); },
+                  [this, generation = generation_](Result<calib::FitReport> report) {
+                    if (generation != generation_ || !active()) return;
+                    SolveDone done{tl::unexpected(Error{})};
+                    if (const auto active = store_.active(); report && active && *active)
+                      hold_against(**active, *report);
+                    if (report) {
+                      const calib::Calibration& c = report->calibration;
+                      done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict,
+                                             calib::left_over(*report)};
+                      solved_ = c;
+                    } else {
+                      done.result = tl::unexpected(report.error());
+                    }
+                    answers_.push_back(std::move(done));
+                  });
+}
+
+void RunExecutor::act(const CancelSolve&, Stamp) { solving_job_.request_stop(); }
+
+void RunExecutor::act(const ProposeCalibration& action, Stamp now) {
+  Result<void> proposed =
+      fail(ErrorCode::internal, fmt::format("calibration {} was not solved here", action.calibration_id));
+  if (solved_ && solved_->id == action.calibration_id)
+    proposed = store_.propose(*solved_, file_->header().run_id, now.wall);
+  if (proposed) proposed = file_->set_document("proposed", calib::to_json_text(*solved_));
+  answers_.push_back(CalibrationProposed{std::move(proposed)});
+}
+
+void RunExecutor::act(const PublishStatus& action, Stamp now) {
+  // The file knows the state it would be found in after a crash.
+  if (const auto known = file_->state();
+      known && known->state != action.status.state && is_active(action.status.state)) {
+    if (auto set = file_->set_state(action.status.state, action.status.message); !set)
+      hooks_.warn("run state", set.error().text(), now.mono);
+  }
+  hooks_.publish(action.status);
+}
+
+void RunExecutor::act(const Record& action, Stamp now) {
+  spdlog::info("run: {}", action.what);
+  if (auto stored = file_->append_event({now, action.what}); !stored)
+    hooks_.warn("run log", stored.error().text(), now.mono);
+}
+
+void RunExecutor::act(const Finish& action, Stamp) {
+  spdlog::info("run ended, {}: {}", name(action.state), action.message);
+  if (auto set = file_->set_state(action.state, action.message); !set)
+    spdlog::error("run state: {}", set.error().text());
+  failed_.reset();
+  if (action.state == RunState::failed) failed_ = resumable(file_->path(), *file_);
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/solver.h"
+
+#include "calib/criticism/tests/exchange_in_run.h"
+#include "calib/effects/library/library.h"
+#include "daemon/acquire/calibrated_with.h"
+
+namespace mgtd::daemon {
+
+calib::FitOptions fit_options(const RunOptions& options) {
+  calib::FitOptions out;
+  out.field_nT = options.field_nT;
+  out.field_sd_nT = options.field_sd_nT.value_or(out.field_sd_nT);
+  out.inclination_rad = options.inclination_rad;
+  out.declination_rad = options.declination_rad;
+  out.baseline_m = options.baseline_m;
+  out.table_sd_rad = options.table_sd_rad.value_or(out.table_sd_rad);
+  return out;
+}
+
+Result<calib::FitOptions> fit_options(const PoseSource& source) {
+  calib::FitOptions out = source.header ? fit_options(source.header->options) : calib::FitOptions{};
+  for (const std::string& spec : source.model) {
+    auto effect = calib::make_effect(spec);
+    if (!effect) return tl::unexpected(effect.error());
+    out.effects.push_back(std::move(*effect));
+  }
+  return out;
+}
+
+Result<calib::FitReport> solve_run(const std::filesystem::path& run_file, std::stop_token stop) {
+  const auto source = read_run(run_file);
+  if (!source) return tl::unexpected(source.error());
+  auto options = fit_options(*source);
+  if (options) options->stop = std::move(stop);
+  if (!options) return tl::unexpected(options.error());
+  auto report = calib::fit(source->table, *options);
+  if (!report) return report;
+  name_instruments(report->calibration, run_file);
+  if (report->calibration.accepted_by_checks) return report;
+  // The cause, before what it led to.
+  if (const auto exchange = calib::exchange_in_run(source->table, options->field_nT))
+    report->reasons.insert(report->reasons.begin(), calib::in_words(*exchange));
+  return report;
+}
+
+}  // namespace mgtd::daemon

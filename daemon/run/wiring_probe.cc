@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/wiring_probe.h"
+
+#include <fmt/format.h>
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr std::array<std::string_view, kSensors> kWhere{"+X", "+Y", "-X", "-Y"};
+
+}  // namespace
+
+void WiringProbe::enter(Phase phase, Instant now) {
+  phase_ = phase;
+  entered_ = now;
+  since_.reset();
+  doubtful_ = false;
+  first_.reset();
+  if (phase == Phase::waiting) ++asked_;
+}
+
+void WiringProbe::add(const Epoch& epoch) {
+  if (ended()) return;
+  switch (phase_) {
+    case Phase::resting:
+      return rest(epoch);
+    case Phase::waiting:
+      return wait(epoch);
+    case Phase::leaving:
+      return leave(epoch);
+  }
+}
+
+/// The mean of kRest_s in which no sensor went further than a third of what counts as moved.
+void WiringProbe::rest(const Epoch& epoch) {
+  bool still = first_.has_value();
+  for (std::size_t i = 0; still && i < kSensors; ++i)
+    still = (epoch.y_nT[i] - first_->y_nT[i]).norm() < kMoved_nT / 3;
+  if (!still) {
+    first_ = epoch;
+    for (Eigen::Vector3d& sum : sum_) sum.setZero();
+    count_ = 0;
+  }
+  for (std::size_t i = 0; i < kSensors; ++i) sum_[i] += epoch.y_nT[i] - first_->y_nT[i];
+  ++count_;
+  if (epoch.t.mono - first_->t.mono < from_seconds(kRest_s)) return;
+  for (std::size_t i = 0; i < kSensors; ++i) at_rest_[i] = first_->y_nT[i] + sum_[i] / count_;
+  enter(Phase::waiting, epoch.t.mono);
+}
+
+WiringProbe::Change WiringProbe::change(const Epoch& epoch) const {
+  Change out;
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const double moved_nT = (epoch.y_nT[i] - at_rest_[i]).norm();
+    if (moved_nT > out.most_nT) {
+      out.second_nT = out.most_nT;
+      out.most_nT = moved_nT;
+      out.sensor = i;
+    } else if (moved_nT > out.second_nT) {
+      out.second_nT = moved_nT;
+    }
+  }
+  return out;
+}
+
+void WiringProbe::wait(const Epoch& epoch) {
+  const Change seen = change(epoch);
+  const bool moved = seen.most_nT >= kMoved_nT, clear = seen.most_nT >= kRatio * seen.second_nT;
+  doubtful_ = moved && !clear;
+  if (!moved || !clear) return since_.reset();
+  if (!since_ || moving_ != seen.sensor) since_ = epoch.t.mono;
+  moving_ = seen.sensor;
+  if (epoch.t.mono - *since_ < from_seconds(kHeld_s)) return;
+  found_.at(arm_) = seen.sensor;
+  if (arm_ + 1 == kSensors)
+    ended_ = MagnetEnd::done;
+  else
+    enter(Phase::leaving, epoch.t.mono);
+}
+
+/// Back at rest; a new rest is learnt, since what was near a magnet may stay magnetised.
+void WiringProbe::leave(const Epoch& epoch) {
+  if (change(epoch).most_nT >= kMoved_nT / 3) return;
+  ++arm_;
+  enter(Phase::resting, epoch.t.mono);
+}
+
+void WiringProbe::advance(Instant now) {
+  if (!ended() && now - entered_ > from_seconds(answer_s_)) ended_ = MagnetEnd::timed_out;
+}
+
+void WiringProbe::stop() {
+  if (!ended()) ended_ = MagnetEnd::stopped;
+}
+
+std::string WiringProbe::prompt() const {
+  const std::string_view where = kWhere.at(arm_);
+  switch (phase_) {
+    case Phase::resting:
+      return fmt::format("keep the magnet away and the array still; next is arm {} ({})", arm_ + 1, where);
+    case Phase::leaving:
+      return fmt::format("arm {} is seen; take the magnet away", arm_ + 1);
+    case Phase::waiting:
+      break;
+  }
+  const std::string ask = fmt::format("hold the magnet to the end of arm {} ({})", arm_ + 1, where);
+  return doubtful_ ? ask + ": more than one sensor moves; nearer to the end, and away from the others" : ask;
+}
+
+MagnetStatus WiringProbe::status() const {
+  static constexpr std::array<const char*, 3> kPhases{"resting", "waiting", "leaving"};
+  MagnetStatus out;
+  out.end = ended_;
+  out.asked = asked_;
+  for (std::size_t arm = 0; arm < kSensors; ++arm) {
+    if (found_.at(arm)) out.sensor_on_arm.at(arm) = static_cast<int>(*found_.at(arm)) + 1;
+  }
+  if (!ended_) {
+    out.state = kPhases.at(static_cast<std::size_t>(phase_));
+    out.arm = static_cast<int>(arm_) + 1;
+    out.text = prompt();
+  } else if (*ended_ == MagnetEnd::done) {
+    out.state = "done";
+    const auto right = all_right(out);
+    out.text = !right   ? "one sensor answered for two arms"
+               : *right ? "every cable is on its arm"
+                        : "cables are on other arms than their labels say";
+  } else if (*ended_ == MagnetEnd::timed_out) {
+    out.state = "timed out";
+    out.text =
+        fmt::format("nothing clear was seen for arm {} within {:.0f} s: it stays open", arm_ + 1, kAnswer_s);
+  } else {
+    out.state = "stopped";
+    out.text = fmt::format("stopped before arm {} was seen", arm_ + 1);
+  }
+  if (ended_) out.text += "; put the magnet away";
+  return out;
+}
+
+Result<void> ready_for_magnet(const std::vector<DeviceStatus>& devices) {
+  std::string dumb;
+  for (const DeviceStatus& device : devices) {
+    const bool sensor = device.name.size() == 2 && device.name.front() == 's';
+    if (!sensor || device.health.state == LinkState::live) continue;
+    const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(device.health.state));
+    const std::string& why = device.health.detail;
+    dumb += fmt::format("{}{} is {}{}", dumb.empty() ? "" : "; ", device.name, state,
+                        why.empty() ? "" : " (" + why + ")");
+  }
+  if (dumb.empty()) return {};
+  return fail(ErrorCode::state, "a magnet test needs all four sensors live: " + dumb,
+              "check its port, cable and supply; when mgt status shows it live, say it again");
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "daemon/serve/line_stream.h"
+#include "proto/error.h"
+#include "proto/watch_request.h"
+
+/// The operator's side of the live stream: greeted, watching, one object after the other.
+namespace mgtd::daemon {
+
+class StreamReader {
+ public:
+  /// `where` is a Unix socket's path (it holds a '/') or a TCP address. Refuses a greeting that is none, and
+  /// a daemon whose protocol has another major version.
+  [[nodiscard]] static Result<StreamReader> open(const std::string& where, const WatchRequest& request);
+
+  /// The next line as it came; empty when none came within `wait`.
+  [[nodiscard]] Result<std::optional<std::string>> next_line(Duration wait) {
+    return stream_.read_line(wait);
+  }
+  /// The next object; an ERROR object from the daemon is returned as an error.
+  [[nodiscard]] Result<std::optional<nlohmann::json>> next(Duration wait);
+
+  [[nodiscard]] const nlohmann::json& greeting() const { return greeting_; }
+
+ private:
+  explicit StreamReader(LineStream stream) : stream_(std::move(stream)) {}
+
+  LineStream stream_;
+  nlohmann::json greeting_;
+};
+
+}  // namespace mgtd::daemon

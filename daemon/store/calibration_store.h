@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/calibration/calibration.h"
+#include "proto/error.h"
+#include "proto/time.h"
+
+/// Calibrations on disk: immutable `<id>.json` files and one append-only log of what became of them. The
+/// active calibration is what the log says; a calibration is never changed or deleted. Every step is written,
+/// synced and renamed: killed at any moment, the store holds either the state before or the state after.
+namespace mgtd::daemon {
+
+enum class CalibrationState { proposed, accepted, active };
+[[nodiscard]] std::string_view name(CalibrationState state);
+
+struct CalibrationEntry {
+  std::string id;
+  CalibrationState state{CalibrationState::proposed};
+  WallTime since;      ///< when it entered that state
+  std::string origin;  ///< run id, or file it was imported from
+  bool forced{false};  ///< it failed its checks and was made active all the same
+};
+
+class CalibrationStore {
+ public:
+  /// Creates the directory when it is missing; reads the log. A torn last line (power cut) is dropped; a log
+  /// or file that is damaged otherwise is refused by name.
+  [[nodiscard]] static Result<CalibrationStore> open(std::filesystem::path directory);
+
+  /// Proposing what is already known changes nothing. Refuses an unsealed calibration.
+  [[nodiscard]] Result<void> propose(const calib::Calibration& calibration, std::string_view origin,
+                                     WallTime now);
+  /// Proposes a calibration that was made elsewhere. Refuses one that cannot be used (calibration_validity.h)
+  /// and, without `force`, one that failed its checks. Does not know the rig: whether it is of this array is
+  /// the caller's question.
+  [[nodiscard]] Result<void> import(const calib::Calibration& calibration, std::string_view origin,
+                                    bool force, WallTime now);
+  /// Makes a proposed (or formerly active) calibration active. Refuses an unknown id and, without `force`,
+  /// one that failed its checks.
+  [[nodiscard]] Result<void> accept(std::string_view id, WallTime now, bool force = false);
+  /// Back to the calibration that was active before this one. Gives its id.
+  [[nodiscard]] Result<std::string> rollback(WallTime now);
+
+  [[nodiscard]] std::optional<std::string> active_id() const;
+  /// Empty when none is active.
+  [[nodiscard]] Result<std::optional<calib::Calibration>> active() const;
+  [[nodiscard]] std::vector<CalibrationEntry> list() const { return entries_; }
+  [[nodiscard]] Result<calib::Calibration> show(std::string_view id) const;
+
+ private:
+  struct Event {
+    WallTime at;
+    std::string what, id, origin;
+    bool forced{false};
+  };
+  explicit CalibrationStore(std::filesystem::path directory) : directory_(std::move(directory)) {}
+  [[nodiscard]] Result<void> read_log();
+  [[nodiscard]] Result<void> record(const Event& event);
+  void apply(const Event& event);
+  [[nodiscard]] CalibrationEntry* find(std::string_view id);
+  [[nodiscard]] std::filesystem::path file_of(std::string_view id) const;
+
+  std::filesystem::path directory_;
+  std::vector<CalibrationEntry> entries_;
+  std::vector<std::string> activations_;  ///< stack: last is active
+};
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "daemon/store/journal.h"
+#include "daemon/store/worker.h"
+
+/// Has the disk finish what journals have written, on a thread of its own: a disk that takes seconds for it
+/// delays nobody. Journals outlive it.
+namespace mgtd::daemon {
+
+class DiskSync {
+ public:
+  explicit DiskSync(boost::asio::io_context& home) : worker_(home) {}
+
+  void look_after(Journal& journal) {
+    for (const int fd : journal.take_syncs()) {
+      worker_.run(
+          [fd](std::stop_token) {
+            const int os_error = ::fdatasync(fd) == 0 ? 0 : errno;
+            ::close(fd);
+            return os_error;
+          },
+          [&journal](int os_error) { journal.synced(os_error); });
+    }
+  }
+
+ private:
+  Worker worker_;
+};
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/store/pose_source.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <string>
+
+#include "calib/poses/joined_runs.h"
+#include "calib/poses/pose_table.h"
+#include "daemon/store/durable_file.h"
+#include "daemon/store/run_file.h"
+
+namespace mgtd::daemon {
+namespace {
+
+constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
+
+bool is_database(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string start(kSqliteMagic.size(), '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return in && start == kSqliteMagic;
+}
+
+}  // namespace
+
+Result<PoseSource> read_run(const std::filesystem::path& path) {
+  if (is_database(path) || path.extension() == ".mgtrun") {
+    auto file = RunFile::open(path, Access::read_only);
+    if (!file) return tl::unexpected(file.error());
+    auto table = file->poses();
+    if (!table) return tl::unexpected(table.error());
+    const auto steps = file->model_steps();
+    if (!steps) return tl::unexpected(steps.error());
+    PoseSource out{std::move(*table), file->header(), kept_model(*steps), {}};
+    const auto formulas = file->document(kFormulasDocument);
+    if (!formulas) return tl::unexpected(formulas.error());
+    if (!*formulas) return out;
+    auto definitions = definitions_from_text(**formulas);
+    if (!definitions) {
+      definitions.error().message = path.string() + ": " + definitions.error().message;
+      return tl::unexpected(definitions.error());
+    }
+    out.definitions = std::move(*definitions);
+    return out;
+  }
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  auto table = calib::parse_pose_table(*text, path.string());
+  if (!table) return tl::unexpected(table.error());
+  return PoseSource{std::move(*table), std::nullopt, {}, {}};
+}
+
+Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vector<std::string>& others) {
+  auto out = read_run(first);
+  for (const std::string& path : others) {
+    if (!out) return out;
+    const auto other = read_run(path);
+    if (!other) return tl::unexpected(other.error());
+    if (out->header && other->header && out->header->options.baseline_m != other->header->options.baseline_m)
+      return fail(ErrorCode::refused,
+                  fmt::format("the sensors of {} are {} m apart and those of {} {} m: this is another array",
+                              first.string(), out->header->options.baseline_m, path,
+                              other->header->options.baseline_m),
+                  "judge them one by one");
+    auto both = calib::joined(out->table, other->table);
+    if (!both) return tl::unexpected(both.error());
+    out->table = std::move(*both);
+  }
+  return out;
+}
+
+Result<PoseTable> read_poses(const std::filesystem::path& path) {
+  auto source = read_run(path);
+  if (!source) return tl::unexpected(source.error());
+  return std::move(source->table);
+}
+
+}  // namespace mgtd::daemon

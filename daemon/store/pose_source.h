@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/store/run_header.h"
+#include "daemon/store/user_formulas.h"
+#include "proto/error.h"
+#include "proto/pose.h"
+
+/// The RUN argument of every offline command: a run file or a pose table in CSV, told apart by content.
+namespace mgtd::daemon {
+
+struct PoseSource {
+  PoseTable table;
+  std::optional<RunHeader> header;        ///< of a run file
+  std::vector<std::string> model{};       ///< kept in a run file: specs of effects
+  std::vector<Definition> definitions{};  ///< formulas kept in a run file
+};
+
+[[nodiscard]] Result<PoseSource> read_run(const std::filesystem::path& path);
+/// The first run with the poses of the others (calib/poses/joined_runs.h); its own header, model and formulas
+/// count. Refuses runs whose sensors stand at another distance.
+[[nodiscard]] Result<PoseSource> read_runs(const std::filesystem::path& first,
+                                           const std::vector<std::string>& others);
+[[nodiscard]] Result<PoseTable> read_poses(const std::filesystem::path& path);
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/store/run_schema.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "daemon/store/pose_row.h"
+#include "proto/number.h"
+
+namespace mgtd::daemon {
+namespace {
+
+std::string schema() {
+  std::string pose_columns_sql;
+  for (const PoseColumn& c : pose_columns()) {
+    pose_columns_sql += fmt::format(", {} REAL{}", c.name, c.required ? " NOT NULL" : "");
+  }
+  return fmt::format(
+      "PRAGMA application_id={}; PRAGMA user_version={};"
+      "CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
+      "CREATE TABLE progress(one INTEGER PRIMARY KEY CHECK(one=1), state TEXT NOT NULL, message TEXT NOT "
+      "NULL);"
+      "CREATE TABLE pose(ord INTEGER PRIMARY KEY, number INTEGER NOT NULL UNIQUE, \"set\" TEXT NOT NULL,"
+      " t_utc_ns INTEGER{});"
+      "CREATE TABLE covariate(pose INTEGER NOT NULL REFERENCES pose(ord), name TEXT NOT NULL, value REAL NOT "
+      "NULL,"
+      " PRIMARY KEY(pose, name)) WITHOUT ROWID;"
+      "CREATE TABLE path(id INTEGER PRIMARY KEY, mono_ns INTEGER NOT NULL, wall_ns INTEGER NOT NULL,"
+      " azimuth_rad REAL NOT NULL, pitch_rad REAL NOT NULL, roll_rad REAL NOT NULL,"
+      " referenced INTEGER NOT NULL, moving INTEGER NOT NULL, on_target INTEGER NOT NULL);"
+      "CREATE TABLE event(id INTEGER PRIMARY KEY, mono_ns INTEGER NOT NULL, wall_ns INTEGER NOT NULL, what "
+      "TEXT NOT NULL);"
+      "CREATE TABLE checks(stage TEXT NOT NULL, ord INTEGER NOT NULL, name TEXT NOT NULL, passed INTEGER NOT "
+      "NULL,"
+      " measured TEXT NOT NULL, \"limit\" TEXT NOT NULL, remedy TEXT NOT NULL, PRIMARY KEY(stage, ord)) "
+      "WITHOUT ROWID;"
+      "CREATE TABLE document(name TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;"
+      "INSERT INTO progress VALUES(1, 'idle', '')",
+      kRunApplicationId, kRunSchemaVersion, pose_columns_sql);
+}
+
+using Meta = std::map<std::string, std::string, std::less<>>;
+
+void put(Meta& meta, const char* key, const std::optional<double>& value) {
+  if (value) meta[key] = fmt::format("{}", *value);
+}
+
+Meta to_meta(const RunHeader& h) {
+  Meta meta{{"run_id", h.run_id},
+            {"rig", h.rig},
+            {"started_utc", format_utc(h.started_utc)},
+            {"started_utc_ns", fmt::format("{}", h.started_utc.ns)},
+            {"software", h.software},
+            {"config", h.config},
+            {"plan", h.plan},
+            {"seed", fmt::format("{}", h.seed)},
+            {"source", h.source}};
+  put(meta, "baseline_m", h.options.baseline_m);
+  put(meta, "field_nT", h.options.field_nT);
+  put(meta, "field_sd_nT", h.options.field_sd_nT);
+  put(meta, "inclination_rad", h.options.inclination_rad);
+  put(meta, "declination_rad", h.options.declination_rad);
+  put(meta, "table_sd_rad", h.options.table_sd_rad);
+  put(meta, "until_tensor_sd_nT_per_m", h.options.until_tensor_sd_nT_per_m);
+  for (std::size_t i = 0; i < kSensors; ++i) meta[fmt::format("s{}_name", i + 1)] = h.options.sensor_names[i];
+  return meta;
+}
+
+std::string text_of(const Meta& meta, const std::string& key) {
+  const auto found = meta.find(key);
+  return found == meta.end() ? std::string{} : found->second;
+}
+
+std::optional<double> number_of(const Meta& meta, const std::string& key) {
+  return parse_number(text_of(meta, key));
+}
+
+RunHeader from_meta(const Meta& meta) {
+  RunHeader h;
+  h.run_id = text_of(meta, "run_id");
+  h.rig = text_of(meta, "rig");
+  h.started_utc.ns = parse_integer(text_of(meta, "started_utc_ns")).value_or(0);
+  h.software = text_of(meta, "software");
+  h.config = text_of(meta, "config");
+  h.plan = text_of(meta, "plan");
+  h.seed = std::strtoull(text_of(meta, "seed").c_str(), nullptr, 10);
+  h.source = text_of(meta, "source");
+  h.options.baseline_m = number_of(meta, "baseline_m").value_or(h.options.baseline_m);
+  h.options.field_nT = number_of(meta, "field_nT");
+  h.options.field_sd_nT = number_of(meta, "field_sd_nT");
+  h.options.inclination_rad = number_of(meta, "inclination_rad");
+  h.options.declination_rad = number_of(meta, "declination_rad");
+  h.options.table_sd_rad = number_of(meta, "table_sd_rad");
+  h.options.until_tensor_sd_nT_per_m = number_of(meta, "until_tensor_sd_nT_per_m");
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const std::string name = text_of(meta, fmt::format("s{}_name", i + 1));
+    if (!name.empty()) h.options.sensor_names[i] = name;
+  }
+  return h;
+}
+
+Result<Meta> read_meta(const Database& db) {
+  Meta meta;
+  auto rows = db.prepare("SELECT key, value FROM meta");
+  if (!rows) return tl::unexpected(rows.error());
+  for (;;) {
+    const auto row = rows->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return meta;
+    meta[rows->text(0)] = rows->text(1);
+  }
+}
+
+Result<void> check_identity(const Database& db, const std::string& file) {
+  const auto application = db.integer("PRAGMA application_id");
+  if (!application) return tl::unexpected(application.error());
+  const auto version = db.integer("PRAGMA user_version");
+  if (!version) return tl::unexpected(version.error());
+  const auto tables = db.integer("SELECT count(*) FROM sqlite_master");
+  if (tables && *tables == 0) {
+    return fail(ErrorCode::bad_input, fmt::format("{} is empty, not a run file", file),
+                "name a *.mgtrun file written by mgtd or mgt import");
+  }
+  if (*application != kRunApplicationId) {
+    return fail(ErrorCode::bad_input, fmt::format("{} is a database, but not a run file", file),
+                "name a *.mgtrun file written by mgtd or mgt import");
+  }
+  if (*version > kRunSchemaVersion) {
+    return fail(ErrorCode::bad_input,
+                fmt::format("{} has run file schema {}, this program knows up to {}", file, *version,
+                            kRunSchemaVersion),
+                "read it with the newer mgtd that wrote it");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> create_run_schema(Database& db, const RunHeader& header) {
+  return db.atomically([&]() -> Result<void> {
+    if (auto ok = db.execute(schema()); !ok) return ok;
+    auto insert = db.prepare("INSERT INTO meta VALUES(?1, ?2)");
+    if (!insert) return tl::unexpected(insert.error());
+    for (const auto& [key, value] : to_meta(header)) {
+      if (auto ok = insert->bind(1, std::string_view(key)).bind(2, std::string_view(value)).run(); !ok)
+        return ok;
+    }
+    return {};
+  });
+}
+
+Result<RunHeader> check_run_schema(const Database& db, const std::string& file) {
+  if (auto ok = check_identity(db, file); !ok) return tl::unexpected(ok.error());
+  auto check = db.prepare("PRAGMA quick_check(1)");
+  if (!check) return tl::unexpected(check.error());
+  const auto row = check->step();
+  if (!row) return tl::unexpected(row.error());
+  if (*row && check->text(0) != "ok") {
+    return fail(ErrorCode::bad_input, fmt::format("{} is damaged: {}", file, check->text(0)),
+                "rescue what is readable with: sqlite3 FILE .recover");
+  }
+  auto meta = read_meta(db);
+  if (!meta) return tl::unexpected(meta.error());
+  return from_meta(*meta);
+}
+
+}  // namespace mgtd::daemon

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Data that no effect stands for: each reason for the verdict BAD-DATA, brought about by what would really be
+// wrong on a rig.
+#include <gtest/gtest.h>
+
+#include "calib/criticism/search/explain.h"
+#include "calib/report/verdict_text.h"
+#include "tests/blind/planted.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::uint64_t kSeed = 50;
+
+struct Row {
+  std::string title;
+  void (*damage)(PoseTable& run);
+  std::vector<std::string> says;  ///< parts of the one note
+};
+
+void PrintTo(const Row& row, std::ostream* out) { *out << row.title; }
+
+std::vector<Row> rows() {
+  return {
+      {"two_leads_swapped",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) std::swap(pose.y_nT[1][0], pose.y_nT[1][1]);
+       },
+       {"sensor 2 is mirrored", "two leads are swapped or one is inverted"}},
+      {"one_lead_inverted",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) pose.y_nT[3][2] *= -1;
+       },
+       {"sensor 4 is mirrored", "two leads are swapped or one is inverted"}},
+      {"azimuth_counted_backwards",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) *pose.azimuth_rad *= -1;
+       },
+       {"the table angles contradict the readings", "5 is the limit"}},
+      {"pitch_and_roll_exchanged",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) std::swap(pose.pitch_rad, pose.roll_rad);
+       },
+       {"the table angles contradict the readings", "5 is the limit"}},
+      {"one_reading_in_forty_is_of_something_else",
+       [](PoseTable& run) {
+         for (std::size_t k = 0; k < run.poses.size() * 12; k += 41)
+           run.poses[k / 12].y_nT[k / 3 % 4][static_cast<Eigen::Index>(k % 3)] += k % 2 == 0 ? 40 : -25;
+       },
+       {"readings in 29 % of the poses contradict the rest", "the limit is 25 %"}},
+      {"spreads_of_another_instrument",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) {
+           for (auto& sd : pose.sd_nT[0]) *sd *= 3;
+         }
+       },
+       {"s1.", "of what its noise says", "spreads or counts in the table are wrong"}},
+      {"one_pose_with_a_hot_head",  // by less than what makes an outlier, and nowhere else so hot
+       [](PoseTable& run) {
+         run.poses[90].T_degC[1] = 90;
+         run.poses[90].y_nT[1] += 0.075 * Eigen::Vector3d(1, -1, 1);
+       },
+       {"one pose (91) carries the evidence", "measure it again"}},
+  };
+}
+
+std::string title_of(const ::testing::TestParamInfo<Row>& info) { return info.param.title; }
+
+class BadData : public ::testing::TestWithParam<Row> {};
+
+TEST_P(BadData, IsSaidWithItsReason) {
+  const testing::Stage stage = testing::full_stage(kSeed);
+  PoseTable run = testing::planted_run(stage, {}, kSeed);
+  GetParam().damage(run);
+  const auto r = explain(run, {});
+  ASSERT_TRUE(r) << r.error().text();
+  EXPECT_EQ(r->finding, Finding::bad_data) << sentence(*r);
+  EXPECT_TRUE(r->named.empty());
+  EXPECT_TRUE(r->rounds.empty());
+  ASSERT_EQ(r->notes.size(), 1U);
+  for (const std::string& part : GetParam().says)
+    EXPECT_NE(r->notes.front().find(part), std::string::npos) << r->notes.front();
+  EXPECT_NE(sentence(*r).find(as_sentence(r->notes.front())), std::string::npos) << sentence(*r);
+}
+
+INSTANTIATE_TEST_SUITE_P(Explain, BadData, ::testing::ValuesIn(rows()), &title_of);
+
+/// The same run undamaged.
+TEST(GoodData, IsNotCalledBad) {
+  const auto r = explain(testing::planted_run(testing::full_stage(kSeed), {}, kSeed), {});
+  ASSERT_TRUE(r);
+  EXPECT_EQ(r->finding, Finding::pass) << sentence(*r);
+}
+
+}  // namespace
+}  // namespace mgtd::calib

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/alternatives.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/calib/criticism/synthetic_families.h"
+
+namespace mgtd::calib::testing {
+namespace {
+
+constexpr Eigen::Index kRows = 40;
+constexpr int kRivals = 8;
+
+/// Law 0 and others that share `alike` of its signature (not in squares), each in a direction of its own.
+struct Laws {
+  std::vector<std::shared_ptr<CandidateEffect>> suspects;
+  std::vector<Eigen::VectorXd> columns;
+
+  explicit Laws(double alike) {
+    for (int i = 0; i <= kRivals; ++i) {
+      suspects.push_back(suspect_of_columns("law " + std::to_string(i), 1));
+      columns.push_back(Eigen::VectorXd::Zero(kRows));
+      columns.back()[0] = i == 0 ? 1 : alike;
+      if (i > 0) columns.back()[i] = std::sqrt(1 - alike * alike);
+    }
+  }
+
+  [[nodiscard]] std::vector<ScoredFamily> scored_on(const Eigen::VectorXd& residual) const {
+    std::vector<ScoredFamily> out;
+    for (std::size_t i = 0; i < columns.size(); ++i) out.push_back(scored(suspects[i], columns[i], residual));
+    std::stable_sort(out.begin(), out.end(), [](const ScoredFamily& a, const ScoredFamily& b) {
+      return a.calibrated < b.calibrated;
+    });
+    return out;
+  }
+};
+
+struct Counts {
+  int first{0}, in_set{0}, alone{0};
+};
+
+/// Law 0 is there with size d.
+Counts ask(const Laws& laws, double d, int runs) {
+  std::mt19937_64 random(7);
+  Counts out;
+  for (int i = 0; i < runs; ++i) {
+    const auto families = laws.scored_on(d * laws.columns[0] + normal(kRows, random));
+    const auto rivals = rivals_of(families, 0, static_cast<std::uint64_t>(i));
+    bool named = families.front().suspect->name == "law 0";
+    out.first += named ? 1 : 0;
+    int possible = 0;
+    for (const Rival& r : rivals) {
+      named = named || (r.possible && r.effect == "law 0");
+      possible += r.possible ? 1 : 0;
+    }
+    out.in_set += named ? 1 : 0;
+    out.alone += possible == 0 ? 1 : 0;
+  }
+  return out;
+}
+
+TEST(Rivals, AmongManyTheTrueNameIsLostOnceInTwoHundred) {
+  constexpr int kRuns = 1500;
+  const Counts seen = ask(Laws(0.85), 7, kRuns);
+  // The limit and three standard deviations of the count: 7.5 + 3 sqrt(7.5).
+  EXPECT_LE(kRuns - seen.in_set, 15);
+  // And not because everything stays possible: the eight win together in one run of eight or so.
+  EXPECT_LT(seen.first, kRuns - 30);
+}
+
+TEST(Rivals, AtASizeThatTellsThemApartOneNameIsLeft) {
+  constexpr int kRuns = 200;
+  const Counts seen = ask(Laws(0.85), 15, kRuns);
+  EXPECT_EQ(seen.first, kRuns);
+  EXPECT_GE(seen.alone, kRuns * 9 / 10);
+}
+
+TEST(Rivals, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
+  constexpr int kRuns = 20;
+  const Counts seen = ask(Laws(0.99), 200, kRuns);
+  EXPECT_EQ(seen.alone, 0);
+  EXPECT_EQ(seen.in_set, kRuns);
+}
+
+TEST(Rivals, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
+  constexpr int kRuns = 20;
+  Laws laws(0.99);
+  for (std::size_t i = 1; i < laws.suspects.size(); ++i) laws.suspects[i]->reads = "t_s";
+  const Counts seen = ask(laws, 200, kRuns);
+  EXPECT_EQ(seen.first, kRuns);
+  EXPECT_EQ(seen.alone, kRuns);
+}
+
+TEST(Rivals, FormAloneTellsNothingApart) {
+  EXPECT_EQ(beyond_form(40, 1600), 0);
+  EXPECT_DOUBLE_EQ(beyond_form(400, 1600), 320);
+  EXPECT_DOUBLE_EQ(told_right(0), 0.5);
+}
+
+}  // namespace
+}  // namespace mgtd::calib::testing

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/joint/identifiability.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/fit/joint/joint_fit.h"
+#include "tests/unit/calib/fit/simulated_poses.h"
+
+namespace mgtd::calib {
+namespace {
+
+using testing::Simulation;
+
+PoseTable at(const Simulation& sim, const std::vector<TableAngles>& poses, std::uint64_t seed) {
+  std::mt19937_64 rng(seed);
+  PoseTable table;
+  for (const TableAngles& angles : poses)
+    table.poses.push_back(measure(sim, angles, static_cast<int>(table.poses.size()) + 1, 0, rng));
+  return table;
+}
+
+/// All azimuths, tilts up to `tilt_deg`: a rig that never turns over.
+std::vector<TableAngles> nearly_level(double tilt_deg, int count) {
+  std::mt19937_64 rng(5);
+  std::uniform_real_distribution<double> tilt(-to_rad(tilt_deg), to_rad(tilt_deg)), turn(-3.1, 3.1);
+  std::vector<TableAngles> out;
+  for (int k = 0; k < count; ++k) out.push_back({turn(rng), tilt(rng), tilt(rng)});
+  return out;
+}
+
+Identifiability of(const JointFit& fit, double f_nT) {
+  return identifiability(fit.problem, fit.state, reduce(fit.problem, fit.state, 0).S, f_nT);
+}
+
+TEST(Identifiability, PosesOverTheSphereLeaveNothingWeak) {
+  const Simulation sim{.table_sd_rad = to_rad(0.1)};
+  const PoseTable table = simulate(sim, 36, 121, 1);
+  const auto fit = fit_joint(table, {});
+  ASSERT_TRUE(fit);
+  const Identifiability id = of(*fit, sim.f_nT);
+  EXPECT_TRUE(id.weak.empty());
+  EXPECT_TRUE(id.add.empty());
+}
+
+TEST(Identifiability, LevelPosesLeaveTheVerticalWeakAndTheAdvicePays) {
+  const Simulation sim{.noise_nT = 3, .table_sd_rad = to_rad(0.1)};
+  auto poses = nearly_level(8, 60);
+  const PoseTable table = at(sim, poses, 2);
+  const auto fit = fit_joint(table, {});
+  ASSERT_TRUE(fit) << fit.error().text();
+  const Identifiability before = of(*fit, sim.f_nT);
+  ASSERT_FALSE(before.weak.empty());
+  EXPECT_EQ(before.weak.front().what.rfind("scale z of all sensors", 0), 0U) << before.weak.front().what;
+  EXPECT_NE(before.coverage.find("platform +Z"), std::string::npos) << before.coverage;
+  ASSERT_FALSE(before.add.empty());
+  poses.insert(poses.end(), before.add.begin(), before.add.end());
+  const PoseTable more = at(sim, poses, 2);
+  const auto again = fit_joint(more, {});
+  ASSERT_TRUE(again);
+  const Identifiability after = of(*again, sim.f_nT);
+  EXPECT_LT(after.worst_nT(), before.worst_nT() / 3);
+}
+
+}  // namespace
+}  // namespace mgtd::calib

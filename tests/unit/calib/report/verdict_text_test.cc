@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/verdict_text.h"
+
+#include <gmock/gmock.h>
+
+#include "calib/criticism/search/candidate.h"
+#include "calib/effects/library/library.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Sentence, NotesBeginWithACapitalUnlessWithAName) {
+  ExplainReport report;
+  report.notes = {"the way of the table is not in these data",
+                  "axis.cubic accounts for 30 % of the excess only", "s3.z scatters little",
+                  "lamp accounts for 20 % of the excess only"};
+  report.candidates.push_back({.effect = "lamp"});
+  EXPECT_THAT(
+      sentence(report),
+      HasSubstr(". The way of the table is not in these data. axis.cubic accounts for 30 % of the excess "
+                "only. s3.z scatters little. lamp accounts for"));
+}
+
+TEST(Sentence, SizesHaveTheDigitsThatTheirUncertaintyAllows) {
+  const auto text = [](double value, double sd) {
+    return size_text({.coefficients = {{"s1.x", value, sd, "nT"}}});
+  };
+  EXPECT_EQ(text(1090, 512), "+1090 +- 512 nT");
+  EXPECT_EQ(text(50.008, 1.96), "+50.0 +- 2.0 nT");
+  EXPECT_EQ(text(-0.04031, 0.02), "-0.040 +- 0.020 nT");
+  EXPECT_EQ(text(9.996, 0.0951), "+9.996 +- 0.095 nT");
+  EXPECT_EQ(text(3.1e-7, 2e-8), "+3.1e-07 +- 2e-08 nT");
+}
+
+TEST(Sentence, AnEffectThatWouldBeSeenAtNoSizeIsToldSo) {
+  EXPECT_EQ(detectable_text({"axis.cubic", "s3.x", 0.0841, "nT"}), "0.0841 nT (s3.x)");
+  EXPECT_EQ(detectable_text({"site.dipole", "site", 3.3e13, "A m^2"}),
+            "at no size: what is in the model takes it up");
+}
+
+TEST(Sentence, SaysWhatWasLeftOut) {
+  ExplainReport report;
+  EXPECT_THAT(sentence(report), Not(HasSubstr("left out")));
+  report.outliers = {{5, "s4.z", -49.98, "nT", 107}};
+  EXPECT_THAT(sentence(report),
+              HasSubstr("One observation that the others contradict is left out, in pose 5"));
+  report.outliers.push_back({9, "scalar", 3, "nT", 20});
+  report.outliers.push_back({9, "s1.x", 30, "nT", 20});
+  EXPECT_THAT(sentence(report),
+              HasSubstr("3 observations that the others contradict are left out, in pose 5, 9"));
+}
+
+/// The readings tell each pose its own attitude: what is gained are the angles.
+TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
+  const auto with_table_sd_deg = [](double sd_deg) {
+    auto fit = std::make_shared<JointFit>();
+    fit->table_sd_rad = to_rad(sd_deg);
+    return fit;
+  };
+  ExplainReport report;
+  report.fit = with_table_sd_deg(0.35);
+  Round round{.added = {.effect = "table.wobble", .where = "table"}};
+  round.fit = with_table_sd_deg(0.1);
+  report.rounds = {round};
+  EXPECT_THAT(sentence(report),
+              HasSubstr("With it in the model the angles of the table scatter by 0.1 instead of 0.35 deg"));
+}
+
+TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
+  const auto told = [](double before_nT, double after_nT) {
+    Round round{.added = {.effect = "site.step", .where = "site"}};
+    round.rms_before_nT = before_nT, round.rms_after_nT = after_nT;
+    round.model = {*make_effect("axis.offset.step@s1.y,ts=0.5"), *make_effect("site.step,ts=0.25")};
+    ExplainReport report;
+    report.rounds = {round};
+    return sentence(report);
+  };
+  EXPECT_THAT(told(9.5, 0.31),
+              HasSubstr("With it in the model (ts = 0.25 h) the residual falls from 9.5 to 0.31 nT"));
+  EXPECT_THAT(told(0.5071, 0.5069), HasSubstr("the residual stays at 0.507 nT"));
+  EXPECT_THAT(told(9.46, 9.51), HasSubstr("the residual goes from 9.46 to 9.51 nT"));
+}
+
+/// A law of no library: names that take away a tenth of it are no causes.
+TEST(Sentence, SaysWhenWhatWasFoundIsTheLesserPart) {
+  ExplainReport report;
+  report.finding = Finding::partial;
+  report.noise.told = true;
+  report.noise_nT = 0.02;
+  Round round{.added = {.effect = "axis.offset.step", .where = "s1.y"}};
+  round.rms_before_nT = 0.0911, round.rms_after_nT = 0.0809;
+  report.rounds = {round};
+  EXPECT_THAT(sentence(report), HasSubstr("takes away only 22 % of what is beyond the noise"));
+  EXPECT_THAT(sentence(report), Not(HasSubstr("Nothing else in the library looks like it")));
+  report.rounds.front().rms_after_nT = 0.03;
+  EXPECT_THAT(sentence(report), Not(HasSubstr("takes away only")));
+  EXPECT_THAT(sentence(report), HasSubstr("Nothing else in the library looks like it"));
+}
+
+}  // namespace
+}  // namespace mgtd::calib

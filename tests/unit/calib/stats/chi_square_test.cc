@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/stats/chi_square.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mgtd::calib {
+namespace {
+
+TEST(ChiSquare, AgreesWithClosedForms) {
+  // Two degrees of freedom: exp(-x/2). One: erfc(sqrt(x/2)).
+  for (const double x : {0.1, 1.0, 2.9, 3.1, 10.0, 80.0}) {
+    EXPECT_NEAR(chi_square_p(x, 2) / std::exp(-x / 2), 1, 1e-12) << x;
+    EXPECT_NEAR(chi_square_p(x, 1) / std::erfc(std::sqrt(x / 2)), 1, 1e-12) << x;
+  }
+}
+
+TEST(ChiSquare, TabulatedLimits) {
+  EXPECT_NEAR(chi_square_p(18.307, 10), 0.05, 1e-5);
+  EXPECT_NEAR(chi_square_p(124.342, 100), 0.05, 1e-5);
+  EXPECT_NEAR(chi_square_p(1000, 1000), 0.494, 1e-3);
+}
+
+TEST(ChiSquare, LimitIsTheInverse) {
+  EXPECT_NEAR(chi_square_limit(0.05, 10), 18.307038, 1e-6);
+  for (const double p : {1e-12, 1e-3, 0.5, 0.999})
+    EXPECT_NEAR(chi_square_p(chi_square_limit(p, 7), 7) / p, 1, 1e-8);
+}
+
+TEST(ChiSquare, LogarithmDoesNotUnderflow) {
+  EXPECT_NEAR(chi_square_log10_p(1e5, 2), -5e4 / std::log(10.0), 1e-6);
+  EXPECT_EQ(chi_square_p(0, 5), 1);
+}
+
+}  // namespace
+}  // namespace mgtd::calib

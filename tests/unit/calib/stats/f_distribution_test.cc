@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/stats/f_distribution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "calib/stats/chi_square.h"
+
+namespace mgtd::calib {
+namespace {
+
+TEST(FDistribution, IsTheClosedFormForTwoDegreesOfFreedom) {
+  // P(F > f) = (1 + 2 f / nu)^(-nu / 2), from the bulk to far beyond what a double holds.
+  for (const double nu : {3.0, 20.0, 160.0, 2000.0}) {
+    for (const double f : {1e-3, 0.5, 1.0, 5.0, 100.0, 1e5}) {
+      const double exact = -nu / 2 * std::log1p(2 * f / nu) / std::log(10.0);
+      EXPECT_NEAR(f_log10_p(f, 2, nu), exact, 1e-10 * (1 + std::abs(exact))) << f << " " << nu;
+    }
+  }
+}
+
+TEST(FDistribution, AgreesWithTables) {
+  EXPECT_NEAR(std::pow(10, f_log10_p(4.9646, 1, 10)), 0.05, 1e-5);
+  EXPECT_NEAR(std::pow(10, f_log10_p(4.1027, 5, 20)), 0.01, 1e-6);
+}
+
+TEST(FDistribution, WithoutALimitToTheNoiseIsTheChiSquare) {
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_DOUBLE_EQ(f_log10_p(3, 12, inf), chi_square_log10_p(36, 12));
+  EXPECT_NEAR(f_log10_p(3, 12, 1e7), chi_square_log10_p(36, 12), 1e-4);
+  EXPECT_EQ(f_log10_p(-1, 3, 5), 0);
+}
+
+}  // namespace
+}  // namespace mgtd::calib

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/sensor/sensor_equations.h"
+#include "daemon/run/run_fsm.h"
+
+/// A run in virtual time on a rig of a few lines: a table that moves and lies on request, four sensors that
+/// feel the field turn, a scalar reference, a disk that can be full. Every action is checked against what a
+/// run promises, whatever the test does to it.
+namespace mgtd::test {
+
+using namespace mgtd::daemon;
+
+inline drivers::TableLimits bench_limits() {
+  return {{to_rad(-180), to_rad(180)}, {to_rad(-90), to_rad(90)}, {to_rad(-180), to_rad(180)}};
+}
+
+inline RunConfig bench_config() {
+  RunConfig c;
+  c.run_id = "bench";
+  c.fewest_poses = 2;
+  c.limits = bench_limits();
+  c.preflight.rate_hz = c.settle.rate_hz = c.dwell.rate_hz = 10;
+  c.preflight.scalar = true;
+  c.pace.velocity_rad_per_s = to_rad(30);
+  return c;
+}
+
+inline RunPlan bench_plan(int poses) {
+  RunPlan plan;
+  for (int i = 0; i < poses; ++i) {
+    plan.poses.push_back({i + 1,
+                          i < 2 ? "standard" : "random",
+                          {to_rad(40.0 * (i + 1)), to_rad(i < 2 ? 0 : 10), to_rad(i < 2 ? 0 : -20)},
+                          2,
+                          i < 2 ? 1 : 0,
+                          {}});
+  }
+  return plan;
+}
+
+struct FakeTable {
+  TableAngles at, target;
+  bool moving{false}, referenced{false}, homing{false}, stuck{false};
+  double velocity_rad_per_s{to_rad(30)};
+
+  void advance(double dt_s) {
+    if (!moving || stuck) return;
+    double left = 0;
+    for (const auto axis : {&TableAngles::azimuth_rad, &TableAngles::pitch_rad, &TableAngles::roll_rad}) {
+      const double d =
+          std::clamp(target.*axis - at.*axis, -velocity_rad_per_s * dt_s, velocity_rad_per_s * dt_s);
+      at.*axis += d;
+      left = std::max(left, std::abs(target.*axis - at.*axis));
+    }
+    if (left > 0) return;
+    moving = false;
+    referenced = referenced || std::exchange(homing, false);
+  }
+  void go(TableAngles to) {
+    target = to;
+    moving = true;
+  }
+  void stop() { moving = homing = false; }
+};
+
+class RunBench {
+ public:
+  explicit RunBench(RunPlan plan, RunConfig config = bench_config(),
+                    const std::optional<EarlierLife>& earlier = std::nullopt)
+      : limits(config.limits), fsm(std::move(config), std::move(plan), now(), earlier) {}
+
+  static constexpr double kTick_s = 0.05;
+
+  FakeTable table;
+  std::set<std::string> lost;           ///< devices whose port is gone
+  std::set<std::string> silent;         ///< devices that say nothing
+  std::array<bool, kSensors> frozen{};  ///< sensors that repeat their last value
+  bool saturated{false};
+  double disturbance_nT{0};
+  bool disk_full{false}, disk_stalls{false}, propose_fails{false}, solve_stalls{false};
+  std::function<Result<Solution>()> solver = [] { return Solution{true, "cal-1", {}, {}}; };
+
+  std::vector<Action> log;
+  std::vector<Pose> stored;
+  std::vector<TableAngles> moves;
+  std::optional<Finish> finished;
+  std::optional<RunStatus> status;
+  std::vector<RunState> states;       ///< without repetition
+  TableAngles mounting;               ///< of the array on the table, as it truly is
+  std::optional<TableAngles> really;  ///< where a table turned by hand truly stands
+  int dropped{0};
+  int proposals{0}, stops{0}, solves{0}, events{0};
+  bool aborted{false};
+  drivers::TableLimits limits;
+  double t_s{0};
+
+  [[nodiscard]] Stamp now() const {
+    return {Instant{from_seconds(1000 + t_s)},
+            WallTime{1'800'000'000'000'000'000 + from_seconds(t_s).count()}};
+  }
+
+  void send(const Event& event) {
+    ++events;
+    if (std::holds_alternative<Request>(event) && std::get<Request>(event) == Request::abort) aborted = true;
+    for (Action& action : fsm.step(event, now())) {
+      EXPECT_FALSE(finished) << "an action after the last one";
+      std::visit([this](auto& a) { carry_out(a); }, action);
+      log.push_back(std::move(action));
+    }
+  }
+
+  /// One step of virtual time: the rig first, then what it says, then the answers that are due.
+  void tick() {
+    t_s += kTick_s;
+    ++ticks_;
+    table.advance(kTick_s);
+    answer();
+    if (ticks_ % 2 == 0) sample();
+    if (ticks_ % 2 == 1 && says("table")) send(reading());
+    if (ticks_ % 20 == 5 && says("scalar")) send(ScalarReading{now(), 50000 + noise() * 0.05, 99, true});
+    if (ticks_ % 20 == 7) {
+      for (const char* device : {"s1", "s2", "s3", "s4", "table", "scalar"}) {
+        LinkHealth health;
+        health.state = says(device) ? LinkState::live : LinkState::silent;
+        send(LinkSeen{device, health});
+      }
+    }
+    send(Tick{});
+  }
+  /// Until `done` or the end of the run, at most `limit_s` of virtual time.
+  bool run(
+      double limit_s, const std::function<bool()>& done = [] { return false; }) {
+    const double end_s = t_s + limit_s;
+    while (t_s < end_s) {
+      if (finished || done()) return true;
+      tick();
+    }
+    return finished.has_value() || done();
+  }
+  bool run_to(RunState state, double limit_s = 600) {
+    return run(limit_s, [&] { return status && status->state == state; });
+  }
+  void lose(const std::string& device) {
+    lost.insert(device);
+    send(DeviceLost{device, "the port is gone"});
+  }
+  void give_back(const std::string& device) {
+    lost.erase(device);
+    send(DeviceBack{device});
+  }
+  [[nodiscard]] bool says(const std::string& device) const {
+    return !lost.contains(device) && !silent.contains(device);
+  }
+  [[nodiscard]] TableReading reading() const {
+    return {now(), table.at, table.referenced, table.moving, !table.moving};
+  }
+
+  RunFsm fsm;
+
+ private:
+  void carry_out(const HomeTable&) {
+    EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
+    if (lost.contains("table")) return;
+    table.referenced = false;
+    table.homing = true;
+    table.go({});
+  }
+  void carry_out(const MoveTable& move) {
+    EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
+    EXPECT_FALSE(aborted) << "the table moves after an abort";
+    EXPECT_TRUE(lost.empty()) << "the table moves while a device is lost";
+    EXPECT_TRUE(table.referenced) << "a move without reference";
+    const auto in = [](const drivers::TableLimits::Range& r, double a) {
+      return a >= r.min_rad - 1e-9 && a <= r.max_rad + 1e-9;
+    };
+    EXPECT_TRUE(in(limits.azimuth, move.target.azimuth_rad) && in(limits.pitch, move.target.pitch_rad) &&
+                in(limits.roll, move.target.roll_rad));
+    moves.push_back(move.target);
+    table.go(move.target);
+  }
+  void carry_out(const SetTable& set) {
+    EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
+    table.at = set.angles;
+    table.moving = false;
+  }
+  void carry_out(const DropPoses& drop) {
+    dropped += static_cast<int>(drop.numbers.size());
+    std::erase_if(stored, [&](const Pose& p) {
+      return std::find(drop.numbers.begin(), drop.numbers.end(), p.number) != drop.numbers.end();
+    });
+  }
+  void carry_out(const StopTable&) {
+    ++stops;
+    if (!lost.contains("table")) table.stop();
+  }
+  void carry_out(StorePose& store) {
+    EXPECT_FALSE(storing_);
+    EXPECT_FALSE(table.moving) << "a pose measured on the move";
+    if (!store.pose.mount) {
+      EXPECT_NEAR(store.pose.azimuth_rad.value_or(-99), table.at.azimuth_rad, 1e-6);
+    }
+    storing_ = store.pose;
+    answer_at_s_ = t_s + 0.12;
+  }
+  void carry_out(const StartSolve&) {
+    ++solves;
+    EXPECT_FALSE(table.moving);
+    solve_at_s_ = t_s + 0.5;
+  }
+  void carry_out(const CancelSolve&) {}
+  void carry_out(const ProposeCalibration&) {
+    EXPECT_FALSE(aborted);
+    ++proposals;
+    propose_at_s_ = t_s + 0.1;
+  }
+  void carry_out(const PublishStatus& publish) {
+    status = publish.status;
+    if (states.empty() || states.back() != status->state) states.push_back(status->state);
+    EXPECT_FALSE(status->message.empty());
+    if (status->state == RunState::paused && !lost.contains("table")) {
+      EXPECT_FALSE(table.moving) << "paused on the move";
+    }
+  }
+  void carry_out(const Finish& finish) {
+    finished = finish;
+    EXPECT_FALSE(is_active(finish.state));
+    EXPECT_FALSE(finish.message.empty());
+    EXPECT_TRUE(!table.moving || lost.contains("table"));
+    if (finish.state != RunState::done) {
+      EXPECT_TRUE(status->proposed.empty());
+    }
+  }
+  void carry_out(const StorePath&) {}
+  void carry_out(const StoreChecks&) {}
+  void carry_out(const Record&) {}
+
+  void answer() {
+    if (storing_ && !disk_stalls && t_s >= answer_at_s_) {
+      const int number = storing_->number;
+      if (!disk_full) {
+        for (const Pose& p : stored) EXPECT_NE(p.number, number) << "stored twice";
+        stored.push_back(*storing_);
+      }
+      storing_.reset();
+      send(PoseStored{number, disk_full ? fail(ErrorCode::io, "no space left on device", "free some space")
+                                        : Result<void>{}});
+    }
+    if (solve_at_s_ && !solve_stalls && t_s >= *solve_at_s_) {
+      solve_at_s_.reset();
+      send(SolveDone{solver()});
+    }
+    if (propose_at_s_ && t_s >= *propose_at_s_) {
+      propose_at_s_.reset();
+      send(CalibrationProposed{propose_fails
+                                   ? fail(ErrorCode::io, "no space left on device", "free some space")
+                                   : Result<void>{}});
+    }
+  }
+
+  void sample() {
+    const std::uint64_t seq = seq_++;
+    for (const char* sensor : {"s1", "s2", "s3", "s4"}) {
+      if (!says(sensor)) {
+        send(Gap{seq, seq, now(), std::string(sensor) + " silent"});
+        return;
+      }
+    }
+    Epoch epoch;
+    epoch.seq = seq;
+    epoch.t = now();
+    if (saturated) epoch.flags |= Flag::saturated;
+    const auto turned = [](const TableAngles& a) {
+      return calib::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
+    };
+    const Eigen::Vector3d b_nT = turned(mounting) * (turned(really.value_or(table.at)) *
+                                                     (50000 * Eigen::Vector3d(1, 0.1, 1.2).normalized()));
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      const double moved_nT = disturbance_nT * std::sin(7 * t_s);
+      last_nT_[i] = frozen[i]
+                        ? last_nT_[i]
+                        : b_nT + Eigen::Vector3d(noise() + moved_nT, noise() + moved_nT, noise() + moved_nT);
+      epoch.y_nT[i] = last_nT_[i];
+      epoch.T_degC[i] = 20;
+    }
+    send(epoch);
+  }
+  /// Sum of twelve uniforms: mean 0, sd 1.
+  double noise() {
+    double sum = -6;
+    for (int i = 0; i < 12; ++i) sum += static_cast<double>(engine_() >> 11U) * 0x1p-53;
+    return sum;
+  }
+
+  std::mt19937_64 engine_{7};
+  std::uint64_t seq_{0};
+  int ticks_{0};
+  std::array<Eigen::Vector3d, kSensors> last_nT_{};
+  std::optional<Pose> storing_;
+  double answer_at_s_{0};
+  std::optional<double> solve_at_s_, propose_at_s_;
+};
+
+}  // namespace mgtd::test

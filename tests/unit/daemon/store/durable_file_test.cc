@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/store/durable_file.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/unit/daemon/temp_dir.h"
+
+namespace mgtd::daemon {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(ReadFile, AnEmptyFileIsEmptyText) {
+  const test::TempDir dir;
+  std::ofstream{dir / "empty"};
+  const auto text = read_file(dir / "empty");
+  ASSERT_TRUE(text) << text.error().text();
+  EXPECT_EQ(*text, "");
+}
+
+TEST(ReadFile, AMissingFileAndADirectoryAreNamed) {
+  const test::TempDir dir;
+  const auto missing = read_file(dir / "none"), directory = read_file(dir.path());
+  ASSERT_FALSE(missing || directory);
+  EXPECT_THAT(missing.error().message, HasSubstr("cannot be read: No such file or directory"));
+  EXPECT_THAT(directory.error().message, HasSubstr("is a directory"));
+}
+
+/// The first page of a process's memory is mapped nowhere: reading it fails after the file was opened.
+TEST(ReadFile, AnErrorWhileReadingIsNotAnEmptyFile) {
+  const auto text = read_file("/proc/self/mem");
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.error().message, HasSubstr("cannot be read: Input/output error"));
+}
+
+}  // namespace
+}  // namespace mgtd::daemon
