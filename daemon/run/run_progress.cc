@@ -20,6 +20,7 @@ RunProgress::RunProgress(const RunPlan& plan, Pace pace)
 }
 
 void RunProgress::begin(std::size_t index, Instant now) {
+  index_ = index;
   current_ = index;
   begun_ = now;
 }
@@ -31,6 +32,13 @@ void RunProgress::finish(std::size_t index, Instant now) {
   }
   done_.at(index) = true;
   current_.reset();
+  last_ = index;
+  attempt_ = 0;
+}
+
+int RunProgress::failed() {
+  ++retries_;
+  return ++attempt_;
 }
 
 std::size_t RunProgress::done() const {
@@ -38,6 +46,7 @@ std::size_t RunProgress::done() const {
 }
 
 std::optional<std::size_t> RunProgress::next() const {
+  if (cut_) return std::nullopt;
   const auto at = std::find(done_.begin(), done_.end(), false);
   if (at == done_.end()) return std::nullopt;
   return static_cast<std::size_t>(at - done_.begin());

@@ -84,6 +84,12 @@ class RunBench {
 
   static constexpr double kTick_s = 0.05;
 
+  /// From one state to the next, as all runs of this process have shown them.
+  static std::set<std::pair<RunState, RunState>>& transitions() {
+    static std::set<std::pair<RunState, RunState>> seen;
+    return seen;
+  }
+
   FakeTable table;
   std::set<std::string> lost;           ///< devices whose port is gone
   std::set<std::string> silent;         ///< devices that say nothing
@@ -227,6 +233,8 @@ class RunBench {
     propose_at_s_ = t_s + 0.1;
   }
   void carry_out(const PublishStatus& publish) {
+    if (status && status->state != publish.status.state)
+      transitions().emplace(status->state, publish.status.state);
     status = publish.status;
     if (states.empty() || states.back() != status->state) states.push_back(status->state);
     EXPECT_FALSE(status->message.empty());

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/run/wiring.h"
+#include "proto/check.h"
+#include "proto/pose.h"
+
+/// The wiring as the poses of a run show it, said when the turns of the table have shown it, and again when
+/// further ones show more.
+namespace mgtd::daemon {
+
+class WiringWatch {
+ public:
+  /// The check `wiring`, where it is another one than before.
+  [[nodiscard]] std::optional<Check> add(const Pose& pose);
+
+ private:
+  Wiring wiring_;
+  std::vector<std::string> said_;
+};
+
+}  // namespace mgtd::daemon
