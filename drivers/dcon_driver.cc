@@ -15,9 +15,8 @@ constexpr double kFirstAnswer_s = 0.5;  ///< an old module has no name
 constexpr double kAnswer_s = 2.5;
 constexpr int kFairTicks = 10;
 constexpr int kMissed = 3;
-constexpr double kReopen_s = 30;
-constexpr std::size_t kLongestLine = 160;  // 16 channels of 8 characters, with room
-constexpr std::size_t kMaxChannels = 16;
+constexpr double kDconReopen_s = 30;
+constexpr std::size_t kLongestDconLine = 160;  // 16 channels of 8 characters, with room
 
 bool is_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789ABCDEF") == std::string_view::npos;
@@ -61,7 +60,8 @@ DconSettings read_dcon_settings(Settings& s) {
 }
 
 DconDriver::DconDriver(DconSettings settings)
-    : LineDevice({Ending::cr, kLongestLine, settings.baud, kReopen_s}), settings_(std::move(settings)) {}
+    : LineDevice({Ending::cr, kLongestDconLine, settings.baud, kDconReopen_s}),
+      settings_(std::move(settings)) {}
 
 std::unique_ptr<Device> DconDriver::make(int /*slot*/, Settings& settings) {
   return std::make_unique<DconDriver>(read_dcon_settings(settings));

@@ -10,8 +10,6 @@
 namespace mgtd::drivers::dcon {
 namespace {
 
-constexpr std::size_t kMaxChannels = 16;
-
 std::string sum_of(std::string_view text) {
   const unsigned sum = std::accumulate(text.begin(), text.end(), 0U, [](unsigned total, char c) {
     return total + static_cast<unsigned char>(c);

@@ -22,6 +22,7 @@
 namespace mgtd::drivers::dcon {
 
 inline constexpr int kDefaultBaud = 9600;
+inline constexpr std::size_t kMaxChannels = 16;
 
 /// One per channel; empty where the module says that the input is out of its range.
 struct Values {

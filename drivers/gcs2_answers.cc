@@ -12,7 +12,7 @@
 namespace mgtd::drivers::gcs2 {
 namespace {
 
-constexpr double kRetry_s = 5.0;
+constexpr double kGcs2Retry_s = 5.0;
 constexpr int kNotReferenced = 5;
 
 }  // namespace
@@ -170,7 +170,7 @@ void Gcs2Driver::fault(std::string what, std::string remedy) {
 void Gcs2Driver::fail_start(std::string what, std::string remedy) {
   phase_ = Phase::waiting;
   queue_.clear();
-  retry_.set(now_.mono, kRetry_s);
+  retry_.set(now_.mono, kGcs2Retry_s);
   set_state(LinkState::failed, what + "; " + remedy);
   if (std::exchange(last_start_fault_, what) != what)
     emit(DeviceFault{now_, std::move(what), std::move(remedy)});
@@ -183,7 +183,7 @@ void Gcs2Driver::give_up(const std::string& asked) {
   phase_ = Phase::waiting;
   queue_.clear();
   send(kStop);
-  retry_.set(now_.mono, kRetry_s);
+  retry_.set(now_.mono, kGcs2Retry_s);
   if (strange_.empty()) {
     set_state(LinkState::silent, what + "; " + remedy);
   } else {

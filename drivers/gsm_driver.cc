@@ -12,8 +12,8 @@ namespace mgtd::drivers::gsm {
 namespace {
 
 constexpr double kInitPause_s = 1.2;
-constexpr double kReopen_s = 60.0;  ///< slow instruments are allowed long silences
-constexpr std::size_t kLongestLine = 256;
+constexpr double kGsmReopen_s = 60.0;  ///< slow instruments are allowed long silences
+constexpr std::size_t kLongestGsmLine = 256;
 constexpr std::string_view kUtc = "{utc}";
 
 }  // namespace
@@ -33,7 +33,8 @@ GsmSettings read_gsm_settings(Settings& s) {
 }
 
 GsmDriver::GsmDriver(GsmSettings settings)
-    : LineDevice({Ending::lf, kLongestLine, settings.baud, kReopen_s}), settings_(std::move(settings)) {}
+    : LineDevice({Ending::lf, kLongestGsmLine, settings.baud, kGsmReopen_s}),
+      settings_(std::move(settings)) {}
 
 std::unique_ptr<Device> GsmDriver::make(int /*slot*/, Settings& settings) {
   return std::make_unique<GsmDriver>(read_gsm_settings(settings));

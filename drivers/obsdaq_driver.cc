@@ -13,9 +13,9 @@
 namespace mgtd::drivers::obsdaq {
 namespace {
 
-constexpr std::size_t kLongestLine = 128;
+constexpr std::size_t kLongestObsdaqLine = 128;
 constexpr double kWait_s = 2.0;  ///< before a device that did not answer is asked again
-constexpr double kRetry_s = 10.0;
+constexpr double kObsdaqRetry_s = 10.0;
 constexpr double kSilent_s = 1.0;
 constexpr int kSilentTicks = 50;
 
@@ -39,7 +39,9 @@ bool is_obsdaq(std::string identity) {
 }  // namespace
 
 ObsdaqDriver::ObsdaqDriver(int slot, ObsdaqSettings settings)
-    : LineDevice({Ending::cr, kLongestLine, settings.baud}), slot_(slot), settings_(std::move(settings)) {}
+    : LineDevice({Ending::cr, kLongestObsdaqLine, settings.baud}),
+      slot_(slot),
+      settings_(std::move(settings)) {}
 
 std::unique_ptr<Device> ObsdaqDriver::make(int slot, Settings& settings) {
   return std::make_unique<ObsdaqDriver>(slot, read_obsdaq_settings(settings, slot));
@@ -189,7 +191,7 @@ void ObsdaqDriver::give_up(Stamp now) {
 
 void ObsdaqDriver::refuse(Stamp now, std::string what, std::string remedy) {
   phase_ = Phase::waiting;
-  retry_.set(now.mono, kRetry_s);
+  retry_.set(now.mono, kObsdaqRetry_s);
   set_state(LinkState::failed, what + "; " + remedy);
   if (std::exchange(last_fault_, what) != what) emit(DeviceFault{now, std::move(what), std::move(remedy)});
 }

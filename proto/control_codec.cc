@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::string_view kExample = R"({"cmd":"status","id":1})";
+constexpr std::string_view kStatusExample = R"({"cmd":"status","id":1})";
 
 std::string line(const nlohmann::ordered_json& object) {
   return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -24,7 +24,7 @@ bool can_be_id(const Json& id) { return id.is_null() || id.is_number() || id.is_
 Result<ControlCommand> find_command(const Json& object) {
   const auto cmd = object.find("cmd");
   if (cmd == object.end() || !cmd->is_string()) {
-    return fail(ErrorCode::bad_input, "the request has no \"cmd\"", fmt::format("send {}", kExample));
+    return fail(ErrorCode::bad_input, "the request has no \"cmd\"", fmt::format("send {}", kStatusExample));
   }
   const auto& text = cmd->get_ref<const std::string&>();
   const auto* const known = std::find(kControlCommandNames.begin(), kControlCommandNames.end(), text);
@@ -52,7 +52,7 @@ tl::expected<ControlRequest, ControlRefusal> parse_control(std::string_view text
   const auto refuse = [](Error error, Json id) {
     return tl::unexpected<ControlRefusal>(ControlRefusal{std::move(error), std::move(id)});
   };
-  auto object = parse_json_object(text, kExample);
+  auto object = parse_json_object(text, kStatusExample);
   if (!object) return refuse(std::move(object.error()), nullptr);
   Json id = object->value("id", Json());
   if (!can_be_id(id)) {

@@ -7,30 +7,32 @@
 namespace mgtd {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kOrders{"home", "move", "stop"};
 
-Json to_json(const TableAngles& a) { return {a.azimuth_rad, a.pitch_rad, a.roll_rad}; }
-TableAngles angles(const Json& j) { return {j.at(0), j.at(1), j.at(2)}; }
+OrderedJson to_json(const TableAngles& a) { return {a.azimuth_rad, a.pitch_rad, a.roll_rad}; }
+TableAngles angles(const OrderedJson& j) { return {j.at(0), j.at(1), j.at(2)}; }
 
-Json to_json(const LifeNote& n) {
-  Json out{{"note", "life"}, {"software", n.software}, {"first_seq", n.first_seq}, {"config", n.config}};
+OrderedJson to_json(const LifeNote& n) {
+  OrderedJson out{
+      {"note", "life"}, {"software", n.software}, {"first_seq", n.first_seq}, {"config", n.config}};
   if (n.before)
     out["before"] = {{"from_seq", n.before->from_seq}, {"to_seq", n.before->to_seq}, {"why", n.before->why}};
   return out;
 }
-Json to_json(const CalibrationNote& n) {
-  return {{"note", "calibration"}, {"calibration", n.json.empty() ? Json(nullptr) : Json(n.json)}};
+OrderedJson to_json(const CalibrationNote& n) {
+  return {{"note", "calibration"},
+          {"calibration", n.json.empty() ? OrderedJson(nullptr) : OrderedJson(n.json)}};
 }
-Json to_json(const CalibratingNote& n) { return {{"note", "calibrating"}, {"on", n.on}}; }
-Json to_json(const ReopenedNote& n) { return {{"note", "reopened"}, {"slot", n.slot}}; }
-Json to_json(const TableOrder& n) {
+OrderedJson to_json(const CalibratingNote& n) { return {{"note", "calibrating"}, {"on", n.on}}; }
+OrderedJson to_json(const ReopenedNote& n) { return {{"note", "reopened"}, {"slot", n.slot}}; }
+OrderedJson to_json(const TableOrder& n) {
   return {{"note", "order"},
           {"what", kOrders.at(static_cast<std::size_t>(n.what))},
           {"target_rad", to_json(n.target)}};
 }
-Json to_json(const TableNote& n) {
+OrderedJson to_json(const TableNote& n) {
   const TableReading& r = n.reading;
   return {{"note", "table"},
           {"mono_ns", r.arrival.mono.time_since_epoch().count()},
@@ -40,24 +42,24 @@ Json to_json(const TableNote& n) {
           {"moving", r.moving},
           {"on_target", r.on_target}};
 }
-Json to_json(const LostNote& n) { return {{"note", "lost"}, {"bytes", n.bytes}}; }
+OrderedJson to_json(const LostNote& n) { return {{"note", "lost"}, {"bytes", n.bytes}}; }
 
 /// A number that is written as a whole one: of any other the library makes what the processor makes of it.
 template <class T = std::uint64_t>
-T whole(const Json& j) {
-  return static_cast<T>(j.get_ref<const Json::number_integer_t&>());
+T whole(const OrderedJson& j) {
+  return static_cast<T>(j.get_ref<const OrderedJson::number_integer_t&>());
 }
 
-LifeNote life(const Json& j) {
+LifeNote life(const OrderedJson& j) {
   LifeNote n{j.at("software"), j.at("config"), whole(j.at("first_seq")), {}};
   if (j.contains("before")) {
-    const Json& b = j.at("before");
+    const OrderedJson& b = j.at("before");
     n.before = Gap{whole(b.at("from_seq")), whole(b.at("to_seq")), {}, b.at("why")};
   }
   return n;
 }
 
-TableOrder order(const Json& j) {
+TableOrder order(const OrderedJson& j) {
   const std::string what = j.at("what");
   TableOrder out{TableOrder::What::stop, angles(j.at("target_rad"))};
   for (std::size_t i = 0; i < kOrders.size(); ++i) {
@@ -66,7 +68,7 @@ TableOrder order(const Json& j) {
   return out;
 }
 
-TableNote table(const Json& j) {
+TableNote table(const OrderedJson& j) {
   TableNote n;
   n.reading.arrival = {Instant{Duration{whole<std::int64_t>(j.at("mono_ns"))}},
                        WallTime{whole<std::int64_t>(j.at("wall_ns"))}};
@@ -77,11 +79,11 @@ TableNote table(const Json& j) {
   return n;
 }
 
-std::optional<JournalNote> note_of(const Json& j) {
+std::optional<JournalNote> note_of(const OrderedJson& j) {
   const std::string kind = j.at("note");
   if (kind == "life") return life(j);
   if (kind == "calibration") {
-    const Json& text = j.at("calibration");
+    const OrderedJson& text = j.at("calibration");
     return CalibrationNote{text.is_null() ? std::string() : text.get<std::string>()};
   }
   if (kind == "calibrating") return CalibratingNote{j.at("on").get<bool>()};
@@ -96,13 +98,14 @@ std::optional<JournalNote> note_of(const Json& j) {
 
 std::string encode(const JournalNote& note) {
   return std::visit(
-      [](const auto& n) { return to_json(n).dump(-1, ' ', false, Json::error_handler_t::replace); }, note);
+      [](const auto& n) { return to_json(n).dump(-1, ' ', false, OrderedJson::error_handler_t::replace); },
+      note);
 }
 
 Result<JournalNote> parse_note(std::string_view text) {
   // The library's only way of saying that a key is missing is to throw.
   try {
-    if (auto note = note_of(Json::parse(text))) return *std::move(note);
+    if (auto note = note_of(OrderedJson::parse(text))) return *std::move(note);
   } catch (const nlohmann::json::exception&) {
   }
   return fail(ErrorCode::bad_input, "a note of the journal is not understood",

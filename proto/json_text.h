@@ -12,6 +12,12 @@
 /// read out of it. The library's own messages do not get to an operator.
 namespace mgtd {
 
+/// The value, or null.
+template <class T>
+[[nodiscard]] nlohmann::json or_null(const std::optional<T>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
 /// "line 12, column 5" of a byte of the text, both from 1.
 [[nodiscard]] std::string place_in(std::string_view text, std::size_t offset);
 

@@ -17,6 +17,7 @@
 namespace mgtd {
 
 inline constexpr int kSensors = 4;
+inline constexpr auto kSensorCount = static_cast<std::size_t>(kSensors);  ///< for what counts in sizes
 
 /// Four readings nobody has made: NaN, so that a forgotten one cannot pass for a measurement. (Eigen's
 /// vectors are not initialised by {}.)

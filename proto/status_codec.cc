@@ -8,22 +8,22 @@
 namespace mgtd {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+OrderedJson number(double value) { return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr); }
 
 template <class T>
-Json optional(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
+OrderedJson optional(const std::optional<T>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
-Json rejected(const LinkHealth& health) {
-  Json counts = Json::object();
+OrderedJson rejected(const LinkHealth& health) {
+  OrderedJson counts = OrderedJson::object();
   for (std::size_t i = 0; i < kRejects; ++i) counts[std::string(kRejectNames[i])] = health.rejected[i];
   return counts;
 }
 
-Json to_json(const std::optional<ClockStatus>& clock) {
+OrderedJson to_json(const std::optional<ClockStatus>& clock) {
   if (!clock) return nullptr;
   return {{"rate_error", number(clock->rate_error)},
           {"rate_error_pm", number(clock->rate_error_pm)},
@@ -33,7 +33,7 @@ Json to_json(const std::optional<ClockStatus>& clock) {
           {"trouble", clock->trouble}};
 }
 
-Json to_json(const DeviceStatus& device, Instant now) {
+OrderedJson to_json(const DeviceStatus& device, Instant now) {
   const LinkHealth& h = device.health;
   return {{"name", device.name},
           {"driver", device.driver},
@@ -52,39 +52,40 @@ Json to_json(const DeviceStatus& device, Instant now) {
           {"opens", h.opens},
           {"closes", h.closes},
           {"balanced", h.balanced()},
-          {"last_frame_age_s", h.last_frame ? Json(to_seconds(now - *h.last_frame)) : Json(nullptr)},
+          {"last_frame_age_s",
+           h.last_frame ? OrderedJson(to_seconds(now - *h.last_frame)) : OrderedJson(nullptr)},
           {"clock", to_json(device.clock)}};
 }
 
-Json to_json(const InputStatus& input, Instant now) {
+OrderedJson to_json(const InputStatus& input, Instant now) {
   return {{"name", input.name},
           {"device", input.device},
           {"input", input.input},
-          {"unit", input.unit.empty() ? Json(nullptr) : Json(input.unit)},
-          {"value", input.value ? number(*input.value) : Json(nullptr)},
-          {"age_s", input.heard ? Json(to_seconds(now - *input.heard)) : Json(nullptr)}};
+          {"unit", input.unit.empty() ? OrderedJson(nullptr) : OrderedJson(input.unit)},
+          {"value", input.value ? number(*input.value) : OrderedJson(nullptr)},
+          {"age_s", input.heard ? OrderedJson(to_seconds(now - *input.heard)) : OrderedJson(nullptr)}};
 }
 
-Json clients(const ClientCounts& counts) {
-  Json drops = Json::object();
+OrderedJson clients(const ClientCounts& counts) {
+  OrderedJson drops = OrderedJson::object();
   for (std::size_t i = 0; i < counts.drops.size(); ++i) drops[std::string(kDropNames[i])] = counts.drops[i];
   return {{"clients", counts.clients},   {"accepted", counts.accepted},     {"refused", counts.refused},
           {"dropped", counts.dropped()}, {"dropped_for", std::move(drops)}, {"last_drop", counts.last_drop}};
 }
 
-Json stream_json(const StreamStatus& stream) {
-  Json out = clients(stream);
+OrderedJson stream_json(const StreamStatus& stream) {
+  OrderedJson out = clients(stream);
   out["gaps"] = stream.gaps;
   return out;
 }
 
-Json control_json(const ControlStatus& control) {
-  Json out = clients(control);
+OrderedJson control_json(const ControlStatus& control) {
+  OrderedJson out = clients(control);
   out["holder"] = to_json(control.holder);
   return out;
 }
 
-Json to_json(const RecordingStatus& recording) {
+OrderedJson to_json(const RecordingStatus& recording) {
   return {{"state", recording.state},
           {"why", recording.why},
           {"bytes", recording.bytes},
@@ -92,7 +93,7 @@ Json to_json(const RecordingStatus& recording) {
           {"stops", recording.stops}};
 }
 
-Json to_json(const Check& check) {
+OrderedJson to_json(const Check& check) {
   return {{"name", check.name},
           {"passed", check.passed},
           {"measured", check.measured},
@@ -161,8 +162,8 @@ Result<RunState> state_from_name(std::string_view text) {
 
 }  // namespace
 
-Json to_json(const RunStatus& run) {
-  Json checks = Json::array();
+OrderedJson to_json(const RunStatus& run) {
+  OrderedJson checks = OrderedJson::array();
   for (const Check& check : run.checks) checks.push_back(to_json(check));
   return {{"run_id", run.run_id},
           {"state", name(run.state)},
@@ -174,20 +175,20 @@ Json to_json(const RunStatus& run) {
           {"remaining_s", number(run.remaining_s)},
           {"message", run.message},
           {"goes_on", run.goes_on},
-          {"prompt", run.prompt ? to_json(*run.prompt) : Json(nullptr)},
+          {"prompt", run.prompt ? to_json(*run.prompt) : OrderedJson(nullptr)},
           {"tensor_sd_nT_per_m", optional(run.tensor_sd_nT_per_m)},
           {"wanted_tensor_sd_nT_per_m", optional(run.wanted_tensor_sd_nT_per_m)},
-          {"proposed", run.proposed.empty() ? Json(nullptr) : Json(run.proposed)},
+          {"proposed", run.proposed.empty() ? OrderedJson(nullptr) : OrderedJson(run.proposed)},
           {"checks", std::move(checks)}};
 }
 
-Json to_json(const StatusReport& report) {
-  Json left_out = Json::array();
+OrderedJson to_json(const StatusReport& report) {
+  OrderedJson left_out = OrderedJson::array();
   for (const auto& [effect, lacks] : report.calibration_use.left_out)
     left_out.push_back({{"effect", effect}, {"lacks", lacks}});
-  Json devices = Json::array();
+  OrderedJson devices = OrderedJson::array();
   for (const DeviceStatus& device : report.devices) devices.push_back(to_json(device, report.at.mono));
-  Json inputs = Json::array();
+  OrderedJson inputs = OrderedJson::array();
   for (const InputStatus& input : report.inputs) inputs.push_back(to_json(input, report.at.mono));
   return {{"t", format_utc(report.at.wall)},
           {"t_ns", report.at.wall.ns},
@@ -216,7 +217,7 @@ Json to_json(const StatusReport& report) {
           {"oldest_seq", optional(report.oldest_seq)},
           {"disk_free_bytes", optional(report.disk_free_bytes)},
           {"run", to_json(report.run)},
-          {"magnet", report.magnet ? to_json(*report.magnet) : Json(nullptr)}};
+          {"magnet", report.magnet ? to_json(*report.magnet) : OrderedJson(nullptr)}};
 }
 
 Result<RunStatus> run_status_from_json(const nlohmann::json& object) {

@@ -8,13 +8,15 @@
 namespace mgtd {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// Text that is not UTF-8 (an instrument's answer, a peer's line) must not end the stream: it is replaced.
-std::string line(const Json& object) { return object.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string line(const OrderedJson& object) {
+  return object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+}
 
-std::string line_of_class(std::string_view stream_class, const Json& body) {
-  Json object{{"class", stream_class}};
+std::string line_of_class(std::string_view stream_class, const OrderedJson& body) {
+  OrderedJson object{{"class", stream_class}};
   object.update(body);
   return line(object);
 }

@@ -12,10 +12,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::string_view kExample = R"({"watch":{"class":["TENSOR"],"rate_hz":10}})";
+constexpr std::string_view kWatchExample = R"({"watch":{"class":["TENSOR"],"rate_hz":10}})";
 
 tl::unexpected<Error> refuse(std::string message) {
-  return fail(ErrorCode::bad_input, std::move(message), fmt::format("send {}", kExample));
+  return fail(ErrorCode::bad_input, std::move(message), fmt::format("send {}", kWatchExample));
 }
 
 Result<StreamClasses> parse_classes(const Json& list) {
@@ -79,7 +79,7 @@ Result<WatchRequest> parse_fields(const Json& watch) {
 }  // namespace
 
 Result<WatchRequest> parse_watch(std::string_view line) {
-  const auto object = parse_json_object(line, kExample);
+  const auto object = parse_json_object(line, kWatchExample);
   if (!object) return tl::unexpected(object.error());
   const auto watch = object->find("watch");
   if (object->contains("cmd")) {

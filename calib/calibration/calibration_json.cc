@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 constexpr const char* kSchema = "mgt.cal/1";
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 
 json rows(const AxisNoise& noise) {
   json out = json::array();
@@ -22,7 +21,7 @@ json rows(const AxisNoise& noise) {
 
 AxisNoise noise_from(const json& object) {
   AxisNoise noise;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     for (std::size_t a = 0; a < 3; ++a)
       noise(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = object.at(i).at(a);
   }
@@ -126,16 +125,13 @@ Eigen::MatrixXd matrix_from(const json& rows, std::size_t columns) {
 
 json reference_json(const Reference& r) {
   json T = json::array();
-  for (const auto& t : r.T_degC) T.push_back(t ? json(*t) : json());
-  return {{"T_degC", T},
-          {"t_utc", r.t_utc},
-          {"F_nT", r.f_nT ? json(*r.f_nT) : json()},
-          {"currents", r.currents_A}};
+  for (const auto& t : r.T_degC) T.push_back(or_null(t));
+  return {{"T_degC", T}, {"t_utc", r.t_utc}, {"F_nT", or_null(r.f_nT)}, {"currents", r.currents_A}};
 }
 
 Reference reference_from(const json& object) {
   Reference r;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     if (const json& t = object.at("T_degC").at(i); !t.is_null()) r.T_degC.at(i) = t.get<double>();
   }
   r.t_utc = object.at("t_utc");
@@ -157,7 +153,8 @@ Calibration calibration_of(const json& object) {
   Calibration c;
   c.id = object.at("id");
   c.method = object.at("method");
-  for (std::size_t i = 0; i < kCount; ++i) c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
+  for (std::size_t i = 0; i < kSensorCount; ++i)
+    c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
   c.covariance = covariance_from(object.at("covariance"));
   c.effects = effects_from(object.at("effects"));
   const json& rows = object.at("effect_covariance");

@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kTurned = 2e-3;  // of the field, relative
 
-FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& y_nT) {
-  FieldVector out;
-  for (int i = 0; i < kSensors; ++i) out.segment<3>(3 * i) = y_nT[static_cast<std::size_t>(i)];
-  return out;
-}
-
 }  // namespace
 
 LiveTensor::LiveTensor(Geometry geometry) : pipeline_(geometry) {}

@@ -13,13 +13,6 @@ namespace mgtd::calib {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
-
-FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
-  FieldVector out;
-  for (std::size_t i = 0; i < kCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
-  return out;
-}
 
 double closure_chi2(const Closure& closure, const Eigen::Matrix4d& covariance) {
   Eigen::Vector4d values;
@@ -32,13 +25,19 @@ Pose pose_of(const Epoch& epoch) {
   Pose pose;
   pose.y_nT = epoch.y_nT;
   pose.t_utc = epoch.t.wall;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     if (std::isfinite(epoch.T_degC[i])) pose.T_degC[i] = epoch.T_degC[i];
   }
   return pose;
 }
 
 }  // namespace
+
+FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
+  FieldVector out;
+  for (std::size_t i = 0; i < kSensorCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
+  return out;
+}
 
 Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry) {
   const double g = 1 / geometry.baseline_m;
@@ -95,7 +94,7 @@ TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, c
     : calibration_(std::move(calibration)),
       id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
       geometry_(calibration_->geometry) {
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const SensorModel& sensor = calibration_->sensors[i];
     gain_[i] = sensor.R_PS() * sensor.response().inverse();
     offset_nT_[i] = sensor.offset_nT;
@@ -110,7 +109,7 @@ void TensorPipeline::prepare_uncertainty() {
   using ParameterRows = Eigen::Matrix<double, 4, kArrayParameters>;  // rows: q components
   const auto rows_of = [&](const Eigen::Matrix<double, 1, kChannels>& w) {
     ParameterRows rows;
-    for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t i = 0; i < kSensorCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const auto weight = w.segment<3>(3 * at);
       const auto constant =
@@ -125,7 +124,7 @@ void TensorPipeline::prepare_uncertainty() {
   };
   const auto corrected = [&](const AxisNoise& of_reading_nT) {
     ChannelCovariance out = ChannelCovariance::Zero();
-    for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t i = 0; i < kSensorCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       out.block<3, 3>(3 * at, 3 * at) =
           gain_[i] * of_reading_nT.row(at).array().square().matrix().asDiagonal() * gain_[i].transpose();
@@ -153,7 +152,7 @@ void TensorPipeline::prepare_uncertainty() {
 
 FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const {
   std::array<Eigen::Vector3d, kSensors> b;
-  for (std::size_t i = 0; i < kCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
+  for (std::size_t i = 0; i < kSensorCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
   return stacked(b);
 }
 

@@ -29,6 +29,9 @@ struct FieldAndGradient {
   Closure closure;  ///< chi2 is left NaN here: it needs the noise
 };
 
+/// The four vectors one below the other.
+[[nodiscard]] FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b);
+
 [[nodiscard]] FieldAndGradient field_and_gradient(const FieldVector& b_P_nT, const Geometry& geometry);
 
 /// The six gradient components (xx, yy, zz, xy, xz, yz) and the four closure quantities (curl, centre x, y,

@@ -16,7 +16,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kWorth = 0.02;  ///< gain of a probability that is worth telling
+constexpr double kWorthTelling = 0.02;  ///< gain of a probability that is worth telling
 
 bool one_place(const CandidateEffect& suspect, const Hypothesis& h) {
   return suspect.level == Level::axis ? h.axes == 1 : &h == &suspect.hypotheses.front();
@@ -157,7 +157,7 @@ void find_remedies(const PlanRequest& request, const PoseTable& table, const Act
     const Shape &a = *by_name.at(pair.effect), &b = *by_name.at(pair.rival);
     const double p = named_right(std::max(hardest(a, b).alike, hardest(b, a).alike));
     const double best = pair.remedy ? pair.remedy->p_right : pair.p_right;
-    if (p > best + kWorth) pair.remedy = Remedy{std::string(action.text), minutes, p};
+    if (p > best + kWorthTelling) pair.remedy = Remedy{std::string(action.text), minutes, p};
   }
 }
 

@@ -12,8 +12,8 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kWorth = 0.01;    ///< gain of the probability that is worth telling
-constexpr double kBetter = 0.005;  ///< than more of the same, for what takes more than that
+constexpr double kWorthMeasuring = 0.01;  ///< gain of the probability that is worth telling
+constexpr double kBetter = 0.005;         ///< than more of the same, for what takes more than that
 
 /// The fit's model on other poses, ready to project signatures.
 struct Design {
@@ -166,7 +166,7 @@ NextMenu next_measurements(const PoseTable& table, const JointFit& fit, const Jo
   if (rivals.empty()) return out;
   find_form_only(table, fit, options, winner, rivals);
   out.p_right_before = p_right(as_it_is(table), fit, options, winner, rivals);
-  double worth = out.p_right_before + kWorth;
+  double worth = out.p_right_before + kWorthMeasuring;
   for (const Action& action : actions()) {
     const double after = p_right(longer(table, action, fit), fit, options, winner, rivals);
     if (after < worth) continue;

@@ -13,9 +13,9 @@ namespace mgtd::calib {
 namespace {
 
 using Which = std::vector<Eigen::Index>;
-constexpr double kKeep = 0.6;         ///< share of the poses that is fitted: breaks down beyond 0.4
-constexpr std::size_t kMost = 400;    ///< poses that are searched; the others are judged by the result
-constexpr Eigen::Index kFewest = 20;  ///< below, three fifths of the poses do not determine a rig
+constexpr double kKeep = 0.6;              ///< share of the poses that is fitted: breaks down beyond 0.4
+constexpr std::size_t kMost = 400;         ///< poses that are searched; the others are judged by the result
+constexpr Eigen::Index kFewestPoses = 20;  ///< below, three fifths of the poses do not determine a rig
 constexpr int kFinalists = 3, kConcentrations = 2, kMaxConcentrations = 30;
 constexpr double kFlat = 0.2;  ///< of the thickness of all poses: a subset flatter than this is one turn
 constexpr double kOneTurn = 0.02;
@@ -190,7 +190,7 @@ Which on_ellipsoid(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& f_nT) {
 }  // namespace
 
 bool looks_spoilt(const ReadingTable& y_nT) {
-  if (y_nT.cols() < kFewest) return false;
+  if (y_nT.cols() < kFewestPoses) return false;
   Which all(static_cast<std::size_t>(y_nT.cols()));
   std::iota(all.begin(), all.end(), 0);
   const Plane plane(y_nT, all);
@@ -204,7 +204,7 @@ std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT
                                                         const Eigen::VectorXd& f_nT) {
   constexpr Eigen::Index kSubset = 5;
   constexpr int kDraws = 70;
-  if (y_nT.cols() < kFewest) return std::nullopt;
+  if (y_nT.cols() < kFewestPoses) return std::nullopt;
   const ReadingTable some = y_nT(Eigen::all, searched(y_nT.cols()));
   Which all(static_cast<std::size_t>(some.cols()));
   std::iota(all.begin(), all.end(), 0);

@@ -8,22 +8,18 @@
 #include "calib/calibration/tensor.h"
 
 namespace mgtd::calib {
-namespace {
-
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
-
-}  // namespace
+namespace {}  // namespace
 
 FieldTable raw_fields(const Readings& readings) {
   FieldTable b(3 * kSensors, readings.poses());
-  for (std::size_t i = 0; i < kCount; ++i)
+  for (std::size_t i = 0; i < kSensorCount; ++i)
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = readings.y_nT[i];
   return b;
 }
 
 FieldTable corrected_fields(const Readings& readings, const std::array<SensorModel, kSensors>& sensors) {
   FieldTable b(3 * kSensors, readings.poses());
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         gain * (readings.y_nT[i].colwise() - sensors[i].offset_nT);
@@ -39,7 +35,7 @@ ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, cons
   const auto mean = [](const Eigen::ArrayXd& squares, const Eigen::ArrayXd& weight) {
     return std::sqrt((squares * weight).sum() / std::max(1.0, weight.sum()));
   };
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Eigen::ArrayXd weight =
         all ? Eigen::ArrayXd::Ones(n) : Eigen::ArrayXd(counted.field.row(at).transpose().cast<double>());
@@ -57,7 +53,7 @@ ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, cons
 double field_chi2(const FieldTable& b_nT, const Readings& readings,
                   const std::array<SensorModel, kSensors>& sensors, const AxisNoise& pose_noise_nT) {
   double chi2 = 0;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
     const Eigen::Vector3d variance = pose_noise_nT.row(at).array().square();

@@ -16,6 +16,8 @@ enum class Method { simplified, two_step, joint };
 [[nodiscard]] std::string_view name(Method method);
 [[nodiscard]] std::optional<Method> method_from(std::string_view name);
 
+inline constexpr int kFolds = 10;  ///< contiguous in time, of every cross-validation
+
 struct FitOptions {
   Method method{Method::joint};
   std::optional<double> field_nT;  ///< total field of every pose that has no f_nT

@@ -6,13 +6,13 @@
 
 #include "calib/calibration/calibration_json.h"
 #include "calib/effects/effect_spec.h"
+#include "proto/json_text.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
 namespace {
 
 using nlohmann::json;
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 
 json components(const Gradient& g) {
   return {{"xx", g.xx}, {"yy", g.yy}, {"zz", g.zz}, {"xy", g.xy}, {"xz", g.xz}, {"yz", g.yz}};
@@ -55,7 +55,7 @@ json half_json(const ErrorSummary& errors, const std::array<SensorModel, kSensor
 json halves_json(const std::optional<HalvesComparison>& halves) {
   if (!halves) return {};
   json difference = json::array();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const SensorModel &odd = halves->odd_sensors[i], &even = halves->even_sensors[i];
     difference.push_back({{"alpha_deg", to_deg(odd.alpha_rad - even.alpha_rad)},
                           {"beta_deg", to_deg(odd.beta_rad - even.beta_rad)},
@@ -100,7 +100,7 @@ void add_joint(const FitReport& report, json& out) {
   out["table"] = {
       {"sd_deg", to_deg(report.table_sd_rad)}, {"chi2", report.chi2_table}, {"dof", report.dof_table}};
   out["residual_nT"] = report.residual_nT;
-  out["held_out_residual_nT"] = report.held_out_residual_nT ? json(*report.held_out_residual_nT) : json();
+  out["held_out_residual_nT"] = or_null(report.held_out_residual_nT);
   out["outliers"] = outliers_json(report.outliers);
   out["weak"] = report.weak;
   out["tensor_sd_nT_per_m"] = components(report.tensor_sd_nT_per_m);
@@ -134,7 +134,7 @@ json to_json(const ErrorSummary& errors) {
 json to_json(const FitReport& report) {
   const Calibration& c = report.calibration;
   json sensors = json::array();
-  for (std::size_t i = 0; i < kCount; ++i) sensors.push_back(sensor_json(c, i));
+  for (std::size_t i = 0; i < kSensorCount; ++i) sensors.push_back(sensor_json(c, i));
   json out{{"schema", "mgt.fit/1"},
            {"id", c.id},
            {"method", c.method},

@@ -8,10 +8,10 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr std::size_t kFewest = 12;    ///< different stuck readings of all axes together: a rail is one
-constexpr int kMostSteps = 5000;       ///< between the two stuck readings that are nearest to each other
-constexpr double kOnGrid = 0.02;       ///< of a step: what a table's own digits may be off
-constexpr double kShareOnGrid = 0.95;  ///< of the stuck readings; a grid that does not exist gets 0.04
+constexpr std::size_t kFewestStuck = 12;  ///< different stuck readings of all axes together: a rail is one
+constexpr int kMostSteps = 5000;          ///< between the two stuck readings that are nearest to each other
+constexpr double kOnGrid = 0.02;          ///< of a step: what a table's own digits may be off
+constexpr double kShareOnGrid = 0.95;     ///< of the stuck readings; a grid that does not exist gets 0.04
 
 bool stuck(const Pose& pose, std::size_t sensor, std::size_t axis) {
   const auto& sd = pose.sd_nT[sensor][axis];
@@ -29,7 +29,7 @@ double share_on_grid(const std::vector<double>& values, double step) {
 double step_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (values.size() < kFewest) return 0;
+  if (values.size() < kFewestStuck) return 0;
   double nearest = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double gap = values[i] - values[i - 1];

@@ -9,15 +9,13 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
-
 /// Times the median spread of the axis. A dwell that is above it was disturbed and tells nothing of the
 /// noise.
 constexpr double kDisturbed = 5;
 
 AxisNoise median_spread(const PoseTable& table) {
   AxisNoise out = AxisNoise::Zero();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
       std::vector<double> values;
       for (const Pose& pose : table.poses)
@@ -37,7 +35,7 @@ AxisNoise pooled(const PoseTable& table, Weight weight) {
   AxisNoise sum = AxisNoise::Zero(), count = AxisNoise::Zero();
   const AxisNoise usual = median_spread(table);
   for (const Pose& pose : table.poses) {
-    for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t i = 0; i < kSensorCount; ++i) {
       for (std::size_t a = 0; a < 3; ++a) {
         const auto& sd = pose.sd_nT[i][a];
         if (!sd) continue;
@@ -59,7 +57,7 @@ AxisNoise pooled_sample_noise(const PoseTable& table) {
 
 Readings Readings::subset(const std::vector<Eigen::Index>& which) const {
   Readings out;
-  for (std::size_t i = 0; i < kCount; ++i) out.y_nT[i] = y_nT[i](Eigen::all, which);
+  for (std::size_t i = 0; i < kSensorCount; ++i) out.y_nT[i] = y_nT[i](Eigen::all, which);
   out.f_nT = f_nT(which);
   out.f_sd_nT = f_sd_nT(which);
   out.pose_noise_nT = pose_noise_nT;
@@ -99,7 +97,7 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
                   fmt::format("pose {}: a total field of {} nT", pose.number, out.f_nT[k]),
                   "it must be in nT, between 1000 and 200000; check f_nT or --field");
     }
-    for (std::size_t i = 0; i < kCount; ++i) out.y_nT[i].col(k) = pose.y_nT[i];
+    for (std::size_t i = 0; i < kSensorCount; ++i) out.y_nT[i].col(k) = pose.y_nT[i];
     out.standard.push_back(pose.set == "standard");
     out.number.push_back(pose.number);
     out.angles.push_back(pose.angles());

@@ -15,6 +15,7 @@
 #include "calib/report/explain_json.h"
 #include "calib/report/noise_text.h"
 #include "calib/stats/probability.h"
+#include "proto/json_text.h"
 
 namespace mgtd::calib {
 namespace {
@@ -116,7 +117,7 @@ json to_json(const Comparison& c) {
           {"chi2", c.chi2},
           {"dof", c.dof},
           {"p", c.log10_p ? json(std::pow(10.0, *c.log10_p)) : json()},
-          {"log10_p", c.log10_p ? json(*c.log10_p) : json()},
+          {"log10_p", or_null(c.log10_p)},
           {"table_sd_deg", c.table_sd_deg},
           {"lack_of_fit", std::move(lack)},
           {"channels", std::move(channels)},

@@ -16,9 +16,11 @@ namespace mgtd::calib {
 namespace {
 
 constexpr std::size_t kShown = 12, kMapsShown = 6;
-constexpr double kBar = 2;  ///< d of one character
+constexpr double kBarStep = 2;  ///< d of one character
 
-std::string bar(double d) { return std::string(static_cast<std::size_t>(std::min(d / kBar, 20.0)), '#'); }
+std::string marks(double d) {
+  return std::string(static_cast<std::size_t>(std::min(d / kBarStep, 20.0)), '#');
+}
 
 void candidates(const ExplainReport& r, std::string& out) {
   if (r.candidates.empty()) return;
@@ -30,7 +32,7 @@ void candidates(const ExplainReport& r, std::string& out) {
     const Candidate& c = r.candidates[i];
     fmt::format_to(to, "{:<32} {:<11} {:>2} {:>7.1f} {:>9} {:>6}  {:<32} {}\n", c.effect, c.where, c.k, c.d,
                    p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
-                   size_text(c), bar(c.d));
+                   size_text(c), marks(c.d));
   }
   fmt::format_to(to,
                  "k: coefficients; d: size in its own standard deviations; p: that chance alone makes it;\n"

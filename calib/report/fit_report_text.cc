@@ -17,8 +17,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
-
 std::string error_row(std::string_view stage, const ErrorSummary& errors) {
   std::string row = fmt::format("{:<12}", stage);
   for (const double rmse : errors.total_field_rmse_nT) row += fmt::format(" {:>8.3f}", rmse);
@@ -44,12 +42,12 @@ std::size_t seen_width(std::string_view text) {
 /// A number whose standard deviation is tiny is long: the columns are as wide as the longest of them.
 std::string parameter_table(const Calibration& c) {
   constexpr std::size_t kUsual = 24, kSpace = 2;
-  std::vector<std::array<std::string, kCount>> cells;
+  std::vector<std::array<std::string, kSensorCount>> cells;
   std::size_t width = kUsual;
   for (int k = 0; k < kSensorParameters; ++k) {
     const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(k)];
-    std::array<std::string, kCount>& row = cells.emplace_back();
-    for (std::size_t i = 0; i < kCount; ++i) {
+    std::array<std::string, kSensorCount>& row = cells.emplace_back();
+    for (std::size_t i = 0; i < kSensorCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i) * kSensorParameters + k;
       const double sd = std::sqrt(std::max(0.0, c.covariance(at, at)));
       row.at(i) = with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor);
@@ -57,7 +55,8 @@ std::string parameter_table(const Calibration& c) {
     }
   }
   std::string out = fmt::format("{:<12}", "parameter");
-  for (std::size_t i = 0; i < kCount; ++i) out += fmt::format("{:>{}}", fmt::format("s{}", i + 1), width);
+  for (std::size_t i = 0; i < kSensorCount; ++i)
+    out += fmt::format("{:>{}}", fmt::format("s{}", i + 1), width);
   out += "\n";
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const ShownParameter& shown = shown_parameters()[k];
@@ -83,7 +82,7 @@ std::string halves_table(const HalvesComparison& halves) {
   std::string out = "step 2 from each half of the standard set (odd less even, deg)\n";
   const auto row = [&](std::string_view name, double SensorModel::*angle) {
     out += fmt::format("{:<12}", name);
-    for (std::size_t i = 0; i < kCount; ++i) {
+    for (std::size_t i = 0; i < kSensorCount; ++i) {
       out += fmt::format("{:>24.5f}", to_deg(halves.odd_sensors[i].*angle - halves.even_sensors[i].*angle));
     }
     out += "\n";

@@ -12,6 +12,7 @@
 #include "calib/fit/fit_report_json.h"
 #include "calib/fit/residual_words.h"
 #include "calib/stats/probability.h"
+#include "proto/json_text.h"
 
 namespace mgtd::calib {
 namespace {
@@ -20,8 +21,6 @@ using nlohmann::json;
 
 constexpr double kBar_characters = 40;
 constexpr std::size_t kName_characters = 34;
-
-json maybe(const std::optional<double>& x) { return x ? json(*x) : json(); }
 
 json round_json(const ImproveRound& r) {
   return {{"added", r.added.effect},
@@ -32,8 +31,8 @@ json round_json(const ImproveRound& r) {
           {"possible", r.possible},
           {"rms_before_nT", r.rms_before_nT},
           {"rms_after_nT", r.rms_after_nT},
-          {"held_out_before_nT", maybe(r.held_out_before_nT)},
-          {"held_out_after_nT", maybe(r.held_out_after_nT)},
+          {"held_out_before_nT", or_null(r.held_out_before_nT)},
+          {"held_out_after_nT", or_null(r.held_out_after_nT)},
           {"predicted_fall", r.predicted_fall},
           {"realised_fall", r.realised_fall},
           {"variance_price", {{"growth_of_sd", r.price.growth}, {"parameter", r.price.parameter}}}};

@@ -10,13 +10,12 @@
 #include "calib/fit/residual_words.h"
 #include "calib/report/text_bar.h"
 #include "calib/stats/probability.h"
+#include "proto/json_text.h"
 
 namespace mgtd::calib {
 namespace {
 
 using nlohmann::json;
-
-json maybe(const std::optional<double>& x) { return x ? json(*x) : json(); }
 
 std::string line(const char* what, double before, double after, const char* unit) {
   const double top = std::max(before, after);
@@ -64,8 +63,8 @@ json to_json(const ModelChange& c) {
           {"tensor_before_nT_per_m", c.tensor_before_nT_per_m},
           {"tensor_after_nT_per_m", c.tensor_after_nT_per_m},
           {"noise_nT", c.noise_nT},
-          {"held_out_before_nT", maybe(c.held_out_before_nT)},
-          {"held_out_after_nT", maybe(c.held_out_after_nT)},
+          {"held_out_before_nT", or_null(c.held_out_before_nT)},
+          {"held_out_after_nT", or_null(c.held_out_after_nT)},
           {"variance_price", {{"growth_of_sd", c.price.growth}, {"parameter", c.price.parameter}}},
           {"vetoes", std::move(vetoes)},
           {"vetoed", c.vetoed()}};

@@ -44,7 +44,7 @@ double tensor_floor(const JointFit& fit) {
   return std::sqrt(sum / 6);
 }
 
-constexpr int kBar = 24;
+constexpr int kBarWidth = 24;
 
 }  // namespace
 
@@ -105,7 +105,7 @@ std::string to_text(const Waterfall& w) {
   double top = w.without_nT;
   for (const WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
   const auto total = [&](const char* what, double nT, double nT_per_m) {
-    fmt::format_to(to, "{:<40} {:>9.3f} {:>9.3f}  {}\n", what, nT, nT_per_m, bar(nT, top, kBar));
+    fmt::format_to(to, "{:<40} {:>9.3f} {:>9.3f}  {}\n", what, nT, nT_per_m, bar(nT, top, kBarWidth));
   };
   fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
   total("without any effect", w.without_nT, w.without_nT_per_m);

@@ -10,7 +10,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr Eigen::Index kMinPoses = 9;
 /// Spread across the thinnest direction over the widest: below, the readings lie on a plane. A table turning
 /// about one axis with 0.1 degree of wobble reaches 0.004, tilts of 5 degrees reach 0.1.
 constexpr double kFlat = 0.02;
@@ -39,7 +38,7 @@ bool plausible(const ScalarCalibration& s) {
 }  // namespace
 
 Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT, const Eigen::VectorXd& f_nT) {
-  if (y_nT.cols() < kMinPoses) return scalar_calibration(y_nT, f_nT);  // refuses in its words
+  if (y_nT.cols() < kFewestScalarPoses) return scalar_calibration(y_nT, f_nT);  // refuses in its words
   const Eigen::Vector3d mean = y_nT.rowwise().mean();
   const Eigen::Matrix3Xd z = y_nT.colwise() - mean;
   const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(z.cols());

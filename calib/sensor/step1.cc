@@ -13,7 +13,6 @@ namespace mgtd::calib {
 namespace {
 
 constexpr Eigen::Index kUnknowns = 9;
-constexpr Eigen::Index kMinPoses = 9;
 /// Beyond this the noise of a fluxgate (2e-5 of the field) moves the solution by several percent.
 constexpr double kMaxCondition = 2000;
 /// Spread across the thinnest direction over the widest one; below, the readings lie on a plane.
@@ -113,10 +112,11 @@ Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f
 }
 
 Result<void> enough(const Eigen::Matrix3Xd& y) {
-  if (y.cols() >= kMinPoses) return {};
-  return fail(ErrorCode::refused,
-              fmt::format("{} poses; a sensor has nine parameters, so {} is the least", y.cols(), kMinPoses),
-              "measure at least 9 poses in general position, better 30 and more");
+  if (y.cols() >= kFewestScalarPoses) return {};
+  return fail(
+      ErrorCode::refused,
+      fmt::format("{} poses; a sensor has nine parameters, so {} is the least", y.cols(), kFewestScalarPoses),
+      "measure at least 9 poses in general position, better 30 and more");
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 /// parameters).
 namespace mgtd::calib {
 
+inline constexpr Eigen::Index kFewestScalarPoses = 9;  ///< as many as there are parameters
+
 struct ScalarCalibration {
   /// b_S = K (y - I), upper triangular, positive diagonal (eq. 6).
   Eigen::Matrix3d K{Eigen::Matrix3d::Identity()};

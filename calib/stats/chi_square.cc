@@ -6,15 +6,15 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kTerms = 10'000;
-constexpr double kExact = 1e-16;
+constexpr int kGammaTerms = 10'000;
+constexpr double kGammaExact = 1e-16;
 
 double log_front(double a, double x) { return a * std::log(x) - x - std::lgamma(a); }
 
 /// ln P(a, x), x < a + 1.
 double log_lower(double a, double x) {
   double term = 1 / a, sum = term;
-  for (int n = 1; n < kTerms && term > kExact * sum; ++n) {
+  for (int n = 1; n < kGammaTerms && term > kGammaExact * sum; ++n) {
     term *= x / (a + n);
     sum += term;
   }
@@ -25,7 +25,7 @@ double log_lower(double a, double x) {
 double log_upper(double a, double x) {
   constexpr double kTiny = 1e-300;
   double b = x + 1 - a, c = 1 / kTiny, d = 1 / b, h = d;
-  for (int n = 1; n < kTerms; ++n) {
+  for (int n = 1; n < kGammaTerms; ++n) {
     const double an = -n * (n - a);
     b += 2;
     d = an * d + b;
@@ -33,7 +33,7 @@ double log_upper(double a, double x) {
     c = b + an / c;
     if (std::abs(c) < kTiny) c = kTiny;
     h *= d * c;
-    if (std::abs(d * c - 1) < kExact) break;
+    if (std::abs(d * c - 1) < kGammaExact) break;
   }
   return log_front(a, x) + std::log(h);
 }

@@ -8,14 +8,14 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kTerms = 10'000;
-constexpr double kExact = 1e-15, kTiny = 1e-300;
+constexpr int kBetaTerms = 10'000;
+constexpr double kBetaExact = 1e-15, kBetaTiny = 1e-300;
 
 /// Continued fraction of the incomplete beta function (Lentz), for x < (a + 1)/(a + b + 2).
 double fraction(double a, double b, double x) {
-  const auto away = [](double v) { return std::abs(v) < kTiny ? kTiny : v; };
+  const auto away = [](double v) { return std::abs(v) < kBetaTiny ? kBetaTiny : v; };
   double c = 1, d = 1 / away(1 - (a + b) * x / (a + 1)), h = d;
-  for (int m = 1; m < kTerms; ++m) {
+  for (int m = 1; m < kBetaTerms; ++m) {
     const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
     d = 1 / away(1 + even * d);
     c = away(1 + even / c);
@@ -24,7 +24,7 @@ double fraction(double a, double b, double x) {
     d = 1 / away(1 + odd * d);
     c = away(1 + odd / c);
     h *= d * c;
-    if (std::abs(d * c - 1) < kExact) break;
+    if (std::abs(d * c - 1) < kBetaExact) break;
   }
   return h;
 }

@@ -6,6 +6,9 @@
 /// figure: that is what is said. Results for programs carry the logarithm itself.
 namespace mgtd::calib {
 
+/// Standard deviation of a normal distribution over its median absolute deviation.
+inline constexpr double kMadToSd = 1.4826;
+
 /// "0.032", "4e-15", "<1e-30": for a column headed p.
 [[nodiscard]] std::string p_text(double log10_p);
 /// "p = 0.032", "p < 1e-30": for a sentence.

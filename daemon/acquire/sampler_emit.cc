@@ -9,7 +9,7 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr std::size_t kReference = 0;
+constexpr std::size_t kReferenceIndex = 0;
 constexpr double kApart_s = 1e-6;            // epochs are, at least
 constexpr double kMaxUninterpolated = 0.02;  // periods before the first sample
 
@@ -60,15 +60,15 @@ Sampler::Pick Sampler::pick(int slot, double t_s) const {
 
 /// One step along the grid. False: a sample is still on its way.
 bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
-  const Sample* own = streams_[kReference].find(next_k_);
+  const Sample* own = streams_[kReferenceIndex].find(next_k_);
   if (own == nullptr) {
-    emit_gap(1, kReference, next_k_ < streams_[kReference].first_k ? Why::not_yet : Why::lost, out);
+    emit_gap(1, kReferenceIndex, next_k_ < streams_[kReferenceIndex].first_k ? Why::not_yet : Why::lost, out);
     return true;
   }
   const double t_s = grid_time(next_k_);
   std::array<Pick, kSensors> picks;
-  picks[kReference].need = Need::ready;
-  picks[kReference].take(*own);
+  picks[kReferenceIndex].need = Need::ready;
+  picks[kReferenceIndex].take(*own);
   int waiting = -1;
   for (int slot = 1; slot < kSensors; ++slot) {
     Pick& p = picks[static_cast<std::size_t>(slot)];
@@ -85,7 +85,7 @@ bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
     return true;
   }
   if (t_s < last_t_s_ + kApart_s) {
-    emit_gap(1, kReference, Why::clock, out);
+    emit_gap(1, kReferenceIndex, Why::clock, out);
   } else {
     emit_epoch(t_s, picks, out);
   }
@@ -93,17 +93,17 @@ bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
 }
 
 void Sampler::emit_ready(std::vector<EpochOrGap>& out) {
-  while (next_k_ <= streams_[kReference].last_k && emit_next(out)) {
+  while (next_k_ <= streams_[kReferenceIndex].last_k && emit_next(out)) {
   }
 }
 
 /// Without the reference there is no grid: its absence is counted by its last known period.
 void Sampler::emit_silent_reference(std::vector<EpochOrGap>& out) {
-  const Stream& s = streams_[kReference];
+  const Stream& s = streams_[kReferenceIndex];
   const double since_s = now_s_ - config_.silence_s;
   if (next_k_ <= s.last_k || s.last_arrival_s > since_s) return;
   const auto until = static_cast<std::int64_t>(std::floor(grid_index(since_s)));
-  if (until >= next_k_) emit_gap(until - next_k_ + 1, kReference, Why::silent, out);
+  if (until >= next_k_) emit_gap(until - next_k_ + 1, kReferenceIndex, Why::silent, out);
 }
 
 void Sampler::emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, std::vector<EpochOrGap>& out) {

@@ -16,7 +16,7 @@
 namespace mgtd::cli {
 namespace {
 
-struct Arguments {
+struct ApplyArguments {
   std::string calibration, run, output;
   calib::ApplyOptions options;
 };
@@ -44,7 +44,7 @@ void doubt_closure(const std::vector<calib::AppliedPose>& rows) {
       *chi2, kExpected);
 }
 
-int run_apply(const Session& session, const Arguments& args) {
+int run_apply(const Session& session, const ApplyArguments& args) {
   const auto calibration = calibration_of(args.calibration, {});
   if (!calibration) return report(session, calibration.error());
   const auto table = daemon::read_poses(args.run);
@@ -75,7 +75,7 @@ int run_apply(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_apply(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ApplyArguments>();
   CLI::App* const command =
       add_command(app, session, "apply", "calibrated field of every sensor and the tensor, row by row (CSV)",
                   [args, &session] { return run_apply(session, *args); });

@@ -55,25 +55,25 @@ int print_reply(const Session& session, const Result<nlohmann::json>& reply, std
   return 0;
 }
 
-struct Arguments {
+struct CalibrationsArguments {
   std::string id, file;
   bool force{false}, accept{false};
 };
 
-int show(const Session& session, const Arguments& args) {
+int show(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
   if (!id) return report(session, id.error());
   return print_reply(session, ask(session, ControlCommand::calibrations_show, {{"id", *id}}), "");
 }
 
-int accept(const Session& session, const Arguments& args) {
+int accept(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
   if (!id) return report(session, id.error());
   const nlohmann::json wanted{{"id", *id}, {"force", args.force}};
   return print_reply(session, ask(session, ControlCommand::calibrations_accept, wanted), "active");
 }
 
-int import_file(const Session& session, const Arguments& args) {
+int import_file(const Session& session, const CalibrationsArguments& args) {
   const auto calibration = read_calibration(args.file);
   if (!calibration) return report(session, calibration.error());
   const auto reply = ask(session, ControlCommand::calibrations_import,
@@ -95,7 +95,7 @@ void add_calibrations(CLI::App& app, Session& session) {
   group->require_subcommand(1);
   add_command(*group, session, "list", "every calibration and its state",
               [&session] { return print_list(session); });
-  const auto args = std::make_shared<Arguments>();
+  const auto args = std::make_shared<CalibrationsArguments>();
   CLI::App* const shown = add_command(*group, session, "show", "one calibration, whole",
                                       [args, &session] { return show(session, *args); });
   shown->add_option("ID", args->id, "or 'latest': the newest proposal")->required();

@@ -12,7 +12,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kCheckHelp =
     R"(A dozen poses in different attitudes suffice; table angles are not needed unless the calibration holds an
 effect of the site, platform or table. The whole array may have been mounted again, and elsewhere. The answer
 weighs both the noise of these poses and the uncertainty of the calibration: an unchanged rig is called
@@ -22,9 +22,9 @@ which sensor and parameter moved.
   mgt check cal.json dozen.csv && echo go on
 
 Exit code 0: valid. 1: not valid, calibrate again.)";
-constexpr std::size_t kRows = 8;
+constexpr std::size_t kPosesShown = 8;
 
-struct Arguments {
+struct CheckArguments {
   std::string calibration, run;
   std::shared_ptr<FitFlags> flags;
 };
@@ -46,7 +46,7 @@ nlohmann::json json_of(const calib::ValidityReport& r) {
           {"outliers", std::move(outliers)}};
 }
 
-int run_check(const Session& session, const Arguments& args) {
+int run_check(const Session& session, const CheckArguments& args) {
   const auto calibration = read_calibration(args.calibration);
   if (!calibration) return report(session, calibration.error());
   const auto source = daemon::read_run(args.run);
@@ -65,7 +65,7 @@ int run_check(const Session& session, const Arguments& args) {
                checked->noise_from_dwells
                    ? "the larger of what the dwells tell and what the calibration's own run left"
                    : "of the calibration's own run");
-    fmt::print("{}\n", calib::change_table(checked->change, kRows));
+    fmt::print("{}\n", calib::change_table(checked->change, kPosesShown));
     for (const std::string& reason : checked->reasons) fmt::print("note: {}\n", reason);
   }
   return checked->valid ? 0 : 1;
@@ -74,11 +74,11 @@ int run_check(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_check(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<CheckArguments>();
   CLI::App* const command =
       add_command(app, session, "check", "is this calibration still valid? (a dozen poses suffice)",
                   [args, &session] { return run_check(session, *args); });
-  command->footer(kHelp);
+  command->footer(kCheckHelp);
   command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = std::make_shared<FitFlags>();

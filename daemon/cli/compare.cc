@@ -9,19 +9,19 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kCompareHelp =
     "Five ways of looking at what the joint fit leaves, each against time, azimuth, temperature and every\n"
     "extra column, with the means over each as a small plot. A scalar residual with no attitude residual is "
     "a\n"
     "sensor; an attitude residual alone is the table; what is alike in all sensors is the site.\n\n"
     "Exit code 0: the model fits to the noise. 1: it does not.";
 
-struct Arguments {
+struct CompareArguments {
   std::string run;
   std::shared_ptr<FitFlags> flags;
 };
 
-int run_compare(const Session& session, const Arguments& args) {
+int run_compare(const Session& session, const CompareArguments& args) {
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -39,10 +39,10 @@ int run_compare(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_compare(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<CompareArguments>();
   CLI::App* const command = add_command(app, session, "compare", "model against measurement: where it fails",
                                         [args, &session] { return run_compare(session, *args); });
-  command->footer(kHelp);
+  command->footer(kCompareHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = add_model_flags(command);
 }

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kHelp =
+constexpr const char* kDefineHelp =
     R"(An effect by your own formula: the term of one axis, as an expression of what was measured.
 
   mgt define run.mgtrun lamp 'lamp_A' --level platform --scale each-sensor --unit nT/A
@@ -39,7 +39,7 @@ was thought of it stays exploratory; on a second run, --from FIRST.mgtrun confir
 
 Exit code 0: kept. 1: not kept (absorbed whole), or not confirmed.)";
 
-struct Arguments {
+struct DefineArguments {
   std::string run, name, expression, level{"axis"}, scale, unit{"nT"}, scan, from;
   std::optional<double> prior;
   bool drop{false};
@@ -71,7 +71,7 @@ Result<std::pair<std::string, std::string>> scan_of(const std::string& text) {
                    text.substr(equals + 1, colon - equals - 1) + ".." + text.substr(colon + 1)};
 }
 
-Result<calib::EffectSpec> spec_of(const Arguments& args) {
+Result<calib::EffectSpec> spec_of(const DefineArguments& args) {
   if (const auto ok = usable_name(args.name); !ok) return tl::unexpected(ok.error());
   calib::EffectSpec spec{.name = args.name, .where = {}, .parameters = {}};
   if (!args.scale.empty() && args.level != "site") {
@@ -135,7 +135,7 @@ bool nothing_left(const calib::FormulaExamination& x) {
 
 constexpr double kAgree_sigmas = 4;
 
-void print(const Session& session, const Arguments& args, const calib::FormulaExamination& x,
+void print(const Session& session, const DefineArguments& args, const calib::FormulaExamination& x,
            const daemon::Definition& definition, const Confirmation& c) {
   if (session.json) {
     json out = to_json(x);
@@ -169,7 +169,7 @@ void print(const Session& session, const Arguments& args, const calib::FormulaEx
   fmt::print("kept in {}; mgt add {} {} puts it into the model\n", args.run, args.name, args.run);
 }
 
-int drop(const Session& session, const Arguments& args, KeptRun& run) {
+int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
   std::vector<daemon::Definition> all = run.source.definitions;
   if (std::erase_if(all, [&](const daemon::Definition& d) { return d.name == args.name; }) == 0)
     return report(session, {ErrorCode::usage, args.run + " keeps no formula called " + args.name,
@@ -189,7 +189,7 @@ int drop(const Session& session, const Arguments& args, KeptRun& run) {
   return 0;
 }
 
-int run_define(const Session& session, const Arguments& args) {
+int run_define(const Session& session, const DefineArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
   if (args.drop) return drop(session, args, *run);
@@ -237,10 +237,10 @@ int run_define(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_define(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<DefineArguments>();
   CLI::App* const command = add_command(app, session, "define", "an effect by your own formula",
                                         [args, &session] { return run_define(session, *args); });
-  command->footer(kHelp);
+  command->footer(kDefineHelp);
   command->add_option("RUN", args->run, "*.mgtrun")->required();
   command->add_option("NAME", args->name, "what to call it")->required();
   command->add_option("EXPR", args->expression, "the formula");

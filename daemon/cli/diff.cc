@@ -10,7 +10,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kDiffHelp =
     R"(Both runs are fitted with the same options (or taken as they are when a file is a CAL.json) and compared with
 the uncertainty of both. A turn of the whole array on its table is taken out first: it is no change of the
 array. The answer allows for the number of parameters looked at: two runs of an unchanged rig are called
@@ -19,14 +19,14 @@ different in about one case of a hundred. Effects that both have are compared to
   mgt diff monday.mgtrun friday.mgtrun --with site.gradient
 
 Exit code 0: nothing changed that these runs can tell. 1: changed.)";
-constexpr std::size_t kRows = 12;
+constexpr std::size_t kChangesShown = 12;
 
-struct Arguments {
+struct DiffArguments {
   std::string a, b;
   std::shared_ptr<FitFlags> flags;
 };
 
-int run_diff(const Session& session, const Arguments& args) {
+int run_diff(const Session& session, const DiffArguments& args) {
   const auto a = calibration_of(args.a, *args.flags);
   if (!a) return report(session, a.error());
   const auto b = calibration_of(args.b, *args.flags);
@@ -45,7 +45,7 @@ int run_diff(const Session& session, const Arguments& args) {
                 {"remarks", found.remarks},
                 {"change", calib::to_json(found.change)}});
   } else {
-    fmt::print("{}\n\n{}\n", found.conclusion, calib::change_table(found.change, kRows));
+    fmt::print("{}\n\n{}\n", found.conclusion, calib::change_table(found.change, kChangesShown));
     for (const std::string& remark : found.remarks) fmt::print("note: {}\n", remark);
   }
   return found.changed ? 1 : 0;
@@ -54,11 +54,11 @@ int run_diff(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_diff(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<DiffArguments>();
   CLI::App* const command =
       add_command(app, session, "diff", "has the calibration changed between two runs, which parameter?",
                   [args, &session] { return run_diff(session, *args); });
-  command->footer(kHelp);
+  command->footer(kDiffHelp);
   command->add_option("RUN_A", args->a, "*.mgtrun, a pose table in CSV, or a CAL.json")->required();
   command->add_option("RUN_B", args->b, "the later one")->required();
   args->flags = add_fit_flags(command);

@@ -8,7 +8,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kEffectsHelp =
     R"(Prints the library of physical effects, or the page of one: cause, formula, units, typical size, how it shows,
 what looks alike and how to tell them apart.
 
@@ -39,7 +39,7 @@ void add_effects(CLI::App& app, Session& session) {
   CLI::App* command = add_command(app, session, "effects", "the library of physical effects",
                                   [&session, name] { return run(session, *name); });
   command->add_option("name", *name, "of one effect");
-  command->footer(kHelp);
+  command->footer(kEffectsHelp);
 }
 
 }  // namespace mgtd::cli

@@ -13,11 +13,11 @@
 namespace mgtd::cli {
 namespace {
 
-struct Arguments {
+struct ExchangeArguments {
   std::string from, to;
 };
 
-daemon::RunHeader header_of(const PoseTable& table, const Arguments& args) {
+daemon::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args) {
   daemon::RunHeader header;
   header.run_id = std::filesystem::path(args.to).stem().string();
   header.rig = "imported";
@@ -27,7 +27,7 @@ daemon::RunHeader header_of(const PoseTable& table, const Arguments& args) {
   return header;
 }
 
-int run_import(const Session& session, const Arguments& args) {
+int run_import(const Session& session, const ExchangeArguments& args) {
   const auto table = daemon::read_poses(args.from);
   if (!table) return report(session, table.error());
   if (auto done = daemon::import_poses(*table, args.to, header_of(*table, args)); !done)
@@ -40,7 +40,7 @@ int run_import(const Session& session, const Arguments& args) {
   return 0;
 }
 
-int run_export(const Session& session, const Arguments& args) {
+int run_export(const Session& session, const ExchangeArguments& args) {
   const auto table = daemon::read_poses(args.from);
   if (!table) return report(session, table.error());
   const std::string csv = calib::format_pose_table(*table);
@@ -64,7 +64,7 @@ int run_export(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_import(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ExchangeArguments>();
   CLI::App* const command = add_command(app, session, "import", "a pose table becomes a run file",
                                         [args, &session] { return run_import(session, *args); });
   command->add_option("POSES", args->from, "pose table in CSV")->required();
@@ -72,7 +72,7 @@ void add_import(CLI::App& app, Session& session) {
 }
 
 void add_export(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ExchangeArguments>();
   CLI::App* const command = add_command(app, session, "export", "a run file becomes a pose table",
                                         [args, &session] { return run_export(session, *args); });
   command->add_option("RUN", args->from, "*.mgtrun")->required();

@@ -15,7 +15,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kExplainHelp =
     "Verdicts: PASS nothing stands out; EXPLAINED what is named, one effect or several, accounts for it;\n"
     "AMBIGUOUS several could; PARTIAL effects were found and more is there; UNKNOWN something that is in no\n"
     "library; BAD-DATA. Offsets that wander and noise that is larger than the dwells say are noise, not "
@@ -29,12 +29,12 @@ constexpr const char* kHelp =
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";
 
-struct Arguments {
+struct ExplainArguments {
   std::string run;
   std::shared_ptr<FitFlags> flags;
 };
 
-int run_explain(const Session& session, const Arguments& args) {
+int run_explain(const Session& session, const ExplainArguments& args) {
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -58,11 +58,11 @@ int run_explain(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_explain(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ExplainArguments>();
   CLI::App* const command =
       add_command(app, session, "explain", "which physical effect is missing, and what cannot be told",
                   [args, &session] { return run_explain(session, *args); });
-  command->footer(kHelp);
+  command->footer(kExplainHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = add_model_flags(command);
 }

@@ -11,12 +11,12 @@
 namespace mgtd::cli {
 namespace {
 
-struct Arguments {
+struct FitArguments {
   std::string run, output;
   std::shared_ptr<FitFlags> flags;
 };
 
-int run_fit(const Session& session, const Arguments& args) {
+int run_fit(const Session& session, const FitArguments& args) {
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -40,7 +40,7 @@ int run_fit(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_fit(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<FitArguments>();
   CLI::App* const command = add_command(app, session, "fit", "calibrate from a run file or a pose table",
                                         [args, &session] { return run_fit(session, *args); });
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();

@@ -12,14 +12,14 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kImproveHelp =
     "Each round adds the effect that explain names, fits everything again and judges what is left. An "
     "effect\n"
     "that makes poses left out worse is not added.\n\n"
     "  mgt improve run.mgtrun -o cal.json\n\n"
     "Exit code 0: nothing stands out any more. 1: something is left.";
 
-struct Arguments {
+struct ImproveArguments {
   std::string run, output;
   std::shared_ptr<FitFlags> flags;
 };
@@ -38,7 +38,7 @@ std::optional<calib::Waterfall> waterfall_of(const PoseTable& table, calib::FitO
   return steps ? std::optional(std::move(*steps)) : std::nullopt;
 }
 
-int run_improve(const Session& session, const Arguments& args) {
+int run_improve(const Session& session, const ImproveArguments& args) {
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -67,11 +67,11 @@ int run_improve(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_improve(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ImproveArguments>();
   CLI::App* const command =
       add_command(app, session, "improve", "explain, add, fit again, until nothing is left",
                   [args, &session] { return run_improve(session, *args); });
-  command->footer(kHelp);
+  command->footer(kImproveHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "write the calibration here (CAL.json)");
   args->flags = add_model_flags(command);

@@ -33,7 +33,7 @@ constexpr const char* kAddHelp =
     "  mgt undo run.mgtrun\n\n"
     "Exit code 0: kept. 1: not kept.";
 
-struct Arguments {
+struct ModelArguments {
   std::string effect, run;
   bool force{false};
   std::shared_ptr<FitFlags> flags;
@@ -51,8 +51,9 @@ std::string model_text(const std::vector<std::string>& specs) {
 }
 
 /// Keeps the change or says why not, and prints it. `choice`: what the poses said of an effect that is added.
-int conclude(const Session& session, const Arguments& args, KeptRun& run, const calib::ModelChange& change,
-             const std::string& spec, const calib::FitOptions& options, const calib::Choice& choice) {
+int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
+             const calib::ModelChange& change, const std::string& spec, const calib::FitOptions& options,
+             const calib::Choice& choice) {
   const bool keep = args.force || !change.vetoed();
   json made = to_json(change);
   if (!choice.spec.empty()) made["choice"] = to_json(choice);
@@ -80,7 +81,7 @@ int conclude(const Session& session, const Arguments& args, KeptRun& run, const 
   return keep ? 0 : 1;
 }
 
-int run_add(const Session& session, const Arguments& args) {
+int run_add(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
   const auto effect = calib::make_effect(daemon::whole_spec(args.effect, run->source.definitions));
@@ -108,7 +109,7 @@ Result<std::size_t> place_of(const KeptRun& run, const std::string& effect) {
               fmt::format("it holds {}", model_text(run.source.model)));
 }
 
-int run_drop(const Session& session, const Arguments& args) {
+int run_drop(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
   const auto place = place_of(*run, args.effect);
@@ -120,7 +121,7 @@ int run_drop(const Session& session, const Arguments& args) {
   return conclude(session, args, *run, *change, run->source.model[*place], options, {});
 }
 
-int run_undo(const Session& session, const Arguments& args) {
+int run_undo(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
   const auto steps = run->file.model_steps();
@@ -153,7 +154,7 @@ json step_json(const daemon::ModelStep& s) {
           {"result", json::parse(s.result, nullptr, false)}};
 }
 
-int run_model(const Session& session, const Arguments& args) {
+int run_model(const Session& session, const ModelArguments& args) {
   const auto file = daemon::RunFile::open(args.run, daemon::Access::read_only);
   if (!file) return report(session, file.error());
   const auto steps = file->model_steps();
@@ -188,7 +189,7 @@ int run_model(const Session& session, const Arguments& args) {
   return 0;
 }
 
-CLI::App* add_run_argument(CLI::App* command, Arguments& args) {
+CLI::App* add_run_argument(CLI::App* command, ModelArguments& args) {
   command->add_option("RUN", args.run, "*.mgtrun")->required();
   return command;
 }
@@ -196,7 +197,7 @@ CLI::App* add_run_argument(CLI::App* command, Arguments& args) {
 }  // namespace
 
 void add_add(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ModelArguments>();
   CLI::App* const command = add_command(app, session, "add", "put an effect into the model a run file keeps",
                                         [args, &session] { return run_add(session, *args); });
   command->footer(kAddHelp);
@@ -207,7 +208,7 @@ void add_add(CLI::App& app, Session& session) {
 }
 
 void add_drop(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ModelArguments>();
   CLI::App* const command = add_command(app, session, "drop", "take an effect out of that model",
                                         [args, &session] { return run_drop(session, *args); });
   command->add_option("EFFECT", args->effect, "its name, or its whole spec")->required();
@@ -217,7 +218,7 @@ void add_drop(CLI::App& app, Session& session) {
 }
 
 void add_undo(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ModelArguments>();
   CLI::App* const command =
       add_command(app, session, "undo", "take the last add or drop back; again for the one before",
                   [args, &session] { return run_undo(session, *args); });
@@ -226,7 +227,7 @@ void add_undo(CLI::App& app, Session& session) {
 }
 
 void add_model(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ModelArguments>();
   CLI::App* const command = add_command(app, session, "model", "the model a run file keeps, and its history",
                                         [args, &session] { return run_model(session, *args); });
   add_run_argument(command, *args);

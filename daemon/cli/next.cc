@@ -13,7 +13,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kNextHelp =
     "Two effects that look alike on this run may differ under other conditions. Each action of the menu is "
     "tried\n"
     "in the model: 24 poses more, and with them the probability that the right one of the two is named.\n\n"
@@ -22,7 +22,7 @@ constexpr const char* kHelp =
     "  mgt next run.mgtrun -o poses.csv                                  the best one's poses, as a list\n\n"
     "Exit code 0: something would help, or there is nothing to settle. 1: nothing known here would.";
 
-struct Arguments {
+struct NextArguments {
   std::string run, output;
   std::vector<std::string> pair;
   std::shared_ptr<FitFlags> flags;
@@ -44,7 +44,7 @@ Result<calib::NextReport> next_about(const PoseTable& table, calib::FitOptions o
                                   std::string(calib::family_name(open->rivals.front()))});
 }
 
-int run_next(const Session& session, const Arguments& args) {
+int run_next(const Session& session, const NextArguments& args) {
   if (args.pair.size() == 1)
     return report(session,
                   {ErrorCode::usage, "one effect alone leaves nothing to settle", "name two, or none"});
@@ -86,11 +86,11 @@ int run_next(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_next(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<NextArguments>();
   CLI::App* const command =
       add_command(app, session, "next", "the cheapest further measurement that would settle the name",
                   [args, &session] { return run_next(session, *args); });
-  command->footer(kHelp);
+  command->footer(kNextHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("EFFECT", args->pair, "two of them, by name")->expected(0, 2);
   command->add_option("-o,--output", args->output, "write the best one's poses here (CSV)");

@@ -15,7 +15,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kPlanHelp =
     R"(Prints the standard error that every parameter and the tensor would have, what stays weakly known and which
 poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg and
 whatever an effect needs; readings are not looked at), or those of the run that a configuration describes, or
@@ -31,7 +31,7 @@ the pairs of effects that it could not tell apart, with the further measurement 
 
 Exit code 0: every parameter would be determined. 1: not; the poses to add are printed.)";
 
-struct Arguments {
+struct PlanArguments {
   std::string poses, config, calibration;
   std::vector<std::string> with;
   double noise_nT{1}, warming_degC{2}, scalar_sd_nT{kDefaultScalarSd_nT};
@@ -49,7 +49,7 @@ struct Wanted {
   std::optional<LimitedRun> run;
 };
 
-Result<void> take_config(const Arguments& args, Wanted& wanted) {
+Result<void> take_config(const PlanArguments& args, Wanted& wanted) {
   const auto config = daemon::load_config(args.config);
   if (!config) {
     std::string all;
@@ -64,7 +64,7 @@ Result<void> take_config(const Arguments& args, Wanted& wanted) {
   return {};
 }
 
-Result<void> take_poses(const Arguments& args, Wanted& wanted) {
+Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   if (!args.config.empty()) return take_config(args, wanted);
   calib::PlanRequest& request = wanted.request;
   if (args.poses.empty()) {
@@ -82,7 +82,7 @@ Result<void> take_poses(const Arguments& args, Wanted& wanted) {
 }
 
 /// What the command line says goes before the configuration, and that before the earlier calibration.
-Result<Wanted> wanted_of(const Arguments& args) {
+Result<Wanted> wanted_of(const PlanArguments& args) {
   Wanted out;
   calib::PlanRequest& r = out.request;
   r.scalar_sd_nT = args.scalar_sd_nT;
@@ -114,7 +114,7 @@ Result<Wanted> wanted_of(const Arguments& args) {
   return out;
 }
 
-int run_plan(const Session& session, const Arguments& args) {
+int run_plan(const Session& session, const PlanArguments& args) {
   const auto wanted = wanted_of(args);
   if (!wanted) return report(session, wanted.error());
   const auto planned = calib::plan(wanted->request);
@@ -138,11 +138,11 @@ int run_plan(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_plan(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<PlanArguments>();
   CLI::App* const command =
       add_command(app, session, "plan", "before measuring: what a pose list can and cannot determine",
                   [args, &session] { return run_plan(session, *args); });
-  command->footer(kHelp);
+  command->footer(kPlanHelp);
   auto* const poses =
       command->add_option("POSES", args->poses, "pose list in CSV; the default run when absent");
   command->add_option("--config", args->config, "take poses, limits and site from this configuration")

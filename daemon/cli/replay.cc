@@ -15,7 +15,7 @@
 namespace mgtd::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::vector<std::string> journals;
   std::string calibration, output;
 };
@@ -91,7 +91,7 @@ void print_summary(const daemon::ReplayCounts& counts, std::uint64_t damaged) {
                *counts.parted);
 }
 
-int run_replay(const Session& session, const Arguments& args) {
+int run_replay(const Session& session, const ReplayArguments& args) {
   const auto journals = journals_of(args.journals);
   if (!journals) return report(session, journals.error());
   for (const Error& why : journals->left_out) fmt::print(stderr, "{}\n", why.text());
@@ -127,7 +127,7 @@ int run_replay(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_replay(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ReplayArguments>();
   CLI::App* const command =
       add_command(app, session, "replay",
                   "the stream once more, to the last byte, from the daemon's raw journal (NDJSON)",

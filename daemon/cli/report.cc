@@ -13,7 +13,7 @@
 namespace mgtd::cli {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kReportHelp =
     "One page in HTML that needs nothing else: what was measured, the verdict and the checks, errors before "
     "and\n"
     "after, what the model leaves against time, angles, temperature and every extra column, what each effect "
@@ -21,12 +21,12 @@ constexpr const char* kHelp =
     "out, what could be missing, and what this run cannot tell. Every section says what good looks like.\n\n"
     "  mgt report run.mgtrun -o report.html";
 
-struct Arguments {
+struct ReportArguments {
   std::string run, output;
   std::shared_ptr<FitFlags> flags;
 };
 
-Result<ReportContent> content_of(const Arguments& args) {
+Result<ReportContent> content_of(const ReportArguments& args) {
   auto source = read_source(args.run, *args.flags);
   if (!source) return tl::unexpected(source.error());
   auto options = fit_options(*args.flags, *source);
@@ -60,7 +60,7 @@ Result<ReportContent> content_of(const Arguments& args) {
   return out;
 }
 
-int run_report(const Session& session, const Arguments& args) {
+int run_report(const Session& session, const ReportArguments& args) {
   const auto content = content_of(args);
   if (!content) return report(session, content.error());
   const std::string page = report_page(*content);
@@ -79,10 +79,10 @@ int run_report(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_report(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<ReportArguments>();
   CLI::App* const command = add_command(app, session, "report", "everything about a run on one HTML page",
                                         [args, &session] { return run_report(session, *args); });
-  command->footer(kHelp);
+  command->footer(kReportHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "report.html")->required();
   args->flags = add_model_flags(command);

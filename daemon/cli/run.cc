@@ -23,7 +23,7 @@
 namespace mgtd::cli {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   RunRequest request;
   std::string poses_file;
   bool detach{false};
@@ -104,7 +104,7 @@ int follow(const Session& session) {
 }
 
 /// The request with the poses of the file, if one is named.
-Result<nlohmann::json> request_of(const Arguments& args) {
+Result<nlohmann::json> request_of(const RunArguments& args) {
   RunRequest request = args.request;
   if (!args.poses_file.empty()) {
     const auto text = read_file(args.poses_file);
@@ -122,7 +122,7 @@ Result<nlohmann::json> request_of(const Arguments& args) {
   return out;
 }
 
-int start(const Session& session, const Arguments& args) {
+int start(const Session& session, const RunArguments& args) {
   const auto request = request_of(args);
   if (!request) return report(session, request.error());
   const auto reply = ask(session, ControlCommand::run_start, *request);
@@ -153,7 +153,7 @@ Result<std::optional<daemon::LimitsCost>> cost_of_limits(const nlohmann::json& r
   return daemon::limits_cost(*options, *limits, std::move(request));
 }
 
-int dry_run(const Session& session, const Arguments& args) {
+int dry_run(const Session& session, const RunArguments& args) {
   const auto request = request_of(args);
   if (!request) return report(session, request.error());
   auto reply = ask(session, ControlCommand::run_dry_run, *request);
@@ -186,7 +186,7 @@ int simple(const Session& session, ControlCommand command, bool then_follow) {
   return 0;
 }
 
-int enter(const Session& session, const Arguments& args) {
+int enter(const Session& session, const RunArguments& args) {
   const auto reply = ask(session, ControlCommand::run_enter,
                          {{"azimuth_deg", args.scales_deg[0]},
                           {"pitch_deg", args.scales_deg[1]},
@@ -199,7 +199,7 @@ int enter(const Session& session, const Arguments& args) {
   return 0;
 }
 
-void add_plan_options(CLI::App* command, Arguments& args) {
+void add_plan_options(CLI::App* command, RunArguments& args) {
   RunRequest& r = args.request;
   command->add_option("--poses", args.poses_file,
                       "measure the poses of this list (CSV), as mgt next -o writes it, instead of sets");
@@ -219,7 +219,7 @@ void add_run(CLI::App& app, Session& session) {
       "run",
       "a calibration run: start, dry-run, magnet-test, follow, enter, redo, pause, resume, finish, abort");
   group->require_subcommand(1);
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<RunArguments>();
   CLI::App* const begin = add_command(
       *group, session, "start", "preflight, home, measure every pose, solve, propose; shows the progress",
       [args, &session] { return start(session, *args); });

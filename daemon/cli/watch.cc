@@ -17,7 +17,7 @@
 namespace mgtd::cli {
 namespace {
 
-struct Arguments {
+struct WatchArguments {
   std::string stream;
   std::optional<double> rate_hz;
   std::uint64_t count{0};
@@ -92,7 +92,7 @@ void print_criticism(const nlohmann::json& status, std::string& told, Gaps& gaps
 }
 
 /// Where the stream is, as the daemon itself says.
-Result<std::string> stream_of(const Session& session, const Arguments& args) {
+Result<std::string> stream_of(const Session& session, const WatchArguments& args) {
   if (!args.stream.empty()) return args.stream;
   const auto version = ask(session, ControlCommand::version);
   if (!version) return tl::unexpected(version.error());
@@ -114,7 +114,7 @@ void show(const nlohmann::json& object, std::string& told, Gaps& gaps) {
   }
 }
 
-Result<daemon::StreamReader> open_stream(const Session& session, const Arguments& args) {
+Result<daemon::StreamReader> open_stream(const Session& session, const WatchArguments& args) {
   const auto where = stream_of(session, args);
   if (!where) return tl::unexpected(where.error());
   WatchRequest request;
@@ -126,7 +126,7 @@ Result<daemon::StreamReader> open_stream(const Session& session, const Arguments
   return daemon::StreamReader::open(*where, request);
 }
 
-int run_watch(const Session& session, const Arguments& args) {
+int run_watch(const Session& session, const WatchArguments& args) {
   auto reader = open_stream(session, args);
   if (!reader) return report(session, reader.error());
   std::string told;
@@ -153,7 +153,7 @@ int run_watch(const Session& session, const Arguments& args) {
 }  // namespace
 
 void add_watch(CLI::App& app, Session& session) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<WatchArguments>();
   args->rate_hz = 2;
   CLI::App* const command = add_command(app, session, "watch", "the live stream",
                                         [args, &session] { return run_watch(session, *args); });

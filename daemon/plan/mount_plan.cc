@@ -16,8 +16,6 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr double kPerDegree = 100;  // planned angles are multiples of 0.01 deg
-
 /// Evenly over at most one turn of the travel, in random order.
 std::vector<double> azimuths_rad(RandomSource& random, const drivers::TableLimits::Range& range, int count) {
   const double span_deg = std::min(360.0, to_deg(range.max_rad - range.min_rad));

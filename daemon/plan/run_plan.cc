@@ -18,8 +18,6 @@ namespace {
 
 using drivers::TableLimits;
 
-/// Planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit.
-constexpr double kPerDegree = 100;
 constexpr int kMinRandom = 9;                 ///< unknowns of a sensor by itself
 constexpr double kMinTravel_rad = to_rad(1);  ///< less is no axis
 

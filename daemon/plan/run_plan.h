@@ -23,6 +23,9 @@
 /// 0.01 degree (a limit that is not one is kept off by less than that).
 namespace mgtd::daemon {
 
+/// Planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit.
+inline constexpr double kPerDegree = 100;
+
 struct PlanOptions {
   double step_deg{10};  ///< divides 360 into an even number of poses; 0: no standard set
   int random{121};      ///< poses of the random set, revisits included

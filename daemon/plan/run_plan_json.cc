@@ -28,10 +28,10 @@ json to_json(const PlannedPose& p) {
           {"roll_deg", rounded_deg(p.target.roll_rad)},
           {"dwell_s", p.dwell_s},
           {"sense", p.sense},
-          {"mount", p.mount ? json(*p.mount) : json(nullptr)},
+          {"mount", or_null(p.mount)},
           {"mounting", p.mount ? scale_entry_json(p.mounting) : json(nullptr)},
-          {"revisit_of", p.revisit_of ? json(*p.revisit_of) : json(nullptr)},
-          {"since_stop_s", p.since_stop_s ? json(*p.since_stop_s) : json(nullptr)},
+          {"revisit_of", or_null(p.revisit_of)},
+          {"since_stop_s", or_null(p.since_stop_s)},
           {"note", p.note.empty() ? json(nullptr) : json(p.note)}};
 }
 

@@ -9,14 +9,14 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr std::size_t kMinSamples = 8;      // fewer give no standard deviation worth the name
+constexpr std::size_t kFewestSamples = 8;   // fewer give no standard deviation worth the name
 constexpr double kCorrelationNoise = 1.5;   // standard deviations of a correlation that is none
-constexpr double kFrozenShare = 0.5;        // of successive samples, all three axes exactly equal
+constexpr double kFrozenDwell = 0.5;        // of successive samples, all three axes exactly equal
 constexpr double kScalarPriorReadings = 4;  // weight of the configured scatter of one scalar reading
-constexpr int kAxes = 3 * kSensors;
+constexpr int kDwellAxes = 3 * kSensors;
 
-Eigen::Matrix<double, kAxes, 1> stacked(const Epoch& epoch) {
-  Eigen::Matrix<double, kAxes, 1> y;
+Eigen::Matrix<double, kDwellAxes, 1> stacked(const Epoch& epoch) {
+  Eigen::Matrix<double, kDwellAxes, 1> y;
   for (int slot = 0; slot < kSensors; ++slot)
     y.segment<3>(3 * slot) = epoch.y_nT[static_cast<std::size_t>(slot)];
   return y;
@@ -86,8 +86,8 @@ DwellQuality Dwell::quality() const {
 
 Result<void> Dwell::acceptable() const {
   const DwellQuality q = quality();
-  const bool thin = q.gap_share > config_.max_gap_share || q.epochs < kMinSamples;
-  const double allowed = thin && q.frozen > 0 ? 0 : kFrozenShare * static_cast<double>(heard_ - 1);
+  const bool thin = q.gap_share > config_.max_gap_share || q.epochs < kFewestSamples;
+  const double allowed = thin && q.frozen > 0 ? 0 : kFrozenDwell * static_cast<double>(heard_ - 1);
   const auto most = std::max_element(q.repeats.begin(), q.repeats.end());
   if (config_.frozen_check && static_cast<double>(*most) > allowed) {
     return fail(ErrorCode::refused,
@@ -149,7 +149,7 @@ void Dwell::fill_readings(Pose& pose) const {
   for (int slot = 0; slot < kSensors; ++slot)
     time[static_cast<std::size_t>(slot)] = correlation_time(slot, residual);
   const double least = *std::min_element(time.begin(), time.end());
-  for (int axis = 0; axis < kAxes; ++axis) {
+  for (int axis = 0; axis < kDwellAxes; ++axis) {
     const auto slot = static_cast<std::size_t>(axis / 3), component = static_cast<std::size_t>(axis % 3);
     pose.y_nT[slot][axis % 3] = mean[axis];
     pose.sd_nT[slot][component] = std::sqrt(square[axis] / (n - 1) * time[slot] / least);

@@ -31,9 +31,9 @@ struct NamedAxis {
   Range TableLimits::*range;
   Range whole;
 };
-constexpr std::array<NamedAxis, 3> kAxes{{{"azimuth", &TableLimits::azimuth, {-kPi, kPi}},
-                                          {"pitch", &TableLimits::pitch, {-kPi / 2, kPi / 2}},
-                                          {"roll", &TableLimits::roll, {-kPi, kPi}}}};
+constexpr std::array<NamedAxis, 3> kTableAxes{{{"azimuth", &TableLimits::azimuth, {-kPi, kPi}},
+                                               {"pitch", &TableLimits::pitch, {-kPi / 2, kPi / 2}},
+                                               {"roll", &TableLimits::roll, {-kPi, kPi}}}};
 
 double width(const Range& range) { return range.max_rad - range.min_rad; }
 
@@ -45,7 +45,7 @@ bool narrows(const Range& range, const Range& whole) {
 double upright(double pitch_rad) { return std::sin(std::clamp(pitch_rad, -kPi / 2, kPi / 2)); }
 
 TableLimits without_limits(TableLimits limits) {
-  for (const NamedAxis& axis : kAxes)
+  for (const NamedAxis& axis : kTableAxes)
     if (narrows(limits.*axis.range, axis.whole)) limits.*axis.range = axis.whole;
   return limits;
 }
@@ -147,7 +147,7 @@ bool matters(const LimitsCost& cost) {
 
 double attitudes_left_out(const TableLimits& limits) {
   double kept = 1;
-  for (const NamedAxis& axis : kAxes) {
+  for (const NamedAxis& axis : kTableAxes) {
     const Range& range = limits.*axis.range;
     if (!narrows(range, axis.whole)) continue;
     kept *= axis.range == &TableLimits::pitch ? (upright(range.max_rad) - upright(range.min_rad)) / 2
@@ -159,7 +159,7 @@ double attitudes_left_out(const TableLimits& limits) {
 Result<std::optional<LimitsCost>> limits_cost(const PlanOptions& options, const TableLimits& limits,
                                               calib::PlanRequest request) {
   LimitsCost out;
-  for (const NamedAxis& axis : kAxes) {
+  for (const NamedAxis& axis : kTableAxes) {
     const Range& range = limits.*axis.range;
     if (narrows(range, axis.whole))
       out.axes.push_back({axis.name, to_deg(range.min_rad), to_deg(range.max_rad)});

@@ -7,17 +7,17 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/sensor/channels.h"
 #include "daemon/run/wiring.h"
 
 namespace mgtd::daemon {
 namespace {
 
 constexpr std::size_t kMinPairs = 20;     // fewer make no standard deviation worth the name
-constexpr double kFrozenShare = 0.5;      // of successive values, equal
+constexpr double kFrozenPreflight = 0.5;  // of successive values, equal
 constexpr double kTableSilence_s = 10.0;  // a table at rest is asked every second
 constexpr double kReachTolerance_rad = 1e-3;
 
-std::string axis_name(int axis) { return fmt::format("s{}.{}", axis / 3 + 1, "xyz"[axis % 3]); }
 std::string named(const char* what, int slot) { return fmt::format("{}.s{}", what, slot + 1); }
 
 Check check(std::string name, bool passed, std::string measured, std::string limit, std::string remedy) {
@@ -184,8 +184,8 @@ Check Preflight::rest(int slot, const Statistics& s) const {
     worst = axis;
   }
   return check(named("rest", slot), most <= config_.max_unrest,
-               most > 0 ? fmt::format("{} scatters by {:.2f} nT, {:.1f} x its noise", axis_name(worst),
-                                      s.scatter_nT[worst], most)
+               most > 0 ? fmt::format("{} scatters by {:.2f} nT, {:.1f} x its noise",
+                                      calib::channel_name(worst), s.scatter_nT[worst], most)
                         : fmt::format("below {:.0f} nT", config_.unrest_free_nT),
                fmt::format("{:.0f} x the noise", config_.max_unrest),
                "the field moves: keep people, cars and tools away, see that the table stands still");
@@ -197,10 +197,11 @@ Check Preflight::alive(int slot, const Statistics& s) const {
     if (s.changes[axis] < s.changes[worst]) worst = axis;
   }
   const auto pairs = static_cast<double>(s.pairs);
-  const bool moves = !config_.frozen_check || s.changes[worst] > kFrozenShare * pairs;
+  const bool moves = !config_.frozen_check || s.changes[worst] > kFrozenPreflight * pairs;
   return check(named("alive", slot), s.pairs > 0 && moves,
-               fmt::format("{} changed in {:.0f} of {:.0f} steps", axis_name(worst), s.changes[worst], pairs),
-               fmt::format("{:.0f} %", 100 * kFrozenShare),
+               fmt::format("{} changed in {:.0f} of {:.0f} steps", calib::channel_name(worst),
+                           s.changes[worst], pairs),
+               fmt::format("{:.0f} %", 100 * kFrozenPreflight),
                "the digitiser repeats an old sample or the channel is open: check supply and cable");
 }
 

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/sensor/channels.h"
+
 namespace mgtd::daemon {
 namespace {
 
-constexpr std::size_t kMinSamples = 6;
+constexpr std::size_t kFewestInWindow = 6;
 constexpr double kWindowShare = 0.8;  // of the expected epochs; the rest may be gaps
-
-std::string axis_name(int axis) { return fmt::format("s{}.{}", axis / 3 + 1, "xyz"[axis % 3]); }
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void Settle::add(const EpochOrGap& item) {
 
 bool Settle::window_full() const {
   const auto n = static_cast<double>(window_.size());
-  if (window_.size() < kMinSamples || n < kWindowShare * config_.window_s * config_.rate_hz) return false;
+  if (window_.size() < kFewestInWindow || n < kWindowShare * config_.window_s * config_.rate_hz) return false;
   return to_seconds(window_.back().t - window_.front().t) > kWindowShare * config_.window_s;
 }
 
@@ -116,20 +116,20 @@ SettleVerdict Settle::judge_field(Instant now) const {
   if (worst.drift_excess > 1) {
     return {open,
             fmt::format("{} drifts {:.2f} nT over {:.1f} s, {:.1f} s after the stop",
-                        axis_name(worst.drifting_axis), worst.change_nT, config_.window_s, since_s),
+                        calib::channel_name(worst.drifting_axis), worst.change_nT, config_.window_s, since_s),
             fmt::format("{:.2f} nT", worst.limit_nT),
             "lengthen settle_max_s, or look for a motor that stays on or iron that moves"};
   }
   const double most_nT = config_.disturbed_ratio * config_.noise_nT;
   if (config_.noise_nT > 0 && worst.sd_nT > most_nT) {
     return {last_chance ? SettleState::disturbed : SettleState::settling,
-            fmt::format("{} scatters by {:.2f} nT", axis_name(worst.noisy_axis), worst.sd_nT),
+            fmt::format("{} scatters by {:.2f} nT", calib::channel_name(worst.noisy_axis), worst.sd_nT),
             fmt::format("{:.2f} nT, {:.0f} x the noise of the preflight", most_nT, config_.disturbed_ratio),
             "something magnetic moves near the array, or the table's drive is still powered"};
   }
   return {since_s < config_.min_s ? open : SettleState::settled,
-          fmt::format("{} drifts {:.2f} nT over {:.1f} s", axis_name(worst.drifting_axis), worst.change_nT,
-                      config_.window_s),
+          fmt::format("{} drifts {:.2f} nT over {:.1f} s", calib::channel_name(worst.drifting_axis),
+                      worst.change_nT, config_.window_s),
           fmt::format("{:.2f} nT", worst.limit_nT), ""};
 }
 

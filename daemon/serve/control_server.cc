@@ -16,15 +16,9 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr std::size_t kReplyBacklog = 4 * 1024 * 1024;  // bytes of replies a client may leave unread
+constexpr std::size_t kControlBacklog = 4 * 1024 * 1024;  // bytes of replies a client may leave unread
 
 using Reply = Result<nlohmann::ordered_json>;
-
-struct Client {
-  std::shared_ptr<LineConnection> connection;
-  ControlPeer peer;
-  RequestRate rate;
-};
 
 /// As the kernel knows who connected.
 ControlPeer peer_of(LineConnection::Socket& socket, std::uint64_t number) {
@@ -68,6 +62,12 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
   }
 
  private:
+  struct Client {
+    std::shared_ptr<LineConnection> connection;
+    ControlPeer peer;
+    RequestRate rate;
+  };
+
   void admit(LineConnection::Socket socket) {
     const ControlPeer peer = peer_of(socket, next_connection_++);
     const auto connection = std::make_shared<LineConnection>(std::move(socket), kControlLineLimit);
@@ -102,7 +102,7 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
     const auto request = parse_control(line);
     client.connection->send(request ? encode_reply(request->id, answer(client.peer, *request, now)) + '\n'
                                     : refusal(request.error().error, request.error().id));
-    if (client.connection->backlog() > kReplyBacklog)
+    if (client.connection->backlog() > kControlBacklog)
       drop(client, DropReason::unread, {ErrorCode::refused, "the client does not read its replies", ""});
   }
 

@@ -17,17 +17,9 @@
 namespace mgtd::daemon {
 namespace {
 
-constexpr int kBadLines = 32;                           // in a row, before a client counts as flooding
-constexpr std::size_t kReplyBacklog = 256 * 1024;       // bytes of replies a client may leave unread
-constexpr std::size_t kBatch = LineConnection::kBatch;  // bytes written to a client in one turn
-
-struct Client {
-  std::shared_ptr<LineConnection> connection;
-  RequestRate rate;
-  Subscription subscription{};
-  std::optional<RingReader> past{};  ///< while it reads what is on disk
-  int bad_lines{0};
-};
+constexpr int kBadLines = 32;                            // in a row, before a client counts as flooding
+constexpr std::size_t kStreamReplyBacklog = 256 * 1024;  // bytes of replies a client may leave unread
+constexpr std::size_t kBatch = LineConnection::kBatch;   // bytes written to a client in one turn
 
 Error overlong() {
   return {ErrorCode::bad_input,
@@ -76,6 +68,14 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   [[nodiscard]] std::uint16_t tcp_port() const { return tcp_port_; }
 
  private:
+  struct Client {
+    std::shared_ptr<LineConnection> connection;
+    RequestRate rate;
+    Subscription subscription{};
+    std::optional<RingReader> past{};  ///< while it reads what is on disk
+    int bad_lines{0};
+  };
+
   void admit(LineConnection::Socket socket);
   void on_line(Client& client, std::string_view line);
   void bad_line(Client& client, const Error& error);
@@ -171,7 +171,7 @@ void StreamServer::State::on_line(Client& client, std::string_view line) {
   client.past.reset();
   if (const auto seq = client.subscription.behind()) client.past = disk_->read_from(*seq);
   client.connection->send(out);
-  if (client.connection->backlog() > kReplyBacklog) {
+  if (client.connection->backlog() > kStreamReplyBacklog) {
     return drop(client, DropReason::unread,
                 {ErrorCode::refused, "the client asks and does not read the answers", ""});
   }
@@ -180,7 +180,7 @@ void StreamServer::State::on_line(Client& client, std::string_view line) {
 
 void StreamServer::State::bad_line(Client& client, const Error& error) {
   client.connection->send(encode(error) + '\n');
-  if (++client.bad_lines < kBadLines && client.connection->backlog() <= kReplyBacklog) return;
+  if (++client.bad_lines < kBadLines && client.connection->backlog() <= kStreamReplyBacklog) return;
   drop(client, DropReason::bad_lines,
        {ErrorCode::refused, fmt::format("disconnected: {} bad lines in a row", client.bad_lines),
         "see the errors before this one"});

@@ -20,7 +20,7 @@ std::string to_text(const std::vector<Definition>& definitions) {
                    {"spec", d.spec},
                    {"found_on", d.found_on},
                    {"found", std::move(found)},
-                   {"confirmed_log10_p", d.confirmed_log10_p ? json(*d.confirmed_log10_p) : json()}});
+                   {"confirmed_log10_p", or_null(d.confirmed_log10_p)}});
   }
   return out.dump(1);
 }

@@ -17,7 +17,7 @@ CALIB = {
                           "calib/sensor"],
     "calib/fit": ["calib/calibration", "calib/effects", "calib/poses", "calib/sensor"],
     "calib/fit/two_step": ["calib/fit", "calib/calibration", "calib/sensor"],
-    "calib/fit/joint": ["calib/fit/two_step", "calib/fit", "calib/calibration", "calib/effects/library",
+    "calib/fit/joint": ["calib/stats", "calib/fit/two_step", "calib/fit", "calib/calibration", "calib/effects/library",
                         "calib/effects/formula", "calib/effects", "calib/poses", "calib/sensor"],
     "calib/fit/methods": ["calib/fit/joint", "calib/fit/two_step", "calib/fit"],
     "calib/criticism/live": ["calib/calibration", "calib/effects", "calib/stats"],

@@ -28,7 +28,7 @@ constexpr double kReferenceTravel_deg = 20;  ///< the way past the reference mar
 constexpr double kMaxVelocity_deg_per_s = 720;
 constexpr double kFactory_deg_per_s = 5;  ///< until it is told
 constexpr double kEncoder_deg = 1e-4;     ///< sd of a position read
-constexpr std::size_t kMaxLine = 255;
+constexpr std::size_t kMaxGcs2Line = 255;
 constexpr double kNever = 1e300;
 
 TableAxis which(std::size_t i) { return static_cast<TableAxis>(i); }
@@ -102,7 +102,7 @@ void Gcs2Instrument::receive(std::string_view bytes, double now_s) {
       immediate(c, now_s);
     } else if (c == '\n') {
       command(std::exchange(line_, {}), now_s);
-    } else if (line_.size() <= kMaxLine) {
+    } else if (line_.size() <= kMaxGcs2Line) {
       line_ += c;
     }
   }
@@ -153,7 +153,7 @@ void Gcs2Instrument::command(std::string_view line, double now_s) {
   const std::size_t space = std::min(line.find(' '), line.size());
   const std::string_view verb = line.substr(0, space), rest = line.substr(space);
   if (verb.empty()) return;
-  if (line.size() > kMaxLine) {
+  if (line.size() > kMaxGcs2Line) {
     error_ = kTooLong;
   } else if (verb == "*IDN?") {
     put("(c)2024 Physik Instrumente (PI) GmbH & Co. KG, C-867.simulated, 867001, 1.0\n", now_s);

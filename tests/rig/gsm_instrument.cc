@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kTuningDigits = 5;  ///< 048.5
 constexpr std::size_t kClockDigits = 13;  ///< yymmddwHHMMSS
-constexpr double kBoot_s = 3;
+constexpr double kGsmBoot_s = 3;
 constexpr double kSaturated_nT = 120'000;
 constexpr const char* kMenu =
     "GSM-90 simulated v7.0\r\n5-50Hz 6-60Hz T-tuning C-time D-slower U-faster R-run\r\n";
@@ -28,7 +28,7 @@ void GsmInstrument::switched_off(double /*now_s*/) {
 void GsmInstrument::switched_on(double now_s) {
   running_ = true;
   period_s_ = world_.scenario().scalar_period_s;
-  next_s_ = now_s + kBoot_s;
+  next_s_ = now_s + kGsmBoot_s;
 }
 
 void GsmInstrument::receive(std::string_view bytes, double now_s) {

@@ -25,7 +25,7 @@ std::string to_hex(std::string_view text) {
   return out;
 }
 
-std::string from_hex(std::string_view hex) {
+std::string bytes_of_hex(std::string_view hex) {
   std::string out;
   for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
     unsigned value = 0;
@@ -51,7 +51,7 @@ tl::expected<nlohmann::json, std::string> open_seal(std::string_view content) {
   if (!file.is_object() || file.value("schema", "") != kSchema || !file.contains("sealed") ||
       !file["sealed"].is_string())
     return tl::unexpected(std::string("this is no sealed truth of mgt-rig"));
-  const std::string text = from_hex(file["sealed"].get<std::string>());
+  const std::string text = bytes_of_hex(file["sealed"].get<std::string>());
   const std::string told = file.value("sha256", ""), found = sha256_hex(text);
   if (told != found)
     return tl::unexpected(

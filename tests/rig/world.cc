@@ -11,7 +11,7 @@ namespace mgtd::rig {
 namespace {
 
 /// Longest step of the path that an effect with memory is shown while the table moves.
-constexpr double kPathStep_s = 0.05;
+constexpr double kPathEvery_s = 0.05;
 constexpr double kTurned_deg = 90.7;
 constexpr double kMagnet_Am2 = 1, kMagnetBeyond_m = 0.2;
 
@@ -178,7 +178,7 @@ void World::follow(int i, double t_s) {
   double& done_s = followed_s_.at(at(i));
   while (done_s < t_s) {
     // A standing table is left at once; what else changes, changes slowly.
-    done_s = moving(done_s) ? std::min(t_s, done_s + kPathStep_s) : t_s;
+    done_s = moving(done_s) ? std::min(t_s, done_s + kPathEvery_s) : t_s;
     AxisContext now = context(i, done_s);
     for (now.axis = 0; now.axis < 3; ++now.axis) {
       for (Effect* effect : remembering_) effect->follow(now);
@@ -190,7 +190,7 @@ void World::follow_all(double t_s) {
   if (remembering_.empty()) return;
   // In step, so that the four share what is above the sensors.
   for (double t = *std::min_element(followed_s_.begin(), followed_s_.end()); t < t_s;) {
-    t = moving(t) ? std::min(t_s, t + kPathStep_s) : t_s;
+    t = moving(t) ? std::min(t_s, t + kPathEvery_s) : t_s;
     for (int i = 0; i < 4; ++i) follow(i, t);
   }
 }

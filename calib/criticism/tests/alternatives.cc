@@ -11,7 +11,7 @@ namespace mgtd::calib {
 namespace {
 
 constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
-constexpr int kAsked = 3;          ///< the best questions of a rival stand for all of its
+constexpr int kBestQuestions = 3;  ///< the best questions of a rival stand for all of its
 constexpr double kShown = 0.999;   ///< pairs that are told apart better than this are no rivals
 constexpr double kNothing = 1e-3;  ///< of a chi-square
 /// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
@@ -73,7 +73,7 @@ std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::siz
     int asked = 0;
     for (const Contender& c : all) {
       if (c.family != b) continue;
-      Rival rival = compare(contenders, families, *winner, c, asked++ < kAsked);
+      Rival rival = compare(contenders, families, *winner, c, asked++ < kBestQuestions);
       if (!nearest || nearer(rival, *nearest)) nearest = std::move(rival);
     }
     if (nearest && (nearest->possible || nearest->p_right < kShown)) out.push_back(*std::move(nearest));

@@ -13,13 +13,13 @@ namespace mgtd::calib {
 namespace {
 
 /// "s3.z.tau1" in parts; axis -1 for what belongs to no single axis.
-struct Place {
+struct NamedPlace {
   int sensor{-1}, axis{-1};
   std::string rest;
 };
 
-Place place_of(const std::string& name) {
-  Place out{.rest = name};
+NamedPlace place_of(const std::string& name) {
+  NamedPlace out{.rest = name};
   if (name.size() < 4 || name[0] != 's' || name[2] != '.' || name[1] < '1' || name[1] > '4') return out;
   out.sensor = name[1] - '1';
   const auto axis = std::string_view("xyz").find(name[3]);
@@ -64,7 +64,7 @@ std::vector<Hypothesis> whole_and_sensors(const Effect& effect) {
   std::array<Groups, 4> sensor;
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
-    const Place p = place_of(name);
+    const NamedPlace p = place_of(name);
     if (p.sensor < 0) return out;
     sensor[static_cast<std::size_t>(p.sensor)][name].push_back(i);
   }
@@ -86,7 +86,7 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
   std::array<Groups, 12> axis;
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
-    const Place p = place_of(name);
+    const NamedPlace p = place_of(name);
     if (p.sensor < 0 || p.axis < 0) return out;
     const auto s = static_cast<std::size_t>(p.sensor);
     const std::string of_sensor = fmt::format("s{}{}", p.sensor + 1, p.rest);
@@ -96,7 +96,7 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
     axis[3 * s + static_cast<std::size_t>(p.axis)][name].push_back(i);
   }
   for (std::size_t a = 0; a < axis.size(); ++a) {
-    out.push_back(summed(fmt::format("s{}.{}", a / 3 + 1, "xyz"[a % 3]), 1, 12, n, axis[a]));
+    out.push_back(summed(channel_name(static_cast<int>(a)), 1, 12, n, axis[a]));
   }
   const bool alike = std::all_of(coefficients.begin(), coefficients.end(),
                                  [](const Coefficient& c) { return c.name.size() == 4 || c.name[4] == '.'; });

@@ -185,7 +185,7 @@ std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<
   std::vector<Component> whitened, scalar, attitude, between, closure;
   const Eigen::MatrixXd closures = closure_rows(fit.problem.geometry) * f.delta_nT;
   for (int c = 0; c < kChannels; ++c) {
-    const std::string axis = fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]);
+    const std::string axis = channel_name(c);
     whitened.push_back({axis, f.whitened.row(c)});
     Eigen::VectorXd d = f.delta_nT.row(c);
     for (int i = 0; i < kSensors; ++i) d -= f.delta_nT.row(3 * i + c % 3).transpose() / kSensors;

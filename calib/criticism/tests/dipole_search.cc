@@ -20,7 +20,7 @@ constexpr double kLongest = 0.4;  ///< step, of the distance
 constexpr double kEnough = 0.05;  ///< gain of S that is no more worth a step
 constexpr double kFirstDamping = 1e-3, kMostDamping = 1e3;
 
-struct Place {
+struct DipolePlace {
   Eigen::Vector3d at_S_m;
   double S{0};
   Eigen::Vector3d moment{0, 0, 0};
@@ -32,8 +32,8 @@ class DipoleSearch {
                const DipoleAt& dipole)
       : problem_(problem), state_(state), residual_(residual), dipole_(dipole) {}
 
-  [[nodiscard]] Place at(const Eigen::Vector3d& place_S_m) const {
-    Place out{.at_S_m = place_S_m};
+  [[nodiscard]] DipolePlace at(const Eigen::Vector3d& place_S_m) const {
+    DipolePlace out{.at_S_m = place_S_m};
     const auto effect = dipole_(place_S_m);
     if (!effect) return out;
     const Signature s = signature_of(residual_, effect_rows(problem_, state_, *effect).leftCols<3>());
@@ -45,16 +45,16 @@ class DipoleSearch {
   }
 
   /// Directions to faces, edges and corners of a cube, those of large S that are not next to a larger one.
-  [[nodiscard]] std::vector<Place> starts() const {
-    std::vector<Place> all, out;
+  [[nodiscard]] std::vector<DipolePlace> starts() const {
+    std::vector<DipolePlace> all, out;
     for (int cell = 0; cell < 27; ++cell) {
       const Eigen::Vector3d d(cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1);
       if (d.squaredNorm() == 0) continue;
       for (const double distance_m : kDistances_m) all.push_back(at(distance_m * d.normalized()));
     }
-    std::sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.S > b.S; });
-    for (const Place& p : all) {
-      const bool next_to = std::any_of(out.begin(), out.end(), [&](const Place& q) {
+    std::sort(all.begin(), all.end(), [](const DipolePlace& a, const DipolePlace& b) { return a.S > b.S; });
+    for (const DipolePlace& p : all) {
+      const bool next_to = std::any_of(out.begin(), out.end(), [&](const DipolePlace& q) {
         return p.at_S_m.normalized().dot(q.at_S_m.normalized()) > kSame;
       });
       if (!next_to && out.size() < kStarts) out.push_back(p);
@@ -62,13 +62,13 @@ class DipoleSearch {
     return out;
   }
 
-  [[nodiscard]] Signature both(const Place& place, const EffectPtr& effect) const {
+  [[nodiscard]] Signature both(const DipolePlace& place, const EffectPtr& effect) const {
     Eigen::VectorXd c = Eigen::VectorXd::Zero(6);
     c.head<3>() = place.moment;
     return signature_of(residual_, effect_rows(problem_, state_, effect, c));
   }
 
-  [[nodiscard]] Place climbed(Place place) const {
+  [[nodiscard]] DipolePlace climbed(DipolePlace place) const {
     double damping = kFirstDamping;
     for (int i = 0; i < kSteps && damping < kMostDamping; ++i) {
       const auto effect = dipole_(place.at_S_m);
@@ -76,7 +76,7 @@ class DipoleSearch {
       const Signature s = both(place, *effect);
       double gain = 0;
       for (; damping < kMostDamping; damping *= 10) {
-        const Place next = at(stepped(place, s, damping));
+        const DipolePlace next = at(stepped(place, s, damping));
         gain = next.S - place.S;
         if (gain > 0) {
           place = next;
@@ -90,7 +90,7 @@ class DipoleSearch {
   }
 
  private:
-  [[nodiscard]] static Eigen::Vector3d stepped(const Place& from, const Signature& s, double damping) {
+  [[nodiscard]] static Eigen::Vector3d stepped(const DipolePlace& from, const Signature& s, double damping) {
     Eigen::MatrixXd M = s.gram;
     M.diagonal().tail<3>() *= 1 + damping;
     // What is left once the moment is taken out; the priors hold nothing here.
@@ -117,9 +117,9 @@ class DipoleSearch {
 std::optional<FoundDipole> find_dipole(const JointProblem& problem, const JointState& state,
                                        const Residual& residual, const DipoleAt& dipole) {
   const DipoleSearch search(problem, state, residual, dipole);
-  std::optional<Place> best;
-  for (const Place& start : search.starts()) {
-    Place place = search.climbed(start);
+  std::optional<DipolePlace> best;
+  for (const DipolePlace& start : search.starts()) {
+    DipolePlace place = search.climbed(start);
     if (!best || place.S > best->S) best = place;
   }
   if (!best || !(best->S > 0)) return std::nullopt;

@@ -14,9 +14,8 @@ namespace mgtd::calib {
 namespace {
 
 constexpr std::size_t kFewest = 3, kFewestInAll = 24;  // poses on either side; nine numbers from all
-constexpr double kBetter = 5, kOtherExchange = 2, kLeast_nT = 5;
+constexpr double kExchangeBetter = 5, kOtherExchange = 2, kLeast_nT = 5;
 constexpr int kNumbers = 9;
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 using Row = Eigen::Matrix<double, kNumbers, 1>;
 
 /// Sums of a linear least-squares problem; they add and subtract.
@@ -60,11 +59,11 @@ Row row_of(const Eigen::Vector3d& y) {
 }
 
 /// Sums up to before each pose, sensor by sensor; those of all poses at the end.
-using Sums = std::array<std::vector<Normal>, kCount>;
+using Sums = std::array<std::vector<Normal>, kSensorCount>;
 
 Sums sums_of(const PoseTable& table, double f_nT) {
   Sums out;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     Normal sum;
     for (const Pose& pose : table.poses) {
       out[i].push_back(sum);
@@ -84,16 +83,16 @@ struct Best {
 
 /// The best of every exchange at one pose, into `best` by exchange.
 void look_at(const Sums& sums, std::size_t from, std::vector<Best>& best) {
-  std::array<std::array<double, kCount>, kCount> rest{};
-  for (std::size_t i = 0; i < kCount; ++i) {
-    for (std::size_t j = 0; j < kCount; ++j)
+  std::array<std::array<double, kSensorCount>, kSensorCount> rest{};
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
+    for (std::size_t j = 0; j < kSensorCount; ++j)
       rest[i][j] = sums[i][from].with(sums[j].back(), sums[j][from]).rest();
   }
   std::array<std::size_t, kSensors> sensor{0, 1, 2, 3};
   for (std::size_t number = 0; std::next_permutation(sensor.begin(), sensor.end()); ++number) {
     // What comes in a place from here on belongs to the sensor whose it is.
     double sum = 0;
-    for (std::size_t place = 0; place < kCount; ++place) sum += rest[sensor[place]][place];
+    for (std::size_t place = 0; place < kSensorCount; ++place) sum += rest[sensor[place]][place];
     if (sum < best[number].rest) best[number] = {sum, sensor, from};
   }
 }
@@ -112,10 +111,10 @@ std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table, std::option
   for (std::size_t from = kFewest; from + kFewest <= n; ++from) look_at(sums, from, best);
   std::sort(best.begin(), best.end(), [](const Best& a, const Best& b) { return a.rest < b.rest; });
   const auto to_nT = [&](double rest) {
-    return std::sqrt(rest / static_cast<double>(kCount * n)) * f_nT / 2;
+    return std::sqrt(rest / static_cast<double>(kSensorCount * n)) * f_nT / 2;
   };
   const double taken_so = to_nT(best[0].rest), as_it_stands = to_nT(without);
-  if (as_it_stands < kLeast_nT || as_it_stands < kBetter * taken_so ||
+  if (as_it_stands < kLeast_nT || as_it_stands < kExchangeBetter * taken_so ||
       to_nT(best[1].rest) < kOtherExchange * taken_so)
     return std::nullopt;
   ExchangeInRun out;
@@ -146,7 +145,7 @@ std::optional<Rearrangement> exchanged_since(const Calibration& before, const Ca
   Rearrangement what;
   while (std::next_permutation(what.sensor.begin(), what.sensor.end())) {
     bool fits = true;
-    for (std::size_t place = 0; place < kCount && fits; ++place) {
+    for (std::size_t place = 0; place < kSensorCount && fits; ++place) {
       const std::size_t whose = what.sensor.at(place);
       fits = apart(place, whose) < 1 && (whose == place || apart(place, place) > kOwn);
     }

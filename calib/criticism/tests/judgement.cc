@@ -15,10 +15,10 @@ namespace mgtd::calib {
 namespace {
 
 /// Families that are asked: those that stood out first.
-constexpr std::size_t kAsked = 8;
+constexpr std::size_t kQuestions = 8;
 /// Of 2 ln of the odds. A single axis that wanders where eleven do not is a guess of its own: a law on that
 /// axis need only be the better one.
-constexpr double kBetter = 6;
+constexpr double kClearlyBetter = 6;
 /// Step of the walk from pose to pose over the noise, up to which a few slow terms describe it.
 constexpr double kMild = 0.7;
 
@@ -54,14 +54,14 @@ double against(const WanderingRival& rival, const ScoredFamily& family, const Sc
   if (rank == 0) return 0;
   const Hypothesis& h = family.suspect->hypotheses[score.hypothesis];
   const bool same_axis = h.axes == 1 && rival.estimate().where == std::vector<std::string>{h.where};
-  if (same_axis && instead > kBetter) return family.calibrated;
+  if (same_axis && instead > kClearlyBetter) return family.calibrated;
   return best_of(std::min(0.0, chi_square_log10_p(std::max(R, 0.0), rank) + std::log10(h.alike)),
                  family.asked);
 }
 
 void ask(const WanderingRival& rival, const Criticism& c, AgainstWalk& out) {
   std::size_t asked = 0;
-  for (std::size_t f = 0; f < c.families.size() && asked < kAsked && c.rejects_named(f); ++f) {
+  for (std::size_t f = 0; f < c.families.size() && asked < kQuestions && c.rejects_named(f); ++f) {
     const ScoredFamily& family = c.families[f];
     if (out.log10_p.contains(family.suspect->name)) continue;
     ++asked;

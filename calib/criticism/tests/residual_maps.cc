@@ -42,8 +42,7 @@ Map of_channels(const JointProblem& problem, std::string name, Eigen::Index m,
   }
   out.hypotheses.push_back(picked("all", kChannels, 1, 0, m * kChannels, m * kChannels));
   for (int c = 0; c < kChannels; ++c) {
-    out.hypotheses.push_back(
-        picked(fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]), 1, kChannels, c * m, m, m * kChannels));
+    out.hypotheses.push_back(picked(channel_name(c), 1, kChannels, c * m, m, m * kChannels));
   }
   return out;
 }

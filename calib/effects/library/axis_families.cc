@@ -38,7 +38,7 @@ constexpr std::array kGainDriftConfusions{
 constexpr std::array kGainStepConfusions{
     Confusion{"axis.cubic", "poses at many sizes of the axis' own reading, or another field strength"}};
 
-constexpr std::array kFamilies{
+constexpr std::array kAxisFamilies{
     EffectFamily{
         .name = "axis.offset.temperature",
         .level = Level::axis,
@@ -186,6 +186,6 @@ constexpr std::array kFamilies{
 
 }  // namespace
 
-std::span<const EffectFamily> axis_families() { return kFamilies; }
+std::span<const EffectFamily> axis_families() { return kAxisFamilies; }
 
 }  // namespace mgtd::calib

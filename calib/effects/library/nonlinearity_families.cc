@@ -40,7 +40,7 @@ constexpr std::array kHysteresisConfusions{
 constexpr std::array kSettlingConfusions{
     Confusion{"axis.hysteresis", "dwells of 10, 20 and 60 s in random order: a memory does not fade"}};
 
-constexpr std::array kFamilies{
+constexpr std::array kNonlinearityFamilies{
     EffectFamily{.name = "axis.orthogonality.temperature",
                  .level = Level::axis,
                  .title = "the angles between the axes follow temperature",
@@ -199,6 +199,6 @@ constexpr std::array kFamilies{
 
 }  // namespace
 
-std::span<const EffectFamily> nonlinearity_families() { return kFamilies; }
+std::span<const EffectFamily> nonlinearity_families() { return kNonlinearityFamilies; }
 
 }  // namespace mgtd::calib

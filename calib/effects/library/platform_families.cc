@@ -80,7 +80,7 @@ constexpr std::array kMagnetConfusions{
     Confusion{"site.gradient", "turn the base of the table: a magnet on the table goes along"}};
 constexpr std::array kHardConfusions{Confusion{"platform.current", "switch the currents"}};
 
-constexpr std::array kFamilies{
+constexpr std::array kPlatformFamilies{
     EffectFamily{
         .name = "platform.current",
         .level = Level::platform,
@@ -219,6 +219,6 @@ constexpr std::array kFamilies{
 
 }  // namespace
 
-std::span<const EffectFamily> platform_families() { return kFamilies; }
+std::span<const EffectFamily> platform_families() { return kPlatformFamilies; }
 
 }  // namespace mgtd::calib

@@ -72,7 +72,7 @@ constexpr std::array kStepConfusions{
 constexpr std::array kReferenceConfusions{Confusion{
     "axis.gain.drift", "a second scalar reference; an error that never changes is the scale of all axes"}};
 
-constexpr std::array kFamilies{
+constexpr std::array kSiteFamilies{
     EffectFamily{.name = "site.gradient",
                  .level = Level::site,
                  .title = "the field of the site is not uniform",
@@ -217,6 +217,6 @@ constexpr std::array kFamilies{
 
 }  // namespace
 
-std::span<const EffectFamily> site_families() { return kFamilies; }
+std::span<const EffectFamily> site_families() { return kSiteFamilies; }
 
 }  // namespace mgtd::calib

@@ -15,7 +15,7 @@ constexpr std::array kBacklashConfusions{
 constexpr std::array kWobbleConfusions{
     Confusion{"platform.flexure", "a turn common to all sensors is the table's"}};
 
-constexpr std::array kFamilies{
+constexpr std::array kTableFamilies{
     EffectFamily{.name = "table.eccentricity",
                  .level = Level::table,
                  .title = "the angle encoder sits off its axis",
@@ -92,6 +92,6 @@ constexpr std::array kFamilies{
 
 }  // namespace
 
-std::span<const EffectFamily> table_families() { return kFamilies; }
+std::span<const EffectFamily> table_families() { return kTableFamilies; }
 
 }  // namespace mgtd::calib

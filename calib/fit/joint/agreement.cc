@@ -8,10 +8,11 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/stats/probability.h"
+
 namespace mgtd::calib {
 namespace {
 
-constexpr double kMadToSd = 1.4826;
 /// Noise with heavy tails (Student's t with three degrees of freedom) reaches 1.6, a smooth law that the
 /// model misses 2.
 constexpr double kMaxTails = 3;

@@ -8,8 +8,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr std::size_t kFolds = 10;
-
 struct Fold {
   JointProblem problem;
   JointState state;  ///< of its own poses

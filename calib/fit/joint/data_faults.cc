@@ -14,7 +14,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 /// A fluxgate shows the field to a factor of three, whatever its offset; a wrong unit is a thousand away.
 constexpr double kSameUnit = 30;
 /// No known field: readings of this size, in nT, are taken for uT. The field of the Earth is 22 to 67 uT.
@@ -31,7 +30,7 @@ double median(std::vector<double> values) {
 
 /// "s2", "s1, s2 and s4", "all sensors".
 std::string sensors_text(const std::vector<std::size_t>& which) {
-  if (which.size() == kCount) return "all sensors";
+  if (which.size() == kSensorCount) return "all sensors";
   std::vector<std::string> names;
   for (const std::size_t i : which) names.push_back(fmt::format("s{}", i + 1));
   if (names.size() == 1) return names.front();
@@ -89,8 +88,8 @@ tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, double s
 
 Result<void> check_units(const JointProblem& problem, double f_nT) {
   const double field = field_of(problem, f_nT);
-  std::array<double, kCount> size{};
-  for (std::size_t i = 0; i < kCount; ++i) size[i] = size_of(problem, i);
+  std::array<double, kSensorCount> size{};
+  for (std::size_t i = 0; i < kSensorCount; ++i) size[i] = size_of(problem, i);
   const std::vector<std::size_t> all{0, 1, 2, 3};
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   // The total field alone is off: it is the reference that has another unit.
@@ -116,9 +115,9 @@ Result<void> check_units(const JointProblem& problem, double f_nT) {
 }
 
 Result<void> check_copies(const JointProblem& problem) {
-  for (std::size_t first = 0; first < kCount; ++first) {
+  for (std::size_t first = 0; first < kSensorCount; ++first) {
     std::vector<std::size_t> copies;
-    for (std::size_t i = first + 1; i < kCount; ++i) {
+    for (std::size_t i = first + 1; i < kSensorCount; ++i) {
       const auto same = std::count_if(problem.poses.begin(), problem.poses.end(), [&](const JointPose& p) {
         return p.y_nT.segment<3>(3 * static_cast<Eigen::Index>(i)) ==
                p.y_nT.segment<3>(3 * static_cast<Eigen::Index>(first));
@@ -135,12 +134,12 @@ Result<void> check_copies(const JointProblem& problem) {
   return {};
 }
 
-Result<void> check_turned_together(const std::array<Eigen::Matrix3Xd, kCount>& b_nT,
-                                   const std::array<Eigen::Matrix3d, kCount>& to_first) {
+Result<void> check_turned_together(const std::array<Eigen::Matrix3Xd, kSensorCount>& b_nT,
+                                   const std::array<Eigen::Matrix3d, kSensorCount>& to_first) {
   const Eigen::Matrix3Xd reference = b_nT[0].colwise().normalized();
   std::vector<std::size_t> apart;
   double worst_rad = 0;
-  for (std::size_t i = 1; i < kCount; ++i) {
+  for (std::size_t i = 1; i < kSensorCount; ++i) {
     const Eigen::Matrix3Xd own = to_first[i] * b_nT[i].colwise().normalized();
     std::vector<double> angles;
     for (Eigen::Index k = 0; k < own.cols(); ++k)

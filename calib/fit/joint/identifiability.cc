@@ -66,15 +66,15 @@ std::string slot_name(const JointProblem& problem, int slot, bool all) {
   return {};
 }
 
-struct Part {
+struct NamedShare {
   std::string name;
   double share;
 };
 
 /// A direction by parameters: one that lies in a single sensor keeps its sensor, others are named for all
 /// four.
-std::vector<Part> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
-  std::vector<Part> out;
+std::vector<NamedShare> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
+  std::vector<NamedShare> out;
   for (int p = 0; p < kSensorParameters; ++p) {
     Eigen::Vector4d share;
     for (int i = 0; i < kSensors; ++i) share[i] = v[kSensorParameters * i + p] * v[kSensorParameters * i + p];
@@ -84,7 +84,8 @@ std::vector<Part> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
   }
   for (int slot = kSensorBlock; slot < v.size(); ++slot)
     out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
-  std::sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.share > b.share; });
+  std::sort(out.begin(), out.end(),
+            [](const NamedShare& a, const NamedShare& b) { return a.share > b.share; });
   return out;
 }
 
@@ -93,7 +94,7 @@ std::string describe(const JointProblem& problem, const Eigen::VectorXd& v) {
   constexpr std::size_t kMaxNames = 4;
   std::string text;
   double covered = 0;
-  const std::vector<Part> all = parts(problem, v);
+  const std::vector<NamedShare> all = parts(problem, v);
   for (std::size_t j = 0; j < kMaxNames && covered < kNamedShare; ++j) {
     text += (text.empty() ? "" : " with ") + all[j].name;
     covered += all[j].share;

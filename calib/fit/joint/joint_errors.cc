@@ -11,9 +11,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr std::size_t kFolds = 10;
-
-struct Sums {
+struct ErrorSums {
   Eigen::Vector4d field{Eigen::Vector4d::Zero()};
   Eigen::Matrix<double, 6, 1> tensor{Eigen::Matrix<double, 6, 1>::Zero()};
   PoseResiduals residuals;
@@ -32,7 +30,7 @@ struct Sums {
   }
 };
 
-void add(const JointProblem& problem, const JointState& state, Sums& sums) {
+void add(const JointProblem& problem, const JointState& state, ErrorSums& sums) {
   const ArrayModel array(state.sensors, problem.geometry, problem.effects, state.coefficients);
   const auto rows = gradient_rows(problem.geometry);
   const Counted counts = counted(problem);
@@ -62,13 +60,13 @@ void add(const JointProblem& problem, const JointState& state, Sums& sums) {
 }
 
 /// A problem and the nuisances of its poses: those from..to, or all the others.
-struct Part {
+struct ProblemPart {
   JointProblem problem;
   std::vector<Nuisance> nuisances;
 };
 
-Part part(const JointFit& fit, std::size_t from, std::size_t to, bool inside) {
-  Part out{fit.problem, {}};
+ProblemPart part(const JointFit& fit, std::size_t from, std::size_t to, bool inside) {
+  ProblemPart out{fit.problem, {}};
   out.problem.poses.clear();
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
     if ((k >= from && k < to) != inside) continue;
@@ -96,17 +94,17 @@ Counted counted(const JointProblem& problem) {
 }
 
 JointErrors joint_errors(const JointProblem& problem, const JointState& state, FixedBlock block) {
-  Sums sums;
+  ErrorSums sums;
   add(problem, state, sums);
   return sums.errors(block);
 }
 
 std::optional<JointErrors> held_out_errors(const JointFit& fit) {
   const std::size_t n = fit.problem.poses.size();
-  Sums sums;
+  ErrorSums sums;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const std::size_t from = fold * n / kFolds, to = (fold + 1) * n / kFolds;
-    Part others = part(fit, from, to, false), own = part(fit, from, to, true);
+    ProblemPart others = part(fit, from, to, false), own = part(fit, from, to, true);
     JointState start = fit.state;
     start.nuisances = std::move(others.nuisances);
     auto fitted = solve(others.problem, std::move(start), kNearlyConverged / 1000);

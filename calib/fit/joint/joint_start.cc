@@ -18,14 +18,13 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 /// Relative turns within this of one axis leave the origin of the turn about it undecided.
 const double kOneAxis = std::sin(to_rad(1.0));
 
 struct Aligned {
-  std::array<ScalarCalibration, kCount> alone;
+  std::array<ScalarCalibration, kSensorCount> alone;
   /// Sensor frame to the frame of sensor 1, reflections allowed.
-  std::array<Eigen::Matrix3d, kCount> to_first;
+  std::array<Eigen::Matrix3d, kSensorCount> to_first;
   std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
 };
 
@@ -47,9 +46,9 @@ Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
     if (!problem.common_field) f[k] = pose.f_nT;
   }
   Aligned out;
-  std::array<Eigen::Matrix3Xd, kCount> b_S_nT;
+  std::array<Eigen::Matrix3Xd, kSensorCount> b_S_nT;
   Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, poses);
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const Eigen::Matrix3Xd own = y.middleRows<3>(3 * static_cast<int>(i));
     const auto fitted = sensor_start(own, f);
     if (!fitted) {
@@ -218,7 +217,7 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   for (Eigen::Vector3d& u : aligned->u) u *= hand;
   const Placement p = best_placement(problem, aligned->u);
   std::array<SensorModel, kSensors> sensors;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     sensors[i] =
         sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
   }
@@ -229,7 +228,7 @@ PlacedState placed_state(const JointProblem& problem, const std::array<SensorMod
                          double f_nT) {
   std::vector<Eigen::Vector3d> u(problem.poses.size(), Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < u.size(); ++k) {
-    for (std::size_t i = 0; i < kCount; ++i)
+    for (std::size_t i = 0; i < kSensorCount; ++i)
       u[k] += sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / kSensors;
   }
   const Placement p = best_placement(problem, u);

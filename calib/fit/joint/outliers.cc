@@ -190,7 +190,7 @@ OutlierNode Outliers::node(const JointProblem& whole, const JointState& state, s
     out.unit = "deg";
     out.shift = to_deg(2 * std::atan(state.nuisances[k].head<3>().norm() / 2));
   } else {
-    out.where = fmt::format("s{}.{}", row / 3 + 1, "xyz"[row % 3]);
+    out.where = channel_name(row);
     out.shift = pose.y_nT[row] - linear.y_nT[row];
     out.cause = cause_of(whole, k, row);
   }

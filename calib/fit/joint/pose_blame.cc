@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "calib/stats/probability.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -17,9 +19,8 @@ constexpr double kSensor = 7, kPose = 9;
 /// And where it is not: robust spreads of that root above its median.
 constexpr double kAboveMedian = 8;
 /// Many poses that are off by less make a group of their own: above kLow spreads more of them than kGroup of
-/// all, and between kFringe and kLow fewer than a share kInTheGap of those.
-constexpr double kLow = 5, kFringe = 3, kGroup = 0.04, kInTheGap = 0.25;
-constexpr double kMadToSd = 1.4826;
+/// all, and between kFringe and kLow fewer than a share kBetweenGroups of those.
+constexpr double kLow = 5, kFringe = 3, kGroup = 0.04, kBetweenGroups = 0.25;
 /// A spread below one is chance, or noise that was estimated with gross readings in it: below this it is
 /// that.
 constexpr double kOverstated = 0.7;
@@ -44,7 +45,7 @@ double limit_of(const std::vector<double>& roots, double gaussian) {
     return static_cast<double>(std::count_if(roots.begin(), roots.end(), [x](double r) { return r > x; }));
   };
   const double lost = above(low), near = above(centre + kFringe * spread) - lost;
-  const bool group = lost > kGroup * static_cast<double>(roots.size()) && near < kInTheGap * lost;
+  const bool group = lost > kGroup * static_cast<double>(roots.size()) && near < kBetweenGroups * lost;
   return group ? std::min(low, limit) : limit;
 }
 

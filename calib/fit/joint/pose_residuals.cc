@@ -16,14 +16,14 @@ double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const Eigen::LLT
   return std::max(0.0, 1 - H.matrixL().solve(row.transpose()).squaredNorm());
 }
 
-struct Sums {
+struct NoiseSums {
   AxisNoise squares{AxisNoise::Zero()}, freedom{AxisNoise::Zero()};
   double attitude_squares{0}, attitude_trace{0};
   int attitudes{0};
 };
 
 void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::LLT<Eigen::Matrix4d>& H,
-                      Eigen::Index k, Sums& sums, PoseResiduals& out) {
+                      Eigen::Index k, NoiseSums& sums, PoseResiduals& out) {
   for (int c = 0; c < kChannels; ++c) {
     if (!(pose.weight[c] > 0)) continue;
     const double free = freedom(b.N.row(c), H);
@@ -46,7 +46,7 @@ void observe_scalar(const JointProblem& problem, const JointPose& pose, const Po
 }
 
 void observe_attitude(const JointPose& pose, const Nuisance& x, const Eigen::LLT<Eigen::Matrix4d>& H,
-                      Eigen::Index k, Sums& sums, PoseResiduals& out) {
+                      Eigen::Index k, NoiseSums& sums, PoseResiduals& out) {
   if (!pose.has_angles || pose.attitude_weight <= kLooseAttitude_per_rad) return;
   const double w2 = pose.attitude_weight * pose.attitude_weight;
   const double posterior = w2 * H.solve(Eigen::Matrix4d::Identity()).diagonal().head<3>().sum();
@@ -60,7 +60,7 @@ void observe_attitude(const JointPose& pose, const Nuisance& x, const Eigen::LLT
 
 /// Freedom of all attitudes together: the posterior traces leave 2 a pose where the prior is weak, and the
 /// common rotation (3) and the site direction (2) are fitted to them.
-double attitude_freedom(const Sums& sums) {
+double attitude_freedom(const NoiseSums& sums) {
   const double free = 3.0 * sums.attitudes - sums.attitude_trace;
   return sums.attitudes == 0 ? 0 : std::max(0.0, free * (1 - 5.0 / (2.0 * sums.attitudes)));
 }
@@ -75,7 +75,7 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   out.t.setZero(kObservations, static_cast<Eigen::Index>(problem.poses.size()));
   const PoseModel model(problem, state);
   PoseBlocks b;
-  Sums sums;
+  NoiseSums sums;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, false, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);

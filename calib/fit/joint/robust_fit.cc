@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "calib/fit/consensus.h"
+#include "calib/stats/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -115,7 +116,7 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
 /// What two fits of the same readings are compared by: minus the logarithm of their likelihood with the
 /// spread that the median of each axis tells, a reading left out priced as one three spreads away.
 double cost(const JointProblem& problem, const RobustFit& fit) {
-  constexpr double kMadToSd = 1.4826, kLeftOut = 3 * 3 / 2.0;
+  constexpr double kLeftOut = 3 * 3 / 2.0;
   double sum = 0;
   for (int c = 0; c < kChannels; ++c) {
     std::vector<double> misfits;

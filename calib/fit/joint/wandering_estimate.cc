@@ -77,8 +77,7 @@ std::vector<Place> places() {
   for (int c = 0; c < kChannels; ++c) out.front().channels.push_back(c);
   for (int i = 0; i < kSensors; ++i)
     out.push_back({fmt::format("s{}", i + 1), {3 * i, 3 * i + 1, 3 * i + 2}, 2 * std::log(kSensors)});
-  for (int c = 0; c < kChannels; ++c)
-    out.push_back({fmt::format("s{}.{}", c / 3 + 1, "xyz"[c % 3]), {c}, 2 * std::log(kChannels)});
+  for (int c = 0; c < kChannels; ++c) out.push_back({channel_name(c), {c}, 2 * std::log(kChannels)});
   return out;
 }
 

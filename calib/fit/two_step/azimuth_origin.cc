@@ -11,7 +11,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 /// A pose counts as tilted when its turn leaves Z by more than this.
 constexpr double kTilted_rad = 2 * kRadiansPerDegree;
 constexpr std::size_t kMinTilted = 3;
@@ -29,7 +28,7 @@ std::vector<Tilted> tilted_poses(const Readings& readings, const Alignment& alig
     if (!is_tilted(angles)) continue;
     const Eigen::Matrix3d T = table_rotation(*angles);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < kCount; ++i) b += alignment.R_PS[i] * b_S_nT[i].col(k);
+    for (std::size_t i = 0; i < kSensorCount; ++i) b += alignment.R_PS[i] * b_S_nT[i].col(k);
     out.push_back({T, b.normalized()});
   }
   return out;

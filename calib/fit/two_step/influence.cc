@@ -10,7 +10,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 constexpr int kScalar = 9;                     ///< parameters of step 1
 constexpr int kSine = kArrayParameters;        ///< slot of the sine of the inclination
 constexpr int kOrigin = kArrayParameters + 1;  ///< slot of the declination
@@ -68,10 +67,10 @@ class Propagation {
   const AxisNoise& noise_;
   double f_nT_;
   Eigen::Vector3d site_;  ///< unit field at zero angles
-  std::array<Eigen::Matrix3d, kCount> gain_;
-  std::array<Eigen::Matrix3Xd, kCount> b_;  ///< corrected fields, platform frame
-  std::array<Eigen::Matrix3Xd, kCount> m_;  ///< zero columns where the pose is not of the turn
-  std::array<Eigen::Matrix<double, kScalar, Eigen::Dynamic>, kCount> weight_;  ///< dp per nT of |b| - F
+  std::array<Eigen::Matrix3d, kSensorCount> gain_;
+  std::array<Eigen::Matrix3Xd, kSensorCount> b_;  ///< corrected fields, platform frame
+  std::array<Eigen::Matrix3Xd, kSensorCount> m_;  ///< zero columns where the pose is not of the turn
+  std::array<Eigen::Matrix<double, kScalar, Eigen::Dynamic>, kSensorCount> weight_;  ///< dp per nT of |b| - F
   Eigen::Matrix3Xd
       origin_weight_;  ///< dD per unit of the direction; zero columns where the pose does not count
   Mixing through_step1_{Mixing::Identity()};
@@ -89,9 +88,9 @@ Propagation::Propagation(const Readings& readings, const FitOptions& options, co
       f_nT_(readings.mean_f_nT()),
       site_(fitted.site_direction()),
       origin_weight_(Eigen::Matrix3Xd::Zero(3, readings.poses())) {
-  for (std::size_t i = 0; i < kCount; ++i) prepare_sensor(i);
+  for (std::size_t i = 0; i < kSensorCount; ++i) prepare_sensor(i);
   if (fitted.origin.gauge == AzimuthGauge::table_frame) prepare_origin();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     for (Eigen::Index k = 0; k < readings_.poses(); ++k) {
       const FieldRows rows = rows_of(i, k);
       const ScalarDerivative D = derivative(i, k);
@@ -178,7 +177,7 @@ void Propagation::add_pose(Eigen::Index k) {
   const auto& angles = readings_.angles[static_cast<std::size_t>(k)];
   Slots by_field = Slots::Zero();
   Eigen::Matrix<double, kSlots, 3> by_table = Eigen::Matrix<double, kSlots, 3>::Zero();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     add_readings(k, i);
     const FieldRows rows = rows_of(i, k);
     // Step 2 sees the field divided by F_k.
@@ -209,7 +208,7 @@ Mixing Propagation::origin_from_all() const {
   if (fitted_.origin.gauge != AzimuthGauge::mean_gamma_zero) return out;
   // gamma answers to a turn about z by -1 in every sensor: the origin takes up the mean.
   out.row(kOrigin).setZero();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const Eigen::Matrix3d to_angles = turn_axes(fitted_.sensors[i]).inverse();
     out.block<1, 3>(kOrigin, slot_of(i) + kScalar) = to_angles.row(2) / kSensors;
   }
@@ -218,7 +217,7 @@ Mixing Propagation::origin_from_all() const {
 
 Mixing Propagation::angles_from_turns() const {
   Mixing out = Mixing::Identity();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const Eigen::Matrix3d to_angles = turn_axes(fitted_.sensors[i]).inverse();
     const int at = slot_of(i) + kScalar;
     out.block<3, 3>(at, at) = to_angles;

@@ -13,7 +13,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 constexpr std::size_t kMinStandard = 5;
 /// Larger over smaller of |Bz| sqrt(N) and Bh sqrt(N/2): 20 is a field about 4 degrees from Z, or 2 from the
 /// horizontal.
@@ -99,12 +98,12 @@ Result<Alignment> align(const Readings& readings, const std::array<Eigen::Matrix
   const auto turn = standard_turn(readings);
   if (!turn) return tl::unexpected(turn.error());
   Alignment out;
-  std::array<Rows, kCount> rows;
+  std::array<Rows, kSensorCount> rows;
   double bz = 0, handedness = 0;
   const double f = readings.mean_f_nT();
   // A field that drifts during the turn would look like a tilt.
   const Eigen::VectorXd to_mean = f * readings.f_nT(turn->poses).cwiseInverse();
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     rows[i] = rows_of(b_S_nT[i](Eigen::all, turn->poses) * to_mean.asDiagonal(), turn->azimuth_rad);
     out.condition = std::max(out.condition, rows[i].condition);
     bz += rows[i].bz_nT / kSensors;
@@ -124,7 +123,7 @@ Result<Alignment> align(const Readings& readings, const std::array<Eigen::Matrix
   }
   // Bz < 0 turns every Tz over: what looked mirrored is then right-handed.
   const double sign = bz_sign.value_or(handedness >= 0 ? 1.0 : -1.0);
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     rows[i].T.row(2) *= sign;
     out.R_PS[i] = nearest_orthogonal(rows[i].T);
   }

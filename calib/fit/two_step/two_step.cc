@@ -11,7 +11,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 /// An alignment that contradicts the angles of the tilted poses by more than this has the wrong sign of Bz.
 constexpr double kContradiction_rad = 20 * kRadiansPerDegree;
 
@@ -54,7 +53,7 @@ Result<TwoStep> two_step(const Readings& readings, const FitOptions& options) {
   TwoStep out;
   std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
   const auto step1 = options.method == Method::simplified ? simplified_calibration : scalar_calibration;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     auto fitted = step1(readings.y_nT[i], readings.f_nT);
     if (!fitted) {
       return fail(fitted.error().code, fmt::format("sensor s{}: {}", i + 1, fitted.error().message),
@@ -68,7 +67,7 @@ Result<TwoStep> two_step(const Readings& readings, const FitOptions& options) {
   out.alignment = std::move(placed->alignment);
   out.origin = placed->origin;
   turn_to(out.alignment, out.origin.declination_rad);
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     out.sensors[i] = sensor_from(out.step1[i].K, out.step1[i].offset_nT, out.alignment.R_PS[i]);
   }
   return out;

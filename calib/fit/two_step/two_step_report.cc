@@ -16,9 +16,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
-constexpr Eigen::Index kFolds = 10;
-
 std::vector<Eigen::Index> where(Eigen::Index n, auto keep) {
   std::vector<Eigen::Index> out;
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -49,12 +46,12 @@ Result<std::array<SensorModel, kSensors>> from_half(const Readings& readings, st
                                                     const TwoStep& whole) {
   const Readings half = half_of(readings, parity);
   std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
-  for (std::size_t i = 0; i < kCount; ++i) b_S_nT[i] = whole.step1[i].correct(half.y_nT[i]);
+  for (std::size_t i = 0; i < kSensorCount; ++i) b_S_nT[i] = whole.step1[i].correct(half.y_nT[i]);
   auto alignment = align(half, b_S_nT, whole.alignment.bz_nT > 0 ? 1.0 : -1.0);
   if (!alignment) return tl::unexpected(alignment.error());
   turn_to(*alignment, whole.origin.declination_rad);
   std::array<SensorModel, kSensors> out;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     out[i] = sensor_from(whole.step1[i].K, whole.step1[i].offset_nT, alignment->R_PS[i]);
   }
   return out;
@@ -63,8 +60,8 @@ Result<std::array<SensorModel, kSensors>> from_half(const Readings& readings, st
 double largest_angle_difference(const std::array<SensorModel, kSensors>& a,
                                 const std::array<SensorModel, kSensors>& b) {
   double mean_gamma = 0, worst = 0;
-  for (std::size_t i = 0; i < kCount; ++i) mean_gamma += (a[i].gamma_rad - b[i].gamma_rad) / kSensors;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) mean_gamma += (a[i].gamma_rad - b[i].gamma_rad) / kSensors;
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     worst =
         std::max({worst, std::abs(a[i].alpha_rad - b[i].alpha_rad), std::abs(a[i].beta_rad - b[i].beta_rad),
                   std::abs(a[i].gamma_rad - b[i].gamma_rad - mean_gamma)});
@@ -104,7 +101,7 @@ AxisNoise effective_noise(const Readings& readings, const TwoStep& fitted, const
   const double dof = std::max(1.0, n - 9);
   const double by_chance = 1 + 3 * std::sqrt(2 / dof);
   const double scalar = readings.f_sd_nT.squaredNorm() / n;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double variance =
         std::max(0.0, step1.total_field_rmse_nT[i] * step1.total_field_rmse_nT[i] * n / dof - scalar);
@@ -122,7 +119,7 @@ double rms(const AxisNoise& noise) { return std::sqrt(noise.array().square().mea
 /// Step 1 only: sensors orthogonal and to scale, their frames left as they stand.
 ErrorSummary after_step1(const Readings& readings, const TwoStep& fitted, const Geometry& geometry) {
   FieldTable b(3 * kSensors, readings.poses());
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         fitted.sensors[i].mounting * fitted.step1[i].correct(readings.y_nT[i]);
   }

@@ -10,7 +10,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr auto kCount = static_cast<std::size_t>(kSensors);
 /// A fluxgate is built to parts in a thousand; a factor of two is another sensor, range or unit.
 constexpr double kMinScale = 0.5, kMaxScale = 2;
 constexpr double kMaxNonOrthogonality_rad = 15 * kRadiansPerDegree;
@@ -127,7 +126,7 @@ std::vector<Check> verdict(const FitReport& report, const TwoStep& fitted, const
 
 std::vector<std::string> remarks(const FitReport& report) {
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
     const SensorModel& s = report.calibration.sensors[i];
     if (s.mounting.isIdentity()) continue;
     const bool mirrored = s.mounting.determinant() < 0;

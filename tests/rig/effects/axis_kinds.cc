@@ -17,7 +17,7 @@ double leaning_nT(const AxisContext& c, const Numbers& n) {
   return kDeg / 3600 * kF0_nT * (n[0] * c.other(0) + n[1] * c.other(1));
 }
 
-constexpr std::array kKinds{
+constexpr std::array kAxisKinds{
     EffectKind{.name = "axis.offset.temperature",
                .scope = Scope::axis,
                .keys = {{{"nT_per_degC", 1, 2}}},
@@ -98,6 +98,6 @@ constexpr std::array kKinds{
 
 }  // namespace
 
-std::span<const EffectKind> axis_kinds() { return kKinds; }
+std::span<const EffectKind> axis_kinds() { return kAxisKinds; }
 
 }  // namespace mgtd::rig

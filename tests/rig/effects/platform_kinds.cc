@@ -25,7 +25,7 @@ Eigen::Vector3d crosstalk(const PlatformContext& c, const Numbers& n) {
   return out;
 }
 
-constexpr std::array kKinds{
+constexpr std::array kPlatformKinds{
     EffectKind{.name = "platform.current",
                .scope = Scope::sensor,
                .keys = {{{"nT_per_A", 3, 4}}},
@@ -72,6 +72,6 @@ constexpr std::array kKinds{
 
 }  // namespace
 
-std::span<const EffectKind> platform_kinds() { return kKinds; }
+std::span<const EffectKind> platform_kinds() { return kPlatformKinds; }
 
 }  // namespace mgtd::rig

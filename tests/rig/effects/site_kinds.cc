@@ -24,7 +24,7 @@ Eigen::Vector3d curvature(double, const Eigen::Vector3d& p, const Numbers& n) {
                    xxz * x * x + yyz * y * y + zzz * z * z + 2 * (xyz * x * y + xzz * x * z + yzz * y * z));
 }
 
-constexpr std::array kKinds{
+constexpr std::array kSiteKinds{
     EffectKind{.name = "site.gradient",  // xx, yy, xy, xz, yz
                .keys = {{{"nT_per_m", 5, 20}}},
                .build = [](const EffectKind&, const Where&, const Numbers& n) -> std::unique_ptr<Effect> {
@@ -61,6 +61,6 @@ constexpr std::array kKinds{
 
 }  // namespace
 
-std::span<const EffectKind> site_kinds() { return kKinds; }
+std::span<const EffectKind> site_kinds() { return kSiteKinds; }
 
 }  // namespace mgtd::rig

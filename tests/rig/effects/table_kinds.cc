@@ -11,7 +11,7 @@ namespace {
 double turn(const TableContext& c) { return c.angle_deg[0] * kDeg; }
 TableError of_azimuth(double deg) { return {{deg, 0, 0}, 0, 0}; }
 
-constexpr std::array kKinds{
+constexpr std::array kTableKinds{
     EffectKind{.name = "table.eccentricity",
                .keys = {{{"cos_deg", 1, 0.1},
                          {"sin_deg", 1, 0.1},
@@ -44,6 +44,6 @@ constexpr std::array kKinds{
 
 }  // namespace
 
-std::span<const EffectKind> table_kinds() { return kKinds; }
+std::span<const EffectKind> table_kinds() { return kTableKinds; }
 
 }  // namespace mgtd::rig

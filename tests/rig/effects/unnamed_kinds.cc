@@ -14,9 +14,9 @@
 namespace mgtd::rig {
 namespace {
 
-constexpr double kArcsec = kDeg / 3600;
+constexpr double kArcsecond = kDeg / 3600;
 
-constexpr std::array kKinds{
+constexpr std::array kUnnamedKinds{
     EffectKind{
         .name = "hidden.azimuth-harmonic",  // an encoder cable, a motor's magnet geared to the table
         .scope = Scope::axis,
@@ -99,7 +99,7 @@ constexpr std::array kKinds{
                .keys = {{{"arcsec", 3, 20}, {"at_s", 1, 0, 400, 1600}}},
                .unnamed = true,
                .turn_rad = [](const PlatformContext& c, const Numbers& n) -> Eigen::Vector3d {
-                 return c.t_s < n[3] ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(kArcsec * n.vector());
+                 return c.t_s < n[3] ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(kArcsecond * n.vector());
                }},
     EffectKind{.name = "hidden.gravity-offset",  // a board that bends
                .scope = Scope::axis,
@@ -144,6 +144,6 @@ constexpr std::array kKinds{
 
 }  // namespace
 
-std::span<const EffectKind> unnamed_kinds() { return kKinds; }
+std::span<const EffectKind> unnamed_kinds() { return kUnnamedKinds; }
 
 }  // namespace mgtd::rig
