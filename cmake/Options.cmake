@@ -22,11 +22,31 @@ if(MGTD_SANITIZE)
   endif()
 endif()
 
-# mgtd_room(NAME DIR [dependencies]): one static library per room from every source below it.
+# mgtd_batches(TARGET): its sources are compiled in batches of one folder each (jumbo or unity build): headers and
+# templates that the files of a folder share are read and instantiated once for a batch. docs/building.md.
+function(mgtd_batches target)
+  if(NOT MGTD_BATCHES)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} DIRECTORY)
+    file(RELATIVE_PATH folder ${CMAKE_CURRENT_SOURCE_DIR} ${folder})
+    string(MAKE_C_IDENTIFIER "in_${folder}" folder)
+    math(EXPR number "0${count_${folder}} + 1")
+    set(count_${folder} ${number})
+    math(EXPR batch "(${number} - 1) / ${MGTD_BATCH_SIZE}")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${batch})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# mgtd_room(NAME [dependencies]): one static library per room from every source below it.
 function(mgtd_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   list(FILTER sources EXCLUDE REGEX "main_[a-z_]+\\.cc$")
   list(FILTER sources EXCLUDE REGEX "/daemon/cli/")
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC mgtd_options ${ARGN})
+  mgtd_batches(${name})
 endfunction()

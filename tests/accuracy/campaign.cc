@@ -21,7 +21,7 @@ using calib::SensorModel;
 
 constexpr std::array<double, 5> kGradient{30, -45, -20, 50, 10};  // nT/m; norm of the tensor 50 and more
 constexpr double kNormal95 = 1.959964;
-constexpr std::size_t kStandard = 36;
+constexpr std::size_t kStandardPoses = 36;
 
 calib::JointOptions options_of(const Scene& scene) {
   calib::JointOptions out;
@@ -117,7 +117,7 @@ std::string name_of(Eigen::Index j) {
 PoseTable Scene::run(std::uint64_t seed) const {
   Site there = site;
   if (gradient) there.gradient_nT_per_m = kGradient;
-  PoseTable table = measure(rig, there, standard_run(poses - kStandard, 2 * seed + 1), kStandard,
+  PoseTable table = measure(rig, there, standard_run(poses - kStandardPoses, 2 * seed + 1), kStandardPoses,
                             {Noise::Kind::gaussian, noise_nT, table_sd_deg, f_sd_nT}, 2 * seed);
   for (Pose& pose : table.poses) {
     if (!spreads) pose.sd_nT = {};
