@@ -10,8 +10,9 @@
 #include "proto/time.h"
 
 /// The newest lines of the stream, encoded once for every client. Records are numbered from 0 on and stay at
-/// their number; the oldest are overwritten. Slots keep their memory: pushing allocates nothing once every
-/// slot has held a line as long.
+/// their number; the oldest are overwritten. Slots keep their memory, up to twice what their line needs:
+/// among lines of like length pushing allocates nothing once every slot has held one, and a long line now and
+/// then does not make the ring grow.
 namespace mgtd::daemon {
 
 struct StreamRecord {
