@@ -4,7 +4,7 @@
 
 #include "drivers/settings.h"
 
-/// The key `baud` that every device on a serial line has: Bd, 300 to 4 000 000.
+/// Every device on a serial line has the key `baud`: its speed in Bd, 300 to 4 000 000.
 namespace mgtd::drivers {
 
 /// `usual` when the key is absent or objected to.

@@ -13,8 +13,8 @@
 #include "drivers/line_device.h"
 #include "drivers/settings.h"
 
-/// An analogue input module that is asked for its channels now and then: currents, voltages, temperatures
-/// that act on the rig.
+/// This driver asks an analogue input module for its channels at intervals: currents, voltages and
+/// temperatures that act on the rig.
 ///
 ///   port, baud = 9600
 ///   address = "01"               two hexadecimal digits

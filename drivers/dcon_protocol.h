@@ -8,7 +8,7 @@
 
 #include "proto/health.h"
 
-/// DCON: the ASCII protocol of analogue input modules on RS-485, as ICP DAS I-7000, Advantech ADAM-4000 and
+/// DCON is the ASCII protocol of analogue input modules on RS-485; ICP DAS I-7000, Advantech ADAM-4000 and
 /// Measurement Computing CB-7000 speak it. Source: user's manuals of the I-7013/I-7033 and CB-7013/7033.
 ///
 /// Line 9600 Bd 8N1, address 01 as delivered; every line ends in CR; with the checksum switched on, two

@@ -2,7 +2,7 @@
 #pragma once
 #include "proto/time.h"
 
-/// A time-out that blames the device only when the host has had the chance to listen.
+/// A Deadline is a time-out that blames the device only if the host has had the chance to listen.
 ///
 /// It passes when the span is over *and* a number of ticks was seen since it was set: a host that was stopped
 /// for a minute, or whose clock runs fifty times faster than real time against a simulated rig, first reads

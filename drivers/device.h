@@ -12,7 +12,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// A device as a value: bytes, time and requests come in; bytes to send and events come out. No port, no
+/// A Device is a value: bytes, time and requests come in; bytes to send and events come out. No port, no
 /// clock, no thread: `port_link` carries the bytes, tests feed them by hand, and both see the same behaviour.
 namespace mgtd::drivers {
 

@@ -8,7 +8,8 @@
 
 #include "drivers/deadline.h"
 
-/// A start-up conversation as a list of steps, carried out in virtual or real time alike.
+/// A Dialogue is a start-up conversation, given as a list of steps and carried out in virtual or real time
+/// alike.
 ///
 ///   tell   send, then let `seconds` pass; what comes in is of no interest
 ///   drain  send, and again every second while bytes still come, until none came for `seconds`

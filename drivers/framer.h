@@ -9,7 +9,8 @@
 
 #include "proto/health.h"
 
-/// Bytes of a serial line -> candidate frames, fed in pieces of any size with the same result for any split.
+/// A framer cuts the bytes of a serial line into candidate frames; it may be fed in pieces of any size, with
+/// the same result for any split.
 ///
 /// Every byte is accounted for in the LinkHealth it is given, so that bytes_in = frames + rejected + resync +
 /// pending holds after every call: the taker of a frame says what it was (Verdict), the framer itself rejects

@@ -6,8 +6,9 @@
 #include <string_view>
 #include <vector>
 
-/// Physik Instrumente GCS 2.0: motion controllers, among them those of the non-magnetic PILine piezo stages.
-/// Sources: PI's own PIPython (gcsmessages, gcs2commands, gcserror) and the EPICS module motorPIGCS2.
+/// GCS 2.0 is the language of Physik Instrumente's motion controllers, among them those of the non-magnetic
+/// PILine piezo stages. Sources: PI's own PIPython (gcsmessages, gcs2commands, gcserror) and the EPICS module
+/// motorPIGCS2.
 ///
 /// Line 8N1, 115200 Bd typical. Commands end in LF. A set command gets no reply: only ERR? tells whether it
 /// was taken. Reply lines end in LF; in a reply of several lines all but the last end in space LF.

@@ -8,7 +8,7 @@
 #include "drivers/gcs2_protocol.h"
 #include "drivers/settings.h"
 
-/// What the configuration says about a turntable behind a GCS 2 controller:
+/// These keys of the configuration describe a turntable behind a GCS 2 controller:
 ///
 ///   port, baud = 115200
 ///   axes.azimuth = "1"              name of the axis in the controller; likewise pitch, roll

@@ -12,7 +12,8 @@
 #include "drivers/settings.h"
 #include "proto/error.h"
 
-/// Scalar reference: listens to a GSM-90 or GSM-19, after sending set-up strings when some are configured.
+/// This driver of the scalar reference listens to a GSM-90 or GSM-19, after sending the set-up strings of the
+/// configuration, if there are any.
 ///
 ///   port, baud = 115200
 ///   init = []                      set-up strings, sent one by one without ending, at least a second apart:

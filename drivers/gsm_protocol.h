@@ -8,7 +8,7 @@
 #include "proto/health.h"
 #include "proto/time.h"
 
-/// GEM Systems GSM-90 and GSM-19 (base station): total-field magnetometers that print a line per reading.
+/// GEM Systems GSM-90 and GSM-19 (base station) are total-field magnetometers that print a line per reading.
 /// Source: the MARTAS project (gsm90protocol.py, gsm19protocol.py, gsm90v6init.sh, gsm90v7init.sh) and MagPy
 /// (format_gsm19.py).
 ///

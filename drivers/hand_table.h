@@ -6,8 +6,8 @@
 #include "drivers/device.h"
 #include "drivers/settings.h"
 
-/// A table without motors or encoders: it stands where its scales were last said to stand. Has no port; moves
-/// are the operator's, who is asked by the run.
+/// A table without motors or encoders stands where the operator last said that its scales stand. Has no port;
+/// moves are the operator's, who is asked by the run.
 ///
 ///   limits.azimuth = [-180, 180]   deg; likewise pitch and roll; an axis that is not there has no limits
 namespace mgtd::drivers {

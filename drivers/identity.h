@@ -7,8 +7,9 @@
 #include "drivers/settings.h"
 #include "proto/error.h"
 
-/// Which device it is, beyond what kind: four digitisers of one make differ in their serial number only. A
-/// configuration that states it (`serial`) has the device on the port refused when it is another.
+/// The identity of a device tells it from others of its kind: four digitisers of one make differ in their
+/// serial number only. A configuration that states it (`serial`) has the device on the port refused when it
+/// is another.
 namespace mgtd::drivers {
 
 /// The key `serial`; empty when it is not stated. Mistakes are left in `settings`.

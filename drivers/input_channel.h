@@ -10,7 +10,7 @@
 #include "drivers/settings.h"
 #include "proto/reading.h"
 
-/// An analogue input of a device whose reading becomes a column of the pose table:
+/// An InputChannel is an analogue input of a device; its reading becomes a column of the pose table:
 ///
 ///     column = scale * reading + offset
 ///

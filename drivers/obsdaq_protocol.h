@@ -10,9 +10,10 @@
 #include "proto/error.h"
 #include "proto/health.h"
 
-/// Mingeo ObsDAQ: 24-bit digitiser, three simultaneous channels, for fluxgates with analogue output; with or
-/// without the PalmAcq GPS time-stamper in front. Source: the MARTAS project (martas/lib/obsdaqprotocol.py,
-/// martas/app/{obsdaq,palmacq}.py and its captured dialogues), which cites the maker's tables.
+/// The Mingeo ObsDAQ is a 24-bit digitiser with three simultaneous channels, for fluxgates with analogue
+/// output; the PalmAcq GPS time-stamper may stand in front of it. Source: the MARTAS project
+/// (martas/lib/obsdaqprotocol.py, martas/app/{obsdaq,palmacq}.py and its captured dialogues), which cites the
+/// maker's tables.
 ///
 /// Line 8N1, 19200 Bd after power-on (57600 Bd to a PalmAcq). ASCII, every command and reply ends in one CR,
 /// no checksum. AA = address, two hex digits (factory 01).

@@ -8,7 +8,7 @@
 #include "drivers/obsdaq_protocol.h"
 #include "drivers/settings.h"
 
-/// What the configuration says about one ObsDAQ and the fluxgate behind it:
+/// These keys of the configuration describe one ObsDAQ and the fluxgate behind it:
 ///
 ///   port, baud, address = "01"
 ///   serial = ""                 the device's own; stated: another device is refused

@@ -3,7 +3,7 @@
 #include "drivers/dialogue.h"
 #include "drivers/obsdaq_settings.h"
 
-/// The conversation that brings an ObsDAQ from any state into streaming with the host's settings: quick stop,
+/// This conversation brings an ObsDAQ from any state into streaming with the host's settings: quick stop,
 /// silence, identity, serial number, trigger off, three channels, trigger, start; each echo checked. Behind a
 /// PalmAcq, first into its transparent mode, at last into forwarding.
 ///

@@ -8,9 +8,10 @@
 
 #include "proto/time.h"
 
-/// A timer for judging silence. A program that slept (a busy host, a stopped virtual machine, a slow disk)
-/// finds bytes waiting that came meanwhile; it must read them before it calls a device silent. So when this
-/// timer fires late, it waits once more for a moment, and the readings go first.
+/// This timer fires late rather than blame a device whose bytes are still waiting to be read. A program that
+/// slept (a busy host, a stopped virtual machine, a slow disk) finds bytes waiting that came meanwhile; it
+/// must read them before it calls a device silent. So when this timer fires late, it waits once more for a
+/// moment, and the readings go first.
 namespace mgtd::drivers {
 
 class PatientTimer {

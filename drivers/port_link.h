@@ -16,7 +16,8 @@ namespace boost::asio {
 class io_context;
 }
 
-/// Carries the bytes of one Device over one serial port: the only part of a driver that touches Asio.
+/// A PortLink carries the bytes of one Device over one serial port; it is the only part of a driver that
+/// touches Asio.
 ///
 /// Opens the port (link_life.h: how often, and what is shown), stamps what comes in at the return of the
 /// read, sends what the device leaves, ticks it, and tells the owner what happened. End of file, EIO, ENXIO

@@ -6,8 +6,9 @@
 #include <string_view>
 #include <vector>
 
-/// The serial ports of this machine. A number like ttyUSB0 changes with the order of plugging in; the serial
-/// number of the USB converter does not: "usb:SERIAL" names a port by it wherever a path is expected.
+/// The port list names the serial ports of this machine. A number like ttyUSB0 changes with the order of
+/// plugging in; the serial number of the USB converter does not: "usb:SERIAL" names a port by it wherever a
+/// path is expected.
 namespace mgtd::drivers {
 
 struct PortInfo {

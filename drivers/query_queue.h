@@ -11,7 +11,7 @@
 
 #include "drivers/deadline.h"
 
-/// One question at a time, for devices whose replies do not say what they answer.
+/// A QueryQueue asks one question at a time, for devices whose replies do not say what they answer.
 ///
 /// The line is in step while every question that was asked has been answered. It is out of step when a
 /// question was broken off (interrupt), when a reply did not come in time, when a line came that answers

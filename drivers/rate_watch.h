@@ -7,9 +7,9 @@
 #include "drivers/deadline.h"
 #include "proto/time.h"
 
-/// Does a device send as often as it was told to? Counts readings, those lost on the way included, over
-/// kWindow_s of its time and kTicks ticks of the host: a host that listens late, or whose clock runs fast
-/// against a simulated rig, blames nobody. Pure.
+/// A RateWatch tells whether a device sends as often as it was told to. It counts readings, those lost on the
+/// way included, over kWindow_s of its time and kTicks ticks of the host: a host that listens late, or whose
+/// clock runs fast against a simulated rig, blames nobody. Pure.
 namespace mgtd::drivers {
 
 class RateWatch {

@@ -7,8 +7,8 @@
 #include "drivers/device.h"
 #include "drivers/settings.h"
 
-/// Every driver by the name the configuration uses. A new protocol is a pair of files and one line in
-/// registry.cc.
+/// The registry finds a driver by the name that the configuration uses. A new protocol is a pair of files and
+/// one line in registry.cc.
 namespace mgtd::drivers {
 
 enum class Role { sensor, table, scalar, auxiliary };

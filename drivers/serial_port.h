@@ -5,7 +5,7 @@
 
 #include "proto/error.h"
 
-/// An open serial port: 8N1, no flow control, a read waits for at least one byte, the descriptor is
+/// A SerialPort is open: 8N1, without flow control; a read waits for at least one byte, and the descriptor is
 /// non-blocking and not inherited. Exclusive: TIOCEXCL (but on a pty), and flock against root, whom TIOCEXCL
 /// does not stop.
 ///

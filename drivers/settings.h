@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-/// The part of the configuration that belongs to one device, as a driver reads it.
+/// Settings are the part of the configuration that belongs to one device, as a driver reads it.
 ///
 /// Nested tables are flattened ("axes.azimuth"). Mistakes are collected with their place, not thrown: the
 /// operator sees all of them at once.

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// Whole numbers in files: little endian, one to eight bytes.
+/// Whole numbers in files are little endian, one to eight bytes.
 namespace mgtd {
 
 inline void put_little(std::string& out, std::uint64_t value, std::size_t bytes) {

@@ -5,7 +5,7 @@
 
 #include "proto/error.h"
 
-/// Arguments of calibrations.show, calibrations.accept and calibrations.import.
+/// These are the arguments of calibrations.show, calibrations.accept and calibrations.import.
 namespace mgtd {
 
 /// {"id":".."}; refuses an empty one.

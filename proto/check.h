@@ -4,7 +4,7 @@
 
 namespace mgtd {
 
-/// A named check with its measured value, its limit and what to do when it fails.
+/// A Check has a name, a measured value, a limit, and says what to do when it fails.
 struct Check {
   std::string name;
   bool passed{false};

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-/// Who came to a socket, and who was sent away for what.
+/// ClientCounts says how many clients connected to a socket, and how many were turned away, and why.
 namespace mgtd {
 
 enum class DropReason : std::uint8_t {

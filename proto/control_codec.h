@@ -8,7 +8,7 @@
 
 #include "proto/error.h"
 
-/// The control socket's language: one JSON object per line, one answer per request, in their order.
+/// The control socket speaks JSON: one object per line, one answer per request, in the order of the requests.
 ///
 ///   {"cmd":"run.start","args":{"step_deg":10,"random":121},"id":7}
 ///   {"ok":true,"id":7,"result":{...}}

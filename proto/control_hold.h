@@ -8,7 +8,7 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// One controls, many look: who has control now, and the request to keep it.
+/// One client controls, many look; this says who has control now, and how a client asks to keep it.
 ///
 ///   "holder": {"pid","uid","since","taken","why","left_s"}: null when nobody has control
 ///

@@ -11,7 +11,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// Four readings at one instant, or the honest absence of them.
+/// An Epoch holds four readings at one instant; a Gap says that they are missing, and why.
 namespace mgtd {
 
 struct Epoch {

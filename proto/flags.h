@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-/// What a reader must know about a sample beside its numbers. A set of bits; names as in the stream.
+/// Flags tell a reader what to know about a sample beside its numbers: bits, named as in the stream.
 namespace mgtd {
 
 enum class Flag : std::uint16_t {

@@ -8,7 +8,7 @@
 
 #include "proto/time.h"
 
-/// How a link to a device is doing, counted. The books balance at every moment:
+/// LinkHealth counts how a link to a device is doing. The counts balance at every moment:
 ///   bytes_in = bytes_in_frames + bytes_rejected + bytes_resync + bytes_pending.
 namespace mgtd {
 

@@ -5,7 +5,7 @@
 
 namespace mgtd {
 
-/// What an auxiliary input or a sensor's thermometer measures now, by the column of the pose table it is.
+/// An InputValue is the present reading of an auxiliary input or thermometer, by its pose-table column.
 struct InputValue {
   std::string column;
   double value{std::numeric_limits<double>::quiet_NaN()};  ///< NaN: not known now

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-/// Which instrument answers in a place of the rig, as far as the wire tells.
+/// An InstrumentIdentity says which instrument answers in a place of the rig, as far as the wire tells.
 namespace mgtd {
 
 struct InstrumentIdentity {

@@ -10,8 +10,8 @@
 #include "proto/error.h"
 #include "proto/reading.h"
 
-/// What a journal of raw bytes has to know beside the wires so that the stream can be made again of it: the
-/// bytes of its notes, one JSON object each. Numbers go through text and back without loss.
+/// Notes in a journal of raw bytes hold what is needed beside the bytes of the wires to make the stream
+/// again: one JSON object each. Numbers go through text and back without loss.
 namespace mgtd {
 
 /// The first of every journal.

@@ -5,7 +5,7 @@
 
 #include "proto/error.h"
 
-/// One line of a peer that may be anything, read as a JSON object.
+/// A line of a peer may be anything; this reads it as a JSON object or says what is wrong with it.
 namespace mgtd {
 
 /// Broken JSON is refused with the position; so is JSON that is no object, or nests too deeply. `example` is

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-/// Lines out of a byte stream, with a limit that a peer cannot exceed: at most `limit` bytes are ever kept.
-/// A line ends with \n; a \r before it is dropped; empty lines are skipped. A longer line is dropped up to
-/// the next \n, so that the lines after it are read as usual, and reported once for every `limit` bytes of
-/// it.
+/// A LineFramer cuts a byte stream into lines, with a limit that a peer cannot exceed: at most `limit` bytes
+/// are ever kept. A line ends with \n; a \r before it is dropped; empty lines are skipped. A longer line is
+/// dropped up to the next \n, so that the lines after it are read as usual, and reported once for every
+/// `limit` bytes of it.
 namespace mgtd {
 
 class LineFramer {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// How far the magnet test is, and what it found.
+/// MagnetStatus says how far the magnet test is, and what it found.
 ///
 ///   {"active","state":"resting|waiting|leaving|done|timed out|stopped","arm":1 or null,"text",
 ///    "sensor_on_arm":[1,4,3,2] (null: open),"right": true, false or null (open),"findings":["..."]}

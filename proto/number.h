@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-/// Numbers as instruments and tables write them. Locale-free; the whole text must be the number.
+/// This reads numbers as instruments write them, in every locale alike; the whole text must be the number.
 namespace mgtd {
 
 /// Accepts an optional sign ('+' too, which from_chars refuses); refuses nan, inf, blanks and trailing text.

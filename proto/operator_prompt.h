@@ -7,8 +7,8 @@
 #include "proto/error.h"
 #include "proto/reading.h"
 
-/// What a run asks its operator to do by hand, and what the scale then says. The target is a wish; what is
-/// entered is what is stored.
+/// An OperatorPrompt is what a run asks its operator to do by hand; a scale entry is what the scale then
+/// says. The target is a wish; what is entered is what is stored.
 ///
 ///   "prompt": {"what":"mount","pose":37,"mount":2,"target":{"azimuth_deg":0,"pitch_deg":0,"roll_deg":90},
 ///              "text":"..","again":".."}

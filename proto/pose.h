@@ -10,7 +10,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// One row of the pose table: dwell means of everything measured while the table stood still.
+/// A Pose is one row of the pose table: the dwell means of everything measured while the table stood still.
 /// Angles are radians here and degrees in the file. What was not measured is empty, never zero.
 namespace mgtd {
 

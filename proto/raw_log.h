@@ -10,8 +10,8 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// The journal of raw bytes: what went over every wire, exactly as it did, and what else the stream was made
-/// from (journal_note.h). Framing only; no file. The stream's own samples on disk have the same frame
+/// The journal of raw bytes holds what went over every wire, exactly as it did, and what else the stream was
+/// made from (journal_note.h). Framing only; no file. The stream's own samples on disk have the same frame
 /// (ring_record.h).
 ///
 ///     file    header (record | tick)*

@@ -13,7 +13,7 @@
 #include "proto/flags.h"
 #include "proto/time.h"
 
-/// What instruments report. Slots count from 0 in code and from 1 on every edge (s1 .. s4).
+/// Readings are what instruments report. Slots count from 0 in code and from 1 on every edge (s1 .. s4).
 namespace mgtd {
 
 inline constexpr int kSensors = 4;

@@ -7,7 +7,7 @@
 #include "proto/error.h"
 #include "proto/reading.h"
 
-/// One pose of a list that a run shall measure, as the client of the control socket asks for it:
+/// A RequestedPose is one pose of a list to be measured, as a client of the control socket asks for it:
 ///
 ///   {"pose":1,"azimuth_deg":..,"pitch_deg":..,"roll_deg":..,"set":"random","sense":1,"dwell_s":4,
 ///    "since_stop_s":5,"note":"..","line":2}

@@ -8,8 +8,8 @@
 #include "proto/raw_log.h"
 #include "proto/time.h"
 
-/// One line of the stream as it is kept on disk, in the frame of the journal (raw_log.h): device = kind,
-/// direction = note, stamp = the sample's time (of the others: when it was written), bytes =
+/// A RingRecord is one line of the stream as it is kept on disk, in the frame of the journal (raw_log.h):
+/// device = kind, direction = note, stamp = the sample's time (of the others: when it was written), bytes =
 ///
 ///     u64 from_seq, u64 to_seq, line without its end         little endian
 ///

@@ -9,7 +9,7 @@
 #include "proto/error.h"
 #include "proto/requested_pose.h"
 
-/// Arguments of run.start and run.dry-run.
+/// These are the arguments of run.start and run.dry-run.
 namespace mgtd {
 
 /// What the operator wants otherwise than the configuration says.

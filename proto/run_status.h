@@ -9,7 +9,7 @@
 #include "proto/check.h"
 #include "proto/operator_prompt.h"
 
-/// One object that answers "is a run going on, how far, how did it end": never three calls that race.
+/// RunStatus says in one object whether a run is going on, how far it is and how it ended.
 namespace mgtd {
 
 enum class RunState : std::uint8_t {

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-/// SHA-256 (FIPS 180-4) of a text, as 64 lower-case hex digits. Names data and calibrations; guards no
-/// secret.
+/// This computes the SHA-256 (FIPS 180-4) of a text, as 64 lower-case hex digits. It names data and
+/// calibrations; it guards no secret.
 namespace mgtd {
 
 [[nodiscard]] std::string sha256_hex(std::string_view data);

@@ -6,7 +6,7 @@
 #include "proto/run_status.h"
 #include "proto/status_report.h"
 
-/// The JSON of STATUS and RUN, the same on the stream, on the control socket and in `mgt status --json`.
+/// STATUS and RUN have the same JSON on the stream, on the control socket and in `mgt status --json`.
 ///
 /// RUN:    {"run_id","state","set","pose","poses","retries","elapsed_s","remaining_s","message","goes_on",
 ///          "prompt": operator_prompt.h or null,"tensor_sd_nT_per_m","wanted_tensor_sd_nT_per_m",

@@ -12,7 +12,7 @@
 #include "proto/run_status.h"
 #include "proto/time.h"
 
-/// Everything an operator asks a running daemon, in one value taken at one instant.
+/// A StatusReport answers everything an operator asks a running daemon, in one value taken at one instant.
 namespace mgtd {
 
 /// Of a free-running digitiser: how its samples are placed in time.

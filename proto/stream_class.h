@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-/// What the live stream carries and a client chooses from. GAP belongs to TENSOR: whoever watches samples is
-/// told which are missing.
+/// A StreamClass is one kind of object that the live stream carries and a client may choose. GAP belongs to
+/// TENSOR: whoever watches samples is told which are missing.
 namespace mgtd {
 
 enum class StreamClass : std::uint8_t { tensor, gap, status, run };

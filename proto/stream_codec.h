@@ -8,7 +8,7 @@
 #include "proto/run_status.h"
 #include "proto/status_report.h"
 
-/// The lines of the live stream beside TENSOR (tensor_encoder.h): one JSON object each, without the line end.
+/// This writes the lines of the live stream but TENSOR (tensor_encoder.h): one JSON object each, no line end.
 ///
 ///   {"class":"HELLO","protocol":{"major":1,"minor":0},"rig":"..","software":"mgtd 0.1.0"}
 ///   {"class":"GAP","from_seq":..,"to_seq":..,"why":".."}

@@ -8,7 +8,7 @@
 #include "proto/flags.h"
 #include "proto/time.h"
 
-/// Field and gradient at the centre of the cross, platform frame.
+/// A TensorSample is the field and its gradient at the centre of the cross, in the platform frame.
 namespace mgtd {
 
 /// The six components in the order of the stream: xx, yy, zz, xy, xz, yz. Symmetric and traceless by

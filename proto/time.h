@@ -7,7 +7,7 @@
 
 #include "proto/error.h"
 
-/// Time as the rooms speak of it. Pure code never reads a clock: an `Instant` comes in as an argument.
+/// All rooms use these types of time. Pure code never reads a clock: an `Instant` comes in as an argument.
 namespace mgtd {
 
 /// Monotonic time of the host. Its zero means nothing; only differences do.

@@ -2,8 +2,8 @@
 #pragma once
 #include <numbers>
 
-/// Units. Inside: nT, nT/m, m, s, rad, degC. Degrees exist only at the edges (wire, config, tables, screen),
-/// and cross that edge here.
+/// Inside the program, units are nT, nT/m, m, s, rad and degC. Degrees exist only at the edges (wire, config,
+/// tables, screen), and cross that edge here.
 namespace mgtd {
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;

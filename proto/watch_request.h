@@ -7,7 +7,7 @@
 #include "proto/error.h"
 #include "proto/stream_class.h"
 
-/// What a client of the live stream may ask, one JSON object per line:
+/// A client of the live stream asks for samples with this request, one JSON object per line:
 ///
 ///   {"watch":{"class":["TENSOR","STATUS","RUN"],"rate_hz":10,"from_seq":null}}
 ///

@@ -7,7 +7,7 @@
 
 namespace mgtd::cli {
 
-/// A CAL.json. Refusals name the file.
+/// This reads a CAL.json. Refusals name the file.
 [[nodiscard]] Result<calib::Calibration> read_calibration(const std::string& path);
 
 /// A CAL.json as it is, or a run fitted with these flags; told apart by content.

@@ -8,8 +8,8 @@
 #include "daemon/store/durable_file.h"
 #include "proto/error.h"
 
-/// What every command of `mgt` shares: the --json switch, the control socket, and how results and errors
-/// leave. Results go to stdout, everything else to stderr; with --json stdout carries exactly one JSON
+/// Every command of `mgt` shares the --json switch, the control socket, and the way results and errors are
+/// printed. Results go to stdout, everything else to stderr; with --json stdout carries exactly one JSON
 /// object.
 namespace mgtd::cli {
 

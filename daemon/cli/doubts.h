@@ -8,7 +8,7 @@
 #include "daemon/store/model_history.h"
 #include "daemon/store/pose_source.h"
 
-/// What is open about the model that a run file keeps: see calib/criticism/search/choice.h.
+/// Doubts are what is still open about the model that a run file keeps: see calib/criticism/search/choice.h.
 namespace mgtd::cli {
 
 /// How the model of RUN came to be; empty for a pose table.

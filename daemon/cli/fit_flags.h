@@ -9,8 +9,8 @@
 #include "calib/fit/methods/fit.h"
 #include "daemon/store/pose_source.h"
 
-/// The options that every command with a fit understands, and how they combine with what a run file says
-/// itself.
+/// Every command with a fit understands these options; this also says how they combine with what a run file
+/// states.
 namespace mgtd::cli {
 
 struct FitFlags {

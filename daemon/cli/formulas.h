@@ -8,8 +8,8 @@
 
 namespace mgtd::cli {
 
-/// Formulas of the run file that its poses can feed and that are not in the model, as suspects beside the
-/// library. Says on stderr which of them were thought of on these very poses.
+/// Formulas of the run file become candidates beside the library when its poses have their columns and the
+/// model lacks them. Those that were suggested by these very poses are named on stderr.
 [[nodiscard]] std::vector<calib::CandidateEffect> formulas_of(const daemon::PoseSource& source,
                                                               const calib::FitOptions& options);
 

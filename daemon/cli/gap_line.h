@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-/// GAP objects that follow each other, as one line for a person. A sensor that is away sends one a second;
-/// what matters is how many samples are missing by now, between which, and why.
+/// A GapLine turns GAP objects that follow each other into one line for a person. A sensor that is away sends
+/// one a second; what matters is how many samples are missing by now, between which, and why.
 namespace mgtd::cli {
 
 class GapLine {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Tables and looks of the report's page.
+/// This makes the tables and the style of the report's page.
 namespace mgtd::cli {
 
 extern const char* const kHtmlStyle;

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-/// Numbers of the command line that have a physical range. The complaint names the number that was given,
-/// the range and its unit; nan and inf are outside of every range.
+/// This checks numbers of the command line that have a physical range. The error names the number that was
+/// given, the range and its unit; nan and inf are outside of every range.
 namespace mgtd::cli {
 
 /// From `low` to `high`, both included.

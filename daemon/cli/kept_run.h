@@ -6,8 +6,9 @@
 #include "daemon/cli/fit_flags.h"
 #include "daemon/store/run_file.h"
 
-/// A run file whose model an operator works on: what was measured, the model as it is kept, and the way to
-/// write the next step. Refuses a pose table, which keeps nothing, and a run that is still being measured.
+/// A KeptRun is a run file whose model an operator works on: what was measured, the model as it is kept, and
+/// the way to write the next step. Refuses a pose table, which keeps nothing, and a run that is still being
+/// measured.
 namespace mgtd::cli {
 
 struct KeptRun {

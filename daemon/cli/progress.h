@@ -4,7 +4,7 @@
 
 #include "proto/run_status.h"
 
-/// How a run looks to someone who waits for it.
+/// This shows the progress of a run to someone who waits for it.
 namespace mgtd::cli {
 
 /// One line of at most `width` characters: bar, counts, time left, what is happening now.

@@ -7,7 +7,7 @@
 #include "proto/control_codec.h"
 #include "proto/operator_prompt.h"
 
-/// The dialogue with the operator of a run that is set by hand, as text in and requests out.
+/// This is the dialogue with the operator of a run that is set by hand: text comes in, requests go out.
 namespace mgtd::cli {
 
 /// What to do on a line that was typed at a prompt.

@@ -12,7 +12,7 @@
 #include "daemon/store/model_history.h"
 #include "daemon/store/pose_source.h"
 
-/// The report of a run as one page that needs nothing else: no script, no font, no network.
+/// The report of a run is one page that needs nothing else: no script, no font, no network.
 namespace mgtd::cli {
 
 struct ReportContent {

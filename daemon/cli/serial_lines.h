@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-/// The key `serial` of each instrument in the text of a configuration. Everything else, comments included,
-/// stays as it was written.
+/// This writes the key `serial` of each instrument into the text of a configuration. Everything else,
+/// comments included, stays as it was written.
 namespace mgtd::cli {
 
 struct SerialLines {

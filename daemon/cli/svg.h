@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Small drawings for the report, as inline SVG: nothing is loaded, nothing runs.
+/// This makes small drawings for the report, as inline SVG: nothing is loaded, nothing runs.
 namespace mgtd::cli {
 
 /// Text as HTML and SVG need it.

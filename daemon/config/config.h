@@ -12,9 +12,9 @@
 #include "proto/error.h"
 #include "proto/reading.h"
 
-/// What mgtd.toml says. The file is read once at start; every mistake in it is reported at once, with file
-/// and line, and a file with a mistake starts nothing. systemd/mgtd.toml lists every key with its unit and
-/// default.
+/// Config holds what mgtd.toml says. The file is read once at start; every mistake in it is reported at once,
+/// with file and line, and a file with a mistake starts nothing. systemd/mgtd.toml lists every key with its
+/// unit and default.
 namespace mgtd::daemon {
 
 /// A serial port and the device behind it. The device has read and checked its own settings.

@@ -7,7 +7,7 @@
 
 #include "proto/error.h"
 
-/// TCP addresses as the configuration and the command line write them.
+/// A TcpAddress is an address as the configuration and the command line write it.
 namespace mgtd::daemon {
 
 /// "127.0.0.1:7450", "[::1]:7450", "localhost:7450" (the IPv4 loopback). Other names are not looked up.

@@ -5,7 +5,8 @@
 
 #include "drivers/settings.h"
 
-/// One TOML table as Settings: nested tables flattened with dots, every key with its place in the file.
+/// This turns one TOML table into Settings: nested tables are flattened with dots, and every key knows its
+/// place in the file.
 namespace mgtd::daemon {
 
 [[nodiscard]] drivers::Place place_of(const toml::source_region& source);

@@ -2,8 +2,8 @@
 #pragma once
 #include "proto/reading.h"
 
-/// An array that is mounted on the table in another way. Table turned by R_T, array turned on it by M, both
-/// in the order Rz(azimuth) Ry(pitch) Rx(roll):
+/// A mounting says how the array sits on the table. With the table turned by R_T and the array turned on it
+/// by M, both in the order Rz(azimuth) Ry(pitch) Rx(roll),
 ///
 ///     b_P = M R_T B_site = Rz(a) Ry(p) Rx(r) B_site
 ///

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-/// Random choices that are the same with every standard library (whose distributions are not).
+/// A RandomSource makes the same choices with every standard library (whose distributions differ).
 namespace mgtd::daemon {
 
 class RandomSource {

@@ -4,7 +4,8 @@
 
 #include "daemon/plan/run_plan.h"
 
-/// How long a plan takes: for each pose the longest axis' travel at the table's speed, settling, dwell.
+/// The duration of a plan is the sum over its poses: the longest travel of an axis at the table's speed,
+/// settling, dwell.
 namespace mgtd::daemon {
 
 struct Pace {

@@ -9,7 +9,7 @@
 #include "proto/error.h"
 #include "proto/reading.h"
 
-/// The poses of a calibration run, in the order they are measured.
+/// A RunPlan lists the poses of a calibration run in the order in which they are measured.
 ///
 /// Standard set: a turn about platform Z with pitch and roll at zero, one way in steps of 2 x step_deg, then
 /// the poses between on the way back, so that every other azimuth was approached in the other sense at

@@ -6,7 +6,7 @@
 
 #include "daemon/plan/run_plan.h"
 
-/// The plan as text: kept in the run file, shown by a dry run.
+/// The plan as JSON is kept in the run file and shown by a dry run.
 ///
 ///   { "schema":"mgtd.plan/1", "options":{...}, "notes":[...], "poses":[ { "number":1, "set":"standard",
 ///     "azimuth_deg":..., "pitch_deg":..., "roll_deg":..., "dwell_s":..., "sense":1, "mount":null,

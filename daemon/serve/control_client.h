@@ -8,7 +8,8 @@
 #include "proto/control_codec.h"
 #include "proto/error.h"
 
-/// The operator's side of the control socket: one request, one answer, one after the other.
+/// A ControlClient is the operator's side of the control socket: one request, one answer, one after the
+/// other.
 namespace mgtd::daemon {
 
 class ControlClient {

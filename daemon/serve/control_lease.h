@@ -8,7 +8,8 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// One controls, many look. Pure: connections are numbers, time comes in.
+/// The lease decides which client may change things: one controls, many look. Pure: connections are numbers,
+/// time comes in.
 ///
 /// - To look (status, run.status, dry-run, lists) needs no control.
 /// - The first request that changes something takes control for its connection. It keeps it until it ends,

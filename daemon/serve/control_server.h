@@ -13,10 +13,10 @@
 #include "proto/error.h"
 #include "proto/status_report.h"
 
-/// The control socket (control_codec.h): who may connect may command, and the file's mode says who that is.
-/// Reads requests, has them answered, sends the replies in order. Who has control is decided by
-/// control_lease.h and answered here; the rest is the handler's. A client that asks too often, sends too long
-/// a line or does not read is told why and disconnected.
+/// The server of the control socket (control_codec.h) obeys everyone who may connect; the file's mode says
+/// who that is. It reads requests, has them answered, and sends the replies in order. Who has control is
+/// decided by control_lease.h and answered here; the rest is the handler's. A client that asks too often,
+/// sends too long a line or does not read is told why and disconnected.
 ///
 /// Everything runs on the io_context's thread; the server must not outlive the io_context.
 namespace mgtd::daemon {

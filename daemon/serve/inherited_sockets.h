@@ -5,9 +5,9 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <string>
 
-/// Listening sockets that the service manager opened before the daemon and keeps while it is away
-/// (sd_listen_fds(3): LISTEN_PID, LISTEN_FDS). A client that connects while the daemon starts again waits
-/// instead of being refused. Recognised by where they listen, not by name or order.
+/// Inherited sockets are listening sockets that the service manager opened before the daemon started and
+/// keeps while it is away (sd_listen_fds(3): LISTEN_PID, LISTEN_FDS). A client that connects while the daemon
+/// starts again waits instead of being refused. Recognised by where they listen, not by name or order.
 namespace mgtd::daemon {
 
 /// The inherited socket that listens there, close-on-exec and non-blocking; -1 when there is none. Each is

@@ -11,9 +11,9 @@
 
 #include "proto/line_framer.h"
 
-/// One connected peer that speaks in lines. Reads a kilobyte at a time, so that a peer that floods costs the
-/// others no more than that per turn; writes without ever blocking. Everything runs on the io_context's
-/// thread.
+/// A LineConnection is one connected peer that speaks in lines. Reads a kilobyte at a time, so that a peer
+/// that floods costs the others no more than that per turn; writes without ever blocking. Everything runs on
+/// the io_context's thread.
 namespace mgtd::daemon {
 
 class LineConnection : public std::enable_shared_from_this<LineConnection> {

@@ -7,7 +7,8 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// A blocking connection to the daemon, line by line, for the operator's tool. Every wait has a limit.
+/// A LineStream is a blocking connection to the daemon, line by line, for the operator's tool. Every wait has
+/// a limit.
 namespace mgtd::daemon {
 
 class LineStream {

@@ -11,8 +11,8 @@
 
 #include "proto/error.h"
 
-/// A place where clients knock: a TCP address or a Unix socket. Gives connected sockets to whoever serves
-/// them. Out of file descriptors it pauses for a second instead of spinning.
+/// A Listener waits for clients at a TCP address or a Unix socket and hands connected sockets to the server.
+/// When file descriptors run out it pauses for a second instead of spinning.
 namespace mgtd::daemon {
 
 class Listener {

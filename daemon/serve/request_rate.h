@@ -4,7 +4,8 @@
 
 #include "proto/time.h"
 
-/// How often a client may ask: `burst` requests at once, and `per_s` a second in the long run.
+/// RequestRate limits how often a client may ask: `burst` requests at once, and `per_s` a second in the long
+/// run.
 namespace mgtd::daemon {
 
 struct RateLimit {

@@ -9,10 +9,10 @@
 #include "proto/stream_class.h"
 #include "proto/time.h"
 
-/// The newest lines of the stream, encoded once for every client. Records are numbered from 0 on and stay at
-/// their number; the oldest are overwritten. Slots keep their memory, up to twice what their line needs:
-/// among lines of like length pushing allocates nothing once every slot has held one, and a long line now and
-/// then does not make the ring grow.
+/// The ring holds the newest lines of the stream, encoded once for all clients. Records are numbered from 0
+/// on and stay at their number; the oldest are overwritten. Slots keep their memory, up to twice what their
+/// line needs: among lines of like length pushing allocates nothing once every slot has held one, and a long
+/// line now and then does not make the ring grow.
 namespace mgtd::daemon {
 
 struct StreamRecord {

@@ -8,7 +8,8 @@
 #include "proto/error.h"
 #include "proto/watch_request.h"
 
-/// The operator's side of the live stream: greeted, watching, one object after the other.
+/// A StreamReader is the operator's side of the live stream: it waits for the greeting, sends its watch, and
+/// reads one object after the other.
 namespace mgtd::daemon {
 
 class StreamReader {

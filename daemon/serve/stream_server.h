@@ -19,8 +19,9 @@
 #include "proto/stream_codec.h"
 #include "proto/tensor.h"
 
-/// The live stream: NDJSON over TCP and a Unix socket, the same objects on both, read-only. A client is
-/// greeted with HELLO and hears nothing more until it sends a watch (watch_request.h).
+/// The server of the live stream sends NDJSON over TCP and a Unix socket, the same objects on both; clients
+/// cannot change anything. A client is greeted with HELLO and hears nothing more until it sends a watch
+/// (watch_request.h).
 ///
 /// Every sample is encoded once, into a ring of lines that all clients read at their own pace. publish()
 /// writes to no socket: clients are served afterwards on the io_context, without blocking, so that none

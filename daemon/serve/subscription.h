@@ -8,8 +8,8 @@
 #include "proto/ring_record.h"
 #include "proto/watch_request.h"
 
-/// What one client of the stream is still owed: its wishes and its place in the ring. Pure: lines go from the
-/// ring to a buffer here, sockets are elsewhere.
+/// A Subscription knows what one client of the stream asked for and how far it has read. Pure: lines go from
+/// the ring to a buffer here, sockets are elsewhere.
 ///
 /// A client that asks for samples older than the ring's is `behind`: the owner shows it what is on disk by
 /// take(), and catch_up() when there is no more; then it goes on in the ring.

@@ -7,7 +7,7 @@
 
 #include "proto/error.h"
 
-/// Unix sockets as files: who may connect is the file's mode.
+/// Unix sockets are files; the mode of the file says who may connect.
 namespace mgtd::daemon {
 
 /// A listening socket and the file it is known by. Owns both.

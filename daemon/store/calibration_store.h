@@ -10,9 +10,10 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// Calibrations on disk: immutable `<id>.json` files and one append-only log of what became of them. The
-/// active calibration is what the log says; a calibration is never changed or deleted. Every step is written,
-/// synced and renamed: killed at any moment, the store holds either the state before or the state after.
+/// The store keeps calibrations on disk as immutable `<id>.json` files, with one append-only log of what
+/// became of them. The active calibration is what the log says; a calibration is never changed or deleted.
+/// Every step is written, synced and renamed: killed at any moment, the store holds either the state before
+/// or the state after.
 namespace mgtd::daemon {
 
 enum class CalibrationState { proposed, accepted, active };

@@ -11,9 +11,9 @@
 #include "proto/epoch.h"
 #include "proto/ring_record.h"
 
-/// The stream's samples and gaps on disk, as far back as `bytes` reach, so that a client that comes back gets
-/// what it missed, also after a restart. Written as the journal is (batches, synced aside, stops when the
-/// disk refuses), read in pieces by RingReader.
+/// The disk ring keeps the stream's samples and gaps, as far back as `bytes` reach, so that a client that
+/// comes back gets what it missed, even after a restart. Written as the journal is (batches, synced aside,
+/// stops when the disk refuses), read in pieces by RingReader.
 ///
 /// Numbers of the stream go on from life to life: a new one begins after all that the last may have used, and
 /// between() says what lies between. STATUS and RUN are not kept.

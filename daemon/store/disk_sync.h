@@ -8,8 +8,8 @@
 #include "daemon/store/journal.h"
 #include "daemon/store/worker.h"
 
-/// Has the disk finish what journals have written, on a thread of its own: a disk that takes seconds for it
-/// delays nobody. Journals outlive it.
+/// DiskSync makes the disk finish what journals have written, on a thread of its own, so that a disk that
+/// takes seconds delays nobody. Journals outlive it.
 namespace mgtd::daemon {
 
 class DiskSync {

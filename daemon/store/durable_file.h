@@ -6,7 +6,8 @@
 
 #include "proto/error.h"
 
-/// Files that are whole or absent, whenever power goes: written beside, synced, renamed, directory synced.
+/// A durable file is whole or absent, whenever the power fails: it is written beside its place, synced and
+/// renamed, and its directory is synced.
 namespace mgtd::daemon {
 
 /// Replaces what stands under `path`.

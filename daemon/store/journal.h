@@ -11,7 +11,7 @@
 #include "proto/raw_log.h"
 #include "proto/time.h"
 
-/// Records to disk, append-only, in files of bounded size: NAME.000000.raw, NAME.000001.raw, ...
+/// A Journal appends records to files of bounded size: NAME.000000.raw, NAME.000001.raw, ...
 ///
 /// Records are gathered in memory and written every write_every (and when buffer_bytes are full); a sync is
 /// due at sync_every and for every file that is full. So a kill costs write_every, and a power cut sync_every

@@ -7,8 +7,8 @@
 
 #include "proto/time.h"
 
-/// The model an operator built on a run: effects put in and taken out, step by step. The steps are never
-/// changed; the model is what they lead to.
+/// The history of a model lists the effects that an operator put in and took out on a run, step by step. The
+/// steps are never changed; the model is what they lead to.
 namespace mgtd::daemon {
 
 struct ModelStep {

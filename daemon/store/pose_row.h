@@ -6,7 +6,7 @@
 
 #include "proto/pose.h"
 
-/// The numeric columns of a pose in the run file: names as in the pose table, angles in rad.
+/// The run file stores a pose in numeric columns, named as in the pose table, with angles in rad.
 namespace mgtd::daemon {
 
 struct PoseColumn {

@@ -10,7 +10,8 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// The RUN argument of every offline command: a run file or a pose table in CSV, told apart by content.
+/// The RUN argument of every offline command names a run file or a pose table in CSV; the content tells
+/// which.
 namespace mgtd::daemon {
 
 struct PoseSource {

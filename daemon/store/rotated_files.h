@@ -7,8 +7,8 @@
 
 #include "proto/time.h"
 
-/// Files that follow each other: STEM.000000.SUFFIX, STEM.000001.SUFFIX, ... and the rule by which the oldest
-/// go. Names sort by age.
+/// Rotated files follow each other as STEM.000000.SUFFIX, STEM.000001.SUFFIX, ...; a rule says when the
+/// oldest are deleted. Names sort by age.
 namespace mgtd::daemon {
 
 struct RotatedFile {

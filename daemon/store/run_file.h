@@ -16,7 +16,8 @@
 #include "proto/run_status.h"
 #include "proto/time.h"
 
-/// Everything a run measured and decided, one SQLite file per run (`*.mgtrun`), readable by any SQLite.
+/// A RunFile holds everything a run measured and decided: one SQLite file per run (`*.mgtrun`), readable by
+/// any SQLite.
 ///
 /// A write that returned success survives SIGKILL and loss of power (WAL, synchronous=FULL); one that did not
 /// has left nothing. Every write is one transaction. Inside: SI and nT, radians; reals are stored bit for

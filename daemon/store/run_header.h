@@ -8,7 +8,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// What a run file says about itself before the first pose; never changed afterwards.
+/// The header of a run file is written before the first pose and never changed afterwards.
 namespace mgtd::daemon {
 
 /// What a later fit of the same file must know to give the same answer. Empty: not stated.

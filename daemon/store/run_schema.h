@@ -5,7 +5,7 @@
 #include "daemon/store/database.h"
 #include "daemon/store/run_header.h"
 
-/// Tables of a run file and its header as rows of `meta`.
+/// This creates the tables of a run file, and writes its header as rows of `meta`.
 namespace mgtd::daemon {
 
 inline constexpr int kRunApplicationId = 0x6d677472;  ///< "mgtr", at byte 68 of the file: file(1) can know it

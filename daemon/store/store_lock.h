@@ -5,8 +5,8 @@
 
 #include "proto/error.h"
 
-/// One daemon keeps its runs, journals and samples in a folder, and nobody else. A second one that was
-/// started by mistake would write gaps of its own between the samples of the first.
+/// The lock makes sure that only one daemon keeps its runs, journals and samples in a folder. A second one
+/// that was started by mistake would write gaps of its own between the samples of the first.
 ///
 /// The lock is the kernel's, on the file `lock` in the folder: it ends with the process, however that ends.
 namespace mgtd::daemon {

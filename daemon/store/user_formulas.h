@@ -9,7 +9,7 @@
 #include "calib/effects/effect_spec.h"
 #include "proto/error.h"
 
-/// A user's formulas on a run, kept in its file (document "formulas").
+/// A user's formulas on a run are kept in its file (document "formulas").
 namespace mgtd::daemon {
 
 inline constexpr std::string_view kFormulasDocument = "formulas";

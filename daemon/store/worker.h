@@ -9,8 +9,9 @@
 #include <memory>
 #include <stop_token>
 
-/// A thread beside the live one: the daemon has one for fits and one for the disk (disk_sync.h). It gets
-/// values, gives a value back on the live thread, and owns nothing live. Jobs run one after the other.
+/// A Worker is a thread beside the live one; the daemon has one for fits and one for the disk (disk_sync.h).
+/// It gets values, gives a value back on the live thread, and owns nothing live. Jobs run one after the
+/// other.
 namespace mgtd::daemon {
 
 class Worker {
