@@ -2,7 +2,7 @@
 #pragma once
 #include "tests/accuracy/campaign.h"
 
-/// How often the commands that answer yes or no are wrong.
+/// This counts how often the commands that answer yes or no are wrong.
 namespace mgtd::testing {
 
 struct Alarms {

@@ -7,7 +7,8 @@
 #include "calib/sensor/sensor_model.h"
 #include "tests/support/paper_rigs.h"
 
-/// Many simulated runs of one rig: is the estimate as good as it can be, and is its uncertainty the real one?
+/// A campaign is many simulated runs of one rig; it shows whether the estimate is as good as it can be and
+/// its uncertainty the real one.
 namespace mgtd::testing {
 
 /// xx yy zz xy xz yz, nT/m.

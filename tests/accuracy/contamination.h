@@ -7,8 +7,8 @@
 #include "proto/pose.h"
 #include "tests/accuracy/campaign.h"
 
-/// Gross readings of every kind, share and size: how far they get into the calibration, against an estimator
-/// that is told which they are.
+/// This measures how far gross readings of every kind, share and size get into the calibration, compared with
+/// an estimator that is told which they are.
 namespace mgtd::testing {
 
 /// What is off, in the given share of the poses:

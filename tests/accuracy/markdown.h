@@ -7,7 +7,7 @@
 
 namespace mgtd::testing {
 
-/// A table of a Markdown page: first column text, the others numbers.
+/// This writes a table of a Markdown page: the first column is text, the others are numbers.
 class MarkdownTable {
  public:
   explicit MarkdownTable(const std::vector<std::string>& header) {

@@ -5,7 +5,8 @@
 
 namespace mgtd::testing {
 
-/// A table of the paper, tests/data/paper/tableN.csv: '#' lines name the source, then a header and rows.
+/// This reads a table of the paper, tests/data/paper/tableN.csv: '#' lines name the source, then a header and
+/// rows.
 struct PaperTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-/// The paper's Tables 1 to 6 with the same things done by this program beside them: sections of a Markdown
-/// page.
+/// This writes the paper's Tables 1 to 6 with the results of this program beside them, as sections of a
+/// Markdown page.
 namespace mgtd::testing {
 
 [[nodiscard]] std::string simulation_section(int seeds);  ///< Tables 1, 2 and 3

@@ -7,7 +7,8 @@
 
 namespace mgtd::testing {
 
-/// One simulated run by every method: errors on its own poses, as the paper counts them.
+/// This fits one simulated run by every method and gives the errors on its own poses, as the paper counts
+/// them.
 struct RunErrors {
   calib::ErrorSummary before, step1, two_step, joint;
   calib::ErrorSummary floor;  ///< that the true parameters leave

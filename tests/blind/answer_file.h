@@ -8,9 +8,9 @@
 
 #include "tests/blind/real_answer.h"
 
-/// What the runs of a campaign answered, one JSON line each, on disk before the next run begins: a campaign
-/// of many hours can be interrupted, and goes on with the next call. Delete the file when the program
-/// changes.
+/// An answer file keeps what the runs of a campaign answered, one JSON line each, on disk before the next run
+/// begins: a campaign of many hours can be interrupted, and goes on with the next call. Delete the file when
+/// the program changes.
 namespace mgtd::calib::testing {
 
 class AnswerFile {

@@ -5,7 +5,7 @@
 
 #include "tests/blind/hidden_run.h"
 
-/// Laws that are hidden on one axis, unit coefficient; their equations are written here once more. Those
+/// These laws are hidden on one axis with unit coefficient; their equations are written here once more. Those
 /// under "none" are in no library.
 namespace mgtd::calib::testing {
 

@@ -7,8 +7,8 @@
 
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-/// Runs with something hidden in them: the physics of sensors, site and table written without the estimator's
-/// code.
+/// This makes runs with something hidden in them: the physics of sensors, site and table written without the
+/// estimator's code.
 namespace mgtd::calib::testing {
 
 /// Added to the reading of axis `axis` of sensor `sensor`, whose field term is v (nT).

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// docs/blind-benchmark.md, section by section. Each runs its own campaign.
+/// This writes docs/blind-benchmark.md, section by section. Each runs its own campaign.
 namespace mgtd::calib::testing {
 
 struct Sizes {

@@ -9,8 +9,8 @@
 #include "tests/rig/effect_kind.h"
 #include "tests/rig/simulated_table.h"
 
-/// Effects of the simulated rig, planted in runs without ports, as large as one wants them in units of what
-/// the run can tell. Two implementations meet here: the rig's physics knows nothing of calib.
+/// This plants effects of the simulated rig in runs without ports, as large as wanted in units of what the
+/// run can tell. Two implementations meet here: the rig's physics knows nothing of calib.
 namespace mgtd::calib::testing {
 
 /// An effect of the rig. Its amplitudes are scaled; numbers inside the law (rig::Key: times, widths) stay.

@@ -7,7 +7,7 @@
 #include "calib/criticism/search/explain.h"
 #include "tests/blind/real_kind.h"
 
-/// What fit and explain say of one run, held against what is true.
+/// This compares what fit and explain say of one run with the truth.
 namespace mgtd::calib::testing {
 
 struct RealAnswer {

@@ -8,8 +8,9 @@
 #include "proto/pose.h"
 #include "tests/rig/truth.h"
 
-/// What happens outside the laboratory: noise that is not white, designs that are not good, readings that are
-/// wrong, disturbances, laws larger than usual, mistakes of the set-up. Made by the simulated rig.
+/// These are the kinds of run that happen outside the laboratory: noise that is not white, designs that are
+/// not good, readings that are wrong, disturbances, laws larger than usual, mistakes of the set-up. Made by
+/// the simulated rig.
 namespace mgtd::calib::testing {
 
 /// What must be said of a run.

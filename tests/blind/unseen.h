@@ -7,9 +7,9 @@
 #include "tests/blind/hidden_law.h"
 #include "tests/rig/scenario.h"
 
-/// What improve is worth on poses that it has not seen, against an oracle that is told the true effects. The
-/// unseen poses lie among the others, in the set "check"; the calibration is frozen there and each pose fits
-/// its own field and attitude.
+/// This measures what improve is worth on poses that it has not seen, compared with an oracle that is told
+/// the true effects. The unseen poses lie among the others, in the set "check"; the calibration is frozen
+/// there and each pose fits its own field and attitude.
 namespace mgtd::calib::testing {
 
 struct Unseen {

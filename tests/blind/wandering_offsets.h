@@ -9,8 +9,8 @@
 
 namespace mgtd::calib::testing {
 
-/// Offsets that walk at random: a step of `step_nT` (standard deviation) from one pose to the next, each axis
-/// by itself.
+/// These offsets walk at random: a step of `step_nT` (standard deviation) from one pose to the next, each
+/// axis by itself.
 struct WanderingOffsets {
   double step_nT{0.1};
   int sensor{-1};  ///< 0-based; -1: all four

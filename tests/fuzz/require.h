@@ -4,7 +4,8 @@
 
 namespace mgtd::testing {
 
-/// A property that every input must have. Ends the program where it does not: what a fuzzer counts as found.
+/// Every input must have the property that is required; where one does not, the program ends, which a fuzzer
+/// counts as a find.
 inline void require(bool condition) {
   if (!condition) std::abort();
 }

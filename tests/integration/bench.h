@@ -16,7 +16,7 @@ namespace mgtd::testing {
 
 inline std::string program(const std::string& name) { return std::string(MGTD_BIN_DIR) + "/" + name; }
 
-/// A simulated rig and a daemon on it, in a directory of their own.
+/// A Bench runs a simulated rig and a daemon on it, in a directory of their own.
 class Bench {
  public:
   /// `scenario`: the text of a scenario file; a clean rig of the published parameters when empty.

@@ -3,8 +3,9 @@
 #include <optional>
 #include <random>
 
-/// One table axis: trapezoidal moves in indicated degrees, and a true angle that is never quite the indicated
-/// one. Every move, however short, ends with a fresh error; on the way the old one turns into the new one.
+/// This moves one table axis: trapezoidal moves in indicated degrees, and a true angle that is never quite
+/// the indicated one. Every move, however short, ends with a fresh error; on the way the old one turns into
+/// the new one.
 namespace mgtd::rig {
 
 class AxisMotion {

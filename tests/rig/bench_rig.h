@@ -10,8 +10,9 @@
 #include "tests/rig/wire.h"
 #include "tests/rig/world.h"
 
-/// The whole rig in virtual time: one world, six instruments, six cables. Tests drive it byte by byte; the
-/// server puts it on ptys. The same scenario and the same bytes at the same times give the same bytes back.
+/// This is the whole rig in virtual time: one world, six instruments, six cables. Tests drive it byte by
+/// byte; the server puts it on ptys. The same scenario and the same bytes at the same times give the same
+/// bytes back.
 namespace mgtd::rig {
 
 class BenchRig {

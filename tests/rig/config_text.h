@@ -4,7 +4,8 @@
 
 #include "tests/rig/scenario.h"
 
-/// The mgtd.toml that fits a simulated rig: ports in `dir`, everything the daemon keeps in `state_dir`.
+/// This writes the mgtd.toml that fits a simulated rig: ports in `dir`, everything the daemon keeps in
+/// `state_dir`.
 namespace mgtd::rig {
 
 [[nodiscard]] std::string config_text(const Scenario& scenario, const std::string& dir,

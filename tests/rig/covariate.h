@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-/// Something that changes during a run and can be written down beside the poses, or forgotten: a motor's
-/// current, the battery.
+/// A Covariate is something that changes during a run and can be written down beside the poses, or forgotten:
+/// a motor's current, the battery.
 namespace mgtd::rig {
 
 enum class Wave {

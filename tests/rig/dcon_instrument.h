@@ -5,9 +5,9 @@
 #include "tests/rig/covariate.h"
 #include "tests/rig/instrument.h"
 
-/// An I-7017-like input module at address 01, 9600 Bd, checksum off: #01 is answered by all channels in
-/// engineering units, $01M by its name, another command by ?01, another address not at all. Its inputs are
-/// the covariates of the scenario that are on no other, in their order.
+/// This simulates an I-7017-like input module at address 01, 9600 Bd, checksum off: #01 is answered by all
+/// channels in engineering units, $01M by its name, another command by ?01, another address not at all. Its
+/// inputs are the covariates of the scenario that are on no other, in their order.
 namespace mgtd::rig {
 
 class DconInstrument final : public Instrument {

@@ -5,7 +5,8 @@
 #include "tests/rig/section.h"
 #include "tests/rig/vehicle.h"
 
-/// What disturbs a run from a moment on or for a while: [[vehicle]], [[magnet]] and [[gross]] of a scenario.
+/// This reads what disturbs a run from a moment on or for a while: [[vehicle]], [[magnet]] and [[gross]] of a
+/// scenario.
 namespace mgtd::rig {
 
 [[nodiscard]] Vehicle read_vehicle(Section& section);

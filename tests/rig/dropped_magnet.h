@@ -8,7 +8,7 @@
 
 namespace mgtd::rig {
 
-/// Something magnetic that is put down near the array, and may be taken away again.
+/// A DroppedMagnet is something magnetic that is put down near the array, and may be taken away again.
 struct DroppedMagnet {
   double at_s{0}, until_s{std::numeric_limits<double>::infinity()};
   std::array<double, 3> moment_Am2{}, at_m{};  ///< site frame, from the centre of the array

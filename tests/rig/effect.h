@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-/// A hidden effect: what the rig does and nobody told the estimator. It acts at one physical level, sample by
-/// sample:
+/// An Effect is something that the rig does and the estimator is not told. It acts at one physical level,
+/// sample by sample:
 ///
 ///   site       B(t, x) += ...                       nT, site frame (Z down), x from the centre of the array
 ///   table      azimuth, pitch, roll and two tilts of the azimuth's axis += ...

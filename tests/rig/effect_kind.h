@@ -9,8 +9,8 @@
 
 #include "tests/rig/effect.h"
 
-/// Effects as data: what an effect is called, the numbers it takes, and what it does with them. Those that
-/// depend on the present only are a function; the others are a class that `build` makes.
+/// An EffectKind describes an effect as data: its name, the numbers it takes, and what it does with them.
+/// Those that depend on the present only are a function; the others are a class that `build` makes.
 namespace mgtd::rig {
 
 enum class Scope { none, sensor, axis };  ///< what "where" may name

@@ -11,7 +11,7 @@
 #include "tests/rig/effect_kind.h"
 #include "tests/rig/section.h"
 
-/// Every effect the rig can hide, by name, with the keys it reads.
+/// This lists every effect the rig can hide, by name, with the keys it reads.
 namespace mgtd::rig {
 
 /// Reads one [[effect]] of a scenario. Null, with the mistake noted in the section, when it is none.

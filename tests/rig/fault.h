@@ -6,7 +6,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-/// What can go wrong with a cable or an instrument, on demand.
+/// A Fault is something that goes wrong with a cable or an instrument on demand.
 ///   unplug PORT [for S]    the port vanishes; it comes back after S simulated seconds, or by `restore`
 ///   garbage PORT           200 random bytes on the line
 ///   torn PORT [for S]      bytes get lost on the line, one in a hundred

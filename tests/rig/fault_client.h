@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-/// The other end of a running rig's socket.
+/// This is the other end of a running rig's socket.
 namespace mgtd::rig {
 
 [[nodiscard]] std::string fault_socket(const std::string& dir);

@@ -8,9 +8,9 @@
 #include "tests/rig/instrument.h"
 #include "tests/rig/world.h"
 
-/// A controller with three rotary axes ("1" azimuth, "2" pitch, "3" roll) that speaks PI GCS 2.0. Set
-/// commands are silent; errors wait in a register until ERR? reads and clears it. Bytes 05, 07 and 18 act at
-/// once, without a terminator. A command with a mistake in it does nothing at all.
+/// This simulates a controller with three rotary axes ("1" azimuth, "2" pitch, "3" roll) that speaks PI GCS
+/// 2.0. Set commands are silent; errors wait in a register until ERR? reads and clears it. Bytes 05, 07 and
+/// 18 act at once, without a terminator. A command with a mistake in it does nothing at all.
 ///
 /// Known: *IDN? SAI? ERR? SVO SVO? FRF FRF? MOV MOV? POS? ONT? VEL VEL? TMN? TMX? HLT STP.
 namespace mgtd::rig {

@@ -12,8 +12,8 @@ enum class Gross {
   saturated  ///< the rail that is nearer, without any scatter
 };
 
-/// What went wrong with the readings of some poses of a table, on top of everything else. For a rig on ports
-/// see Fault.
+/// A GrossReading says what went wrong with the readings of some poses of a table, on top of everything else.
+/// For a rig on ports see Fault.
 struct GrossReading {
   Gross kind{Gross::off};
   std::uint64_t pose{1}, poses{1};  ///< from this number on, so many

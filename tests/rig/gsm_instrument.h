@@ -3,9 +3,9 @@
 #include "tests/rig/instrument.h"
 #include "tests/rig/world.h"
 
-/// A GSM-90 Overhauser magnetometer, firmware 7: a line a second, "HHMMSS.f  nT qq". Strings without
-/// terminator set it up, each answered by menu text: S stops it, 5 or 6 the mains filter, Tnnn.n the tuning,
-/// C and 13 digits the clock, D slower, U faster, R runs it.
+/// This simulates a GSM-90 Overhauser magnetometer, firmware 7: it prints a line a second, "HHMMSS.f  nT qq".
+/// Strings without terminator set it up, each answered by menu text: S stops it, 5 or 6 the mains filter,
+/// Tnnn.n the tuning, C and 13 digits the clock, D slower, U faster, R runs it.
 namespace mgtd::rig {
 
 class GsmInstrument final : public Instrument {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-/// One simulated instrument, seen from its serial connector: bytes and time in, bytes out. All times are
-/// simulated seconds since the rig was switched on and never go back.
+/// An Instrument is one simulated instrument, seen from its serial connector: bytes and time come in, bytes
+/// go out. All times are simulated seconds since the rig was switched on and never go back.
 namespace mgtd::rig {
 
 /// What an instrument says, and the moment it begins to.

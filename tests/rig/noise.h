@@ -9,7 +9,7 @@
 #include "tests/rig/effect.h"
 #include "tests/rig/slow_noise.h"
 
-/// What the readings of one fluxgate scatter by.
+/// This is the noise by which the readings of one fluxgate scatter.
 namespace mgtd::rig {
 
 enum class NoiseKind { gaussian, uniform, student };

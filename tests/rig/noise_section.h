@@ -3,7 +3,8 @@
 #include "tests/rig/noise.h"
 #include "tests/rig/section.h"
 
-/// The noise of a scenario: keys of [sensors] and of [visit]. An absent key leaves its value as it is.
+/// This reads the noise of a scenario: keys of [sensors] and of [visit]. An absent key leaves its value as it
+/// is.
 namespace mgtd::rig {
 
 void read_sample_noise(Section& sensors, SampleNoise& noise);

@@ -8,7 +8,8 @@
 #include "tests/rig/instrument.h"
 #include "tests/rig/world.h"
 
-/// An ObsDAQ digitiser with a fluxgate on its three inputs, alone or behind a PalmAcq time-stamper.
+/// This simulates an ObsDAQ digitiser with a fluxgate on its three inputs, alone or behind a PalmAcq
+/// time-stamper.
 ///
 /// Commands end in CR; address 01. `$01M` `$01F` `$01SN` `$012` `$01QF` `$01IR0`, channel n: `$01nWS0201ccdd`
 /// `$01nRS` `$01nWOaaaaaa` `$01nRO` `$01nWFaaaaaa` `$01nRF` `$01nWCFk` `$01nRR`; `#01PPeeeeffff` `#01CS`

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-/// The hands of a simulated rig: waits for what a daemon asks its operator to do, does it on the rig, and
-/// enters what the scales then say.
+/// The operator of a simulated rig waits for what a daemon asks, does it on the rig, and enters what the
+/// scales then say.
 namespace mgtd::rig {
 
 struct OperatorOptions {

@@ -6,7 +6,8 @@
 
 namespace mgtd::rig {
 
-/// A simulated run as the CSV pose table that users write, every column that has a value somewhere.
+/// This writes a simulated run as the CSV pose table that users write, with every column that has a value
+/// somewhere.
 [[nodiscard]] std::string pose_table_csv(const PoseTable& table);
 
 }  // namespace mgtd::rig

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-/// A pseudo-terminal with a stable name: what a USB serial adapter is to the host. Closing it is pulling the
-/// plug.
+/// A Pty is a pseudo-terminal with a stable name; to the host it is a USB serial adapter. Closing it is
+/// pulling the plug.
 namespace mgtd::rig {
 
 class Pty {

@@ -4,7 +4,7 @@
 
 #include "tests/rig/scenario.h"
 
-/// Puts a rig on ptys and keeps it going: simulated time runs `speed_up` times the host's.
+/// This puts a rig on ptys and keeps it going: simulated time runs `speed_up` times the host's.
 ///
 /// `dir` gets the links fluxgate1 .. fluxgate4, table, scalar, the socket fault.sock and, when all is there,
 /// the file `ready` with the process number. A client of the socket sends one line, a fault (fault.h) or

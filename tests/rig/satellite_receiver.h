@@ -2,8 +2,8 @@
 #pragma once
 #include "tests/rig/instrument.h"
 
-/// What has no business on any port of this rig: it talks once a second, at the right speed, in lines that
-/// are none of the instruments', and does not listen.
+/// A satellite receiver has no business on any port of this rig: it talks once a second, at the right speed,
+/// in lines that are none of the instruments', and does not listen.
 namespace mgtd::rig {
 
 class SatelliteReceiver final : public Instrument {

@@ -17,8 +17,8 @@
 #include "tests/rig/truth.h"
 #include "tests/rig/vehicle.h"
 
-/// What a simulated rig is and what happens on it. Written in TOML; `mgt-rig --help` and tests/scenarios show
-/// how.
+/// A Scenario says what a simulated rig is and what happens on it. It is written in TOML; `mgt-rig --help`
+/// and tests/scenarios show how.
 namespace mgtd::rig {
 
 struct TemperatureScript {

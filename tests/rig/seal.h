@@ -7,8 +7,8 @@
 
 #include "tests/rig/scenario.h"
 
-/// The blind game: a rig hides something, the answer lies sealed, and its hash is told before the guess, so
-/// that nobody can change it afterwards.
+/// In the blind game a rig hides something, the answer is sealed, and its hash is printed before the guess,
+/// so that nobody can change it afterwards.
 namespace mgtd::rig {
 
 struct Seal {

@@ -11,8 +11,8 @@
 
 #include "tests/rig/effect.h"
 
-/// One table of a scenario file while it is read: every mistake is noted with its line, every key that was
-/// asked for is remembered, so that the others can be named.
+/// A Section is one table of a scenario file while it is read: every mistake is noted with its line, every
+/// key that was asked for is remembered, so that the others can be named.
 namespace mgtd::rig {
 
 /// What is wrong with a scenario file, and where.

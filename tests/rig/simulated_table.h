@@ -10,8 +10,8 @@
 #include "proto/pose.h"
 #include "tests/rig/scenario.h"
 
-/// A run straight from the physics, without ports or daemon: the table goes its real way from pose to pose,
-/// and what the dwells would have given is written down. For the many runs of a benchmark:
+/// This makes a run straight from the physics, without ports or daemon: the table goes its real way from pose
+/// to pose, and what the dwells would have given is written down. For the many runs of a benchmark:
 ///
 ///     auto scenario = parse_scenario(text, "s.toml");            // or a Scenario made in memory ...
 ///     scenario->effects.push_back(*effect_of("name = 'axis.cubic'\nwhere = 's2.x'\nnT_at_F0 = 12"));

@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-/// The slow part of the noise of one axis, nT: processes in time that are drawn exactly at any instants and,
-/// for the mean of a dwell, from their joint distribution with where the dwell leaves them.
+/// This is the slow part of the noise of one axis, nT: processes in time that are drawn exactly at any
+/// instants and, for the mean of a dwell, from their joint distribution with where the dwell leaves them.
 namespace mgtd::rig {
 
 /// One of them.

@@ -8,7 +8,8 @@
 #include <string_view>
 #include <utility>
 
-/// What the four sensors truly are: the parameters of the paper's tables, in the units of those tables.
+/// The truth is what the four sensors really are: the parameters of the paper's tables, in the units of those
+/// tables.
 namespace mgtd::rig {
 
 struct SensorTruth {

@@ -5,7 +5,8 @@
 
 namespace mgtd::rig {
 
-/// Field at `from_dipole_m`, nT: mu0/4pi (3 (m.u) u - m)/d^3; 100 nT at 1 m for 1 A m2 across the moment.
+/// This gives the field of a dipole at `from_dipole_m`, nT: mu0/4pi (3 (m.u) u - m)/d^3; 100 nT at 1 m for 1
+/// A m2 across the moment.
 inline Eigen::Vector3d dipole_nT(const Eigen::Vector3d& moment_Am2, const Eigen::Vector3d& from_dipole_m) {
   constexpr double kMu0Over4Pi_nT = 100;  // 1e-7 T m/A in nT
   const Eigen::Vector3d u = from_dipole_m.normalized();

@@ -7,7 +7,8 @@
 
 #include "tests/rig/instrument.h"
 
-/// The cable: ten bit times a byte, one byte after the other, and the faults that live in cables. Pure.
+/// A Wire is a cable: ten bit times a byte, one byte after the other, and the faults that live in cables.
+/// Pure.
 namespace mgtd::rig {
 
 class Wire {

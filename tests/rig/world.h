@@ -10,8 +10,8 @@
 #include "tests/rig/noise.h"
 #include "tests/rig/scenario.h"
 
-/// The physics of the rig: site, table, sensors, temperature. Everything is a function of the simulated time,
-/// asked for by the instruments sample by sample. Knows the truth; nobody else does.
+/// The World is the physics of the rig: site, table, sensors, temperature. Everything is a function of the
+/// simulated time, asked for by the instruments sample by sample. Knows the truth; nobody else does.
 ///
 ///   B(t, x)                                     site frame, x from the centre of the array
 ///   b_i = R B(t, R' r_i)                        R = M Rz(azimuth) Ry(pitch) Rx(roll), the angles as they

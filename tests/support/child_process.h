@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-/// Real programs under test: started, watched, ended. A child that outlives its test is killed.
+/// A ChildProcess starts, watches and ends a real program under test. A child that outlives its test is
+/// killed.
 namespace mgtd::testing {
 
 struct Finished {

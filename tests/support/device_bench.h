@@ -11,8 +11,8 @@
 
 #include "drivers/device.h"
 
-/// A Device on the bench: fed by hand, in virtual time. `answer` plays the instrument's side of the wire: it
-/// gets what the device sent and returns what comes back.
+/// A DeviceBench feeds a Device by hand, in virtual time. `answer` plays the instrument's side of the wire:
+/// it gets what the device sent and returns what comes back.
 namespace mgtd::testing {
 
 class DeviceBench {

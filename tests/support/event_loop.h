@@ -8,7 +8,8 @@
 #include <string>
 #include <thread>
 
-/// Runs an io_context until something is true: no sleeping, and a generous end for a test that hangs.
+/// This runs an io_context until something is true, without sleeping, and ends a test that hangs after a
+/// generous time.
 namespace mgtd::testing {
 
 template <class Condition>

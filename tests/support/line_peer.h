@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-/// A client of a socket, made of system calls only, so that servers are tested against the kernel and not
-/// against our own client. Never blocks: pump() takes what has arrived.
+/// A LinePeer is a client of a socket made of system calls only, so that servers are tested against the
+/// kernel and not against our own client. Never blocks: pump() takes what has arrived.
 namespace mgtd::testing {
 
 class LinePeer {

@@ -6,8 +6,8 @@
 
 #include "proto/pose.h"
 
-/// Rigs with known parameters and runs on them, written from the paper's equations and not from calib: what
-/// an estimator is judged by must not share its code.
+/// These are rigs with known parameters and runs on them, written from the paper's equations and not from
+/// calib: what an estimator is judged by must not share its code.
 namespace mgtd::testing {
 
 /// theta, phi, psi (deg), cx, cy, cz, ix, iy, iz (nT), alpha, beta, gamma (deg).

@@ -3,7 +3,8 @@
 #include <string>
 #include <string_view>
 
-/// The instrument's end of a pseudo terminal whose other end is found under a path of the test's choice.
+/// This is the instrument's end of a pseudo terminal whose other end is found under a path of the test's
+/// choice.
 namespace mgtd::testing {
 
 class PtyMaster {

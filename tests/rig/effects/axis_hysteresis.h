@@ -7,7 +7,7 @@
 
 namespace mgtd::rig {
 
-/// A core that remembers where it came from: the play operator p <- max(x - w, min(x + w, p)), started at 0,
+/// This core remembers where it came from: the play operator p <- max(x - w, min(x + w, p)), started at 0,
 /// along the whole path; y += h (p - x)/w.
 class AxisHysteresis final : public EffectOf<AxisHysteresis> {
  public:

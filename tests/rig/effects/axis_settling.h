@@ -7,7 +7,7 @@
 
 namespace mgtd::rig {
 
-/// An axis that creeps after a change: z follows x with time constant tau, y += eta (z - x).
+/// This axis creeps after a change: z follows x with time constant tau, y += eta (z - x).
 class AxisSettling final : public EffectOf<AxisSettling> {
  public:
   AxisSettling(Where where, double eta_nT, double tau_s)

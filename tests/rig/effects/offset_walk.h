@@ -10,7 +10,7 @@
 
 namespace mgtd::rig {
 
-/// An offset that goes its own way: independent steps every ten seconds, sd q sqrt(t) after t hours.
+/// This offset walks at random: independent steps every ten seconds, sd q sqrt(t) after t hours.
 class OffsetWalk final : public EffectOf<OffsetWalk> {
  public:
   OffsetWalk(Where where, double nT_per_sqrt_h) : where_(std::move(where)), nT_per_sqrt_h_(nT_per_sqrt_h) {}

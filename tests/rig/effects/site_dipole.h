@@ -7,7 +7,7 @@
 
 namespace mgtd::rig {
 
-/// Something of iron near the table.
+/// A piece of iron stands near the table.
 class SiteDipole final : public EffectOf<SiteDipole> {
  public:
   SiteDipole(const std::array<double, 3>& moment_Am2, const std::array<double, 3>& at_m)

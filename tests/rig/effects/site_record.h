@@ -10,8 +10,9 @@
 
 namespace mgtd::rig {
 
-/// A day of the real field, minute by minute, north, east and down: what it changes from the start of the run
-/// is added to the field of the site. Data: Boulder observatory, U.S. Geological Survey (data/README.md).
+/// This replays a day of the real field, minute by minute, north, east and down: what it changes from the
+/// start of the run is added to the field of the site. Data: Boulder observatory, U.S. Geological Survey
+/// (data/README.md).
 class SiteRecord final : public EffectOf<SiteRecord> {
  public:
   using Minute = std::array<std::int16_t, 3>;  ///< hundredths of nT

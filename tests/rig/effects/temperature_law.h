@@ -7,10 +7,10 @@
 
 namespace mgtd::rig {
 
-/// The measured laws of four real fluxgates (sensors 687 to 690 of the AUV Sentry; as published in the Matlab
-/// function Mag_calib1520_sensors of its magnetic processing): offset, scale and the three angles between the
-/// axes, each a parabola of the temperature. Their size: 1 to 9 nT/degC, 7 to 600 ppm/degC, 2 to 34
-/// arcsec/degC.
+/// These are the measured laws of four real fluxgates (sensors 687 to 690 of the AUV Sentry; as published in
+/// the Matlab function Mag_calib1520_sensors of its magnetic processing): offset, scale and the three angles
+/// between the axes, each a parabola of the temperature. Their size: 1 to 9 nT/degC, 7 to 600 ppm/degC, 2 to
+/// 34 arcsec/degC.
 ///
 /// raw = S(T) Q(T) B + o(T) there; here what changes from T0 = 20 degC is put on the rig's own sensors, whose
 /// parameters hold at T0:
