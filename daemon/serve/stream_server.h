@@ -37,7 +37,7 @@ struct StreamConfig {
   int unix_mode{0666};                             ///< reading is for everyone who may enter the directory
   std::size_t max_clients{64};
   RateLimit rate{.per_s = 10, .burst = 64};  ///< of lines from one client
-  std::size_t ring_lines{4'096};  ///< in memory: how late a client may be; what is older is read from disk
+  std::size_t ring_lines{2'048};  ///< in memory: how late a client may be; what is older is read from disk
 };
 
 class StreamServer {
