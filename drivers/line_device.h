@@ -70,9 +70,9 @@ class LineBased : public Base {
   /// A line that holds what no line may; already rejected. `text` may contain any byte.
   virtual void on_damaged_line(std::string_view /*text*/) {}
 
-  void set_state(LinkState state, std::string detail) {
+  void set_state(LinkState state, std::string_view detail) {
     this->health_.state = state;
-    this->health_.detail = std::move(detail);
+    this->health_.detail = detail;
   }
 
  private:

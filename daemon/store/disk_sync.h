@@ -19,7 +19,7 @@ class DiskSync {
   void look_after(Journal& journal) {
     for (const int fd : journal.take_syncs()) {
       worker_.run(
-          [fd](std::stop_token) {
+          [fd](const std::stop_token&) {
             const int os_error = ::fdatasync(fd) == 0 ? 0 : errno;
             ::close(fd);
             return os_error;
