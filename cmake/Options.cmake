@@ -1,8 +1,8 @@
-# Warnings are errors, sanitizers are chosen by preset, third-party headers are SYSTEM.
+# Warnings are errors unless MGTD_WERROR is off, sanitizers are chosen by preset, third-party headers are SYSTEM.
 add_library(mgtd_options INTERFACE)
 target_compile_options(mgtd_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
-  -Wdouble-promotion -Werror -ffp-contract=off)
+  -Wdouble-promotion $<$<BOOL:${MGTD_WERROR}>:-Werror> -ffp-contract=off)
 # False alarms of g++ 12 at -O3: a moved variant is taken for every alternative it could have held, and
 # std::string's own insertion for an overlap (GCC bug 105651).
 target_compile_options(mgtd_options INTERFACE
