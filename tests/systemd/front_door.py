@@ -11,10 +11,12 @@ front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
   links       every file and heading that README.md and docs/ point to is there
   completion  bash completes subcommands and options of the programs
   outputs     an output path that is a device, a FIFO or a symbolic link is written to and stays what it is
+  packages    debian/ has the project's version and puts every installed file into one package
   kept        what `add` found is kept: every command tells the same residual of that run file
 Exit code 77: the tool needed for the check is not on this machine.
 """
 import argparse
+import fnmatch
 import json
 import os
 import pathlib
@@ -312,6 +314,43 @@ at_s = 1100.0
     wanted = f"Residual {residuals['fit']:.3g} nT"
     if wanted not in page.read_text():
         raise Failure(f"the report does not say '{wanted}'")
+
+
+def claims(source, package):
+    """The paths that a package takes from the installation, as in debian/PACKAGE.install."""
+    lines = (source / f"debian/{package}.install").read_text().split()
+    return [line.replace("${env:UNIT_DIR}", "usr/lib/systemd/system") for line in lines]
+
+
+def misplaced(files, packages):
+    """Files that are not in exactly one package, and claims that no file answers."""
+    def taken(file, claim):
+        return fnmatch.fnmatch(file, claim) or file.startswith(claim + "/")
+    wrong = []
+    for file in files:
+        homes = [name for name, paths in packages.items() if any(taken(file, path) for path in paths)]
+        if len(homes) != 1:
+            wrong.append(f"{file} is in {' and '.join(homes) or 'no package'}")
+    for name, paths in packages.items():
+        wrong += [f"debian/{name}.install: nothing is installed as {path}"
+                  for path in paths if not any(taken(file, path) for file in files)]
+    return wrong
+
+
+def check_packages(options, root):
+    version = re.search(r"project\(mgtd VERSION ([\d.]+)", (options.source / "CMakeLists.txt").read_text()).group(1)
+    newest = (options.source / "debian/changelog").read_text().splitlines()[0]
+    if not newest.startswith(f"mgtd ({version}) "):
+        raise Failure(f"CMakeLists.txt has version {version}, debian/changelog begins with: {newest}")
+    install(options, root)
+    files = sorted(str(path.relative_to(root)) for path in root.rglob("*") if path.is_file())
+    control = (options.source / "debian/control").read_text()
+    packages = {name: claims(options.source, name) for name in re.findall(r"^Package: (\S+)", control, flags=re.M)}
+    wrong = misplaced(files, packages)
+    if wrong:
+        raise Failure("\n".join(wrong))
+    if len(misplaced([*files, "usr/bin/planted"], {**packages, "planted": ["usr/bin/mgt", "usr/bin/no"]})) != 3:
+        raise Failure("the check cannot fail: a file without a package, one in two packages or a false claim passed")
 
 
 CHECKS = {name[6:]: function for name, function in list(globals().items()) if name.startswith("check_")}
