@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
-#include "calib/effects/formula/formula_names.h"
 #include "calib/effects/library/library.h"
-#include "calib/poses/pose_columns.h"
+#include "daemon/config/input_columns.h"
 #include "daemon/config/tcp_address.h"
 #include "daemon/config/toml_settings.h"
 #include "daemon/plan/mount_plan.h"
@@ -25,10 +23,7 @@ using drivers::Settings;
 /// Collects the mistakes of every section.
 class Reader {
  public:
-  explicit Reader(Config& config) : config_(config) {
-    for (const calib::PoseColumn& column : calib::pose_columns())
-      if (!drivers::sensor_of(column.name)) fixed_columns_.insert(column.name);
-  }
+  explicit Reader(Config& config) : config_(config) {}
 
   void read(const toml::table& root);
   [[nodiscard]] std::vector<drivers::SettingError> take_errors();
@@ -44,7 +39,6 @@ class Reader {
   void read_service(const toml::table& root);
   void read_sensors(const toml::table& root);
   void read_auxiliary(const toml::table& root);
-  void check_inputs(Settings& s, const DeviceConfig& device);
   void warn_without_field();
   DeviceConfig read_device(Settings settings, std::string name, Role role, int slot);
   void read_port(Settings& s, DeviceConfig& device);
@@ -55,16 +49,12 @@ class Reader {
   Config& config_;
   std::vector<drivers::SettingError> errors_;
   std::map<std::string, int> port_lines_, serial_lines_;
-  std::set<std::string, std::less<>> fixed_columns_{"pose", "set", "t_utc"};  ///< of every pose table
-  std::map<std::string, std::string> input_columns_;                          ///< and where each is measured
+  InputColumns inputs_;
 };
 
 constexpr std::array<std::string_view, 12> kSections{"rig",       "sensor", "table",       "scalar",
                                                      "auxiliary", "site",   "calibration", "run",
                                                      "store",     "stream", "control",     "daemon"};
-
-/// Of formulas.
-constexpr std::array<calib::Level, 3> kLevels{calib::Level::axis, calib::Level::platform, calib::Level::site};
 
 Settings Reader::section(const toml::table& root, std::string_view name) {
   const toml::node* const node = root.get(name);
@@ -265,7 +255,7 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
     if (!fresh) s.object("serial", fmt::format("'{}' is already used in line {}", serial, where->second));
   }
   device.baud = s.small_integer("baud", 0);
-  check_inputs(s, device);
+  inputs_.add(s, device, config_);
   close(s);
   return device;
 }
@@ -287,38 +277,6 @@ void Reader::read_sensors(const toml::table& root) {
     }
     Settings s = to_settings(*table, "[[sensor]] " + name);
     config_.sensors.at(i) = read_device(std::move(s), name, Role::sensor, static_cast<int>(i));
-  }
-}
-
-/// A name that stands for something else in formulas of one level or another.
-bool means_something_else(const std::string& column) {
-  return std::any_of(kLevels.begin(), kLevels.end(), [&](calib::Level level) {
-    return calib::formula_name(column, level, std::nullopt, 0).source != calib::FormulaName::Source::column;
-  });
-}
-
-/// An input is a column of the pose table beside those that are there already, and named once.
-void Reader::check_inputs(Settings& s, const DeviceConfig& device) {
-  for (const drivers::InputChannel& input : device.device->inputs()) {
-    const std::string& column = input.column;
-    if (fixed_columns_.contains(column)) {
-      s.object(input.key,
-               fmt::format("'{}' is a column of the pose table itself; choose another name", column));
-    } else if (means_something_else(column)) {
-      s.object(input.key, fmt::format("'{}' means something else in formulas; choose another name", column));
-    }
-    const auto [known, fresh] = input_columns_.try_emplace(
-        column,
-        fmt::format("{}, input {}, in line {}", device.name, input.input, s.place_of(input.key).line));
-    if (!fresh)
-      s.object(input.key, fmt::format("'{}' is already measured ({}); {}", column, known->second,
-                                      drivers::sensor_of(column) ? "leave one of the two out"
-                                                                 : "give one of them another name"));
-    if (input.unit == "A" && !column.ends_with("_A"))
-      config_.warnings.push_back(
-          fmt::format("{}:{}: warning: {}: '{}' is a current whose name does not end in _A: platform.current "
-                      "does not see it",
-                      config_.file, s.place_of(input.key).line, s.section(), column));
   }
 }
 

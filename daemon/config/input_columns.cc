@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config/input_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "calib/effects/formula/formula_names.h"
+#include "calib/poses/pose_columns.h"
+
+namespace mgtd::daemon {
+namespace {
+
+/// Of formulas.
+constexpr std::array<calib::Level, 3> kLevels{calib::Level::axis, calib::Level::platform, calib::Level::site};
+
+/// A name that stands for something else in formulas of one level or another.
+bool means_something_else(const std::string& column) {
+  return std::any_of(kLevels.begin(), kLevels.end(), [&](calib::Level level) {
+    return calib::formula_name(column, level, std::nullopt, 0).source != calib::FormulaName::Source::column;
+  });
+}
+
+}  // namespace
+
+InputColumns::InputColumns() {
+  for (const calib::PoseColumn& column : calib::pose_columns())
+    if (!drivers::sensor_of(column.name)) fixed_.insert(column.name);
+}
+
+void InputColumns::add(drivers::Settings& s, const DeviceConfig& device, Config& config) {
+  for (const drivers::InputChannel& input : device.device->inputs()) {
+    const std::string& column = input.column;
+    if (fixed_.contains(column)) {
+      s.object(input.key,
+               fmt::format("'{}' is a column of the pose table itself; choose another name", column));
+    } else if (means_something_else(column)) {
+      s.object(input.key, fmt::format("'{}' means something else in formulas; choose another name", column));
+    }
+    const auto [known, fresh] = measured_.try_emplace(
+        column,
+        fmt::format("{}, input {}, in line {}", device.name, input.input, s.place_of(input.key).line));
+    if (!fresh)
+      s.object(input.key, fmt::format("'{}' is already measured ({}); {}", column, known->second,
+                                      drivers::sensor_of(column) ? "leave one of the two out"
+                                                                 : "give one of them another name"));
+    if (input.unit == "A" && !column.ends_with("_A"))
+      config.warnings.push_back(
+          fmt::format("{}:{}: warning: {}: '{}' is a current whose name does not end in _A: platform.current "
+                      "does not see it",
+                      config.file, s.place_of(input.key).line, s.section(), column));
+  }
+}
+
+}  // namespace mgtd::daemon
