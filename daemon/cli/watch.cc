@@ -10,6 +10,7 @@
 
 #include "daemon/cli/ask.h"
 #include "daemon/cli/gap_line.h"
+#include "daemon/cli/gap_pace.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/cli/progress.h"
 #include "daemon/serve/stream_reader.h"
@@ -31,36 +32,40 @@ std::string number(const nlohmann::json& object, const char* key, int width) {
                          : fmt::format("{:{}.2f}", value.get<double>(), width);
 }
 
-/// Gaps that follow each other are one line: rewritten in place on a terminal; else told when samples come
-/// again, or after kHeld when none do.
+/// Gaps that follow each other are one line. On a terminal it is rewritten in place. Elsewhere it is printed
+/// when samples come again; while none come, with the count so far, as often as GapPace allows.
 class Gaps {
  public:
   void add(const nlohmann::json& gap) {
-    if (line_.empty()) since_ = std::chrono::steady_clock::now();
+    if (line_.empty()) pace_.begin(std::chrono::steady_clock::now());
     line_.add(gap.at("from_seq").get<std::uint64_t>(), gap.at("to_seq").get<std::uint64_t>(),
               gap.at("why").get<std::string>());
-    if (!terminal_) return;
+    if (!terminal_) return mention_when_due();
     const auto width = static_cast<std::size_t>(std::max(20, terminal_width(STDOUT_FILENO) - 1));
     fmt::print("\r{}\x1b[K", indented().substr(0, width));
     std::fflush(stdout);
   }
-  void tell() {
+  /// Samples come again, or something else is to be printed below.
+  void end() {
     if (line_.empty()) return;
     fmt::print("{}\n", terminal_ ? std::string() : indented());
     std::fflush(stdout);
     line_.clear();
   }
-  void tell_when_held_long() {
-    if (!terminal_ && std::chrono::steady_clock::now() - since_ > kHeld) tell();
+  void mention_when_due() {
+    const Instant now = std::chrono::steady_clock::now();
+    if (terminal_ || line_.empty() || !pace_.due(now)) return;
+    pace_.mention(now);
+    fmt::print("{}, and no sample has come since\n", indented());
+    std::fflush(stdout);
   }
 
  private:
   [[nodiscard]] std::string indented() const { return "              " + line_.text(); }
 
-  static constexpr std::chrono::seconds kHeld{10};
   bool terminal_{isatty(STDOUT_FILENO) != 0};
   GapLine line_;
-  std::chrono::steady_clock::time_point since_;
+  GapPace pace_;
 };
 
 void print_sample(const nlohmann::json& s) {
@@ -78,20 +83,20 @@ void print_sample(const nlohmann::json& s) {
   std::fflush(stdout);
 }
 
-/// A change of what the stream says of its calibration; told once.
-void print_criticism(const nlohmann::json& status, std::string& told, Gaps& gaps) {
+/// Prints what the daemon says of the active calibration, each time that it changes from `shown`.
+void print_criticism(const nlohmann::json& status, std::string& shown, Gaps& gaps) {
   const auto& criticism = status.at("criticism");
   const std::string state = criticism.at("state");
-  if (state == told) return;
-  told = state;
+  if (state == shown) return;
+  shown = state;
   if (state != "suspect" && state != "near source") return;
-  gaps.tell();
+  gaps.end();
   fmt::print("              {}: {}\n              limit: {}; {}\n", state,
              criticism.at("measured").get<std::string>(), criticism.at("limit").get<std::string>(),
              criticism.at("remedy").get<std::string>());
 }
 
-/// Where the stream is, as the daemon itself says.
+/// The address of the stream: the one on the command line, else the one that the daemon states.
 Result<std::string> stream_of(const Session& session, const WatchArguments& args) {
   if (!args.stream.empty()) return args.stream;
   const auto version = ask(session, ControlCommand::version);
@@ -100,15 +105,15 @@ Result<std::string> stream_of(const Session& session, const WatchArguments& args
   return unix_path.empty() ? version->at("stream_tcp").get<std::string>() : unix_path;
 }
 
-/// One object of the stream, for a person.
-void show(const nlohmann::json& object, std::string& told, Gaps& gaps) {
+/// Prints one object of the stream for a person.
+void show(const nlohmann::json& object, std::string& criticism, Gaps& gaps) {
   const std::string kind = object.at("class");
   if (kind == "TENSOR") {
-    gaps.tell();
+    gaps.end();
     print_sample(object);
   } else if (kind == "STATUS") {
-    print_criticism(object, told, gaps);
-    gaps.tell_when_held_long();
+    print_criticism(object, criticism, gaps);
+    gaps.mention_when_due();
   } else if (kind == "GAP") {
     gaps.add(object);
   }
@@ -129,21 +134,21 @@ Result<daemon::StreamReader> open_stream(const Session& session, const WatchArgu
 int run_watch(const Session& session, const WatchArguments& args) {
   auto reader = open_stream(session, args);
   if (!reader) return report(session, reader.error());
-  std::string told;
+  std::string criticism;
   Gaps gaps;
   for (std::uint64_t seen = 0; args.count == 0 || seen < args.count;) {
     const auto object = reader->next(std::chrono::seconds(30));
     if (!object || !*object) {
-      gaps.tell();
+      gaps.end();
       return report(session, object ? Error{ErrorCode::unreachable, "the stream is silent for 30 s",
-                                            "mgt status tells why"}
+                                            "mgt status says why"}
                                     : object.error());
     }
     if (session.json || args.raw) {
       print_json(**object);
       std::fflush(stdout);
     } else {
-      show(**object, told, gaps);
+      show(**object, criticism, gaps);
     }
     if ((*object)->at("class") == "TENSOR") ++seen;
   }
@@ -160,10 +165,10 @@ void add_watch(CLI::App& app, Session& session) {
   command->add_option("--rate", args->rate_hz, "samples a second")
       ->check(in_range(kWatchRateMin_hz, kWatchRateMax_hz, "Hz"))
       ->capture_default_str();
-  command->add_option("--count", args->count, "end after so many samples (0: never)")
+  command->add_option("--count", args->count, "end after this many samples (0: never)")
       ->check(in_range(0, 1e15, "samples"))
       ->capture_default_str();
-  command->add_option("--stream", args->stream, "Unix socket or host:port; asked of the daemon when absent");
+  command->add_option("--stream", args->stream, "Unix socket or host:port; default: what the daemon says");
   command->add_flag("--raw", args->raw, "the objects as they come, one per line");
 }
 
