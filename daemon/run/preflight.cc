@@ -17,6 +17,7 @@ constexpr std::size_t kMinPairs = 20;     // fewer make no standard deviation wo
 constexpr double kFrozenPreflight = 0.5;  // of successive values, equal
 constexpr double kTableSilence_s = 10.0;  // a table at rest is asked every second
 constexpr double kReachTolerance_rad = 1e-3;
+constexpr double kStandstill_s = 1.0;  // after a second without a byte a digitiser is taken for silent
 
 std::string named(const char* what, int slot) { return fmt::format("{}.s{}", what, slot + 1); }
 
@@ -65,6 +66,19 @@ void Preflight::add(const EpochOrGap& item) {
 
 void Preflight::add(const ScalarReading& reading) {
   if (reading.arrival.mono >= begin_) scalar_.push_back(reading);
+}
+
+void Preflight::passes(Instant now) {
+  if (last_event_) longest_standstill_ = std::max(longest_standstill_, now - *last_event_);
+  last_event_ = now;
+}
+
+std::string Preflight::remedy(std::string otherwise) const {
+  if (longest_standstill_ < from_seconds(kStandstill_s)) return otherwise;
+  return fmt::format(
+      "this computer is too busy: the daemon stood still for {:.1f} s meanwhile; end other programs (or let "
+      "the simulation run less fast) and start again; if it fails as before: {}",
+      to_seconds(longest_standstill_), otherwise);
 }
 
 bool Preflight::complete(Instant now) const {
@@ -118,12 +132,13 @@ Check Preflight::rate() const {
   const double span_s = first_ && last_ ? to_seconds(*last_ - *first_) : 0;
   const auto epochs = static_cast<double>(y_nT_.size()) + static_cast<double>(missing_);
   const double rate_hz = span_s > 0 ? (epochs - 1) / span_s : 0;
-  return check("rate", std::abs(rate_hz / config_.rate_hz - 1) <= config_.max_rate_error,
-               fmt::format("{:.2f} epochs/s", rate_hz),
-               fmt::format("{:.2f} epochs/s within {:.0f} %", config_.rate_hz, 100 * config_.max_rate_error),
-               y_nT_.empty()
-                   ? "no epoch came: see with `mgt status` which sensor is silent, its port and supply"
-                   : "set the digitisers and rate_hz of the configuration to the same rate");
+  return check(
+      "rate", std::abs(rate_hz / config_.rate_hz - 1) <= config_.max_rate_error,
+      fmt::format("{:.2f} epochs/s", rate_hz),
+      fmt::format("{:.2f} epochs/s within {:.0f} %", config_.rate_hz, 100 * config_.max_rate_error),
+      remedy(y_nT_.empty()
+                 ? "no epoch came: `mgt status` says which sensor is silent; check its port and supply"
+                 : "set the digitisers and rate_hz of the configuration to the same rate"));
 }
 
 Check Preflight::gaps() const {
@@ -133,7 +148,7 @@ Check Preflight::gaps() const {
   return check("gaps", share <= config_.max_gap_share,
                fmt::format("{} of {:.0f} epochs not measured{}", missing_, all, why),
                fmt::format("{:.0f} %", 100 * config_.max_gap_share),
-               "check cable, port and baud rate of the sensor named");
+               remedy("check cable, port and baud rate of the sensor named"));
 }
 
 Check Preflight::saturation() const {
@@ -149,7 +164,8 @@ Check Preflight::skew() const {
       "clock", !y_nT_.empty() && skew_s_ <= config_.max_skew_s,
       y_nT_.empty() ? "no epoch" : fmt::format("{:.2f} ms between the sensors at most", 1e3 * skew_s_),
       fmt::format("{:.0f} ms", 1e3 * config_.max_skew_s),
-      "a port delivers late: lower its latency timer and give it as delivery_s, or use another USB hub");
+      remedy("a port delivers late: lower its latency timer and give it as delivery_s, or use another USB "
+             "hub"));
 }
 
 Check Preflight::wiring(const Statistics& s) const {
@@ -259,7 +275,8 @@ std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant
     all.push_back(check("link." + device, health.state == LinkState::live,
                         fmt::format("{} {}", kLinkStateNames.at(static_cast<std::size_t>(health.state)),
                                     health.identity.empty() ? health.detail : health.identity),
-                        "live", health.detail.empty() ? "check port, cable and power" : health.detail));
+                        "live",
+                        remedy(health.detail.empty() ? "check port, cable and power" : health.detail)));
   }
   all.insert(all.end(), {rate(), gaps(), saturation(), skew()});
   for (int slot = 0; slot < kSensors; ++slot)

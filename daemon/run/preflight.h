@@ -49,6 +49,9 @@ class Preflight {
   void add(const ScalarReading& reading);
   void add(const TableReading& reading) { table_ = reading; }
   void add(const std::string& device, const LinkHealth& health) { links_[device] = health; }
+  /// Told at every event. A long time between two of them means that this program was not served by the
+  /// computer, and readings that are missing say nothing of the cables.
+  void passes(Instant now);
 
   /// length_s after the first epoch (gaps count) when every instrument was heard, else after wait_s.
   [[nodiscard]] bool complete(Instant now) const;
@@ -77,6 +80,8 @@ class Preflight {
   [[nodiscard]] Check field(int slot, const Statistics& s) const;
   [[nodiscard]] Check scalar() const;
   [[nodiscard]] Check table(const drivers::TableLimits& limits, Instant now) const;
+  /// `otherwise`, unless the program itself stood still: then that comes first.
+  [[nodiscard]] std::string remedy(std::string otherwise) const;
 
   PreflightConfig config_;
   Instant begin_;
@@ -91,6 +96,8 @@ class Preflight {
   std::vector<ScalarReading> scalar_;
   std::optional<TableReading> table_;
   std::map<std::string, LinkHealth> links_;
+  std::optional<Instant> last_event_;
+  Duration longest_standstill_{0};  ///< of this program
 };
 
 [[nodiscard]] bool all_passed(const std::vector<Check>& checks);

@@ -92,6 +92,7 @@ bool RunFsm::reached(const TableReading& reading, const TableAngles& goal) const
 }
 
 void RunFsm::advance(phase::Preflighting& now) {
+  now.preflight.passes(now_.mono);
   if (!now.preflight.complete(now_.mono)) return;
   checks_ = now.preflight.checks(config_.limits, now_.mono);
   preflight_passed_ = all_passed(checks_);

@@ -120,6 +120,27 @@ TEST(Preflight, EachTroubleFailsItsOwnCheck) {
   EXPECT_EQ(failed(Rig{.s2 = LinkState::silent}.checks()), "link.s2");
 }
 
+std::string remedy_of(const std::vector<Check>& checks, const std::string& name) {
+  for (const Check& c : checks) {
+    if (c.name == name) return c.remedy;
+  }
+  return "no such check";
+}
+
+TEST(Preflight, ABusyComputerIsBlamedBeforeTheCables) {
+  Preflight preflight = Rig{.lost = 40, .s2 = LinkState::silent}.look();
+  for (int k = 0; k < 100; ++k) preflight.passes(at(0.02 * k).mono);
+  const std::string cable = "check cable, port and baud rate of the sensor named";
+  EXPECT_EQ(remedy_of(preflight.checks({}, at(5.1).mono), "gaps"), cable);
+  preflight.passes(at(0.02 * 99 + 2.5).mono);
+  const auto checks = preflight.checks({}, at(5.1).mono);
+  for (const char* name : {"rate", "gaps", "link.s2"})
+    EXPECT_THAT(remedy_of(checks, name),
+                testing::StartsWith("this computer is too busy: the daemon stood still for 2.5 s"))
+        << name;
+  EXPECT_THAT(remedy_of(checks, "gaps"), testing::EndsWith(cable));
+}
+
 TEST(Preflight, TableThatIsNotReferencedYetMayReportAnything) {
   EXPECT_EQ(failed(Rig{.table_referenced = false, .azimuth_rad = 40}.checks()), "");
 }
