@@ -5,6 +5,7 @@
 #include "calib/report/comparison_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -26,7 +27,7 @@ int run_compare(const Session& session, const CompareArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto comparison = calib::compare(source->table, *options);
+  const auto comparison = with_progress("compare", [&] { return calib::compare(source->table, *options); });
   if (!comparison) return report(session, comparison.error());
   if (session.json) {
     print_json(calib::to_json(*comparison));
@@ -40,8 +41,9 @@ int run_compare(const Session& session, const CompareArguments& args) {
 
 void add_compare(CLI::App& app, Session& session) {
   auto args = std::make_shared<CompareArguments>();
-  CLI::App* const command = add_command(app, session, "compare", "model against measurement: where it fails",
-                                        [args, &session] { return run_compare(session, *args); });
+  CLI::App* const command =
+      add_command(app, session, "compare", "compare model and measurement: where does the model fail?",
+                  [args, &session] { return run_compare(session, *args); });
   command->footer(kCompareHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = add_model_flags(command);

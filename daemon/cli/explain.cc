@@ -11,20 +11,20 @@
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
 
 constexpr const char* kExplainHelp =
     "Verdicts: PASS nothing stands out; EXPLAINED what is named, one effect or several, accounts for it;\n"
-    "AMBIGUOUS several could; PARTIAL effects were found and more is there; UNKNOWN something that is in no\n"
-    "library; BAD-DATA. Offsets that wander and noise that is larger than the dwells say are noise, not "
-    "laws.\n"
-    "One clean run in a hundred is called something other than PASS.\n\n"
-    "Columns: k coefficients; d and p how far beyond chance; share the part of the excess of chi-square "
+    "AMBIGUOUS several could; PARTIAL effects were found, and something more is there; UNKNOWN something "
     "that\n"
-    "the effect would take away (1: all of it; -: these poses do not tell their noise, and nothing was "
-    "found).\n\n"
+    "is in no library; BAD-DATA. Wandering offsets, and noise that is larger than the dwells show, count as\n"
+    "noise, not as laws. One clean run in a hundred gets a verdict other than PASS.\n\n"
+    "Columns: k, number of coefficients; d and p, how far beyond chance; share, the part of the excess of\n"
+    "chi-square that the effect would take away (1: all of it; -: the noise is not known from these poses,\n"
+    "and nothing was found).\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";
@@ -39,8 +39,8 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto explained =
-      calib::explain(source->table, {.fit = *options, .also = formulas_of(*source, *options)});
+  const calib::ExplainOptions wanted{.fit = *options, .also = formulas_of(*source, *options)};
+  const auto explained = with_progress("explain", [&] { return calib::explain(source->table, wanted); });
   if (!explained) return report(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
@@ -59,9 +59,9 @@ int run_explain(const Session& session, const ExplainArguments& args) {
 
 void add_explain(CLI::App& app, Session& session) {
   auto args = std::make_shared<ExplainArguments>();
-  CLI::App* const command =
-      add_command(app, session, "explain", "which physical effect is missing, and what cannot be told",
-                  [args, &session] { return run_explain(session, *args); });
+  CLI::App* const command = add_command(app, session, "explain",
+                                        "which physical effect is missing, and what these poses cannot tell",
+                                        [args, &session] { return run_explain(session, *args); });
   command->footer(kExplainHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = add_model_flags(command);

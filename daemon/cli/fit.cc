@@ -7,6 +7,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -21,7 +22,7 @@ int run_fit(const Session& session, const FitArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  auto fitted = calib::fit(source->table, *options);
+  auto fitted = with_progress("fit", [&] { return calib::fit(source->table, *options); });
   if (!fitted) return report(session, fitted.error());
   daemon::name_instruments(fitted->calibration, args.run);
   if (!args.output.empty()) {

@@ -8,6 +8,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr const char* kImproveHelp =
     "Each round adds the effect that explain names, fits everything again and judges what is left. An "
     "effect\n"
-    "that makes poses left out worse is not added.\n\n"
+    "that makes held-out poses worse is not added.\n\n"
     "  mgt improve run.mgtrun -o cal.json\n\n"
     "Exit code 0: nothing stands out any more. 1: something is left.";
 
@@ -24,7 +25,7 @@ struct ImproveArguments {
   std::shared_ptr<FitFlags> flags;
 };
 
-/// What each effect of the model it ended with takes out.
+/// What each effect of the final model removes from the error.
 std::optional<calib::Waterfall> waterfall_of(const PoseTable& table, calib::FitOptions options,
                                              const calib::Calibration& calibration) {
   options.effects.clear();
@@ -43,7 +44,7 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  auto improved = calib::improve(source->table, *options);
+  auto improved = with_progress("improve", [&] { return calib::improve(source->table, *options); });
   if (!improved) return report(session, improved.error());
   daemon::name_instruments(improved->fit.calibration, args.run);
   if (!args.output.empty()) {
@@ -52,7 +53,8 @@ int run_improve(const Session& session, const ImproveArguments& args) {
       return report(session, written.error());
     fmt::print(stderr, "calibration {} written to {}\n", calibration.id, args.output);
   }
-  const auto steps = waterfall_of(source->table, *options, improved->fit.calibration);
+  const auto steps = with_progress(
+      "waterfall", [&] { return waterfall_of(source->table, *options, improved->fit.calibration); });
   if (session.json) {
     nlohmann::json out = calib::to_json(*improved);
     out["waterfall"] = steps ? calib::to_json(*steps) : nlohmann::json();

@@ -9,6 +9,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -62,7 +63,7 @@ int run_next(const Session& session, const NextArguments& args) {
   if (args.pair.size() == 2) pair = {args.pair[0], args.pair[1]};
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
-  auto next = calib::next_of(source->table, {.fit = *options}, pair);
+  auto next = with_progress("next", [&] { return calib::next_of(source->table, {.fit = *options}, pair); });
   if (next && !pair && next->effect.empty())
     next = next_about(source->table, *options, *doubts, std::move(*next));
   if (!next) return report(session, next.error());
@@ -92,8 +93,8 @@ void add_next(CLI::App& app, Session& session) {
                   [args, &session] { return run_next(session, *args); });
   command->footer(kNextHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
-  command->add_option("EFFECT", args->pair, "two of them, by name")->expected(0, 2);
-  command->add_option("-o,--output", args->output, "write the best one's poses here (CSV)");
+  command->add_option("EFFECT", args->pair, "two effects, by name")->expected(0, 2);
+  command->add_option("-o,--output", args->output, "write the poses of the best one here (CSV)");
   args->flags = add_model_flags(command);
 }
 

@@ -9,6 +9,7 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/in_range.h"
+#include "daemon/cli/work_progress.h"
 #include "daemon/run/limits_cost.h"
 #include "daemon/run/planned_poses.h"
 
@@ -39,7 +40,7 @@ struct PlanArguments {
   std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
 };
 
-/// The run of a configuration.
+/// The run that a configuration describes.
 struct LimitedRun {
   daemon::PlanOptions options;
   drivers::TableLimits limits;
@@ -81,7 +82,7 @@ Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   return {};
 }
 
-/// What the command line says goes before the configuration, and that before the earlier calibration.
+/// The command line takes precedence over the configuration, and that over the earlier calibration.
 Result<Wanted> wanted_of(const PlanArguments& args) {
   Wanted out;
   calib::PlanRequest& r = out.request;
@@ -117,7 +118,7 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
 int run_plan(const Session& session, const PlanArguments& args) {
   const auto wanted = wanted_of(args);
   if (!wanted) return report(session, wanted.error());
-  const auto planned = calib::plan(wanted->request);
+  const auto planned = with_progress("plan", [&] { return calib::plan(wanted->request); });
   if (!planned) return report(session, planned.error());
   std::optional<daemon::LimitsCost> limits;
   if (wanted->run) {
@@ -148,8 +149,8 @@ void add_plan(CLI::App& app, Session& session) {
   command->add_option("--config", args->config, "take poses, limits and site from this configuration")
       ->excludes(poses);
   command->add_option("--cal", args->calibration,
-                      "an earlier calibration of this rig (CAL.json): its sensors");
-  command->add_option("--with", args->with, "effect to plan for, by name; may be given again")
+                      "take the sensors from an earlier calibration of this rig (CAL.json)");
+  command->add_option("--with", args->with, "effect to plan for, by name; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--noise", args->noise_nT, "noise of a pose mean in nT, each axis")
       ->check(above_zero(100'000, "nT"))
@@ -159,7 +160,7 @@ void add_plan(CLI::App& app, Session& session) {
       ->capture_default_str();
   command
       ->add_option("--warming", args->warming_degC,
-                   "warming of the heads during the run in degC, where the poses tell no temperature")
+                   "warming of the heads during the run in degC, where the poses have no temperature")
       ->check(in_range(-100, 100, "degC"))
       ->capture_default_str();
   command->add_flag("--no-scalar", args->no_scalar, "there is no scalar reference");
@@ -169,11 +170,13 @@ void add_plan(CLI::App& app, Session& session) {
       ->check(in_range(1'000, 200'000, "nT"));
   command->add_option("--field-sd", args->field_sd_nT, "its standard uncertainty in nT")
       ->check(above_zero(10'000, "nT"));
-  command->add_option("--baseline", args->baseline_m, "distance of opposite sensors in m (0.4)")
+  command->add_option("--baseline", args->baseline_m, "distance between opposite sensors in m (0.4)")
       ->check(in_range(0.05, 10, "m"));
-  command->add_option("--inclination", args->inclination_deg, "of the field at zero table angles, deg (60)")
+  command
+      ->add_option("--inclination", args->inclination_deg,
+                   "inclination of the field at zero table angles, deg (60)")
       ->check(in_range(-90, 90, "deg"));
-  command->add_option("--declination", args->declination_deg, "the same, from X towards Y, deg (0)")
+  command->add_option("--declination", args->declination_deg, "its declination, from X towards Y, deg (0)")
       ->check(in_range(-360, 360, "deg"));
   command->add_option("--table-sd", args->table_sd_deg, "standard deviation of a table angle in deg (0.1)")
       ->check(above_zero(10, "deg"));

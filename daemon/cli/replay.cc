@@ -2,15 +2,19 @@
 #include "daemon/acquire/replay.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/journal_files.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -33,9 +37,30 @@ struct Output {
   }
 };
 
-/// How much of it could not be read because it is damaged. The end of a record that the daemon's end tore is
-/// no damage.
-Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay) {
+/// Shows how much of the journals is played; nothing where the lines themselves go to the terminal.
+class PlayProgress {
+ public:
+  PlayProgress(const std::vector<std::string>& journals, bool to_terminal) {
+    for (const std::string& path : journals) {
+      std::error_code unknown;
+      const auto bytes = std::filesystem::file_size(path, unknown);
+      if (!unknown) total_ += static_cast<double>(bytes);
+    }
+    if (!to_terminal) shown_.emplace("replay");
+  }
+  void played(std::uint64_t bytes) {
+    bytes_ += static_cast<double>(bytes);
+    if (shown_ && total_ > 0) shown_->done(bytes_ / total_);
+  }
+
+ private:
+  double total_{0}, bytes_{0};
+  std::optional<WorkProgress> shown_;
+};
+
+/// How many bytes could not be read because they are damaged. A last record that is cut short because the
+/// daemon was killed does not count as damage.
+Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay, PlayProgress& progress) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(ErrorCode::bad_input, path + ": cannot be read", "check path and permissions");
   RawLogDecoder decoder;
@@ -50,6 +75,7 @@ Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay) {
         return tl::unexpected(std::move(fed.error()));
       }
     }
+    progress.played(static_cast<std::uint64_t>(in.gcount()));
   }
   if (const auto whole = decoder.finish(); !whole) fmt::print(stderr, "{}: {}\n", path, whole.error().text());
   const std::uint64_t unread = bytes - std::min(bytes, decoder.good_bytes());
@@ -77,17 +103,18 @@ void print_summary(const daemon::ReplayCounts& counts, std::uint64_t damaged) {
              counts.missing, counts.gaps, counts.lives, counts.lives == 1 ? "" : "s");
   if (counts.bytes_lost > 0)
     fmt::print(stderr,
-               "{} bytes are not in the journal, because the disk refused: after them the stream may "
-               "differ from what it was\n",
+               "{} bytes are missing from the journal, because the disk refused them: after them the stream "
+               "may differ from what it was\n",
                counts.bytes_lost);
   if (damaged > 0)
     fmt::print(
         stderr,
-        "{} bytes are damaged or stand behind a damage in their file, and were not read: the stream is "
-        "not what it was from there on\n  play an undamaged copy\n",
+        "{} bytes are damaged or follow damage in their file, and were not read: the stream differs from "
+        "what it was from there on\n  play an undamaged copy\n",
         damaged);
   if (counts.parted)
-    fmt::print(stderr, "this is not how it went: {}\n  use the version of mgt that wrote the journal\n",
+    fmt::print(stderr,
+               "the replay differs from what happened: {}\n  use the version of mgt that wrote the journal\n",
                *counts.parted);
 }
 
@@ -112,10 +139,13 @@ int run_replay(const Session& session, const ReplayArguments& args) {
   }
   daemon::Replay replay([&output](std::string_view line) { output.write(line); }, instead);
   std::uint64_t damaged = 0;
-  for (const std::string& path : journals->play) {
-    const auto unread = play(path, replay);
-    if (!unread) return report(session, unread.error());
-    damaged += *unread;
+  {
+    PlayProgress progress(journals->play, output.file == stdout && isatty(STDOUT_FILENO) != 0);
+    for (const std::string& path : journals->play) {
+      const auto unread = play(path, replay, progress);
+      if (!unread) return report(session, unread.error());
+      damaged += *unread;
+    }
   }
   if (output.file != nullptr && (std::fflush(output.file) != 0 || output.failed > 0))
     return report(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
@@ -130,12 +160,14 @@ void add_replay(CLI::App& app, Session& session) {
   auto args = std::make_shared<ReplayArguments>();
   CLI::App* const command =
       add_command(app, session, "replay",
-                  "the stream once more, to the last byte, from the daemon's raw journal (NDJSON)",
+                  "make the stream once more, to the last byte, from the daemon's raw journal (NDJSON)",
                   [args, &session] { return run_replay(session, *args); });
-  command->add_option("JOURNAL", args->journals, "raw-*.raw, from the first file of a start of the daemon on")
+  command
+      ->add_option("JOURNAL", args->journals,
+                   "raw-*.raw, beginning with the first file of a start of the daemon")
       ->required();
   command->add_option("--cal", args->calibration,
-                      "this CAL.json all along, instead of those that were active");
+                      "use this CAL.json throughout, instead of those that were active");
   command->add_option("-o,--output", args->output, "file; standard output when absent");
 }
 

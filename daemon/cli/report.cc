@@ -9,6 +9,7 @@
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/report_page.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -51,7 +52,7 @@ Result<ReportContent> content_of(const ReportArguments& args) {
                     .history = std::move(*history),
                     .doubts = std::move(*doubts),
                     .command = fmt::format("mgt report {} -o {}", name, args.output)};
-  // The model that explain ended with: what the verdict names shows what adding it would take out.
+  // With the model that explain ended with, the waterfall shows what adding the named effects would remove.
   if (!out.explained.model.empty()) {
     calib::FitOptions whole = *options;
     whole.effects = out.explained.model;
@@ -61,7 +62,7 @@ Result<ReportContent> content_of(const ReportArguments& args) {
 }
 
 int run_report(const Session& session, const ReportArguments& args) {
-  const auto content = content_of(args);
+  const auto content = with_progress("report", [&] { return content_of(args); });
   if (!content) return report(session, content.error());
   const std::string page = report_page(*content);
   if (auto written = write_file(args.output, page); !written) return report(session, written.error());

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/work_progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include "daemon/cli/progress.h"
+
+namespace mgtd::cli {
+namespace {
+
+constexpr std::chrono::seconds kQuiet{2};  // nobody minds to wait so long
+constexpr std::chrono::milliseconds kEvery{500};
+constexpr int kBarWidth = 24;
+constexpr double kLittleDone = 0.01;  // less says nothing of the time left
+constexpr double kStarved = 0.5;      // of a processor: less is worth a word
+
+double processor_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+}  // namespace
+
+std::string work_line(const WorkState& work, int width) {
+  std::string line;
+  if (work.share) {
+    const double share = std::clamp(*work.share, 0.0, 1.0);
+    const int filled = static_cast<int>(std::lround(share * kBarWidth));
+    line = fmt::format("[{:#<{}}{:.<{}}]  {}  {:.0f} % done", "", filled, "", kBarWidth - filled, work.what,
+                       100 * share);
+    if (share >= kLittleDone)
+      line += fmt::format(", {} left", duration_text(work.elapsed_s * (1 - share) / share));
+  } else {
+    line = fmt::format("{}: working for {}", work.what, duration_text(work.elapsed_s));
+  }
+  const double got = work.elapsed_s > 0 ? work.processor_s / work.elapsed_s : 1.0;
+  if (got < kStarved) line += fmt::format("; other programs leave it {:.0f} % of a processor", 100 * got);
+  if (static_cast<int>(line.size()) > width) line.resize(static_cast<std::size_t>(std::max(width, 0)));
+  return line;
+}
+
+WorkProgress::WorkProgress(std::string what) : work_{std::move(what), 0, 0, std::nullopt} {
+  if (isatty(STDERR_FILENO) == 0) return;
+  thread_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
+}
+
+WorkProgress::~WorkProgress() = default;
+
+void WorkProgress::done(double share) {
+  const std::lock_guard lock(mutex_);
+  work_.share = share;
+}
+
+void WorkProgress::show(const std::stop_token& stop) {
+  const auto begin = std::chrono::steady_clock::now();
+  const double used_before_s = processor_s();
+  const auto never = [] { return false; };
+  std::unique_lock lock(mutex_);
+  ended_.wait_for(lock, stop, kQuiet, never);
+  const bool shown = !stop.stop_requested();
+  while (!stop.stop_requested()) {
+    work_.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    work_.processor_s = processor_s() - used_before_s;
+    fmt::print(stderr, "\r{}\x1b[K", work_line(work_, terminal_width(STDERR_FILENO) - 1));
+    std::fflush(stderr);
+    ended_.wait_for(lock, stop, kEvery, never);
+  }
+  if (shown) fmt::print(stderr, "\r\x1b[K");
+}
+
+}  // namespace mgtd::cli
