@@ -21,7 +21,7 @@ struct ApplyArguments {
   calib::ApplyOptions options;
 };
 
-/// Of four numbers that are zero in any smooth field; empty where no row tells their uncertainty.
+/// Median over the rows of the closure's chi-square; empty where no row has the uncertainty of its closure.
 std::optional<double> median_closure_chi2(const std::vector<calib::AppliedPose>& rows) {
   std::vector<double> chi2;
   for (const calib::AppliedPose& row : rows)
@@ -32,7 +32,7 @@ std::optional<double> median_closure_chi2(const std::vector<calib::AppliedPose>&
   return *middle;
 }
 
-/// A calibration of another rig calibrates nothing.
+/// Refuses a calibration of another rig.
 void doubt_closure(const std::vector<calib::AppliedPose>& rows) {
   constexpr double kExpected = 3.4, kDoubtful = 100;  // median of chi-square with four degrees of freedom
   const auto chi2 = median_closure_chi2(rows);

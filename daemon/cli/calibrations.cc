@@ -27,7 +27,7 @@ int print_list(const Session& session) {
   return 0;
 }
 
-/// "latest" is the newest proposal.
+/// The id that the operator means; "latest" is the newest proposal.
 Result<std::string> resolve(const Session& session, const std::string& id) {
   if (id != "latest") return id;
   const auto reply = ask(session, ControlCommand::calibrations_list);
@@ -98,19 +98,19 @@ void add_calibrations(CLI::App& app, Session& session) {
   const auto args = std::make_shared<CalibrationsArguments>();
   CLI::App* const shown = add_command(*group, session, "show", "one calibration, whole",
                                       [args, &session] { return show(session, *args); });
-  shown->add_option("ID", args->id, "or 'latest': the newest proposal")->required();
+  shown->add_option("ID", args->id, "its id, or 'latest' for the newest proposal")->required();
   CLI::App* const imported =
       add_command(*group, session, "import", "propose a calibration that was made elsewhere",
                   [args, &session] { return import_file(session, *args); });
   imported->add_option("CAL.json", args->file, "written by mgt fit -o or mgt improve -o")->required();
-  imported->add_flag("--accept", args->accept, "and make it the active one");
-  imported->add_flag("--force", args->force, "also one that failed its checks: every sample says so");
+  imported->add_flag("--accept", args->accept, "make it the active one at once");
+  imported->add_flag("--force", args->force, "even if it failed its checks; every sample then says so");
   CLI::App* const accepted =
       add_command(*group, session, "accept", "make a proposed calibration the active one",
                   [args, &session] { return accept(session, *args); });
-  accepted->add_option("ID", args->id, "or 'latest': the newest proposal")->required();
-  accepted->add_flag("--force", args->force, "also one that failed its checks: every sample says so");
-  add_command(*group, session, "rollback", "back to the calibration that was active before", [&session] {
+  accepted->add_option("ID", args->id, "its id, or 'latest' for the newest proposal")->required();
+  accepted->add_flag("--force", args->force, "even if it failed its checks; every sample then says so");
+  add_command(*group, session, "rollback", "go back to the calibration that was active before", [&session] {
     return print_reply(session, ask(session, ControlCommand::calibrations_rollback), "active again");
   });
 }

@@ -34,7 +34,7 @@ tl::unexpected<Error> cannot_write(const std::string& path, int os_error) {
               "choose another place with -o");
 }
 
-/// Empty when all went well, else errno.
+/// Writes the content; returns errno if that fails.
 std::optional<int> put(const std::string& path, const std::string& content) {
   errno = 0;
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
@@ -42,7 +42,7 @@ std::optional<int> put(const std::string& path, const std::string& content) {
   return errno;
 }
 
-/// A device, a FIFO or a symbolic link: what stands under that name is written to and stays what it is.
+/// Whether the path is a device, a FIFO or a symbolic link, which is written to and stays what it is.
 bool stays(const std::string& path) {
   std::error_code ignored;
   const auto own = std::filesystem::symlink_status(path, ignored);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who has control of the daemon: shown, held for oneself, taken away.
+// Commands that show who has control of the daemon, keep it, or take it away.
 #include <fmt/format.h>
 #include <pwd.h>
 
@@ -22,7 +22,7 @@ std::string user_name(std::int64_t uid) {
 }
 
 std::string in_words(const nlohmann::json& holder) {
-  if (holder.is_null()) return "nobody has control: the next one who changes something gets it";
+  if (holder.is_null()) return "nobody has control; whoever changes something next gets it";
   const std::string why = holder.at("why");
   return fmt::format("{} (pid {}) has control since {}{}{}", user_name(holder.at("uid")),
                      holder.at("pid").get<std::int64_t>(), holder.at("since").get<std::string>(),
@@ -47,12 +47,13 @@ int take_away(const Session& session) {
   if (session.json)
     print_json(*reply);
   else
-    fmt::print("{}\n", reply->at("was").is_null() ? std::string("nobody had control")
-                                                  : "taken away; before: " + in_words(reply->at("was")));
+    fmt::print("{}\n", reply->at("was").is_null()
+                           ? std::string("nobody had control")
+                           : "control taken away; until now: " + in_words(reply->at("was")));
   return 0;
 }
 
-/// Until Ctrl-C, or until control was taken away.
+/// Keeps control until Ctrl-C, or until somebody takes it away.
 int hold(const Session& session, const std::string& why) {
   catch_interrupts({SIGINT, SIGTERM});
   auto client = daemon::ControlClient::connect(session.control_socket);
@@ -87,7 +88,7 @@ void add_control(CLI::App& app, Session& session) {
                   "keep everyone else from starting or changing anything until Ctrl-C, for instance while "
                   "somebody works at the table",
                   [why, &session] { return hold(session, *why); });
-  held->add_option("--why", *why, "told to everyone who is refused");
+  held->add_option("--why", *why, "the reason, shown to everyone who is refused");
   add_command(*group, session, "break", "take control away from whoever has it",
               [&session] { return take_away(session); });
 }

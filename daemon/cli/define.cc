@@ -55,10 +55,11 @@ bool is_name(const std::string& name) {
 
 Result<void> usable_name(const std::string& name) {
   if (is_name(name) && name != "none" && calib::find_family(name) == nullptr) return {};
-  return fail(ErrorCode::usage,
-              calib::find_family(name) != nullptr ? name + " is an effect of the library"
-                                                  : "'" + name + "' is no name for an effect",
-              "letters, digits, '_', '-' and '.', a letter first; and one that mgt effects does not list");
+  return fail(
+      ErrorCode::usage,
+      calib::find_family(name) != nullptr ? name + " is an effect of the library"
+                                          : "'" + name + "' cannot be the name of an effect",
+      "use letters, digits, '_', '-' and '.', begin with a letter, and take none that mgt effects lists");
 }
 
 /// "tau=2:120" as a parameter of a spec.
@@ -93,7 +94,7 @@ Result<calib::EffectSpec> spec_of(const DefineArguments& args) {
   return spec;
 }
 
-/// As it was defined on another run.
+/// The formula as it was defined on another run.
 Result<daemon::Definition> definition_from(const std::string& path, const std::string& name) {
   const auto source = daemon::read_run(path);
   if (!source) return tl::unexpected(source.error());
@@ -103,7 +104,7 @@ Result<daemon::Definition> definition_from(const std::string& path, const std::s
               "mgt model " + path + " lists them");
 }
 
-/// Largest difference of the coefficients from those found before, in standard deviations of both.
+/// Largest difference between the coefficients and those found before, in their joint standard deviations.
 double disagreement(const daemon::Definition& before, const calib::FormulaExamination& now) {
   double out = 0;
   for (const auto& a : before.found) {
@@ -155,7 +156,7 @@ void print(const Session& session, const DefineArguments& args, const calib::For
   }
   if (!c.asked) {
     fmt::print(
-        "exploratory: it was thought of on these poses, so their p-value proves nothing; a second run does\n"
+        "exploratory: these poses suggested it, so their p-value proves nothing; a second run does\n"
         "(mgt define SECOND.mgtrun {} --from {})\n",
         args.name, args.run);
   } else if (c.given) {
@@ -184,7 +185,7 @@ int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
   if (session.json) {
     print_json({{"schema", "mgt.define/1"}, {"dropped", args.name}});
   } else {
-    fmt::print("{} is forgotten\n", args.name);
+    fmt::print("the formula {} is deleted\n", args.name);
   }
   return 0;
 }
@@ -248,10 +249,11 @@ void add_define(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"axis", "platform", "site"}))
       ->capture_default_str();
   command->add_option("--scale", args->scale, "all, each-sensor, each-axis (default), s3, s3.z");
-  command->add_option("--unit", args->unit, "of its coefficients")->capture_default_str();
+  command->add_option("--unit", args->unit, "unit of its coefficients")->capture_default_str();
   command->add_option("--prior", args->prior, "standard deviation of the coefficients about zero");
-  command->add_option("--scan", args->scan, "NAME=FROM:TO: a number in it that is looked for");
-  command->add_flag("--drop", args->drop, "forget the formula of this name");
+  command->add_option("--scan", args->scan,
+                      "NAME=FROM:TO, a number in it that is searched for in this range");
+  command->add_flag("--drop", args->drop, "delete the formula of this name");
   command->add_option("--from", args->from, "run file that keeps the formula: does this run confirm it?");
   args->flags = add_kept_model_flags(command);
 }

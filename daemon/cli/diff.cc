@@ -55,9 +55,9 @@ int run_diff(const Session& session, const DiffArguments& args) {
 
 void add_diff(CLI::App& app, Session& session) {
   auto args = std::make_shared<DiffArguments>();
-  CLI::App* const command =
-      add_command(app, session, "diff", "has the calibration changed between two runs, which parameter?",
-                  [args, &session] { return run_diff(session, *args); });
+  CLI::App* const command = add_command(
+      app, session, "diff", "has the calibration changed between two runs, and in which parameter?",
+      [args, &session] { return run_diff(session, *args); });
   command->footer(kDiffHelp);
   command->add_option("RUN_A", args->a, "*.mgtrun, a pose table in CSV, or a CAL.json")->required();
   command->add_option("RUN_B", args->b, "the later one")->required();

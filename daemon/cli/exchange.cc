@@ -65,7 +65,7 @@ int run_export(const Session& session, const ExchangeArguments& args) {
 
 void add_import(CLI::App& app, Session& session) {
   auto args = std::make_shared<ExchangeArguments>();
-  CLI::App* const command = add_command(app, session, "import", "a pose table becomes a run file",
+  CLI::App* const command = add_command(app, session, "import", "make a run file of a pose table",
                                         [args, &session] { return run_import(session, *args); });
   command->add_option("POSES", args->from, "pose table in CSV")->required();
   command->add_option("-o,--output", args->to, "RUN.mgtrun; must not exist")->required();
@@ -73,8 +73,9 @@ void add_import(CLI::App& app, Session& session) {
 
 void add_export(CLI::App& app, Session& session) {
   auto args = std::make_shared<ExchangeArguments>();
-  CLI::App* const command = add_command(app, session, "export", "a run file becomes a pose table",
-                                        [args, &session] { return run_export(session, *args); });
+  CLI::App* const command =
+      add_command(app, session, "export", "write the poses of a run file as a pose table",
+                  [args, &session] { return run_export(session, *args); });
   command->add_option("RUN", args->from, "*.mgtrun")->required();
   command->add_option("-o,--output", args->to, "POSES.csv; standard output when absent");
 }

@@ -35,7 +35,7 @@ void add_further(CLI::App* command, FitFlags& f) {
 
 void add_site_flags(CLI::App* command, FitFlags& f) {
   add_field_flags(command, f);
-  command->add_option("--baseline", f.baseline_m, "distance of opposite sensors in m (0.4)")
+  command->add_option("--baseline", f.baseline_m, "distance between opposite sensors in m (0.4)")
       ->check(in_range(0.05, 10, "m"));
   command
       ->add_option("--inclination", f.inclination_deg,
@@ -49,7 +49,7 @@ void add_site_flags(CLI::App* command, FitFlags& f) {
 
 constexpr double kTurn = 6.4;  ///< in radians, rounded up
 
-/// Every pose has its angles, and none is larger than a turn in radians would be.
+/// Whether the angles look like radians: every pose has them, and none, in degrees, exceeds 2 pi by number.
 bool looks_like_radians(const PoseTable& table) {
   double largest = 0;
   for (const Pose& pose : table.poses) {
@@ -61,7 +61,7 @@ bool looks_like_radians(const PoseTable& table) {
   return largest > kTurn / 8 && largest <= kTurn;
 }
 
-/// One effect into a list, in the place of the same law on the same axes.
+/// Puts one effect into a list; it replaces the same law on the same axes.
 void put(std::vector<calib::EffectPtr>& effects, calib::EffectPtr effect) {
   std::erase_if(effects,
                 [&](const calib::EffectPtr& e) { return calib::same_law_on_a_common_axis(*e, *effect); });
@@ -128,7 +128,7 @@ Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseS
   const bool leave = std::find(flags.with.begin(), flags.with.end(), "none") != flags.with.end();
   if (leave || out.method != calib::Method::joint) out.effects.clear();
   if (!out.effects.empty())
-    fmt::print(stderr, "with the model kept in the run: {} (--with none leaves it)\n",
+    fmt::print(stderr, "with the model kept in the run: {} (--with none ignores it)\n",
                fmt::join(source.model, ", "));
   for (const std::string& name : flags.with) {
     if (name == "none") continue;

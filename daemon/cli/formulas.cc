@@ -21,7 +21,7 @@ std::vector<calib::CandidateEffect> formulas_of(const daemon::PoseSource& source
     auto suspect = calib::formula_suspect(*spec);
     if (!suspect || !suspect->variants.front()->check(source.table)) continue;
     if (d.exploratory() && d.found_on == calib::data_hash(source.table))
-      fmt::print(stderr, "{} was thought of on this run: what is said of it here is exploratory\n", d.name);
+      fmt::print(stderr, "{} was suggested by this run: what is said of it here is exploratory\n", d.name);
     out.push_back(std::move(*suspect));
   }
   return out;

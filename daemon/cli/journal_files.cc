@@ -38,7 +38,7 @@ std::pair<std::string, std::uint64_t> life_and_number(const std::string& name) {
   return {name.substr(0, dot), std::strtoull(name.c_str() + dot + 1, nullptr, 10)};
 }
 
-/// Empty: the crash that ended it came before its header was whole.
+/// Empty if the daemon crashed before the header of the file was complete.
 Result<std::optional<JournalFile>> header_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(ErrorCode::bad_input, path + ": cannot be read", "check path and permissions");
@@ -79,7 +79,7 @@ Error cannot_play(const std::vector<JournalFile>& files, std::uint64_t missing) 
       "each start begins a journal that can be played"};
 }
 
-/// The files of one life, in their order.
+/// The files of one start of the daemon, in their order.
 void divide(const std::vector<JournalFile>& life, Journals& out) {
   std::vector<JournalFile> rest;
   std::uint64_t next = 0;
@@ -94,7 +94,7 @@ void divide(const std::vector<JournalFile>& life, Journals& out) {
   if (!rest.empty()) out.left_out.push_back(cannot_play(rest, rest.front().number - 1));
 }
 
-/// In the order they were written, each once.
+/// The files in the order they were written, each once.
 Result<std::vector<JournalFile>> in_order(const std::vector<std::string>& paths) {
   std::vector<JournalFile> out;
   for (const std::string& path : paths) {

@@ -13,7 +13,7 @@
 
 namespace {
 
-/// The words where a command was expected and none of them was one; empty: it was another mistake.
+/// The error when a command was expected and the word is none; empty if the mistake was another one.
 std::optional<mgtd::Error> unknown_command(const CLI::App& app) {
   const CLI::App* group = &app;
   while (!group->get_subcommands().empty()) group = group->get_subcommands().front();
@@ -29,7 +29,7 @@ std::optional<mgtd::Error> unknown_command(const CLI::App& app) {
                      fmt::format("there are: {}", fmt::join(commands, ", "))};
 }
 
-/// What was wrong with the words of a command, and where to look; a group without its command lists them.
+/// The error when the arguments of a command are wrong; for a group without a command it lists the commands.
 mgtd::Error wrong_words(const CLI::App& app, const CLI::Error& error) {
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().front();

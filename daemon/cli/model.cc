@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model kept in a run file: add, drop, undo, and how it came to be.
+// Commands on the model that a run file keeps: add, drop, undo, and its history.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,6 +14,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/kept_run.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::cli {
 namespace {
@@ -39,7 +40,7 @@ struct ModelArguments {
   std::shared_ptr<FitFlags> flags;
 };
 
-/// What the effects of the model take out; none, when there is none left or a fit fails.
+/// What each effect of the model removes from the error; empty without effects, or if a fit fails.
 std::optional<calib::Waterfall> waterfall_of(const KeptRun& run, const calib::FitOptions& options) {
   if (options.effects.empty()) return std::nullopt;
   auto steps = calib::waterfall(run.source.table, options);
@@ -76,7 +77,7 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
   if (!keep) {
     for (const calib::Veto veto : change.vetoes())
       fmt::print(stderr, "mgt: not kept: {}\n", to_text(change, veto));
-    fmt::print(stderr, "     this change is not what these poses ask for; --force keeps it all the same\n");
+    fmt::print(stderr, "     these poses do not support this change; --force keeps it all the same\n");
   }
   return keep ? 0 : 1;
 }
@@ -86,13 +87,14 @@ int run_add(const Session& session, const ModelArguments& args) {
   if (!run) return report(session, run.error());
   const auto effect = calib::make_effect(daemon::whole_spec(args.effect, run->source.definitions));
   if (!effect) return report(session, effect.error());
-  const auto change = calib::add_effect(run->source.table, run->options, *effect);
+  const auto change =
+      with_progress("add", [&] { return calib::add_effect(run->source.table, run->options, *effect); });
   if (!change) return report(session, change.error());
   const auto found = calib::make_effect(change->spec);
   if (!found) return report(session, found.error());
   calib::Choice choice;
-  if (const auto before = calib::explain(
-          run->source.table, {.fit = run->options, .also = formulas_of(run->source, run->options)}))
+  const calib::ExplainOptions without{.fit = run->options, .also = formulas_of(run->source, run->options)};
+  if (const auto before = with_progress("add", [&] { return calib::explain(run->source.table, without); }))
     choice = calib::choice_of(*before, run->source.table, *found);
   calib::FitOptions options = run->options;
   options.effects.push_back(*found);
@@ -114,7 +116,8 @@ int run_drop(const Session& session, const ModelArguments& args) {
   if (!run) return report(session, run.error());
   const auto place = place_of(*run, args.effect);
   if (!place) return report(session, place.error());
-  const auto change = calib::drop_effect(run->source.table, run->options, *place);
+  const auto change =
+      with_progress("drop", [&] { return calib::drop_effect(run->source.table, run->options, *place); });
   if (!change) return report(session, change.error());
   calib::FitOptions options = run->options;
   options.effects.erase(options.effects.begin() + static_cast<std::ptrdiff_t>(*place));
@@ -203,24 +206,25 @@ void add_add(CLI::App& app, Session& session) {
   command->footer(kAddHelp);
   command->add_option("EFFECT", args->effect, "NAME[@WHERE][,PARAM=VALUE]: see mgt effects")->required();
   add_run_argument(command, *args);
-  command->add_flag("--force", args->force, "keep it whatever speaks against it");
+  command->add_flag("--force", args->force, "keep it even if these poses speak against it");
   args->flags = add_kept_model_flags(command);
 }
 
 void add_drop(CLI::App& app, Session& session) {
   auto args = std::make_shared<ModelArguments>();
-  CLI::App* const command = add_command(app, session, "drop", "take an effect out of that model",
-                                        [args, &session] { return run_drop(session, *args); });
+  CLI::App* const command =
+      add_command(app, session, "drop", "take an effect out of the model a run file keeps",
+                  [args, &session] { return run_drop(session, *args); });
   command->add_option("EFFECT", args->effect, "its name, or its whole spec")->required();
   add_run_argument(command, *args);
-  command->add_flag("--force", args->force, "take it out though poses left out get worse");
+  command->add_flag("--force", args->force, "take it out even if held-out poses get worse");
   args->flags = add_kept_model_flags(command);
 }
 
 void add_undo(CLI::App& app, Session& session) {
   auto args = std::make_shared<ModelArguments>();
   CLI::App* const command =
-      add_command(app, session, "undo", "take the last add or drop back; again for the one before",
+      add_command(app, session, "undo", "take the last add or drop back; repeat it for the one before",
                   [args, &session] { return run_undo(session, *args); });
   add_run_argument(command, *args);
   args->flags = std::make_shared<FitFlags>();

@@ -45,14 +45,13 @@ int run_ports(const Session& session) {
       "\n# or fixed names /dev/mgt/NAME, in /etc/udev/rules.d/70-mgtd.rules (s1 .. s4, table, scalar):\n");
   for (const auto& port : ports) {
     const std::string rule = drivers::udev_rule(port, ports, "NAME");
-    fmt::print("{}\n", rule.empty()
-                           ? fmt::format("# {}: nothing but its number tells it from others", port.path)
-                           : rule);
+    fmt::print("{}\n",
+               rule.empty() ? fmt::format("# {}: only its number tells it from others", port.path) : rule);
   }
   return 0;
 }
 
-/// What the instruments of a running daemon told, by place; those that are live.
+/// The serial numbers that the live instruments of a running daemon reported, by device name.
 std::map<std::string, std::string> serials_of(const nlohmann::json& status) {
   std::map<std::string, std::string> out;
   for (const auto& device : status.at("devices")) {
@@ -84,7 +83,7 @@ int write_serials(const Session& session, const std::string& file) {
   } else if (done.written.empty()) {
     fmt::print("no serial number to fill in; {} stated already\n", done.stated.size());
   } else {
-    fmt::print("{}: serial of {} filled in; it counts when mgtd is started again\n", file,
+    fmt::print("{}: serial of {} filled in; it takes effect when mgtd is restarted\n", file,
                fmt::join(done.written, ", "));
   }
   return 0;
@@ -95,11 +94,11 @@ int write_serials(const Session& session, const std::string& file) {
 void add_ports(CLI::App& app, Session& session) {
   const auto file = std::make_shared<std::string>();
   CLI::App* const command = add_command(
-      app, session, "ports", "the serial ports of this machine, by the names to configure",
+      app, session, "ports", "the serial ports of this machine, by the names to use in the configuration",
       [file, &session] { return file->empty() ? run_ports(session) : write_serials(session, *file); });
   command->add_option(
       "--write", *file,
-      "fill the serial numbers of the instruments that the daemon hears into this configuration");
+      "fill the serial numbers of the instruments that answer the daemon into this configuration");
 }
 
 }  // namespace mgtd::cli

@@ -27,7 +27,7 @@ std::string progress_line(const RunStatus& status, int width) {
   const int filled = static_cast<int>(std::lround(share * kBar));
   std::string line =
       fmt::format("[{:#<{}}{:.<{}}] {:>4}/{}", "", filled, "", kBar - filled, status.pose, status.poses);
-  // Whole parts only: half a number is another number.
+  // A part is added whole or not at all: half a number is another number.
   const auto add = [&](const std::string& part) {
     if (static_cast<int>(line.size() + part.size()) <= width) line += part;
   };

@@ -40,7 +40,7 @@ Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What wh
   }
   if (what == OperatorPrompt::What::note) {
     if (words.size() == 1 && words[0] == "done") return PromptAnswer{ControlCommand::run_resume};
-    return fail(ErrorCode::usage, "that is no answer", "type done when it is done, or pause, or abort");
+    return fail(ErrorCode::usage, "that is not an answer", "type done when it is done, or pause, or abort");
   }
   const auto refuse = [](const std::string& found) {
     return fail(ErrorCode::usage, found, "three numbers in degrees as the scales say: azimuth pitch roll");

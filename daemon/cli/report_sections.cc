@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second half of the report: what is suspected, what is not known, and how the model came to be.
+// The second half of the report: candidates, what is not known, and the history of the model.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -46,7 +46,7 @@ int print_end(const Session& session, const RunStatus& run) {
   return 0;
 }
 
-/// Asks until something was entered that the daemon takes. False: there is nobody to answer.
+/// Asks until the operator enters something that the daemon accepts. False at the end of the input.
 bool answer(const Session& session, daemon::ControlClient& client, const OperatorPrompt& prompt) {
   while (!interrupted()) {
     fmt::print(stderr, "{}", question(prompt));
@@ -54,7 +54,7 @@ bool answer(const Session& session, daemon::ControlClient& client, const Operato
     const bool answered = !session.json && std::getline(std::cin, line);
     if (interrupted()) return true;
     if (!answered) {
-      fmt::print(stderr, "\nnobody is there to answer; from anywhere: mgt run {}\n",
+      fmt::print(stderr, "\nno more input here; answer from any terminal with: mgt run {}\n",
                  prompt.what == OperatorPrompt::What::note ? "resume" : "enter AZIMUTH PITCH ROLL");
       return false;
     }
@@ -133,11 +133,11 @@ int start(const Session& session, const RunArguments& args) {
 }
 
 /// What the limits of the daemon's table cost this run. Nothing where there are none, and for a list of
-/// poses: those are meant. An error where the plan by itself calibrates nothing.
+/// poses, which is taken as intended. An error if the plan cannot calibrate even without limits.
 Result<std::optional<daemon::LimitsCost>> cost_of_limits(const nlohmann::json& reply) {
   for (const char* key : {"options", "limits_deg", "config"})
     if (!reply.contains(key))
-      return fail(ErrorCode::protocol, fmt::format("the daemon does not say its '{}'", key),
+      return fail(ErrorCode::protocol, fmt::format("the daemon's answer has no '{}'", key),
                   "use mgt and mgtd of the same version");
   const auto options = daemon::plan_options_from_json(reply.at("options"));
   if (!options) return tl::unexpected(options.error());
@@ -160,7 +160,7 @@ int dry_run(const Session& session, const RunArguments& args) {
   if (!reply) return report(session, reply.error());
   const auto limits = cost_of_limits(*reply);
   if (!limits)
-    fmt::print(stderr, "what the limits of the table cost cannot be told: {}\n", limits.error().text());
+    fmt::print(stderr, "what the limits of the table cost cannot be computed: {}\n", limits.error().text());
   if (session.json) {
     reply->erase("config");
     if (limits && *limits) (*reply)["limits"] = daemon::to_json(**limits);
@@ -205,10 +205,10 @@ void add_plan_options(CLI::App* command, RunArguments& args) {
                       "measure the poses of this list (CSV), as mgt next -o writes it, instead of sets");
   command->add_option("--step", r.step_deg, "degrees between standard poses: 10 or 20");
   command->add_option("--random", r.random, "random poses");
-  command->add_option("--revisits", r.revisits, "of them at attitudes measured before");
+  command->add_option("--revisits", r.revisits, "how many of them return to an earlier attitude");
   command->add_option("--dwell-short", r.dwell_short_s, "seconds");
   command->add_option("--dwell-long", r.dwell_long_s, "seconds");
-  command->add_option("--retries", r.retries, "of a bad pose before the run pauses");
+  command->add_option("--retries", r.retries, "how often a bad pose is measured again before the run pauses");
   command->add_option("--seed", r.seed, "of the random set");
 }
 
@@ -241,15 +241,16 @@ void add_run(CLI::App& app, Session& session) {
               "go on after a pause, or with a run that failed or that a dead daemon left",
               [args, &session] { return simple(session, ControlCommand::run_resume, !args->detach); })
       ->add_flag("--detach", args->detach, "do not wait for the end");
-  CLI::App* const entered = add_command(*group, session, "enter", "what the scales say that the run asks for",
-                                        [args, &session] { return enter(session, *args); });
+  CLI::App* const entered =
+      add_command(*group, session, "enter", "tell the run what the scales say, when it asks",
+                  [args, &session] { return enter(session, *args); });
   entered->add_option("ANGLES", args->scales_deg, "azimuth, pitch and roll in degrees")
       ->required()
       ->expected(3);
   add_magnet_test(*group, session);
-  add_command(*group, session, "redo", "ask for the last entry again, and measure again what rests on it",
+  add_command(*group, session, "redo", "ask for the last entry again, and measure again what depends on it",
               [&session] { return simple(session, ControlCommand::run_redo, false); });
-  add_command(*group, session, "finish", "measure no more, fit the poses so far",
+  add_command(*group, session, "finish", "stop measuring and fit the poses so far",
               [&session] { return simple(session, ControlCommand::run_finish, true); });
   add_command(*group, session, "abort", "end the run or the magnet test; the active calibration stays",
               [&session] { return simple(session, ControlCommand::run_abort, false); });

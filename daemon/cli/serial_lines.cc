@@ -38,7 +38,7 @@ std::vector<std::string> lines_of(std::string_view text) {
   return out;
 }
 
-/// From which line to before which one.
+/// A section of the configuration, from its first line to the line after its last.
 struct Section {
   std::string place;
   std::size_t from, to;
@@ -58,7 +58,7 @@ std::vector<Section> sections_of(const std::vector<std::string>& lines) {
   return out;
 }
 
-/// What became of one section.
+/// What was done with one section.
 enum class Done { written, stated, nothing };
 
 Done fill_in(std::vector<std::string>& lines, const Section& section, const std::string& serial) {

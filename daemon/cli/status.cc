@@ -75,7 +75,7 @@ bool all_live(const nlohmann::json& status) {
   return !status.at("sampler").at("rate_hz").is_null();
 }
 
-/// The status, once every device is live and samples come, or as it is when the patience is over.
+/// The status once every device is live and samples come, or as it is when the time to wait is over.
 Result<nlohmann::json> status_after(const Session& session, double patience_s) {
   const auto deadline = std::chrono::steady_clock::now() + from_seconds(patience_s);
   while (true) {
@@ -85,7 +85,7 @@ Result<nlohmann::json> status_after(const Session& session, double patience_s) {
   }
 }
 
-/// What stands beside the calibration's name.
+/// Prints what an operator must know of the active calibration beside its id.
 void print_calibration(const nlohmann::json& s) {
   const auto& use = s.at("calibration");
   if (use.at("forced") == true) fmt::print("          it failed its checks and was forced\n");
@@ -117,22 +117,22 @@ void print_clients(const nlohmann::json& s) {
   fmt::print("\n");
 }
 
-/// What a person would ask about the line of the stream. The limit of the skew is that of a run's preflight.
+/// Explains a wide skew bound or many gaps. The limit of the skew is that of a run's preflight.
 void print_stream_remarks(const nlohmann::json& sampler, double speed_up) {
   constexpr double kMostSkew_s = 0.04, kMostMissing = 0.01;
   const double skew_s = sampler.at("skew_bound_s").is_null() ? 0 : sampler.at("skew_bound_s").get<double>();
   if (skew_s > kMostSkew_s)
-    fmt::print(
-        "\n          the times of the sensors are known worse than a run accepts (limit {:.0f} ms): {}",
-        1e3 * kMostSkew_s,
-        speed_up > 1 ? "in a simulation faster than time that is the host's own delay"
-                     : "it passes minutes after a start; else look at the load of this computer and at "
-                       "the converters' latency timers: lower them, and say so in delivery_s");
+    fmt::print("\n          the sample times are less certain than a run accepts (limit {:.0f} ms): {}",
+               1e3 * kMostSkew_s,
+               speed_up > 1
+                   ? "in a simulation faster than real time that is the delay of this computer"
+                   : "this passes within minutes of a start; if not, look at the load of this computer, "
+                     "and lower the converters' latency timers and state them in delivery_s");
   const double missing = sampler.at("gaps").get<double>();
   const double share = missing / std::max(1.0, missing + sampler.at("epochs").get<double>());
   if (share > kMostMissing)
     fmt::print(
-        "\n          {:.0f} % are missing since the start, from devices that are or were not live; mgt watch "
+        "\n          {:.0f} % are missing since the start, because devices are or were not live; mgt watch "
         "names them",
         100 * share);
 }
@@ -142,12 +142,12 @@ void print_recording(const char* what, const nlohmann::json& recording) {
   if (recording.at("state") != "off")
     fmt::print(", {:.1f} MB on disk since the start", recording.at("bytes").get<double>() / 1e6);
   if (recording.at("bytes_lost") > 0)
-    fmt::print(", {:.1f} MB not", recording.at("bytes_lost").get<double>() / 1e6);
+    fmt::print(", {:.1f} MB lost", recording.at("bytes_lost").get<double>() / 1e6);
   fmt::print("\n");
   if (const std::string why = recording.at("why"); !why.empty()) fmt::print("          {}\n", why);
 }
 
-/// Where every byte of every device went.
+/// Prints how many bytes each device sent and what became of them.
 void print_bytes(const nlohmann::json& devices) {
   fmt::print("\n{:<8} {:>12} = {:>12} + {:>9} + {:>9} + {:>8}  {}\n", "bytes", "in", "in frames", "rejected",
              "resync", "pending", "frames rejected for");

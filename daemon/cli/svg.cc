@@ -10,7 +10,7 @@
 namespace mgtd::cli {
 namespace {
 
-/// Told apart with every kind of colour vision.
+/// Colours that can be distinguished with every kind of colour vision.
 constexpr std::array kTones{"#0072b2", "#d55e00", "#9aa0a6"};
 
 }  // namespace

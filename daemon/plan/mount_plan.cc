@@ -104,7 +104,7 @@ std::string mounting_in_words(const TableAngles& m) {
 
 Result<TableAngles> parse_mounting(const std::string& text) {
   const auto refuse = [&] {
-    return fail(ErrorCode::bad_input, fmt::format("'{}' is no way to mount the array", text),
+    return fail(ErrorCode::bad_input, fmt::format("'{}' is not a mounting of the array", text),
                 "say \"level\", \"roll 90\" or \"pitch -90\", in degrees");
   };
   TableAngles out;

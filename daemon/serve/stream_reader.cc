@@ -57,7 +57,7 @@ Result<std::optional<Json>> StreamReader::next(Duration wait) {
   if (!*line) return std::nullopt;
   Json object = Json::parse(**line, nullptr, false);
   if (!object.is_object()) {
-    return fail(ErrorCode::protocol, fmt::format("'{}' is no object of the stream", excerpt(**line)),
+    return fail(ErrorCode::protocol, fmt::format("'{}' is not an object of the stream", excerpt(**line)),
                 "use mgt and mgtd of the same version");
   }
   if (auto error = error_of(object)) return tl::unexpected(std::move(*error));

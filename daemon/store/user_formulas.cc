@@ -43,7 +43,7 @@ Result<std::vector<Definition>> definitions_from_text(const std::string& text) {
       out.push_back(std::move(one));
     }
   } catch (const json::exception&) {
-    return fail(ErrorCode::bad_input, "its formulas cannot be read: a p-value is no number", kRemedy);
+    return fail(ErrorCode::bad_input, "its formulas cannot be read: a p-value is not a number", kRemedy);
   }
   return out;
 }

@@ -110,7 +110,7 @@ TEST_F(Loop, AFormulaIsExaminedKeptAndUsedByItsName) {
   EXPECT_TRUE(examined.at("exploratory"));
   // explain suspects it too, and says what it is worth here.
   const Finished explain = mgt({"explain", run_file(), "--json"});
-  EXPECT_THAT(explain.err, HasSubstr("warmth was thought of on this run"));
+  EXPECT_THAT(explain.err, HasSubstr("warmth was suggested by this run"));
   EXPECT_THAT(explain.out, HasSubstr("\"effect\":\"warmth\""));
   ASSERT_EQ(mgt({"add", "warmth", run_file()}).exit_code, 0);
   ASSERT_EQ(mgt({"fit", run_file(), "-o", file("cal.json")}).exit_code, 0);
