@@ -65,7 +65,7 @@ struct Calibration {
   std::string data_hash;  ///< of the poses it was fitted to
   int poses{0};
   bool accepted_by_checks{false};
-  std::vector<Check> verdict;  ///< every named check with measured value and limit
+  std::vector<Check> checks;  ///< every named check with measured value and limit; key "verdict" of CAL.json
   std::string software;
 
   /// Fills `id` from everything else.

@@ -167,7 +167,7 @@ Calibration calibration_of(const json& object) {
   c.data_hash = object.at("data_hash");
   c.poses = object.at("poses");
   c.accepted_by_checks = object.at("accepted");
-  c.verdict = checks_from(object.at("verdict"));
+  c.checks = checks_from(object.at("verdict"));
   c.software = object.at("software");
   return c;
 }
@@ -177,7 +177,7 @@ json example() {
   Calibration c;
   c.effects = {{.effect = "", .coefficients = {{}}}};
   c.effect_covariance = Eigen::MatrixXd::Zero(1, 1);
-  c.verdict = {{}};
+  c.checks = {{}};
   return to_json(c);
 }
 
@@ -265,7 +265,7 @@ json to_json(const Calibration& c) {
           {"data_hash", c.data_hash},
           {"poses", c.poses},
           {"accepted", c.accepted_by_checks},
-          {"verdict", to_json(c.verdict)},
+          {"verdict", to_json(c.checks)},
           {"software", c.software}};
 }
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/fit/fit_report_json.h"
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/sensor/shown_parameters.h"
 
 #include "calib/calibration/tensor.h"
 #include "calib/sensor/sensor_equations.h"
@@ -44,7 +44,7 @@ void assume_warming(PoseTable& table, double warming_degC) {
   }
 }
 
-PoseTable measured_in_thought(const PlanRequest& request) {
+PoseTable measured_in_thought(const DesignRequest& request) {
   const Eigen::Vector3d n = direction_of(request.inclination_rad, request.declination_rad);
   PoseTable table = request.poses;
   for (Pose& pose : table.poses) {
@@ -95,12 +95,12 @@ std::vector<Separation> separations(const JointProblem& problem, const Eigen::Ma
   for (const auto& [slot, own] : named) {
     if (slot < kEffectSlot) continue;
     Separation s{
-        .name = own.name, .inflation = std::sqrt(covariance(slot, slot) * S(slot, slot)), .rival = {}};
+        .name = own.name, .inflation = std::sqrt(covariance(slot, slot) * S(slot, slot)), .alternative = {}};
     for (const auto& [other, theirs] : named) {
       const double r = covariance(slot, other) / std::sqrt(covariance(slot, slot) * covariance(other, other));
       if (other == slot || std::abs(r) <= std::abs(s.correlation)) continue;
       s.correlation = r;
-      s.rival = theirs.name;
+      s.alternative = theirs.name;
     }
     out.push_back(std::move(s));
   }
@@ -108,16 +108,16 @@ std::vector<Separation> separations(const JointProblem& problem, const Eigen::Ma
 }
 
 /// Tried one by one: the tensor variance with each candidate added.
-std::vector<PlanReport::Helpful> most_helpful(const JointProblem& problem, const JointState& state,
-                                              const Eigen::MatrixXd& S, double f_nT,
-                                              const std::vector<TableAngles>& candidates) {
+std::vector<DesignReport::Helpful> most_helpful(const JointProblem& problem, const JointState& state,
+                                                const Eigen::MatrixXd& S, double f_nT,
+                                                const std::vector<TableAngles>& candidates) {
   const auto variance = [&](const Eigen::MatrixXd& information) {
     const auto covariance = covariance_of(information);
     if (!covariance) return std::numeric_limits<double>::infinity();
     return mean_square(calibration_tensor_sd(state.sensors, problem.geometry, *covariance, f_nT));
   };
   const double now = variance(S);
-  std::vector<PlanReport::Helpful> out;
+  std::vector<DesignReport::Helpful> out;
   for (const TableAngles& angles : candidates)
     out.push_back({angles, 1 - variance(S + information_of(problem, state, angles, f_nT)) / now});
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
@@ -125,60 +125,39 @@ std::vector<PlanReport::Helpful> most_helpful(const JointProblem& problem, const
   return out;
 }
 
-Gradient noise_of_tensor(const PlanRequest& request) {
+Gradient noise_of_tensor(const DesignRequest& request) {
   const auto rows = gradient_rows(request.geometry);
   const Eigen::Matrix<double, 6, 1> sd = request.pose_noise_nT * rows.rowwise().norm();
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
 }
 
-std::string gauge_text(const Gauge& gauge) {
-  std::string out;
-  switch (gauge.angles) {
-    case AngleCoverage::none:
-      out = "the angles do not fix the platform frame: mean alpha = beta = gamma = 0 by convention";
-      break;
-    case AngleCoverage::one_axis:
-      out = "the angles turn about one axis: mean gamma = 0 by convention";
-      break;
-    case AngleCoverage::full:
-      out = "the table angles fix the platform frame";
-      break;
-  }
-  return gauge.scale_known ? out : fmt::format("{}; no field is known: {}", out, kScaleIsFree);
-}
-
-std::string assumed_text(const PlanRequest& r) {
-  const std::string field =
-      r.scalar_sd_nT  ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
-      : r.field_known ? fmt::format("known to {} nT", std::max(r.field_sd_nT, kCommonFieldSpread_nT))
-                      : std::string("not known");
-  return fmt::format(
-      "field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg; heads that "
-      "warm "
-      "by {} degC where the poses tell no temperature",
-      r.f_nT, field, to_deg(r.inclination_rad), r.pose_noise_nT, to_deg(r.table_sd_rad), r.warming_degC);
-}
-
 }  // namespace
 
-Result<PlanReport> plan(const PlanRequest& request) {
+Result<DesignReport> evaluate_design(const DesignRequest& request) {
   const PoseTable table = measured_in_thought(request);
-  const auto design = planned_design(request, table);
+  const auto design = design_problem(request, table);
   if (!design) return tl::unexpected(design.error());
   const auto& [problem, state, gauge] = *design;
   const Eigen::MatrixXd S = reduce(problem, state, 0).S;
 
-  PlanReport report;
+  DesignReport report;
   if (request.power) {
-    auto power = plan_power(request, table);
+    auto power = design_power(request, table);
     if (!power) return tl::unexpected(power.error());
     report.power = std::move(*power);
   }
   report.poses = static_cast<int>(table.poses.size());
   report.noise_sd_nT_per_m = noise_of_tensor(request);
   report.tensor_sd_nT_per_m = unknown();
-  report.assumed = assumed_text(request);
-  report.gauge = gauge_text(gauge);
+  report.assumed = {.f_nT = request.f_nT,
+                    .scalar_sd_nT = request.scalar_sd_nT,
+                    .field_known = request.field_known,
+                    .field_sd_nT = request.field_sd_nT,
+                    .inclination_rad = request.inclination_rad,
+                    .pose_noise_nT = request.pose_noise_nT,
+                    .table_sd_rad = request.table_sd_rad,
+                    .warming_degC = request.warming_degC};
+  report.gauge = gauge;
   report.known = identifiability(problem, state, S, request.f_nT, request.candidates);
   const auto covariance = covariance_of(S);
   report.determined = covariance && report.known.worst_nT() < kUnusable * request.f_nT;

@@ -23,7 +23,7 @@
 /// one. The noise and the table's uncertainty are taken as known; a fit estimates them too.
 namespace mgtd::calib {
 
-struct PlanRequest {
+struct DesignRequest {
   PoseTable poses;  ///< their angles, and what effects need to know of them; readings are not looked at
   double f_nT{50'000}, inclination_rad{to_rad(60)}, declination_rad{0};
   double pose_noise_nT{1};                                  ///< of a pose mean, each axis
@@ -48,21 +48,33 @@ struct Expected {
 /// How well a coefficient of an effect can be told from everything else in the model.
 struct Separation {
   std::string name;
-  double inflation{1};  ///< its standard error over the one it would have were all else known
-  std::string rival;    ///< the parameter it is most like
+  double inflation{1};      ///< its standard error over the one it would have were all else known
+  std::string alternative;  ///< the parameter it is most like
   double correlation{0};
 };
 
-struct PlanReport {
+/// Field, noise and table that the figures rest on: those of the request.
+struct DesignAssumptions {
+  double f_nT{0};
+  std::optional<double> scalar_sd_nT{};
+  bool field_known{false};
+  double field_sd_nT{0};
+  double inclination_rad{0};
+  double pose_noise_nT{0};
+  double table_sd_rad{0};
+  double warming_degC{0};
+};
+
+struct DesignReport {
   int poses{0};
   bool determined{false};            ///< every parameter follows from the poses
   std::vector<Expected> parameters;  ///< standard errors; empty unless determined
   std::vector<Separation> separations;
   Gradient tensor_sd_nT_per_m;  ///< by the calibration alone, rms over attitudes; NaN unless determined
   Gradient noise_sd_nT_per_m;   ///< of a tensor from pose means, for comparison
-  std::string assumed;          ///< field, noise and table that these figures rest on
-  std::string gauge;            ///< what holds the common rotation and the scale
-  Identifiability known;        ///< weak directions, coverage, poses that would help
+  DesignAssumptions assumed;
+  Gauge gauge;            ///< what holds the common rotation and the scale
+  Identifiability known;  ///< weak directions, coverage, poses that would help
   /// The attitudes that lower the mean tensor variance most, each with the share of the variance it takes
   /// away.
   struct Helpful {
@@ -70,10 +82,10 @@ struct PlanReport {
     double share{0};
   };
   std::vector<Helpful> helpful;
-  std::optional<PlanPower> power;
+  std::optional<DesignPower> power;
 };
 
 /// Refuses fewer poses than the fit would accept, and an effect that cannot act on them.
-[[nodiscard]] Result<PlanReport> plan(const PlanRequest& request);
+[[nodiscard]] Result<DesignReport> evaluate_design(const DesignRequest& request);
 
 }  // namespace mgtd::calib

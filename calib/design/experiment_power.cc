@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kWorthTelling = 0.02;  ///< gain of a probability that is worth telling
 
-bool one_place(const CandidateEffect& suspect, const Hypothesis& h) {
-  return suspect.level == Level::axis ? h.axes == 1 : &h == &suspect.hypotheses.front();
+bool one_place(const CandidateEffect& candidate_effect, const Hypothesis& h) {
+  return candidate_effect.level == Level::axis ? h.axes == 1 : &h == &candidate_effect.hypotheses.front();
 }
 
 bool of_array(const Hypothesis& h) { return h.axes == kChannels; }
@@ -34,28 +34,29 @@ bool reaches(const Hypothesis& b, const Hypothesis& a, Level level_b) {
 
 /// Everything an effect could be on these poses.
 struct Shape {
-  const CandidateEffect* suspect{nullptr};
+  const CandidateEffect* candidate_effect{nullptr};
   std::vector<Signature> signatures;                ///< by variant
   std::vector<std::vector<Eigen::MatrixXd>> basis;  ///< by hypothesis, by variant
 };
 
-Shape shape_of(const PlannedDesign& design, const Residual& residual, const CandidateEffect& suspect) {
-  Shape out{.suspect = &suspect, .signatures = {}, .basis = {}};
-  for (const EffectPtr& variant : suspect.variants)
+Shape shape_of(const DesignProblem& design, const Residual& residual,
+               const CandidateEffect& candidate_effect) {
+  Shape out{.candidate_effect = &candidate_effect, .signatures = {}, .basis = {}};
+  for (const EffectPtr& variant : candidate_effect.variants)
     out.signatures.push_back(signature_of(residual, effect_rows(design.problem, design.state, variant)));
-  for (const Hypothesis& h : suspect.hypotheses) {
+  for (const Hypothesis& h : candidate_effect.hypotheses) {
     std::vector<Eigen::MatrixXd>& bases = out.basis.emplace_back();
     for (const Signature& s : out.signatures) bases.emplace_back(s.columns * one_step(s, h).basis);
   }
   return out;
 }
 
-std::vector<Shape> shapes_of(const PlannedDesign& design,
-                             const std::vector<const CandidateEffect*>& suspects) {
+std::vector<Shape> shapes_of(const DesignProblem& design,
+                             const std::vector<const CandidateEffect*>& candidate_effects) {
   const Residual residual(design.problem, design.state, 0);
   std::vector<Shape> out;
-  for (const CandidateEffect* const suspect : suspects)
-    if (!suspect->variants.empty()) out.push_back(shape_of(design, residual, *suspect));
+  for (const CandidateEffect* const candidate_effect : candidate_effects)
+    if (!candidate_effect->variants.empty()) out.push_back(shape_of(design, residual, *candidate_effect));
   return out;
 }
 
@@ -64,14 +65,14 @@ std::vector<Shape> shapes_of(const PlannedDesign& design,
 Eigen::MatrixXd truth(const Shape& a, std::size_t hypothesis) {
   const std::size_t middle = a.signatures.size() / 2;
   if (a.basis[hypothesis][middle].cols() == 0) return {};
-  return a.signatures[middle].columns * a.suspect->hypotheses[hypothesis].combine;
+  return a.signatures[middle].columns * a.candidate_effect->hypotheses[hypothesis].combine;
 }
 
 /// Largest share of `a` within `b`, in squares.
 double alike(const Eigen::MatrixXd& a, const Hypothesis& where, const Shape& b) {
   double most = 0;
   for (std::size_t h = 0; h < b.basis.size(); ++h) {
-    if (!reaches(b.suspect->hypotheses[h], where, b.suspect->level)) continue;
+    if (!reaches(b.candidate_effect->hypotheses[h], where, b.candidate_effect->level)) continue;
     for (const Eigen::MatrixXd& U : b.basis[h])
       if (U.cols() > 0) most = std::max(most, (U.transpose() * a).squaredNorm());
   }
@@ -79,7 +80,7 @@ double alike(const Eigen::MatrixXd& a, const Hypothesis& where, const Shape& b) 
 }
 
 double named_right(double alike_share) {
-  return told_right(kComparedAt_d * kComparedAt_d * (1 - alike_share));
+  return probability_right(kComparedAt_d * kComparedAt_d * (1 - alike_share));
 }
 
 struct Hardest {
@@ -90,8 +91,8 @@ struct Hardest {
 Hardest hardest(const Shape& a, const Shape& b) {
   Hardest out;
   for (std::size_t h = 0; h < a.basis.size(); ++h) {
-    const Hypothesis& where = a.suspect->hypotheses[h];
-    if (!one_place(*a.suspect, where)) continue;
+    const Hypothesis& where = a.candidate_effect->hypotheses[h];
+    if (!one_place(*a.candidate_effect, where)) continue;
     const Eigen::MatrixXd signature = truth(a, h);
     if (signature.size() == 0) continue;
     const double share = alike(signature, where, b);
@@ -100,8 +101,8 @@ Hardest hardest(const Shape& a, const Shape& b) {
   return out;
 }
 
-std::string advice(const std::string& effect, const std::string& rival) {
-  for (const auto& [of, with] : {std::pair{effect, rival}, std::pair{rival, effect}}) {
+std::string advice(const std::string& effect, const std::string& alternative) {
+  for (const auto& [of, with] : {std::pair{effect, alternative}, std::pair{alternative, effect}}) {
     const EffectFamily* const family = find_family(of);
     if (family == nullptr) continue;
     for (const Confusion& c : family->confusions)
@@ -121,10 +122,11 @@ std::vector<LookAlike> compare_all(const std::vector<Shape>& shapes, int& pairs)
       const bool first = ij.alike >= ji.alike;
       const Hardest& worse = first ? ij : ji;
       if (named_right(worse.alike) >= kSeparated) continue;
-      const std::string &a = shapes[first ? i : j].suspect->name, &b = shapes[first ? j : i].suspect->name;
+      const std::string &a = shapes[first ? i : j].candidate_effect->name,
+                        &b = shapes[first ? j : i].candidate_effect->name;
       out.push_back({.effect = a,
                      .where = worse.where,
-                     .rival = b,
+                     .alternative = b,
                      .correlation = std::sqrt(worse.alike),
                      .p_right = named_right(worse.alike),
                      .remedy = {},
@@ -137,24 +139,24 @@ std::vector<LookAlike> compare_all(const std::vector<Shape>& shapes, int& pairs)
 }
 
 /// The best action for each pair: the one that names it right most often, of equals the shortest.
-void find_remedies(const PlanRequest& request, const PoseTable& table, const Action& action,
+void find_remedies(const DesignRequest& request, const PoseTable& table, const Action& action,
                    std::vector<LookAlike>& pairs) {
   const PoseTable longer = extended(table, action, request.sensors);
-  const auto design = planned_design(request, longer);
+  const auto design = design_problem(request, longer);
   if (!design) return;
-  const CandidateEffects library = library_suspects(longer, request.effects);
+  const CandidateEffects library = library_candidates(longer, request.effects);
   std::set<std::string> wanted;
-  for (const LookAlike& pair : pairs) wanted.insert({pair.effect, pair.rival});
-  std::vector<const CandidateEffect*> suspects;
+  for (const LookAlike& pair : pairs) wanted.insert({pair.effect, pair.alternative});
+  std::vector<const CandidateEffect*> candidate_effects;
   for (const CandidateEffect& s : library.testable)
-    if (wanted.contains(s.name)) suspects.push_back(&s);
-  const std::vector<Shape> shapes = shapes_of(*design, suspects);
+    if (wanted.contains(s.name)) candidate_effects.push_back(&s);
+  const std::vector<Shape> shapes = shapes_of(*design, candidate_effects);
   std::map<std::string, const Shape*> by_name;
-  for (const Shape& shape : shapes) by_name.emplace(shape.suspect->name, &shape);
+  for (const Shape& shape : shapes) by_name.emplace(shape.candidate_effect->name, &shape);
   const double minutes = action.extra_min + minutes_per_pose(table) * static_cast<double>(kActionPoses);
   for (LookAlike& pair : pairs) {
-    if (!by_name.contains(pair.effect) || !by_name.contains(pair.rival)) continue;
-    const Shape &a = *by_name.at(pair.effect), &b = *by_name.at(pair.rival);
+    if (!by_name.contains(pair.effect) || !by_name.contains(pair.alternative)) continue;
+    const Shape &a = *by_name.at(pair.effect), &b = *by_name.at(pair.alternative);
     const double p = named_right(std::max(hardest(a, b).alike, hardest(b, a).alike));
     const double best = pair.remedy ? pair.remedy->p_right : pair.p_right;
     if (p > best + kWorthTelling) pair.remedy = Remedy{std::string(action.text), minutes, p};
@@ -162,14 +164,14 @@ void find_remedies(const PlanRequest& request, const PoseTable& table, const Act
 }
 
 /// What would have to be larger than it ever is will not be seen.
-Detectable plausible(Detectable found, const CandidateEffect& suspect) {
-  if (suspect.bound > 0 && found.value > suspect.bound) found.value = 0;
+Detectable plausible(Detectable found, const CandidateEffect& candidate_effect) {
+  if (candidate_effect.bound > 0 && found.value > candidate_effect.bound) found.value = 0;
   return found;
 }
 
 }  // namespace
 
-Result<PlannedDesign> planned_design(const PlanRequest& request, const PoseTable& table) {
+Result<DesignProblem> design_problem(const DesignRequest& request, const PoseTable& table) {
   JointOptions options;
   options.geometry = request.geometry;
   options.effects = request.effects;
@@ -178,7 +180,7 @@ Result<PlannedDesign> planned_design(const PlanRequest& request, const PoseTable
   if (request.field_sd_nT > 0) options.field_sd_nT = request.field_sd_nT;
   auto problem = joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
-  PlannedDesign out{.problem = std::move(*problem), .state = {}, .gauge = {}};
+  DesignProblem out{.problem = std::move(*problem), .state = {}, .gauge = {}};
   out.gauge = fix_gauge(out.problem, options);
   weight_by_pose(out.problem, AxisNoise::Constant(request.pose_noise_nT));
   out.state = joint_state(out.problem, request.sensors,
@@ -187,18 +189,18 @@ Result<PlannedDesign> planned_design(const PlanRequest& request, const PoseTable
   return out;
 }
 
-Result<PlanPower> plan_power(const PlanRequest& request, const PoseTable& table) {
-  const auto design = planned_design(request, table);
+Result<DesignPower> design_power(const DesignRequest& request, const PoseTable& table) {
+  const auto design = design_problem(request, table);
   if (!design) return tl::unexpected(design.error());
-  const CandidateEffects library = library_suspects(table, request.effects);
-  PlanPower out;
+  const CandidateEffects library = library_candidates(table, request.effects);
+  DesignPower out;
   out.untestable = library.untestable;
-  std::vector<const CandidateEffect*> suspects;
-  for (const CandidateEffect& s : library.testable) suspects.push_back(&s);
-  const std::vector<Shape> shapes = shapes_of(*design, suspects);
+  std::vector<const CandidateEffect*> candidate_effects;
+  for (const CandidateEffect& s : library.testable) candidate_effects.push_back(&s);
+  const std::vector<Shape> shapes = shapes_of(*design, candidate_effects);
   for (const Shape& shape : shapes)
     out.detectable.push_back(
-        plausible(detectable_of(*shape.suspect, shape.signatures.front()), *shape.suspect));
+        plausible(detectable_of(*shape.candidate_effect, shape.signatures.front()), *shape.candidate_effect));
   out.inseparable = compare_all(shapes, out.pairs);
   for (const Action& action : actions())
     if (!action.moved) find_remedies(request, table, action, out.inseparable);

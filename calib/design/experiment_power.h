@@ -35,14 +35,14 @@ struct Remedy {
 
 struct LookAlike {
   std::string effect, where;     ///< the truth
-  std::string rival;             ///< what it would be taken for
+  std::string alternative;       ///< what it would be taken for
   double correlation{0};         ///< of the signatures
   double p_right{1};             ///< that the right one of the two is named, at d = kComparedAt_d
   std::optional<Remedy> remedy;  ///< the best further measurement; none of the menu helps where it is empty
   std::string advice;            ///< what the library's page says of this pair
 };
 
-struct PlanPower {
+struct DesignPower {
   std::vector<Detectable> detectable;  ///< in the order of the library; value 0: at no size that occurs
   std::vector<Untestable> untestable;
   std::vector<LookAlike> inseparable;  ///< worst first; each pair once
@@ -50,16 +50,16 @@ struct PlanPower {
 };
 
 /// A rig at its planned poses: what the fit would work on.
-struct PlannedDesign {
+struct DesignProblem {
   JointProblem problem;
   JointState state;
   Gauge gauge;
 };
-struct PlanRequest;
+struct DesignRequest;
 
 /// `table` holds readings made in thought; pointers into it are kept.
-[[nodiscard]] Result<PlannedDesign> planned_design(const PlanRequest& request, const PoseTable& table);
+[[nodiscard]] Result<DesignProblem> design_problem(const DesignRequest& request, const PoseTable& table);
 
-[[nodiscard]] Result<PlanPower> plan_power(const PlanRequest& request, const PoseTable& table);
+[[nodiscard]] Result<DesignPower> design_power(const DesignRequest& request, const PoseTable& table);
 
 }  // namespace mgtd::calib

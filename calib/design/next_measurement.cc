@@ -108,7 +108,7 @@ bool differ_in_form(const std::string& a, const std::string& b) {
 
 /// Smallest probability over the rivals that the winner's name is told right, were it true.
 double p_right(const Longer& run, const JointFit& fit, const JointOptions& options, const Candidate& winner,
-               const std::vector<Rival>& rivals) {
+               const std::vector<Alternative>& alternatives) {
   const auto design = design_of(run.table, fit, options);
   if (!design) return 0;
   const Residual residual(design->problem, design->state, 0);
@@ -119,29 +119,30 @@ double p_right(const Longer& run, const JointFit& fit, const JointOptions& optio
   const Eigen::VectorXd v =
       Z.leftCols(sizes.size()) * sizes;  // what the site made here is not at another place
   double lambda = v.squaredNorm();
-  for (const Rival& rival : rivals) {
-    const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
+  for (const Alternative& alternative : alternatives) {
+    const Eigen::MatrixXd B = columns_of(*design, residual, alternative.spec, run, nullptr);
     if (B.cols() == 0) continue;
-    const double told = outside(v, B);
-    lambda = std::min(lambda, rival.form_only ? beyond_form(told, v.squaredNorm()) : told);
+    const double distance = outside(v, B);
+    lambda = std::min(lambda, alternative.form_only ? beyond_form(distance, v.squaredNorm()) : distance);
   }
-  return told_right(lambda);
+  return probability_right(lambda);
 }
 
-std::vector<Rival> hardest(const Candidate& winner) {
-  std::vector<Rival> out;
-  for (const Rival& rival : winner.rivals)
-    if (rival.possible) out.push_back(rival);
-  if (out.empty() && !winner.rivals.empty()) {
-    out.push_back(*std::min_element(winner.rivals.begin(), winner.rivals.end(),
-                                    [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; }));
+std::vector<Alternative> hardest(const Candidate& winner) {
+  std::vector<Alternative> out;
+  for (const Alternative& alternative : winner.alternatives)
+    if (alternative.possible) out.push_back(alternative);
+  if (out.empty() && !winner.alternatives.empty()) {
+    out.push_back(
+        *std::min_element(winner.alternatives.begin(), winner.alternatives.end(),
+                          [](const Alternative& a, const Alternative& b) { return a.p_right < b.p_right; }));
   }
   return out;
 }
 
 /// Of rivals that nobody has held against the winner yet.
 void find_form_only(const PoseTable& table, const JointFit& fit, const JointOptions& options,
-                    const Candidate& winner, std::vector<Rival>& rivals) {
+                    const Candidate& winner, std::vector<Alternative>& alternatives) {
   const Longer run = as_it_is(table);
   const auto design = design_of(table, fit, options);
   if (!design) return;
@@ -150,10 +151,10 @@ void find_form_only(const PoseTable& table, const JointFit& fit, const JointOpti
   const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
   if (Z.cols() == 0) return;
   const Eigen::VectorXd v = Z * sizes_of(winner, names);
-  for (Rival& rival : rivals) {
-    if (rival.form_only || !differ_in_form(rival.spec, winner.spec)) continue;
-    const Eigen::MatrixXd B = columns_of(*design, residual, rival.spec, run, nullptr);
-    rival.form_only = B.cols() > 0 && outside(v, B) < (1 - kAlike) * v.squaredNorm();
+  for (Alternative& alternative : alternatives) {
+    if (alternative.form_only || !differ_in_form(alternative.spec, winner.spec)) continue;
+    const Eigen::MatrixXd B = columns_of(*design, residual, alternative.spec, run, nullptr);
+    alternative.form_only = B.cols() > 0 && outside(v, B) < (1 - kAlike) * v.squaredNorm();
   }
 }
 
@@ -162,13 +163,13 @@ void find_form_only(const PoseTable& table, const JointFit& fit, const JointOpti
 NextMenu next_measurements(const PoseTable& table, const JointFit& fit, const JointOptions& options,
                            const Candidate& winner) {
   NextMenu out;
-  auto rivals = hardest(winner);
-  if (rivals.empty()) return out;
-  find_form_only(table, fit, options, winner, rivals);
-  out.p_right_before = p_right(as_it_is(table), fit, options, winner, rivals);
+  auto alternatives = hardest(winner);
+  if (alternatives.empty()) return out;
+  find_form_only(table, fit, options, winner, alternatives);
+  out.p_right_before = p_right(as_it_is(table), fit, options, winner, alternatives);
   double worth = out.p_right_before + kWorthMeasuring;
   for (const Action& action : actions()) {
-    const double after = p_right(longer(table, action, fit), fit, options, winner, rivals);
+    const double after = p_right(longer(table, action, fit), fit, options, winner, alternatives);
     if (after < worth) continue;
     if (&action == actions().data()) worth = after + kBetter;
     out.steps.push_back(

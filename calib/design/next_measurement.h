@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/verdict/explain_report.h"
+#include "calib/criticism/tests/candidate.h"
 
 /// The cheapest further measurement that would tell two effects apart.
 ///
@@ -13,6 +13,13 @@
 /// of the two effects with these poses, at the size that was found, is known before anything is measured, and
 /// with it the probability Phi(sqrt(lambda_ab)/2) that the right one of the two wins.
 namespace mgtd::calib {
+
+/// A further measurement that would settle between two effects.
+struct NextMeasurement {
+  std::string action{};
+  double minutes{0};
+  double p_right_before{0}, p_right_after{0};  ///< against the rival that is hardest to tell
+};
 
 struct NextMenu {
   double p_right_before{1};  ///< on the run as it is

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/calibration/calibration.h"
+#include "calib/fit/azimuth_origin.h"
 #include "calib/fit/fit_options.h"
+#include "calib/fit/fit_summary.h"
 #include "calib/fit/outlier_node.h"
 #include "proto/error.h"
 #include "proto/pose.h"
 #include "proto/tensor.h"
 
-/// What a fit found: the calibration, how far it can be trusted, and what the operator must know about it.
+/// What a fit found, as values: the calibration, how the fit ended, how far its result can be trusted. The
+/// words for a person are made in calib/report, the checks in calib/fit/checks.
 namespace mgtd::calib {
+
+struct JointFindings;
 
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a
 /// uniform field is zero, so its rms is the error.
@@ -42,10 +48,11 @@ struct FitReport {
   Calibration calibration;
   double chi2{0};  ///< two-step: of |b| against F; joint: of all readings and the scalar reference
   double dof{0};
-  double noise_nT{0};      ///< of a pose mean, rms over the axes
-  bool noise_told{false};  ///< by the spreads within the dwells; else the residual's own
-  /// Sentences for the operator: what failed, what was recognised, what is left over.
-  std::vector<std::string> reasons;
+  FitSummary summary;
+  double noise_nT{0};       ///< of a pose mean, rms over the axes
+  bool noise_known{false};  ///< from the spreads within the dwells; else the noise is the residual's own
+  /// Sentences of the caller that stand before all others: what it found beside the fit.
+  std::vector<std::string> found_beside;
   SiteField site;
   ErrorSummary before, after_step1, after;
   std::optional<ErrorSummary> two_step;    ///< beside a joint fit, where the poses allow one
@@ -54,17 +61,18 @@ struct FitReport {
   std::optional<ErrorSummary> held_out;
   std::optional<ErrorSummary> check_poses;  ///< poses of the set "check", which no fit has seen
   std::optional<HalvesComparison> halves;
+  std::optional<AzimuthOrigin> azimuth_origin;  ///< of the two-step and the simplified method
 
   // Of the joint fit:
   double chi2_table{0}, dof_table{0};          ///< of the table angles, kept apart from the model's
   double table_sd_rad{0};                      ///< estimated
-  double residual_nT{0};                       ///< as PoseResiduals tells it
+  double stated_table_sd_rad{0};               ///< FitOptions::table_sd_rad
+  double residual_nT{0};                       ///< PoseResiduals::residual_nT
   std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
   std::vector<OutlierNode> outliers;
   /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
   double contradicting{0};
-  /// What the poses do not tell, with the standard deviation it leaves in the field.
-  std::vector<std::string> weak;
+  std::shared_ptr<const JointFindings> joint;  ///< joint/joint_findings.h; null for the other methods
   Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, rms over all attitudes
 };
 

@@ -22,9 +22,4 @@ struct OutlierNode {
 /// Whether the node speaks of this reading.
 [[nodiscard]] bool covers(const OutlierNode& node, int sensor, int axis);
 
-/// One line for what is left out of one pose, or of consecutive poses at the same place: "pose 17, s3.z: 300
-/// nT off by 60 times what the others allow", "poses 41-45 disturbed: all sensors contradict the rest, by 37
-/// nT (rms)".
-[[nodiscard]] std::vector<std::string> outlier_texts(const std::vector<OutlierNode>& nodes);
-
 }  // namespace mgtd::calib

@@ -11,9 +11,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "calib/fit/residual_words.h"
 #include "calib/report/explain_json.h"
 #include "calib/report/noise_text.h"
+#include "calib/report/outlier_text.h"
+#include "calib/report/residual_words.h"
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
 
@@ -61,7 +62,7 @@ std::string plot(const std::vector<double>& means) {
 
 std::string noise_text(const Comparison& c) {
   std::string out = fmt::format("residual   {:.3g} nT: {}\n", c.residual_nT, kResidualIs);
-  out += fmt::format("noise      {:.3g} nT of a pose mean, {}\n", c.noise_nT, noise_source(c.noise.told));
+  out += fmt::format("noise      {:.3g} nT of a pose mean, {}\n", c.noise_nT, noise_source(c.noise.known));
   if (const std::string tests = noise_of_tests(c.noise); !tests.empty())
     out += fmt::format("           {}\n", tests);
   out += fmt::format(

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calib/report/explain_note_text.h"
 #include "calib/report/verdict_text.h"
 
 namespace mgtd::calib {
@@ -16,14 +17,14 @@ json coefficient_json(const EffectCoefficient& c) {
 }
 
 json candidate_json(const Candidate& c) {
-  json coefficients = json::array(), rivals = json::array();
+  json coefficients = json::array(), alternatives = json::array();
   for (const EffectCoefficient& x : c.coefficients) coefficients.push_back(coefficient_json(x));
-  for (const Rival& r : c.rivals) {
-    rivals.push_back({{"effect", r.effect},
-                      {"where", r.where},
-                      {"p_behind", r.p_behind},
-                      {"p_right", r.p_right},
-                      {"possible", r.possible}});
+  for (const Alternative& r : c.alternatives) {
+    alternatives.push_back({{"effect", r.effect},
+                            {"where", r.where},
+                            {"p_behind", r.p_behind},
+                            {"p_right", r.p_right},
+                            {"possible", r.possible}});
   }
   return {{"effect", c.effect},
           {"where", c.where},
@@ -35,7 +36,7 @@ json candidate_json(const Candidate& c) {
           {"predicted_fall", c.fall},
           {"share", std::isfinite(c.share) ? json(c.share) : json()},
           {"coefficients", std::move(coefficients)},
-          {"rivals", std::move(rivals)},
+          {"rivals", std::move(alternatives)},
           {"plausible", c.plausible},
           {"poses", c.poses},
           {"largest_pose_share", c.largest_pose}};
@@ -65,7 +66,7 @@ json to_json(const NoiseModel& n) {
   json out{{"from", !n.reference.known           ? "residual"
                     : std::isinf(n.reference.nu) ? "dwells"
                                                  : "revisits"},
-           {"pose_mean_from", n.told ? "dwells" : "residual"},
+           {"pose_mean_from", n.known ? "dwells" : "residual"},
            {"pose_correlation", n.rho},
            {"scale", std::sqrt(n.reference.scale2)},
            {"beyond_dwells", n.beyond_dwells},
@@ -116,7 +117,7 @@ json to_json(const ExplainReport& r) {
                                       {"p_right_before", n.p_right_before},
                                       {"p_right_after", n.p_right_after}};
                         })},
-      {"notes", r.notes},
+      {"notes", note_texts(r.notes)},
       {"text", sentence(r)}};
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 
-#include "calib/criticism/verdict/explain_report.h"
+#include "calib/criticism/search/explain_report.h"
 
 namespace mgtd::calib {
 

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/tests/candidate.h"
+#include "calib/report/outlier_text.h"
+#include "calib/report/size_text.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 

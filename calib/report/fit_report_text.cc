@@ -10,8 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/fit/fit_report_json.h"
-#include "calib/fit/residual_words.h"
+#include "calib/report/fit_reasons.h"
+#include "calib/report/fit_summary_text.h"
+#include "calib/report/residual_words.h"
+#include "calib/sensor/shown_parameters.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -107,13 +109,14 @@ std::string heading(const FitReport& report) {
   const Calibration& c = report.calibration;
   std::string out = fmt::format("{} calibration {} of {} poses: {}\n", c.method, c.id, c.poses,
                                 c.accepted_by_checks ? "accepted by its checks" : "NOT ACCEPTED");
+  out += fmt::format("fit:   {}\n", to_text(report.summary));
   out += fmt::format("gauge: {}\n", c.gauge);
   out += fmt::format("site:  F {:.2f} nT, inclination {} deg, declination {} deg\n", report.site.f_nT,
                      with_sd(to_deg(report.site.inclination_rad), to_deg(report.site.inclination_sd_rad)),
                      with_sd(to_deg(report.site.declination_rad), to_deg(report.site.declination_sd_rad)));
   if (report.dof > 0) {
     out += fmt::format("noise: {:.3g} nT of a pose mean, {}\n", report.noise_nT,
-                       noise_source(report.noise_told));
+                       noise_source(report.noise_known));
   }
   if (report.residual_nT > 0) {
     out += fmt::format("residual: {:.3g} nT", report.residual_nT);
@@ -175,8 +178,8 @@ std::string to_text(const FitReport& report) {
   std::string out = heading(report) + "\n" + error_table(report) + "\n" + parameter_table(report.calibration);
   if (!report.calibration.effects.empty()) out += "\n" + effect_table(report.calibration.effects);
   if (report.halves) out += "\n" + halves_table(*report.halves);
-  if (!report.calibration.verdict.empty()) out += "\n" + check_list(report.calibration.verdict);
-  for (const std::string& reason : report.reasons) out += fmt::format("note: {}\n", reason);
+  if (!report.calibration.checks.empty()) out += "\n" + check_list(report.calibration.checks);
+  for (const std::string& reason : fit_reasons(report)) out += fmt::format("note: {}\n", reason);
   return out;
 }
 

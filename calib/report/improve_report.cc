@@ -9,8 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "calib/fit/fit_report_json.h"
-#include "calib/fit/residual_words.h"
+#include "calib/report/explain_note_text.h"
+#include "calib/report/fit_report_json.h"
+#include "calib/report/residual_words.h"
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
 
@@ -35,7 +36,26 @@ json round_json(const ImproveRound& r) {
           {"held_out_after_nT", or_null(r.held_out_after_nT)},
           {"predicted_fall", r.predicted_fall},
           {"realised_fall", r.realised_fall},
-          {"variance_price", {{"growth_of_sd", r.price.growth}, {"parameter", r.price.parameter}}}};
+          {"variance_price", {{"growth_of_sd", r.price.sd_ratio}, {"parameter", r.price.parameter}}}};
+}
+
+std::string stop_text(const ImproveReport& r) {
+  switch (r.stopped) {
+    case ImproveStop::nothing_stands_out:
+      return "nothing stands out any more";
+    case ImproveStop::no_effect_looks_like_it:
+      return "something is left that no effect of the library looks like";
+    case ImproveStop::bad_data:
+      return "the data contradict themselves";
+    case ImproveStop::round_limit:
+      return "the number of rounds is reached";
+    case ImproveStop::nothing_can_be_added:
+      return "something stands out, and nothing that stands for it could be added";
+    case ImproveStop::held_out_error_rises:
+      return fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
+                         r.refused->spec, r.refused->held_out_before_nT, r.refused->held_out_after_nT);
+  }
+  return "";
 }
 
 std::string held_out(const std::optional<double>& x) { return x ? fmt::format("{:.3f}", *x) : "-"; }
@@ -49,8 +69,8 @@ json to_json(const ImproveReport& r) {
   return {{"schema", "mgt.improve/1"},
           {"rounds", std::move(rounds)},
           {"verdict", to_string(r.finding)},
-          {"stopped", r.stopped},
-          {"notes", r.notes},
+          {"stopped", stop_text(r)},
+          {"notes", note_texts(r.notes)},
           {"effects", fit["effects"]},
           {"fit", fit}};
 }
@@ -71,7 +91,7 @@ std::string to_text(const ImproveReport& r) {
     std::string name = x.added.spec;
     if (name.size() > kName_characters) fmt::format_to(to, "{}\n", std::exchange(name, {}));
     fmt::format_to(to, "{:<34} {:>8.1f} {:>8} {:>9.3f} {:>9} {:>6.2f}  {}\n", name, x.added.d,
-                   p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT), x.price.growth,
+                   p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT), x.price.sd_ratio,
                    bar(x.rms_after_nT));
     if (!x.possible.empty()) fmt::format_to(to, "    could also be {}\n", fmt::join(x.possible, ", "));
   }
@@ -84,8 +104,8 @@ std::string to_text(const ImproveReport& r) {
         "that\n"
         "   parameter of the sensors that loses most\n";
   fmt::format_to(to, "noise of a pose mean: {:.3g} nT\n", r.fit.noise_nT);
-  fmt::format_to(to, "stopped: {}\n", r.stopped);
-  for (const std::string& note : r.notes) fmt::format_to(to, "note: {}\n", note);
+  fmt::format_to(to, "stopped: {}\n", stop_text(r));
+  for (const std::string& note : note_texts(r.notes)) fmt::format_to(to, "note: {}\n", note);
   return out;
 }
 

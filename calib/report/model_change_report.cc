@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "calib/report/model_change_report.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -6,8 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/search/model_change.h"
-#include "calib/fit/residual_words.h"
+#include "calib/report/residual_words.h"
 #include "calib/report/text_bar.h"
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
@@ -53,7 +54,7 @@ json to_json(const ModelChange& c) {
           {c.adding ? "predicted_fall" : "predicted_rise", c.predicted},
           {c.adding ? "realised_fall" : "realised_rise", c.realised},
           {"log10_p", c.log10_p},
-          {"residual_over_noise", c.spread},
+          {"residual_over_noise", c.birge_ratio},
           {"chi2_before", c.chi2_before},
           {"chi2_after", c.chi2_after},
           {"dof_before", c.dof_before},
@@ -65,7 +66,7 @@ json to_json(const ModelChange& c) {
           {"noise_nT", c.noise_nT},
           {"held_out_before_nT", or_null(c.held_out_before_nT)},
           {"held_out_after_nT", or_null(c.held_out_after_nT)},
-          {"variance_price", {{"growth_of_sd", c.price.growth}, {"parameter", c.price.parameter}}},
+          {"variance_price", {{"growth_of_sd", c.price.sd_ratio}, {"parameter", c.price.parameter}}},
           {"vetoes", std::move(vetoes)},
           {"vetoed", c.vetoed()}};
 }
@@ -80,15 +81,15 @@ std::string to_text(const ModelChange& c) {
   fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
   fmt::format_to(to, "chi-square {} by {:.5g} where {:.5g} was predicted; chance alone: {}{}\n",
                  c.adding ? "fell" : "rose", c.realised, c.predicted, p_phrase(c.log10_p),
-                 c.spread > 1
+                 c.birge_ratio > 1
                      ? fmt::format(" (what is left {} is {:.3g} times the noise, and so is a fall by chance)",
-                                   c.adding ? "with it" : "before", c.spread)
+                                   c.adding ? "with it" : "before", c.birge_ratio)
                      : "");
   if (c.price.parameter.empty()) {
     out += "price: no standard deviation of the calibration is larger for it\n";
   } else {
     fmt::format_to(to, "price: the standard deviation of {} is {:.2f} times what it is without\n",
-                   c.price.parameter, c.price.growth);
+                   c.price.parameter, c.price.sd_ratio);
   }
   for (const EffectCoefficient& x : c.coefficients)
     fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", x.name, x.value, x.sd, x.unit);
@@ -113,7 +114,7 @@ std::string to_text(const ModelChange& c, Veto veto) {
       return fmt::format(
           "the standard deviation of {} would be {:.0f} times what it is without, and the "
           "limit is {:.0f}",
-          c.price.parameter, c.price.growth, kVetoPrice);
+          c.price.parameter, c.price.sd_ratio, kVetoPrice);
   }
   return {};
 }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit/joint/wandering_text.h"
+#include "calib/report/wandering_text.h"
 
 namespace mgtd::calib {
 
@@ -57,7 +57,7 @@ std::string noise_of_tests(const NoiseModel& noise) {
         walk_or_law(noise.wandering));
   }
   if (noise.beyond_dwells > 1) return beyond_dwells_text(noise);
-  if (!noise.told)
+  if (!noise.known)
     return "a misfit shows by its shape alone: the noise is the residual's own, channel by channel";
   if (noise.correlated()) {
     return fmt::format(

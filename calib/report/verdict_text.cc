@@ -10,11 +10,13 @@
 #include <map>
 #include <set>
 
-#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/tests/candidate.h"
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/library/effect_family.h"
-#include "calib/fit/residual_words.h"
+#include "calib/report/explain_note_text.h"
 #include "calib/report/noise_text.h"
+#include "calib/report/residual_words.h"
+#include "calib/report/size_text.h"
 #include "calib/stats/probability.h"
 #include "proto/units.h"
 
@@ -30,9 +32,9 @@ std::string place(const Candidate& c) {
 
 std::string noise_text(const ExplainReport& r) {
   std::string out = fmt::format("The residual is {:.3g} nT", r.residual_nT);
-  if (r.noise.told)
+  if (r.noise.known)
     out += fmt::format(" where the noise of a pose mean is {:.3g} nT, {}", r.noise_nT,
-                       noise_source(r.noise.told));
+                       noise_source(r.noise.known));
   if (const std::string tests = noise_of_tests(r.noise); !tests.empty()) out += "; " + tests;
   if (r.noise.quantisation_nT > 0)
     out += fmt::format("; readings stand in steps of {:.3g} nT, which is part of the noise",
@@ -98,7 +100,7 @@ std::string round_text(const Round& round, const JointFit* before) {
 /// Where what was found is the lesser part of what is there.
 std::string lesser_part_text(const ExplainReport& r) {
   constexpr double kHalf = 0.5;
-  if (r.finding != Finding::partial || !r.noise.told || r.rounds.empty()) return {};
+  if (r.finding != Finding::partial || !r.noise.known || r.rounds.empty()) return {};
   const auto beyond = [&](double rms_nT) { return rms_nT * rms_nT - r.noise_nT * r.noise_nT; };
   const double before = beyond(r.rounds.front().rms_before_nT), after = beyond(r.rounds.back().rms_after_nT);
   if (!(before > 0) || after < kHalf * before) return {};
@@ -108,14 +110,15 @@ std::string lesser_part_text(const ExplainReport& r) {
       100 * std::max(0.0, 1 - after / before));
 }
 
-std::string rivals_text(const Round& round) {
+std::string alternatives_text(const Round& round) {
   if (!round.possible.empty()) {
     return fmt::format("These poses do not tell it from {}.", fmt::join(round.possible, ", "));
   }
-  const auto& rivals = round.added.rivals;
-  if (rivals.empty()) return "Nothing else in the library looks like it.";
-  const auto nearest = std::min_element(rivals.begin(), rivals.end(),
-                                        [](const Rival& a, const Rival& b) { return a.p_right < b.p_right; });
+  const auto& alternatives = round.added.alternatives;
+  if (alternatives.empty()) return "Nothing else in the library looks like it.";
+  const auto nearest =
+      std::min_element(alternatives.begin(), alternatives.end(),
+                       [](const Alternative& a, const Alternative& b) { return a.p_right < b.p_right; });
   return fmt::format("Nearest rival: {}, told apart with probability {:.4g} at this size.", nearest->effect,
                      nearest->p_right);
 }
@@ -183,7 +186,7 @@ std::string sentence(const ExplainReport& r) {
   const JointFit* before = r.fit.get();
   for (const Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
-    if (lesser_part.empty() || !round.possible.empty()) parts.push_back(rivals_text(round));
+    if (lesser_part.empty() || !round.possible.empty()) parts.push_back(alternatives_text(round));
     before = round.fit.get();
   }
   switch (r.finding) {
@@ -218,7 +221,7 @@ std::string sentence(const ExplainReport& r) {
     default:
       break;
   }
-  for (const std::string& note : r.notes) {
+  for (const std::string& note : note_texts(r.notes)) {
     // A user's formula has any name.
     const bool named = std::any_of(r.candidates.begin(), r.candidates.end(),
                                    [&](const Candidate& c) { return note.starts_with(c.effect + " "); });

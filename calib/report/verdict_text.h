@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "calib/criticism/verdict/explain_report.h"
+#include "calib/criticism/search/explain_report.h"
 
 namespace mgtd::calib {
 

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit/fit_report_json.h"
 #include "calib/fit/orientation.h"
 #include "calib/sensor/sensor_equations.h"
+#include "calib/sensor/shown_parameters.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/validity/diff.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit/joint/joint_fit.h"
-#include "calib/validity/change_report.h"
+#include "calib/calibration/scale_gauge.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -45,30 +42,26 @@ Side side_of(const Calibration& c, const std::array<SensorModel, kSensors>& sens
           full_covariance(c)(slots, slots)};
 }
 
-std::vector<CalibratedEffect> shared_effects(const Calibration& a, const Calibration& b,
-                                             std::vector<std::string>& remarks) {
+/// Effects that both have; the others are named in `report`.
+std::vector<CalibratedEffect> shared_effects(const Calibration& a, const Calibration& b, DiffReport& report) {
   std::vector<CalibratedEffect> out;
   const auto has = [](const Calibration& c, const CalibratedEffect& e) {
     return std::any_of(c.effects.begin(), c.effects.end(), [&](const CalibratedEffect& o) {
       return o.effect == e.effect && o.coefficients.size() == e.coefficients.size();
     });
   };
-  const char* advice = "the model of both must be the same for its parameters to be compared";
   for (const CalibratedEffect& e : a.effects) {
     if (has(b, e)) {
       out.push_back(e);
     } else {
-      remarks.push_back(fmt::format("{} is in the first calibration only: {}", e.effect, advice));
+      report.only_in_first.push_back(e.effect);
     }
   }
   for (const CalibratedEffect& e : b.effects) {
-    if (!has(a, e))
-      remarks.push_back(fmt::format("{} is in the second calibration only: {}", e.effect, advice));
+    if (!has(a, e)) report.only_in_second.push_back(e.effect);
   }
   return out;
 }
-
-bool scale_is_free(const Calibration& c) { return c.gauge.find(kScaleIsFree) != std::string::npos; }
 
 /// The rotation that brings the platform frame of b onto that of a, as most of the sensors see it: one that
 /// was turned by itself or rewired does not count.
@@ -96,21 +89,10 @@ Eigen::Matrix3d common_turn(const Calibration& a, const Calibration& b) {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-bool name_remounted(const Calibration& a, const TurnedArray& b, std::vector<std::string>& remarks) {
-  bool any = false;
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    if (a.sensors[i].mounting == b.sensors[i].mounting) continue;
-    any = true;
-    remarks.push_back(
-        fmt::format("sensor s{} stands differently: its axes were turned, mirrored or rewired", i + 1));
-  }
-  return any;
-}
-
 /// The turn of the platform frame, with the uncertainty of the four sensors' mean.
-std::string turn_text(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) {
+CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) {
   const Eigen::AngleAxisd turn(Q);
-  std::string out = "turn of the whole array on its table, which is no change of it:";
+  CommonTurn out;
   for (int axis = 0; axis < 3; ++axis) {
     double variance = 0;
     for (int i = 0; i < kSensors; ++i) {
@@ -119,45 +101,35 @@ std::string turn_text(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covarianc
                     (kSensors * kSensors);
       }
     }
-    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.angle() * turn.axis()[axis]),
-                       to_deg(std::sqrt(variance)));
+    out.about_rad[axis] = turn.angle() * turn.axis()[axis];
+    out.sd_rad[axis] = std::sqrt(variance);
   }
-  return out + " deg about X, Y, Z";
-}
-
-std::string conclusion_of(const DiffReport& report, bool remounted) {
-  const Change& c = report.change;
-  const std::string figures = figures_text(c);
-  if (!report.changed) return fmt::format("nothing changed that these runs can tell ({})", figures);
-  if (remounted) return "changed: a sensor stands differently";
-  if (c.named.empty()) return fmt::format("changed, spread over many parameters ({})", figures);
-  return fmt::format("changed: {} ({})", named_text(c), figures);
+  return out;
 }
 
 }  // namespace
 
 DiffReport diff(const Calibration& a, const Calibration& b) {
   DiffReport out;
-  const auto shared = shared_effects(a, b, out.remarks);
+  const auto shared = shared_effects(a, b, out);
   const Eigen::Matrix3d Q = common_turn(a, b);
   const TurnedArray placed = turned(b.sensors, Q);
-  const bool remounted = name_remounted(a, placed, out.remarks);
+  for (std::size_t i = 0; i < kSensors; ++i)
+    if (a.sensors[i].mounting != placed.sensors[i].mounting) out.remounted.push_back(i);
   const Side from = side_of(a, a.sensors, shared), to = side_of(b, placed.sensors, shared);
   const Eigen::Index n = to.x.size();
   Eigen::MatrixXd J = Eigen::MatrixXd::Identity(n, n);
   J.topLeftCorner<kArrayParameters, kArrayParameters>() = placed.jacobian;
-  const bool free_scale = scale_is_free(a) || scale_is_free(b);
-  if (free_scale) out.remarks.emplace_back("a common scale is taken out, because one of them knows no field");
+  out.scale_taken_out = scale_is_free(a) || scale_is_free(b);
   const Eigen::MatrixXd C =
       small_sample_factor(a.poses) * from.C + small_sample_factor(b.poses) * (J * to.C * J.transpose());
   out.change = judge({.difference = to.x - from.x,
                       .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),
-                      .common = common_freedoms(a.sensors, n, free_scale),
+                      .common = common_freedoms(a.sensors, n, out.scale_taken_out),
                       .slots = shown_slots(shared)});
-  out.changed = remounted || out.change.p() < kChanged;
-  out.remarks.push_back(turn_text(Q, C));
-  out.conclusion = conclusion_of(out, remounted);
+  out.changed = !out.remounted.empty() || out.change.p() < kChanged;
+  out.turn = turn_of(Q, C);
   return out;
 }
 

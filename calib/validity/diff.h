@@ -1,19 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+#include <vector>
+
 #include "calib/validity/change.h"
 
 /// Has the calibration changed between two runs, which parameter, by how many standard errors?
 namespace mgtd::calib {
 
-struct DiffReport {
-  bool changed{false};               ///< the hypothesis of no change has a probability below kChanged
-  Change change;                     ///< B less A, common rotation (and a free common scale) taken out
-  std::string conclusion;            ///< one sentence: what changed, or that nothing did
-  std::vector<std::string> remarks;  ///< turned sensors, effects only one of them has, the common rotation
+/// Turn of the whole array on its table from A to B, which is no change of the array: rotation vector in the
+/// platform frame and its standard deviation, about X, Y and Z.
+struct CommonTurn {
+  Eigen::Vector3d about_rad{Eigen::Vector3d::Zero()}, sd_rad{Eigen::Vector3d::Zero()};
 };
 
-/// Effects that both have are compared too. A sensor whose mounting differs is remarked and counts as
-/// changed.
+struct DiffReport {
+  bool changed{false};  ///< no change has a probability below kChanged, or a sensor was remounted
+  Change change;        ///< B less A, common rotation (and a free common scale) taken out
+  std::vector<std::size_t> remounted;  ///< places of sensors whose axes were turned, mirrored or rewired
+  /// Effects that only one of them has; they are not compared.
+  std::vector<std::string> only_in_first, only_in_second;
+  bool scale_taken_out{false};  ///< a common scale, because one of them knows no field
+  CommonTurn turn;
+};
+
+/// Effects that both have are compared too. A sensor whose mounting differs counts as changed.
 [[nodiscard]] DiffReport diff(const Calibration& a, const Calibration& b);
 
 }  // namespace mgtd::calib

@@ -11,7 +11,6 @@
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/outliers.h"
 #include "calib/poses/run_time.h"
-#include "calib/validity/change_report.h"
 #include "calib/validity/fixed_calibration.h"
 
 namespace mgtd::calib {
@@ -149,44 +148,6 @@ Evidence evidence_of(const FixedCalibration& frozen, const std::array<SensorMode
           .slots = shown_slots(frozen.instrument)};
 }
 
-std::string verdict_text(const ValidityReport& r, bool changed) {
-  const Change& c = r.change;
-  const std::string figures = figures_text(c);
-  if (changed) {
-    const auto best = std::max_element(c.others_log10_p.begin(), c.others_log10_p.end());
-    const std::string where = *best > std::log10(kChanged) ? fmt::format("sensor s{} alone would explain it",
-                                                                         best - c.others_log10_p.begin() + 1)
-                                                           : std::string("more than one sensor");
-    return fmt::format(
-        "no longer valid ({}): {}{}; calibrate again", figures, where,
-        c.named.empty() ? ", spread over many parameters" : ", accounted for by " + named_text(c));
-  }
-  if (!r.valid) {
-    return fmt::format(
-        "no longer valid: the poses scatter {:.1f} times more than the noise, and no change of the "
-        "parameters explains "
-        "it; a disturbance while they were measured, or an effect that is not in the model",
-        r.excess);
-  }
-  return fmt::format("still valid ({})", figures);
-}
-
-void explain(ValidityReport& r) {
-  const bool changed = r.change.p() < kChanged;
-  r.valid = !changed && r.excess <= kMaxExcess;
-  r.reasons.push_back(verdict_text(r, changed));
-  r.reasons.push_back("smallest change that these poses show in 80 of 100 cases: " + seen_text(r.change));
-  if (r.excess > 1 && r.valid) {
-    r.reasons.push_back(
-        fmt::format("the poses scatter {:.2f} times more than the noise; the test allows for it", r.excess));
-  }
-  if (!r.noise_from_dwells)
-    r.reasons.emplace_back(
-        "the noise is that of the calibration's own run: the poses have no spreads or counts");
-  for (const std::string& text : outlier_texts(r.outliers))
-    r.reasons.push_back(text + "; left out, measure again");
-}
-
 double rms_noise(const JointProblem& problem) {
   double variance = 0;
   for (const JointPose& pose : problem.poses)
@@ -267,7 +228,7 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   const JointErrors errors = joint_errors(problem, state, FixedBlock::frozen);
   report.errors = errors.summary;
   report.residual_nT = errors.residual_nT;
-  explain(report);
+  report.valid = !report.changed() && report.excess <= kMaxExcess;
   return report;
 }
 

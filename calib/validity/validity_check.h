@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "calib/validity/change.h"
 
 /// Is an earlier calibration still valid? From a dozen poses, which need not determine a calibration of their
@@ -23,7 +23,10 @@ struct ValidityReport {
   double excess{1};               ///< scatter that no change of the calibration explains, over the noise
   bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run
   std::vector<OutlierNode> outliers;
-  std::vector<std::string> reasons;  ///< sentences: the verdict first
+
+  /// Whether a parameter of the calibration changed; a calibration that did not change is still not valid
+  /// where the poses scatter too much.
+  [[nodiscard]] bool changed() const { return change.p() < kChanged; }
 };
 
 /// All poses count, whatever their set. Of `options` the field, the table's uncertainty and further effects

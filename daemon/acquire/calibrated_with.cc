@@ -33,14 +33,14 @@ void name_instruments(calib::Calibration& calibration, const std::filesystem::pa
   if (!file) return;
   const auto known = file->checks(kInstrumentsStage);
   if (!known || known->empty()) return;
-  calibration.verdict.insert(calibration.verdict.end(), known->begin(), known->end());
+  calibration.checks.insert(calibration.checks.end(), known->begin(), known->end());
   calibration.seal();
 }
 
 void hold_against(const calib::Calibration& active, calib::FitReport& report) {
   InstrumentWatch watch;
-  watch.want(instruments_among(active.verdict));
-  for (const InstrumentIdentity& i : instruments_among(report.calibration.verdict)) watch.answers(i);
+  watch.want(instruments_among(active.checks));
+  for (const InstrumentIdentity& i : instruments_among(report.calibration.checks)) watch.answers(i);
   if (watch.another()) return;
   const auto exchanged = calib::exchanged_since(active, report.calibration);
   if (!exchanged) return;
@@ -51,9 +51,9 @@ void hold_against(const calib::Calibration& active, calib::FitReport& report) {
                     "each sensor where it was calibrated",
                     "swap the plugs back and measure again; when they are meant to stay so, accept it with "
                     "--force"};
-  report.reasons.insert(report.reasons.begin(),
-                        fmt::format("{}: {}; {}", check.name, check.measured, check.remedy));
-  report.calibration.verdict.push_back(check);
+  report.found_beside.insert(report.found_beside.begin(),
+                             fmt::format("{}: {}; {}", check.name, check.measured, check.remedy));
+  report.calibration.checks.push_back(check);
   report.calibration.accepted_by_checks = false;
   report.calibration.seal();
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/calibration/calibration.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "daemon/store/run_file.h"
 #include "proto/instrument_identity.h"
 

@@ -47,8 +47,7 @@ LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m, Late
       inputs_(std::move(inputs)) {}
 
 void LivePipeline::use(std::shared_ptr<const calib::Calibration> calibration) {
-  instruments_.want(calibration ? instruments_among(calibration->verdict)
-                                : std::vector<InstrumentIdentity>{});
+  instruments_.want(calibration ? instruments_among(calibration->checks) : std::vector<InstrumentIdentity>{});
   if (calibration == nullptr) {
     criticism_ = {};
     rearranged_ = {};
@@ -80,7 +79,7 @@ TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
   inputs_.advance(epoch.t.mono);
   TensorSample sample;
   if (!instruments_.another()) sample = judged(epoch, verdict_changed);
-  if (instruments_.another() || rearranged_.verdict()) {
+  if (instruments_.another() || rearranged_.finding()) {
     sample = raw_.apply(epoch);
     sample.flags |= Flag::identity;
   } else if (const auto& used = live_.calibration(); used && !used->accepted_by_checks) {
@@ -93,11 +92,11 @@ TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
 /// With the calibration, and what that says of the calibration.
 TensorSample LivePipeline::judged(const Epoch& epoch, bool& verdict_changed) {
   TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
-  const bool before = rearranged_.verdict().has_value();
+  const bool before = rearranged_.finding().has_value();
   verdict_changed = criticism_.add(sample, epoch.T_degC);
   rearranged_.add(epoch, criticism_.beyond());
-  verdict_changed = verdict_changed || before != rearranged_.verdict().has_value();
-  const calib::LiveState state = criticism_.verdict().state;
+  verdict_changed = verdict_changed || before != rearranged_.finding().has_value();
+  const calib::LiveState state = criticism_.finding().state;
   if (state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
   if (state == calib::LiveState::suspect ||
       (criticism_.beyond().value_or(false) && state != calib::LiveState::near_source))

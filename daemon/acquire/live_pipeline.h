@@ -66,8 +66,8 @@ class LivePipeline {
   [[nodiscard]] const LatestInputs& inputs() const { return inputs_; }
   [[nodiscard]] const calib::LiveTensor& live() const { return live_; }
   /// A sensor in another place before all that follows from it.
-  [[nodiscard]] const calib::LiveVerdict& verdict() const {
-    return rearranged_.verdict() ? *rearranged_.verdict() : criticism_.verdict();
+  [[nodiscard]] const calib::LiveFinding& verdict() const {
+    return rearranged_.finding() ? *rearranged_.finding() : criticism_.finding();
   }
   [[nodiscard]] const InstrumentWatch& instruments() const { return instruments_; }
 

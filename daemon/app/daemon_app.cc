@@ -127,7 +127,7 @@ void DaemonApp::tell_identity() {
 
 /// On a change of state only.
 void DaemonApp::tell_criticism() {
-  const calib::LiveVerdict& verdict = pipeline_.verdict();
+  const calib::LiveFinding& verdict = pipeline_.verdict();
   if (is_rearranged(verdict.state) || !readings_said_.empty()) {
     readings_said_ = is_rearranged(verdict.state) ? verdict.measured : std::string();
     run_.feed(ReadingsSay{readings_said_, verdict.remedy}, clock_.now());

@@ -55,7 +55,7 @@ StatusReport DaemonApp::report() const {
     for (const auto& [effect, lacks] : pipeline_.live().left_out())
       out.calibration_use.left_out.push_back({effect, lacks});
   }
-  const calib::LiveVerdict& verdict = pipeline_.verdict();
+  const calib::LiveFinding& verdict = pipeline_.verdict();
   out.criticism = {std::string(calib::to_string(verdict.state)), verdict.measured, verdict.limit,
                    verdict.remedy};
   if (const InstrumentWatch& instruments = pipeline_.instruments(); instruments.another())

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "calib/fit/fit_report_json.h"
-#include "calib/fit/residual_words.h"
-#include "calib/validity/change_report.h"
+#include "calib/report/change_report.h"
+#include "calib/report/residual_words.h"
+#include "calib/report/validity_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 
@@ -29,23 +29,6 @@ struct CheckArguments {
   std::shared_ptr<FitFlags> flags;
 };
 
-nlohmann::json json_of(const calib::ValidityReport& r) {
-  nlohmann::json outliers = nlohmann::json::array();
-  for (const calib::OutlierNode& o : r.outliers)
-    outliers.push_back({{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}});
-  return {{"schema", "mgt.check/1"},
-          {"calibration", r.calibration},
-          {"poses", r.poses},
-          {"valid", r.valid},
-          {"reasons", r.reasons},
-          {"change", calib::to_json(r.change)},
-          {"errors", calib::to_json(r.errors)},
-          {"residual_nT", r.residual_nT},
-          {"noise_nT", r.noise_nT},
-          {"excess", r.excess},
-          {"outliers", std::move(outliers)}};
-}
-
 int run_check(const Session& session, const CheckArguments& args) {
   const auto calibration = read_calibration(args.calibration);
   if (!calibration) return report(session, calibration.error());
@@ -56,7 +39,7 @@ int run_check(const Session& session, const CheckArguments& args) {
   const auto checked = calib::check(*calibration, source->table, *options);
   if (!checked) return report(session, checked.error());
   if (session.json) {
-    print_json(json_of(*checked));
+    print_json(calib::to_json(*checked));
   } else {
     fmt::print("calibration {} against {} poses: {}\n", checked->calibration, checked->poses,
                checked->valid ? "VALID" : "NOT VALID");
@@ -66,7 +49,7 @@ int run_check(const Session& session, const CheckArguments& args) {
                    ? "the larger of what the dwells tell and what the calibration's own run left"
                    : "of the calibration's own run");
     fmt::print("{}\n", calib::change_table(checked->change, kPosesShown));
-    for (const std::string& reason : checked->reasons) fmt::print("note: {}\n", reason);
+    for (const std::string& reason : calib::validity_reasons(*checked)) fmt::print("note: {}\n", reason);
   }
   return checked->valid ? 0 : 1;
 }

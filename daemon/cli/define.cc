@@ -12,6 +12,7 @@
 #include "calib/effects/formula/formula.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/poses/pose_table.h"
+#include "calib/report/formula_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/kept_run.h"
 #include "daemon/store/user_formulas.h"

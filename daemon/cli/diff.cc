@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/validity/diff.h"
-
 #include <fmt/format.h>
 
-#include "calib/validity/change_report.h"
+#include "calib/report/change_report.h"
+#include "calib/report/diff_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 
@@ -41,12 +40,12 @@ int run_diff(const Session& session, const DiffArguments& args) {
                 {"a", a->id},
                 {"b", b->id},
                 {"changed", found.changed},
-                {"conclusion", found.conclusion},
-                {"remarks", found.remarks},
+                {"conclusion", calib::conclusion_text(found)},
+                {"remarks", calib::remarks_of(found)},
                 {"change", calib::to_json(found.change)}});
   } else {
-    fmt::print("{}\n\n{}\n", found.conclusion, calib::change_table(found.change, kChangesShown));
-    for (const std::string& remark : found.remarks) fmt::print("note: {}\n", remark);
+    fmt::print("{}\n\n{}\n", calib::conclusion_text(found), calib::change_table(found.change, kChangesShown));
+    for (const std::string& remark : calib::remarks_of(found)) fmt::print("note: {}\n", remark);
   }
   return found.changed ? 1 : 0;
 }

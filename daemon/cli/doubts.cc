@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "calib/report/choice_text.h"
 #include "daemon/store/run_file.h"
 
 namespace mgtd::cli {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/calibration/calibration.h"
-#include "calib/fit/fit_report_json.h"
+#include "calib/report/fit_report_json.h"
 #include "calib/report/fit_report_text.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "daemon/store/pose_source.h"
 
 /// Every command with a fit understands these options; this also says how they combine with what a run file

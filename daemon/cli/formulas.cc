@@ -18,11 +18,11 @@ std::vector<calib::CandidateEffect> formulas_of(const daemon::PoseSource& source
                                    [&](const calib::EffectPtr& e) { return e->name() == d.name; });
     const auto spec = calib::EffectSpec::parse(d.spec);
     if (known || !spec) continue;
-    auto suspect = calib::formula_suspect(*spec);
-    if (!suspect || !suspect->variants.front()->check(source.table)) continue;
+    auto candidate = calib::formula_candidate(*spec);
+    if (!candidate || !candidate->variants.front()->check(source.table)) continue;
     if (d.exploratory() && d.found_on == calib::data_hash(source.table))
       fmt::print(stderr, "{} was suggested by this run: what is said of it here is exploratory\n", d.name);
-    out.push_back(std::move(*suspect));
+    out.push_back(std::move(*candidate));
   }
   return out;
 }

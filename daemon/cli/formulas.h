@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "calib/criticism/tests/candidate_effect.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "daemon/store/pose_source.h"
 
 namespace mgtd::cli {

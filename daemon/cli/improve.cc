@@ -4,7 +4,7 @@
 #include "calib/criticism/search/improve.h"
 #include "calib/effects/library/library.h"
 #include "calib/report/improve_report.h"
-#include "calib/report/waterfall.h"
+#include "calib/report/waterfall_report.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/search/next_pair.h"
+#include "calib/report/next_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
@@ -34,15 +35,15 @@ struct NextArguments {
 Result<calib::NextReport> next_about(const PoseTable& table, calib::FitOptions options,
                                      const std::vector<calib::Choice>& doubts, calib::NextReport otherwise) {
   const auto open = std::find_if(doubts.begin(), doubts.end(),
-                                 [](const calib::Choice& choice) { return !choice.rivals.empty(); });
+                                 [](const calib::Choice& choice) { return !choice.alternatives.empty(); });
   if (open == doubts.end()) {
-    if (!doubts.empty()) otherwise.text.clear();
+    if (!doubts.empty()) otherwise.nothing_to_settle.reset(), otherwise.none_helps = false;
     return otherwise;
   }
   std::erase_if(options.effects, [&](const calib::EffectPtr& e) { return e->spec() == open->spec; });
   return calib::next_of(table, {.fit = options},
                         std::pair{std::string(calib::family_name(open->spec)),
-                                  std::string(calib::family_name(open->rivals.front()))});
+                                  std::string(calib::family_name(open->alternatives.front()))});
 }
 
 int run_next(const Session& session, const NextArguments& args) {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "calib/design/experiment_design_report.h"
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_table.h"
+#include "calib/report/experiment_design_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/in_range.h"
@@ -46,7 +46,7 @@ struct LimitedRun {
   drivers::TableLimits limits;
 };
 struct Wanted {
-  calib::PlanRequest request;
+  calib::DesignRequest request;
   std::optional<LimitedRun> run;
 };
 
@@ -67,7 +67,7 @@ Result<void> take_config(const PlanArguments& args, Wanted& wanted) {
 
 Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   if (!args.config.empty()) return take_config(args, wanted);
-  calib::PlanRequest& request = wanted.request;
+  calib::DesignRequest& request = wanted.request;
   if (args.poses.empty()) {
     auto poses = daemon::planned_poses(daemon::Config{});
     if (!poses) return tl::unexpected(poses.error());
@@ -85,7 +85,7 @@ Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
 /// The command line takes precedence over the configuration, and that over the earlier calibration.
 Result<Wanted> wanted_of(const PlanArguments& args) {
   Wanted out;
-  calib::PlanRequest& r = out.request;
+  calib::DesignRequest& r = out.request;
   r.scalar_sd_nT = args.scalar_sd_nT;
   r.pose_noise_nT = args.noise_nT;
   r.warming_degC = args.warming_degC;
@@ -118,7 +118,7 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
 int run_plan(const Session& session, const PlanArguments& args) {
   const auto wanted = wanted_of(args);
   if (!wanted) return report(session, wanted.error());
-  const auto planned = with_progress("plan", [&] { return calib::plan(wanted->request); });
+  const auto planned = with_progress("plan", [&] { return calib::evaluate_design(wanted->request); });
   if (!planned) return report(session, planned.error());
   std::optional<daemon::LimitsCost> limits;
   if (wanted->run) {

@@ -10,10 +10,12 @@
 #include <map>
 #include <set>
 
-#include "calib/fit/residual_words.h"
+#include "calib/report/choice_text.h"
 #include "calib/report/comparison_report.h"
+#include "calib/report/fit_reasons.h"
 #include "calib/report/fit_report_text.h"
 #include "calib/report/noise_text.h"
+#include "calib/report/residual_words.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
@@ -88,7 +90,7 @@ std::string verdict_section(const ReportContent& c) {
     out += "<p><strong>Open since it was chosen:</strong> " + escaped(calib::to_text(choice)) + ".</p>";
   Rows rows;
   std::set<std::size_t> failed;
-  for (const Check& check : c.fit.calibration.verdict) {
+  for (const Check& check : c.fit.calibration.checks) {
     if (!check.passed) failed.insert(rows.size());
     rows.push_back({check.name, check.passed ? "passed" : "failed", check.measured, check.limit,
                     check.passed ? "" : check.remedy});
@@ -103,7 +105,8 @@ std::string verdict_section(const ReportContent& c) {
         "{:.3g} times the noise: look at what the model leaves and what could be missing.</p>",
         c.fit.residual_nT / c.fit.noise_nT);
   }
-  for (const std::string& reason : c.fit.reasons) out += "<p class=\"quiet\">" + escaped(reason) + "</p>";
+  for (const std::string& reason : calib::fit_reasons(c.fit))
+    out += "<p class=\"quiet\">" + escaped(reason) + "</p>";
   return out + html_good(
                    "every check passed, and the residual is near the noise. A calibration that fails a check "
                    "is not accepted by itself.");
@@ -133,7 +136,7 @@ std::string residual_section(const ReportContent& c) {
       "<p class=\"quiet\">Each row is a way of looking at it, each plot its means over a covariate, of the "
       "component that depends most.</p>",
       c.comparison.residual_nT, calib::kResidualIs, c.comparison.noise_nT,
-      calib::noise_source(c.comparison.noise.told),
+      calib::noise_source(c.comparison.noise.known),
       escaped(calib::as_sentence(calib::noise_of_tests(c.comparison.noise))));
   for (const calib::ResidualChannel& channel : c.comparison.channels) {
     double scale = 0;

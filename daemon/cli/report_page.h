@@ -6,9 +6,9 @@
 
 #include "calib/criticism/search/choice.h"
 #include "calib/criticism/search/explain.h"
+#include "calib/criticism/search/waterfall.h"
 #include "calib/criticism/tests/comparison.h"
-#include "calib/fit/methods/fit.h"
-#include "calib/report/waterfall.h"
+#include "calib/fit/method_choice/fit.h"
 #include "daemon/store/model_history.h"
 #include "daemon/store/pose_source.h"
 

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/detectable.h"
+#include "calib/report/fit_reasons.h"
+#include "calib/report/size_text.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
@@ -22,7 +24,7 @@ constexpr std::size_t kCandidates = 12;
 
 std::string rivals_text(const calib::Candidate& candidate) {
   std::vector<std::string> names;
-  for (const calib::Rival& r : candidate.rivals)
+  for (const calib::Alternative& r : candidate.alternatives)
     if (r.possible) names.push_back(r.effect);
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -64,7 +66,7 @@ std::string limits_section(const ReportContent& c) {
     next.push_back({n.action, fmt::format("{:.0f}", n.minutes), fmt::format("{:.3f}", n.p_right_before),
                     fmt::format("{:.3f}", n.p_right_after)});
   out += html_table({"untestable", "why"}, untestable, true);
-  for (const std::string& w : c.fit.weak) out += "<p class=\"quiet\">" + escaped(w) + "</p>";
+  for (const std::string& w : calib::weak_texts(c.fit)) out += "<p class=\"quiet\">" + escaped(w) + "</p>";
   if (!next.empty())
     out += "<h3>What would settle the name</h3>" +
            html_table({"measurement", "minutes", "p right now", "p right then"}, next, true);

@@ -148,7 +148,7 @@ Result<std::optional<daemon::LimitsCost>> cost_of_limits(const nlohmann::json& r
       daemon::parse_config(reply.at("config").get<std::string>(), "the daemon's configuration");
   if (!config)
     return fail(ErrorCode::protocol, config.error().lines.front(), "use mgt and mgtd of the same version");
-  calib::PlanRequest request;
+  calib::DesignRequest request;
   daemon::assume(*config, request);
   return daemon::limits_cost(*options, *limits, std::move(request));
 }

@@ -62,7 +62,7 @@ double rms(const Gradient& g) {
   return std::sqrt((g.xx * g.xx + g.yy * g.yy + g.zz * g.zz + g.xy * g.xy + g.xz * g.xz + g.yz * g.yz) / 6);
 }
 
-LimitsCost::Group tensor_group(const calib::PlanReport& within, const calib::PlanReport& without) {
+LimitsCost::Group tensor_group(const calib::DesignReport& within, const calib::DesignReport& without) {
   static constexpr std::array<std::pair<const char*, double Gradient::*>, 6> kComponents{
       {{"xx", &Gradient::xx},
        {"yy", &Gradient::yy},
@@ -81,8 +81,8 @@ LimitsCost::Group tensor_group(const calib::PlanReport& within, const calib::Pla
   return out;
 }
 
-LimitsCost::Group parameter_group(const Kind& kind, const calib::PlanReport& within,
-                                  const calib::PlanReport& without) {
+LimitsCost::Group parameter_group(const Kind& kind, const calib::DesignReport& within,
+                                  const calib::DesignReport& without) {
   LimitsCost::Group out{.name = kind.name, .unit = without.parameters[kind.first].unit, .worst = {}};
   double inside = 0, outside = 0, count = 0;
   for (std::size_t slot = 0; slot < kSensors; ++slot) {
@@ -107,14 +107,14 @@ std::string amount(double sd, const std::string& unit) {
   return unit.empty() ? fmt::format("{:.3g} ppm", 1e6 * sd) : fmt::format("{:.3g} {}", sd, unit);
 }
 
-Result<calib::PlanReport> expected(const PlanOptions& options, const TableLimits& limits,
-                                   calib::PlanRequest request) {
+Result<calib::DesignReport> expected(const PlanOptions& options, const TableLimits& limits,
+                                     calib::DesignRequest request) {
   auto poses = planned_poses(options, limits);
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);
   request.power = false;
   request.candidates.clear();
-  return calib::plan(request);
+  return calib::evaluate_design(request);
 }
 
 std::string axes_text(const LimitsCost& cost) {
@@ -157,7 +157,7 @@ double attitudes_left_out(const TableLimits& limits) {
 }
 
 Result<std::optional<LimitsCost>> limits_cost(const PlanOptions& options, const TableLimits& limits,
-                                              calib::PlanRequest request) {
+                                              calib::DesignRequest request) {
   LimitsCost out;
   for (const NamedAxis& axis : kTableAxes) {
     const Range& range = limits.*axis.range;

@@ -45,7 +45,7 @@ struct LimitsCost {
 /// `request` but for its poses. Nothing where the limits leave nothing out.
 [[nodiscard]] Result<std::optional<LimitsCost>> limits_cost(const PlanOptions& options,
                                                             const drivers::TableLimits& limits,
-                                                            calib::PlanRequest request);
+                                                            calib::DesignRequest request);
 
 [[nodiscard]] nlohmann::json to_json(const LimitsCost& cost);
 /// A table with what to do.

@@ -85,7 +85,7 @@ Result<PoseTable> planned_poses(const PlanOptions& options, const drivers::Table
   return out;
 }
 
-void assume(const Config& config, calib::PlanRequest& request) {
+void assume(const Config& config, calib::DesignRequest& request) {
   request.candidates = reachable(config, std::move(request.candidates));
   request.geometry.baseline_m = config.baseline_m;
   request.table_sd_rad = to_rad(config.table_sd_deg);

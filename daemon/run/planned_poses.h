@@ -22,7 +22,7 @@ namespace mgtd::daemon {
 [[nodiscard]] drivers::TableLimits table_limits(const Config& config);
 
 /// Takes over what the configuration says of rig and site; the poses are left alone.
-void assume(const Config& config, calib::PlanRequest& request);
+void assume(const Config& config, calib::DesignRequest& request);
 
 /// Those of the attitudes that this configuration's table can take.
 [[nodiscard]] std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles> attitudes);

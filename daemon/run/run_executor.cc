@@ -129,7 +129,7 @@ RunConfig RunExecutor::run_config(const std::string& run_id, const RunRequest& r
     *limit *= config_.speed_up;
   }
   if (const auto active = store_.active(); active && *active)
-    out.calibrated = instruments_among((*active)->verdict);
+    out.calibrated = instruments_among((*active)->checks);
   out.retries = request.retries.value_or(config_.run.retries);
   out.pace = pace();
   out.by_hand = config_.by_hand();

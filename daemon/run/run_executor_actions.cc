@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "calib/fit/joint/accuracy_so_far.h"
-#include "calib/fit/two_step/verdict.h"
+#include "calib/report/fit_reasons.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/run/run_executor.h"
 #include "daemon/run/solver.h"
@@ -87,8 +87,8 @@ void RunExecutor::act(const StartSolve&, Stamp) {
                       hold_against(**active, *report);
                     if (report) {
                       const calib::Calibration& c = report->calibration;
-                      done.result = Solution{c.accepted_by_checks, c.id, report->reasons, c.verdict,
-                                             calib::left_over(*report)};
+                      done.result = Solution{c.accepted_by_checks, c.id, calib::fit_reasons(*report),
+                                             c.checks, calib::lack_of_fit_text(*report)};
                       solved_ = c;
                     } else {
                       done.result = tl::unexpected(report.error());

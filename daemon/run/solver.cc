@@ -40,7 +40,7 @@ Result<calib::FitReport> solve_run(const std::filesystem::path& run_file, std::s
   if (report->calibration.accepted_by_checks) return report;
   // The cause, before what it led to.
   if (const auto exchange = calib::exchange_in_run(source->table, options->field_nT))
-    report->reasons.insert(report->reasons.begin(), calib::in_words(*exchange));
+    report->found_beside.insert(report->found_beside.begin(), calib::in_words(*exchange));
   return report;
 }
 

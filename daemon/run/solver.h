@@ -4,7 +4,7 @@
 #include <stop_token>
 #include <string>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "daemon/store/pose_source.h"
 #include "daemon/store/run_header.h"
 

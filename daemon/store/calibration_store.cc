@@ -25,7 +25,7 @@ Error unknown(std::string_view id) {
 
 Error failed_checks(const calib::Calibration& calibration) {
   std::string failed;
-  for (const Check& c : calibration.verdict) {
+  for (const Check& c : calibration.checks) {
     if (!c.passed)
       failed += fmt::format("{}{} {} (limit {})", failed.empty() ? "" : ", ", c.name, c.measured, c.limit);
   }

@@ -71,7 +71,7 @@ Foretold foretold(const Scene& scene, int runs) {
     return table;
   };
   const auto truth = models_of(scene.rig);
-  calib::PlanRequest request;
+  calib::DesignRequest request;
   request.poses = simulate(1);
   request.f_nT = scene.site.f_nT;
   request.inclination_rad = to_rad(scene.site.inclination_deg);
@@ -80,7 +80,7 @@ Foretold foretold(const Scene& scene, int runs) {
   request.scalar_sd_nT = scene.f_sd_nT;
   request.table_sd_rad = to_rad(scene.table_sd_deg);
   request.sensors = truth;
-  const auto planned = calib::plan(request);
+  const auto planned = calib::evaluate_design(request);
   if (!planned || !planned->determined) throw std::runtime_error("the plan does not determine the rig");
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(calib::kSensorBlock);
   for (int run = 0; run < runs; ++run) {

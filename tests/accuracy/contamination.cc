@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "calib/fit/joint/joint_fit.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "proto/units.h"
 
 namespace mgtd::testing {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/accuracy/paper_tables.h"
+#include "calib/sensor/shown_parameters.h"
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/library.h"
-#include "calib/fit/fit_report_json.h"
+#include "calib/report/fit_report_json.h"
 #include "calib/validity/diff.h"
 #include "proto/units.h"
 #include "tests/accuracy/campaign.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "tests/support/paper_rigs.h"
 
 namespace mgtd::testing {

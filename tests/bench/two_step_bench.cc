@@ -3,7 +3,7 @@
 // its covariance, held-out folds and halves.
 #include <benchmark/benchmark.h>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "calib/fit/two_step/two_step.h"
 #include "tests/support/paper_rigs.h"
 

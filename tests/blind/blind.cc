@@ -16,7 +16,7 @@ namespace {
 double told_at_best(const ExplainReport& r) {
   double out = 1;
   if (r.rounds.empty()) return out;
-  for (const Rival& rival : r.rounds.front().added.rivals) out = std::min(out, rival.p_right);
+  for (const Alternative& rival : r.rounds.front().added.alternatives) out = std::min(out, rival.p_right);
   return out;
 }
 
@@ -44,14 +44,14 @@ bool changes_the_field(const ExplainReport& r) {
 
 /// Every effect of the library but one.
 std::vector<CandidateEffect> library_without(const PoseTable& table, std::string_view name) {
-  std::vector<CandidateEffect> out = library_suspects(table).testable;
+  std::vector<CandidateEffect> out = library_candidates(table).testable;
   std::erase_if(out, [&](const CandidateEffect& s) { return s.name == name; });
   return out;
 }
 
 void ask(const PoseTable& table, const std::string& truth, Answers& out, bool taken_out = false) {
   ExplainOptions options;
-  if (taken_out) options.suspects = library_without(table, truth);
+  if (taken_out) options.candidate_effects = library_without(table, truth);
   const auto report = explain(table, options);
   if (!report) {
     ++out.runs, ++out.refused;

@@ -12,7 +12,7 @@
 #include <ctime>
 #include <random>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "calib/fit/orientation.h"
 #include "proto/units.h"
 

@@ -43,7 +43,7 @@ double unseen_rms_nT(const PoseTable& table, const JointOptions& options, const 
 
 double frozen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {
   JointOptions options = with(effects);
-  options.effects = must(tune(table, options));
+  options.effects = must(profile_search(table, options));
   return unseen_rms_nT(table, options, must(fit_joint(table, options)));
 }
 

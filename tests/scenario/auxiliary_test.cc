@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_reasons.h"
 #include "daemon/acquire/live_pipeline.h"
 #include "tests/scenario/virtual_daemon.h"
 
@@ -49,7 +50,7 @@ TEST(Auxiliary, ACurrentIsMeasuredFittedAndTakenOutOfTheStream) {
     auto fitted = calib::fit(poses, options);
     if (!fitted) return tl::unexpected(fitted.error());
     calibration = std::make_shared<const calib::Calibration>(fitted->calibration);
-    return Solution{calibration->accepted_by_checks, calibration->id, fitted->reasons, {}};
+    return Solution{calibration->accepted_by_checks, calibration->id, calib::fit_reasons(*fitted), {}};
   };
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); })) << daemon.health(6).detail;
   daemon.start(*make_plan({}, daemon.table().limits()));

@@ -39,7 +39,7 @@ class Calibrated : public testing::Test {
   void begin(const std::string& more = "") {
     stream.emplace(scenario_of(kRig + more));
     calib::Calibration c = *test::perfect_calibration(stream->rig.world().scenario());
-    c.verdict = to_checks(calibrated_ones());
+    c.checks = to_checks(calibrated_ones());
     c.seal();
     stream->on_line = [this](const RingRecord& record) {
       json line = json::parse(record.line);

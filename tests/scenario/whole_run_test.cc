@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_reasons.h"
 #include "tests/scenario/virtual_daemon.h"
 
 namespace mgtd {
@@ -33,7 +34,7 @@ void fit_with(VirtualDaemon& daemon, std::optional<calib::FitReport>& report,
     if (!fitted) return tl::unexpected(fitted.error());
     report = *fitted;
     const calib::Calibration& c = fitted->calibration;
-    return Solution{c.accepted_by_checks, c.id, fitted->reasons, c.verdict};
+    return Solution{c.accepted_by_checks, c.id, calib::fit_reasons(*fitted), c.checks};
   };
 }
 

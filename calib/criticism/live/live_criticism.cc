@@ -70,7 +70,7 @@ LiveCriticism::Judges::Judges(const ClosurePrior& p)
 LiveCriticism::LiveCriticism(const Calibration& calibration) {
   if ((calibration.sample_noise_nT.array() <= 0).any()) return;
   judges_.emplace(closure_prior(calibration));
-  verdict_.state = LiveState::learning;
+  finding_.state = LiveState::learning;
 }
 
 double LiveCriticism::turn_nT(const TensorSample& sample) {
@@ -116,22 +116,22 @@ bool LiveCriticism::add(const ClosureSample& sample) {
     if (judges_->hour.blocks().size() >= kLearned)
       judge_nearness(block_log10_p(judges_->hour.blocks().back(), judges_->prior, noise_scale_));
   }
-  const LiveState before = verdict_.state;
-  verdict_.state = state();
-  verdict_.measured = !followed_hour_.empty()  ? followed_hour_
+  const LiveState before = finding_.state;
+  finding_.state = state();
+  finding_.measured = !followed_hour_.empty()  ? followed_hour_
                       : !followed_day_.empty() ? followed_day_
                                                : near_;
-  verdict_.limit = !followed_hour_.empty() ? limit_hour_ : limit_day_;
-  verdict_.remedy.clear();
-  if (verdict_.state == LiveState::suspect)
-    verdict_.remedy = "measure a dozen poses and run: mgt check CAL.json RUN";
-  if (verdict_.state == LiveState::near_source) {
-    verdict_.limit = "a chance of 1e-5 in 10 s, twice running, in an intact calibration and a smooth field";
-    verdict_.remedy =
+  finding_.limit = !followed_hour_.empty() ? limit_hour_ : limit_day_;
+  finding_.remedy.clear();
+  if (finding_.state == LiveState::suspect)
+    finding_.remedy = "measure a dozen poses and run: mgt check CAL.json RUN";
+  if (finding_.state == LiveState::near_source) {
+    finding_.limit = "a chance of 1e-5 in 10 s, twice running, in an intact calibration and a smooth field";
+    finding_.remedy =
         "move the array, or what is magnetic, by some metres; if it stays, turn the array and run: mgt check "
         "CAL.json RUN";
   }
-  return verdict_.state != before;
+  return finding_.state != before;
 }
 
 void LiveCriticism::judge(const LiveWindow& window) {

@@ -33,7 +33,7 @@ namespace mgtd::calib {
 enum class LiveState { none, learning, ok, suspect, near_source, exchanged, turned };
 [[nodiscard]] std::string_view to_string(LiveState state);
 
-struct LiveVerdict {
+struct LiveFinding {
   LiveState state{LiveState::none};
   std::string measured, limit, remedy;  ///< of suspect, near source, exchanged and turned
 };
@@ -49,7 +49,7 @@ class LiveCriticism {
   bool add(const TensorSample& sample, const std::array<double, kSensors>& T_degC);
   /// The same without a stream around it.
   bool add(const ClosureSample& sample);
-  [[nodiscard]] const LiveVerdict& verdict() const { return verdict_; }
+  [[nodiscard]] const LiveFinding& finding() const { return finding_; }
   /// Whether the closure of the last sample is beyond ten standard deviations; nothing where it was not
   /// judged.
   [[nodiscard]] std::optional<bool> beyond() const { return beyond_; }
@@ -76,7 +76,7 @@ class LiveCriticism {
   int calm_blocks_{0}, until_look_{0};
   double noise_scale_{1};
   std::optional<bool> beyond_;
-  LiveVerdict verdict_;
+  LiveFinding finding_;
 };
 
 }  // namespace mgtd::calib

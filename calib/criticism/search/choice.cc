@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/choice.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -28,7 +25,7 @@ std::string spec_of(const std::string& family, const std::string& where) {
 
 /// Everything that could stand in the place of `effect`, where a round of the search found it or one of its
 /// rivals.
-std::vector<std::string> rivals_of(const ExplainReport& before, const std::string& effect) {
+std::vector<std::string> alternatives_of(const ExplainReport& before, const std::string& effect) {
   for (const Round& round : before.rounds) {
     std::vector<std::string> names = round.possible;
     names.insert(names.begin(), round.added.effect);
@@ -48,7 +45,7 @@ bool named(const ExplainReport& before, const std::string& effect) {
 
 /// dof ln(chi-square per degree of freedom, nT2) of a model: comparable also where the weights are estimated.
 std::optional<double> misfit(const PoseTable& table, const FitOptions& options) {
-  const auto joint = tuned_options(table, options);
+  const auto joint = profiled_options(table, options);
   if (!joint) return std::nullopt;
   const auto fit = fit_joint_at_size(table, *joint);
   if (!fit || !(fit->dof > 0)) return std::nullopt;
@@ -58,11 +55,11 @@ std::optional<double> misfit(const PoseTable& table, const FitOptions& options) 
 /// The model with `spec` in the place of the effect called `name`.
 std::optional<FitOptions> exchanged(const FitOptions& options, const std::string& name,
                                     const std::string& spec) {
-  auto rival = make_effect(spec);
-  if (!rival) return std::nullopt;
+  auto alternative = make_effect(spec);
+  if (!alternative) return std::nullopt;
   FitOptions out = options;
   for (EffectPtr& effect : out.effects)
-    if (effect->name() == name) effect = *rival;
+    if (effect->name() == name) effect = *alternative;
   return out;
 }
 
@@ -72,7 +69,7 @@ Choice choice_of(const ExplainReport& before, const PoseTable& table, const Effe
   const std::string name(effect->name());
   Choice out{.spec = effect->spec(),
              .finding = std::string(to_string(before.finding)),
-             .rivals = rivals_of(before, name),
+             .alternatives = alternatives_of(before, name),
              .data = data_hash(table)};
   const bool something = before.finding != Finding::pass && before.finding != Finding::bad_data;
   const bool whole = before.finding == Finding::explained || before.finding == Finding::ambiguous;
@@ -87,33 +84,20 @@ Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& o
     choice.describes = !now || now->finding != Finding::pass;
   }
   const auto own = EffectSpec::parse(choice.spec);
-  const auto chosen = choice.rivals.empty() || !own ? std::nullopt : misfit(table, options);
+  const auto chosen = choice.alternatives.empty() || !own ? std::nullopt : misfit(table, options);
   if (!chosen) return choice;
-  std::erase_if(choice.rivals, [&](const std::string& rival) {
-    const auto model = exchanged(options, own->name, rival);
+  std::erase_if(choice.alternatives, [&](const std::string& alternative) {
+    const auto model = exchanged(options, own->name, alternative);
     const auto other = model ? misfit(table, *model) : std::nullopt;
     return other && *other - *chosen > kExcluded;
   });
   return choice;
 }
 
-std::string to_text(const Choice& choice) {
-  std::string out;
-  if (!choice.rivals.empty())
-    out += fmt::format("{} was chosen where {} could stand in its place, and no poses since tell them apart",
-                       choice.spec, fmt::join(choice.rivals, ", "));
-  if (choice.describes)
-    out += fmt::format(
-        "{}{} describes the readings, it does not explain them: when it was added (verdict {}) it was "
-        "not the whole of what stood out, and another law may be the cause",
-        out.empty() ? "" : "; ", choice.spec, choice.finding);
-  return out;
-}
-
 json to_json(const Choice& choice) {
   return {{"spec", choice.spec},
           {"finding", choice.finding},
-          {"rivals", choice.rivals},
+          {"rivals", choice.alternatives},
           {"describes_only", choice.describes},
           {"data", choice.data}};
 }
@@ -122,7 +106,7 @@ Choice choice_from_json(const json& object) {
   try {
     return {.spec = object.at("spec"),
             .finding = object.at("finding"),
-            .rivals = object.at("rivals"),
+            .alternatives = object.at("rivals"),
             .describes = object.at("describes_only"),
             .data = object.at("data")};
   } catch (const json::exception&) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/verdict/explain_report.h"
+#include "calib/criticism/search/explain_report.h"
 
 /// What the poses said of an effect when it was put into a model: which others could have stood in its place,
 /// and whether it was the whole of what stood out. A fit with the effect in it shows neither any more, so it
@@ -16,13 +16,14 @@
 namespace mgtd::calib {
 
 struct Choice {
-  std::string spec{};                 ///< of the effect, with the numbers that were searched
-  std::string finding{};              ///< the verdict at the time
-  std::vector<std::string> rivals{};  ///< specs of those that could stand in its place; numbers left open
-  bool describes{false};              ///< it was one of several stand-ins, or beside something unknown
-  std::string data{};                 ///< hash of the poses that said so
+  std::string spec{};     ///< of the effect, with the numbers that were searched
+  std::string finding{};  ///< the verdict at the time
+  std::vector<std::string>
+      alternatives{};     ///< specs of those that could stand in its place; numbers left open
+  bool describes{false};  ///< it was one of several stand-ins, or beside something unknown
+  std::string data{};     ///< hash of the poses that said so
 
-  [[nodiscard]] bool open() const { return describes || !rivals.empty(); }
+  [[nodiscard]] bool open() const { return describes || !alternatives.empty(); }
 };
 
 /// Of an effect that is about to be added. `before`: what was said of the model without it.
@@ -31,9 +32,6 @@ struct Choice {
 /// What is left of the doubt on these poses. `options`: the model, with the effect in it. The same poses
 /// leave it as it was. A rival that cannot be fitted here stays.
 [[nodiscard]] Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& options);
-
-/// One or two clauses; empty when nothing is open.
-[[nodiscard]] std::string to_text(const Choice& choice);
 
 [[nodiscard]] nlohmann::json to_json(const Choice& choice);
 /// Empty (no spec) where the object is no choice: files of earlier versions have none.

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/conclusion.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "calib/criticism/tests/local_lack_of_fit.h"
 #include "calib/effects/common_axis.h"
+#include "calib/fit/checks/check_limits.h"
 #include "calib/fit/joint/agreement.h"
-#include "calib/fit/joint/joint_verdict.h"
-#include "calib/fit/two_step/verdict.h"
-#include "calib/stats/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -21,9 +19,9 @@ namespace {
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
 /// run of a hundred, and below 0.8 in one of seven.
 constexpr double kEnoughShare = 0.5;
-constexpr double kTooQuiet = 0.6;     ///< of the noise that is told; heavy tails alone may leave 0.65
-constexpr double kTooSmall = 0.0005;  ///< chance of a residual so small
-constexpr double kRefit = 0.2;        ///< predicted and realised fall may differ by this
+constexpr double kTooLittleScatter = 0.6;  ///< of the noise that is told; heavy tails alone may leave 0.65
+constexpr double kTooSmall = 0.0005;       ///< chance of a residual so small
+constexpr double kRefit = 0.2;             ///< predicted and realised fall may differ by this
 
 /// Poses with an observation that is left out, of all poses. Where a law accounts for them, explain() has
 /// taken them back.
@@ -33,31 +31,29 @@ double contradicted(const JointFit& fit) {
   return static_cast<double>(poses.size()) / static_cast<double>(fit.problem.poses.size());
 }
 
-/// Why a single name that accounts for the data is not yet an explanation; empty when it is.
-std::string doubt(const Round& round, const Asked& before) {
+/// Why a single name that accounts for the data is not yet an explanation; nothing when it is.
+std::optional<ExplainNote> doubt(const Round& round, const Asked& before) {
   const Candidate& a = round.added;
   const double spread = 4 * std::sqrt(2 * before.dof);
   if (before.reference.from_dwells() && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
-    return fmt::format("{} accounts for {:.0f} % of the excess only", a.effect, 100 * a.share);
+    return ExcessRemains{a.effect, a.share};
   const double realised = round.chi2_before - round.chi2_after;
   if (before.reference.known && std::abs(realised - a.fall) > kRefit * a.fall + 3 * std::sqrt(2 * a.fall))
-    return fmt::format("chi-square fell by {:.0f} where {:.0f} was predicted", realised, a.fall);
-  return {};
+    return FallNotAsPredicted{realised, a.fall};
+  return std::nullopt;
 }
 
-/// The first of the named laws that leaves something on its own axes; empty when none does.
-std::string leaves_something(const ExplainReport& report, const Criticism& last) {
+/// The first of the named laws that leaves something on its own axes; nothing when none does.
+std::optional<ExplainNote> lack_of_fit_that_remains(const ExplainReport& report, const Criticism& last) {
   for (const Round& round : report.rounds) {
     for (const EffectPtr& effect : round.effects) {
       const auto spec = EffectSpec::parse(effect->spec());
       const std::string where = spec && spec->where ? spec->where->text() : round.added.where;
-      const double log10_p = rest_log10_p(last, where);
-      if (log10_p < std::log10(kRestAlarm))
-        return fmt::format("{} is not all of it: with it {} still differs from noise, {}", round.added.effect,
-                           where, p_phrase(log10_p));
+      const double log10_p = local_lack_of_fit_log10_p(last, where);
+      if (log10_p < std::log10(kLackOfFitAlarm)) return LackOfFitRemains{round.added.effect, where, log10_p};
     }
   }
-  return {};
+  return std::nullopt;
 }
 
 std::set<std::string> names_of(const std::vector<Round>& rounds) {
@@ -68,18 +64,16 @@ std::set<std::string> names_of(const std::vector<Round>& rounds) {
 
 /// Of several names that together leave only noise, one that itself is little more than that; empty when all
 /// stand out.
-std::string weak_name(const std::vector<Round>& rounds) {
+std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds) {
   constexpr double kSigmas = 8;  // from here on the right law of the library stands first, and alone
   for (const Round& round : rounds) {
-    if (round.added.d < kSigmas)
-      return fmt::format("{} is {:.1f} sigma large, too little to say that no other law is behind the sum",
-                         round.added.effect, round.added.d);
+    if (round.added.d < kSigmas) return SizeTooSmall{round.added.effect, round.added.d};
   }
-  return {};
+  return std::nullopt;
 }
 
 /// One law on one axis with two values of its searched number.
-bool staircase(const std::vector<Round>& rounds) {
+bool several_steps(const std::vector<Round>& rounds) {
   std::vector<EffectSpec> seen;
   for (const Round& round : rounds) {
     for (const EffectPtr& effect : round.effects) {
@@ -96,82 +90,69 @@ bool staircase(const std::vector<Round>& rounds) {
 }
 
 /// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
-std::string wrong_wiring(const JointFit& fit, double table_sd_rad) {
+std::optional<ExplainNote> wrong_wiring(const JointFit& fit, double table_sd_rad) {
   std::vector<std::size_t> mirrored;
   for (std::size_t i = 0; i < fit.state.sensors.size(); ++i)
     if (fit.state.sensors[i].mounting.determinant() < 0) mirrored.push_back(i + 1);
-  if (!mirrored.empty()) return mirrored_text(mirrored);
+  if (!mirrored.empty()) return SensorsMirrored{std::move(mirrored)};
   const double limit = table_limit_rad(table_sd_rad);
-  if (fit.table_sd_rad > limit)
-    return fmt::format(
-        "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
-        "or order of the angles, or a mounting written down wrongly",
-        to_deg(fit.table_sd_rad), to_deg(limit));
-  return {};
+  if (fit.table_sd_rad > limit) return TableAnglesContradict{fit.table_sd_rad, limit};
+  return std::nullopt;
 }
 
 /// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
 /// or a few readings make it; empty when it is not so.
-std::string gross(const JointFit& fit, const Criticism& last) {
-  if (!(fit.worse > 1) || last.noise.wandering.any()) return {};
+std::optional<ExplainNote> residual_without_law(const JointFit& fit, const Criticism& last) {
+  if (!(fit.noise_inflation > 1) || last.noise.wandering.any()) return std::nullopt;
   const Scatter scatter = scatter_of(fit);
   const bool shapeless = !last.rejects() && fit.contradicting > kMaxBadPoses;
-  if (!shapeless && !scatter.few_far_off()) return {};
-  return fmt::format(
-      "the residual is {:.2g} times the noise, {:.3g} nT rms where its median tells {:.3g} nT, and {:.0f} % "
-      "of the poses contradict the others: look for a loose cable or a disturbance, and measure again",
-      fit.worse, scatter.residual_nT, scatter.typical_nT, 100 * fit.contradicting);
+  if (!shapeless && !scatter.few_far_off()) return std::nullopt;
+  return ResidualWithoutLaw{fit.noise_inflation, scatter.residual_nT, scatter.typical_nT, fit.contradicting};
 }
 
 }  // namespace
 
 Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
-                 std::vector<std::string>& notes) {
+                 std::vector<ExplainNote>& notes) {
   if (report.rounds.empty()) {
-    std::string why = gross(*report.fit, last);
-    if (why.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
-    notes.push_back(std::move(why));
+    auto why = residual_without_law(*report.fit, last);
+    if (!why) return last.rejects() ? Finding::unknown : Finding::pass;
+    notes.push_back(*std::move(why));
     return Finding::bad_data;
   }
   const Round& round = report.rounds.front();
   if (last.rejects()) return Finding::partial;
-  if (std::string rest = leaves_something(report, last); !rest.empty()) {
-    notes.push_back(std::move(rest));
+  if (auto remains = lack_of_fit_that_remains(report, last)) {
+    notes.push_back(*std::move(remains));
     return Finding::partial;
   }
-  if (staircase(report.rounds)) {
-    notes.emplace_back(
-        "several steps or thresholds on one axis follow a smooth curve: they are not evidence of steps");
+  if (several_steps(report.rounds)) {
+    notes.emplace_back(StepsFollowCurve{});
     return Finding::partial;
   }
   const bool several = names_of(report.rounds).size() > 1;
   const bool ambiguous = std::any_of(report.rounds.begin(), report.rounds.end(),
                                      [](const Round& r) { return !r.possible.empty(); });
   if (several ? ambiguous : !round.possible.empty()) return Finding::ambiguous;
-  std::string why = several ? weak_name(report.rounds) : doubt(round, first);
-  if (why.empty()) return Finding::explained;
-  notes.push_back(std::move(why));
+  auto why = several ? weak_name(report.rounds) : doubt(round, first);
+  if (!why) return Finding::explained;
+  notes.push_back(*std::move(why));
   return Finding::partial;
 }
 
-bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std::vector<std::string>& notes) {
-  if (std::string why = wrong_wiring(fit, table_sd_rad); !why.empty()) {
-    notes.push_back(std::move(why));
+bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std::vector<ExplainNote>& notes) {
+  if (auto why = wrong_wiring(fit, table_sd_rad)) {
+    notes.push_back(*std::move(why));
     return true;
   }
-  if (std::string rough = rough_table_text(fit.table_sd_rad, table_sd_rad); !rough.empty())
-    notes.push_back(std::move(rough));
+  if (table_is_rough(fit.table_sd_rad, table_sd_rad))
+    notes.emplace_back(TableAnglesRough{fit.table_sd_rad, table_sd_rad});
   if (const double share = contradicted(fit); share > kMaxBadPoses) {
-    notes.push_back(
-        fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",
-                    100 * share, 100 * kMaxBadPoses));
+    notes.emplace_back(PosesContradict{share});
     return true;
   }
-  if (c.quiet_ratio < kTooQuiet && c.quiet_log10_p < std::log10(kTooSmall)) {
-    notes.push_back(
-        fmt::format("{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
-                    "wrong, or poses are copies",
-                    c.quiet, c.quiet_ratio));
+  if (c.low_scatter_ratio < kTooLittleScatter && c.low_scatter_log10_p < std::log10(kTooSmall)) {
+    notes.emplace_back(NoiseOverstated{c.low_scatter, c.low_scatter_ratio});
     return true;
   }
   return false;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
 #include <vector>
 
+#include "calib/criticism/search/explain_report.h"
 #include "calib/criticism/tests/criticism.h"
-#include "calib/criticism/verdict/explain_report.h"
 
 /// From what a search found to one of the verdicts of explain.h.
 namespace mgtd::calib {
@@ -16,12 +15,12 @@ struct Asked {
 };
 
 [[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
-                               std::vector<std::string>& notes);
+                               std::vector<ExplainNote>& notes);
 
 /// Data that no effect stands for: wiring, poses that contradict the rest, noise that is told wrongly. Says
 /// which in `notes`, and there too when the table is worse than `table_sd_rad`, what was told of it.
 [[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, double table_sd_rad,
-                            std::vector<std::string>& notes);
+                            std::vector<ExplainNote>& notes);
 
 /// Where the dwells do not say how large the noise is, the excess that the candidates share is what the
 /// rounds took away: the residual at their end stands for the noise. Nothing to share where nothing was

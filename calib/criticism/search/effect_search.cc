@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/criticism/search/candidate.h"
 #include "calib/criticism/search/forward_step.h"
 #include "calib/criticism/search/nonlinear_parameters.h"
 #include "calib/criticism/search/second_look.h"
+#include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/judgement.h"
 #include "calib/design/next_measurement.h"
 #include "calib/fit/joint/pose_residuals.h"
@@ -27,7 +27,7 @@ void keep_memory_possible(const EffectSearch& search, const Criticism& c, Round&
   constexpr std::string_view kMemory = "axis.hysteresis";
   if (!search.table.path.empty() || round.added.effect == kMemory || search.slow) return;
   for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
-    if (c.families[f].suspect->name != kMemory || c.families[f].winner().d() < kHalf * round.added.d)
+    if (c.families[f].candidate_effect->name != kMemory || c.families[f].winner().d() < kHalf * round.added.d)
       continue;
     if (std::find(round.possible.begin(), round.possible.end(), kMemory) == round.possible.end())
       round.possible.emplace_back(kMemory);
@@ -64,10 +64,10 @@ JointState widened(const std::vector<EffectPtr>& narrow, const JointState& state
 }
 
 /// A winner that became several effects is called after them.
-void say_where(const ForwardStep& growth, Candidate& added) {
-  if (growth.added.size() == 1 && added.where.find("each") == std::string::npos) return;
+void name_places(const ForwardStep& step, Candidate& added) {
+  if (step.added.size() == 1 && added.where.find("each") == std::string::npos) return;
   std::vector<std::string> specs, places;
-  for (const EffectPtr& effect : growth.added) {
+  for (const EffectPtr& effect : step.added) {
     specs.push_back(effect->spec());
     const auto spec = EffectSpec::parse(specs.back());
     if (spec && spec->where) places.push_back(spec->where->text());
@@ -77,11 +77,11 @@ void say_where(const ForwardStep& growth, Candidate& added) {
 }
 
 /// Whether a winner of all axes came down to axes that are closed to names, or is seen most on one of them.
-bool on_closed_axes(const Candidate& winner, const ForwardStep& growth, const std::set<std::string>& closed) {
+bool on_closed_axes(const Candidate& winner, const ForwardStep& step, const std::set<std::string>& closed) {
   if (closed.empty() || winner.coefficients.empty()) return false;
   const bool each_axis = winner.where.find("each") != std::string::npos;
   if (each_axis && closed.contains(place_of(*seen_most(winner)))) return true;
-  return std::all_of(growth.added.begin(), growth.added.end(), [&](const EffectPtr& effect) {
+  return std::all_of(step.added.begin(), step.added.end(), [&](const EffectPtr& effect) {
     const auto spec = EffectSpec::parse(effect->spec());
     return spec && spec->where && closed.contains(spec->where->text());
   });
@@ -89,21 +89,22 @@ bool on_closed_axes(const Candidate& winner, const ForwardStep& growth, const st
 
 std::size_t family_called(const Criticism& criticism, const std::string& name) {
   const auto found = std::find_if(criticism.families.begin(), criticism.families.end(),
-                                  [&](const ScoredFamily& f) { return f.suspect->name == name; });
+                                  [&](const ScoredFamily& f) { return f.candidate_effect->name == name; });
   return static_cast<std::size_t>(found - criticism.families.begin());
 }
 
-bool possible_in(const std::vector<Rival>& rivals, const std::string& effect) {
-  return std::any_of(rivals.begin(), rivals.end(),
-                     [&](const Rival& rival) { return rival.possible && rival.effect == effect; });
+bool possible_in(const std::vector<Alternative>& alternatives, const std::string& effect) {
+  return std::any_of(alternatives.begin(), alternatives.end(), [&](const Alternative& alternative) {
+    return alternative.possible && alternative.effect == effect;
+  });
 }
 
 /// Rivals that a second look does not find possible any more.
-void strike(const std::vector<Rival>& again, Round& round) {
-  for (Rival& rival : round.added.rivals) {
-    if (!rival.possible || possible_in(again, rival.effect)) continue;
-    rival.possible = false;
-    std::erase(round.possible, rival.effect);
+void exclude(const std::vector<Alternative>& again, Round& round) {
+  for (Alternative& alternative : round.added.alternatives) {
+    if (!alternative.possible || possible_in(again, alternative.effect)) continue;
+    alternative.possible = false;
+    std::erase(round.possible, alternative.effect);
   }
 }
 
@@ -111,60 +112,59 @@ void strike(const std::vector<Rival>& again, Round& round) {
 /// second look prefers one of its rivals.
 bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_choice = true) {
   const ScoredFamily& best = search.criticism.families[f];
-  Round round{.added = candidate_of(best, search.criticism, search.fit.worse)};
+  Round round{.added = candidate_of(best, search.criticism, search.fit.noise_inflation)};
   weigh_poses(search.fit, search.criticism.evidence_by_pose(f), round.added);
-  round.added.rivals = rivals_of(search.criticism.families, f, search.seed);
-  for (const Rival& rival : round.added.rivals)
-    if (rival.possible) round.possible.push_back(rival.effect);
-  auto growth = grown(search.joint.effects, best, search.criticism.residual);
-  if (!growth || on_closed_axes(round.added, *growth, search.unknown)) {
+  round.added.alternatives = alternatives_of(search.criticism.families, f, search.seed);
+  for (const Alternative& alternative : round.added.alternatives)
+    if (alternative.possible) round.possible.push_back(alternative.effect);
+  auto step = forward_step(search.joint.effects, best, search.criticism.residual);
+  if (!step || on_closed_axes(round.added, *step, search.unknown)) {
     search.failed.insert(round.added.effect);
     return false;
   }
-  say_where(*growth, round.added);
-  round.effects = growth->added;
+  name_places(*step, round.added);
+  round.effects = step->added;
   JointOptions wider = search.joint;
-  wider.effects = std::move(growth->model);
-  wider.worse = search.fit.worse;
-  const JointState near = widened(search.joint.effects, search.fit.state, wider.effects);
-  auto refit = fit_joint_at_size(search.table, wider, &near);
+  wider.effects = std::move(step->model);
+  wider.noise_inflation = search.fit.noise_inflation;
+  const JointState warm_start = widened(search.joint.effects, search.fit.state, wider.effects);
+  auto refit = fit_joint_at_size(search.table, wider, &warm_start);
   if (!refit) {
-    report.notes.push_back(
-        fmt::format("the fit with {} failed: {}", round.added.spec, refit.error().message));
+    report.notes.emplace_back(FitWithEffectFailed{round.added.spec, refit.error().message});
     search.failed.insert(round.added.effect);
     return false;
   }
-  refine_numbers(search.table, kept(search.given, wider.effects), wider, *refit);
-  const auto again = second_look(search.table, search.joint, search.criticism, f, round.added.rivals,
-                                 search.fit.worse, *refit, search.seed);
+  refine_nonlinear_parameters(search.table, kept(search.given, wider.effects), wider, *refit);
+  const auto again = second_look(search.table, search.joint, search.criticism, f, round.added.alternatives,
+                                 search.fit.noise_inflation, *refit, search.seed);
   if (again && again->better && first_choice)
     return add(search, family_called(search.criticism, *again->better), report, false);
-  if (again && !again->better) strike(again->rivals, round);
+  if (again && !again->better) exclude(again->alternatives, round);
   keep_memory_possible(search, search.criticism, round);
   if (report.rounds.empty()) {
     report.next = next_measurements(search.table, search.fit, search.joint, round.added).steps;
-    report.candidates[f].rivals = round.added.rivals;
+    report.candidates[f].alternatives = round.added.alternatives;
   }
   const double table_sd_rad = search.fit.table_sd_rad;
-  round.chi2_before = chi2_told(search.fit, search.criticism, table_sd_rad),
+  round.chi2_before = chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
   round.rms_before_nT = residual_of(search.fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;
   search.judge_anew(*refit);
   round.fit = std::make_shared<const JointFit>(search.fit);
-  round.chi2_after = chi2_told(search.fit, search.criticism, table_sd_rad),
+  round.chi2_after = chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
   round.rms_after_nT = residual_of(search.fit);
   report.rounds.push_back(std::move(round));
   return true;
 }
 
-/// The note on a family whose evidence is that of one pose; empty where it is spread.
-std::string one_pose_text(const JointFit& fit, const Criticism& c, std::size_t f) {
+/// Whether the evidence of a family is that of one pose; nothing where it is spread.
+std::optional<EvidenceOfOnePose> evidence_of_one_pose(const JointFit& fit, const Criticism& c,
+                                                      std::size_t f) {
   Candidate weighed;
   weigh_poses(fit, c.evidence_by_pose(f), weighed);
-  if (weighed.largest_pose <= kOnePose) return {};
-  return fmt::format("one pose ({}) carries the evidence for {}: measure it again", weighed.poses.front(),
-                     c.families[f].suspect->name);
+  if (weighed.largest_pose <= kOnePose) return std::nullopt;
+  return EvidenceOfOnePose{weighed.poses.front(), c.families[f].candidate_effect->name};
 }
 
 /// A size beyond what occurs is a sign that something else is there; but a law that leaves only noise is
@@ -180,21 +180,20 @@ bool accounts_for_all(const Candidate& candidate, const Criticism& criticism) {
 /// pose.
 bool add_winner(EffectSearch& search, ExplainReport& report) {
   for (std::size_t f = 0; f < search.criticism.families.size() && search.criticism.rejects_named(f); ++f) {
-    if (search.failed.contains(search.criticism.families[f].suspect->name)) continue;
+    if (search.failed.contains(search.criticism.families[f].candidate_effect->name)) continue;
     if (search.unknown.contains(search.criticism.families[f].where().where)) continue;
-    if (std::string one = one_pose_text(search.fit, search.criticism, f); !one.empty()) {
-      if (search.one_pose.empty()) search.one_pose = std::move(one);
+    if (auto one = evidence_of_one_pose(search.fit, search.criticism, f)) {
+      if (!search.one_pose) search.one_pose = std::move(one);
       continue;
     }
-    const Candidate c = candidate_of(search.criticism.families[f], search.criticism, search.fit.worse);
+    const Candidate c =
+        candidate_of(search.criticism.families[f], search.criticism, search.fit.noise_inflation);
     if (!c.plausible && !accounts_for_all(c, search.criticism)) {
-      search.absurd[c.effect] = size_text(c);
+      search.absurd[c.effect] = c;
       continue;  // for now: beside what is still missing a size may be absurd that later is none
     }
     if (!add(search, f, report)) continue;
-    if (!c.plausible)
-      report.notes.push_back(
-          fmt::format("the size of {}, {}, is larger than is usual", c.effect, size_text(c)));
+    if (!c.plausible) report.notes.emplace_back(SizeUnusual{c});
     return true;
   }
   return false;
@@ -204,7 +203,7 @@ bool add_winner(EffectSearch& search, ExplainReport& report) {
 
 void EffectSearch::judge_anew(const JointFit& refit) {
   const Rates rates = std::move(criticism.rates);
-  Judgement judged = judge(refit, suspects, seed, &rates);
+  Judgement judged = judge(refit, candidate_effects, seed, &rates);
   fit = std::move(judged.fit);
   criticism = std::move(judged.criticism);
 }
@@ -213,11 +212,11 @@ double residual_of(const JointFit& fit) { return pose_residuals(fit.problem, fit
 
 bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
   for (int round = 0; round < most && search.criticism.rejects_named(); ++round) {
-    search.one_pose.clear();
+    search.one_pose.reset();
     if (!add_winner(search, report)) break;
   }
-  if (search.one_pose.empty() || !search.criticism.rejects_named()) return true;
-  report.notes.push_back(search.one_pose);
+  if (!search.one_pose || !search.criticism.rejects_named()) return true;
+  report.notes.emplace_back(*search.one_pose);
   return !report.rounds.empty();
 }
 

@@ -2,12 +2,13 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "calib/criticism/search/explain_report.h"
 #include "calib/criticism/tests/criticism.h"
-#include "calib/criticism/verdict/explain_report.h"
 #include "calib/poses/pose_table.h"
 
 /// The search for the effects that a model lacks, round by round: the best family is added, everything is
@@ -17,15 +18,15 @@ namespace mgtd::calib {
 struct EffectSearch {
   const PoseTable& table;
   JointOptions joint;
-  CandidateEffects suspects;
+  CandidateEffects candidate_effects;
   std::uint64_t seed;
   JointFit fit;                    ///< of `joint`, with the covariance of the noise in force
   Criticism criticism;             ///< of `fit`
   std::vector<EffectPtr> given{};  ///< the model that was asked about
   std::set<std::string> failed{};  ///< effects that no fit settled with
   /// Effects that would have needed a size beyond what occurs, and that size as last seen.
-  std::map<std::string, std::string> absurd{};
-  std::string one_pose{};           ///< said of what rests on one pose
+  std::map<std::string, Candidate> absurd{};
+  std::optional<EvidenceOfOnePose> one_pose{};  ///< of the first effect whose evidence is that of one pose
   std::set<std::string> unknown{};  ///< axes and sensors with a law of no library: closed to effects
   bool slow{false};                 ///< the residual follows time or temperature: no memory of a turn does
 

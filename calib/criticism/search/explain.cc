@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/explain.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "calib/criticism/search/candidate.h"
 #include "calib/criticism/search/conclusion.h"
 #include "calib/criticism/search/effect_search.h"
 #include "calib/criticism/search/stand_ins.h"
 #include "calib/criticism/search/take_back.h"
+#include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/exchange_in_run.h"
 #include "calib/criticism/tests/judgement.h"
 #include "calib/fit/joint/joint_report.h"
@@ -20,7 +18,8 @@ namespace {
 
 std::vector<Detectable> detectable(const Criticism& c) {
   std::vector<Detectable> out;
-  for (const ScoredFamily& f : c.families) out.push_back(detectable_of(*f.suspect, f.signatures.front()));
+  for (const ScoredFamily& f : c.families)
+    out.push_back(detectable_of(*f.candidate_effect, f.signatures.front()));
   return out;
 }
 
@@ -29,14 +28,14 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
   out.noise = c.noise;
   out.noise_nT = fit.noise_nT();
   out.residual_nT = residual_of(fit);
-  out.chi2 = chi2_told(fit, c, fit.table_sd_rad), out.dof = c.dof;
+  out.chi2 = chi2_at_stated_noise(fit, c, fit.table_sd_rad), out.dof = c.dof;
   out.omnibus_log10_p = c.omnibus_log10_p;
   out.families = c.rates.best;
   out.maps = c.maps;
   out.outliers = fit.outliers;
   out.untestable.insert(out.untestable.end(), c.untestable.begin(), c.untestable.end());
   for (std::size_t i = 0; i < c.families.size(); ++i) {
-    Candidate candidate = candidate_of(c.families[i], c, fit.worse);
+    Candidate candidate = candidate_of(c.families[i], c, fit.noise_inflation);
     if (i == 0) weigh_poses(fit, c.evidence_by_pose(0), candidate);
     out.candidates.push_back(std::move(candidate));
   }
@@ -44,13 +43,11 @@ void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
 }
 
 /// Of what still stands out at the end.
-void say_absurd(const EffectSearch& search, const Criticism& c, ExplainReport& report) {
+void note_absurd_sizes(const EffectSearch& search, const Criticism& c, ExplainReport& report) {
   for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
-    const auto found = search.absurd.find(c.families[f].suspect->name);
+    const auto found = search.absurd.find(c.families[f].candidate_effect->name);
     if (found == search.absurd.end()) continue;
-    report.notes.push_back(
-        fmt::format("the size that {} would need, {}, is beyond what occurs: it is not named", found->first,
-                    found->second));
+    report.notes.emplace_back(SizeBeyondAll{found->second});
   }
 }
 
@@ -84,16 +81,6 @@ bool memory_may_be_it(const EffectSearch& search, const ExplainReport& report) {
          });
 }
 
-/// A memory follows the way of the table, which may not be in the data.
-void say_way_unknown(ExplainReport& report) {
-  report.notes.emplace_back(
-      "the way of the table between its poses is not in these data: a memory of the cores is followed from "
-      "dwell to dwell only, its size and its width are rough, and what is there may be one (axis.hysteresis) "
-      "under another name or without any. To settle it: measure with the daemon, whose run file keeps the "
-      "angles of the table on the way, or go "
-      "to a dozen of the poses from both sides");
-}
-
 /// Whether what the fit left out may be what a law does to some of the poses: a step, a current that is
 /// switched. One that does more than a hundredth of the field is no law of a working rig.
 bool may_be_a_law(const JointFit& fit) {
@@ -107,25 +94,27 @@ bool may_be_a_law(const JointFit& fit) {
 }
 
 Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out) {
-  auto joint = tuned_options(table, options.fit);
+  auto joint = profiled_options(table, options.fit);
   if (!joint) return tl::unexpected(joint.error());
   joint->most_left_out = most_left_out;
-  CandidateEffects suspects =
-      options.suspects ? CandidateEffects{*options.suspects, {}} : library_suspects(table);
-  suspects.testable.insert(suspects.testable.end(), options.also.begin(), options.also.end());
+  CandidateEffects candidate_effects = options.candidate_effects
+                                           ? CandidateEffects{*options.candidate_effects, {}}
+                                           : library_candidates(table);
+  candidate_effects.testable.insert(candidate_effects.testable.end(), options.also.begin(),
+                                    options.also.end());
   const auto fit = fit_joint_at_size(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
-  Judgement judged = judge(*fit, suspects, options.fit.seed);
+  Judgement judged = judge(*fit, candidate_effects, options.fit.seed);
   EffectSearch search{.table = table,
                       .joint = *joint,
-                      .suspects = std::move(suspects),
+                      .candidate_effects = std::move(candidate_effects),
                       .seed = options.fit.seed,
                       .fit = std::move(judged.fit),
                       .criticism = std::move(judged.criticism),
                       .given = joint->effects};
   Criticism& criticism = search.criticism;
   ExplainReport out;
-  out.untestable = search.suspects.untestable;
+  out.untestable = search.candidate_effects.untestable;
   out.untestable.push_back(swapped_sensors());
   if (criticism.maps.empty()) look_at_maps(criticism);
   out.fit = std::make_shared<const JointFit>(search.fit);
@@ -134,7 +123,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
   const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
   if (const auto exchange = exchange_in_run(table, options.fit.field_nT)) {
-    out.notes.push_back(in_words(*exchange));
+    out.notes.emplace_back(SensorsExchanged{*exchange});
     out.finding = Finding::bad_data;
     return out;
   }
@@ -152,14 +141,9 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     take_back(found, search, out);
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
-  say_absurd(search, criticism, out);
-  if (memory || memory_may_be_it(search, out)) say_way_unknown(out);
+  note_absurd_sizes(search, criticism, out);
+  if (memory || memory_may_be_it(search, out)) out.notes.emplace_back(TablePathUnknown{});
   if (!out.rounds.empty()) out.detectable = detectable(criticism);
-  // A search that begins anew after a stand-in may say the same again.
-  std::vector<std::string> notes;
-  for (std::string& note : out.notes)
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
-  out.notes = std::move(notes);
   share_what_fell(out);
   out.maps_left = criticism.maps;
   out.model = search.joint.effects;

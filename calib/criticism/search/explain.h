@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "calib/criticism/verdict/explain_options.h"
-#include "calib/criticism/verdict/explain_report.h"
+#include "calib/criticism/search/explain_options.h"
+#include "calib/criticism/search/explain_report.h"
 
 /// Which physical effect is missing from the model of a run, with the evidence, its rivals, and what the run
 /// cannot tell.

@@ -25,9 +25,9 @@ bool holds(const Effect& whole, const Effect& part) {
 
 /// The axis "s3.z" of a law is in the model with a number of its own.
 bool has_axis(const std::vector<EffectPtr>& model, const ScoredFamily& winner, const std::string& axis) {
-  if (winner.suspect->parameter.empty()) return false;
+  if (winner.candidate_effect->parameter.empty()) return false;
   return std::any_of(model.begin(), model.end(), [&](const EffectPtr& effect) {
-    if (effect->name() != winner.suspect->name) return false;
+    if (effect->name() != winner.candidate_effect->name) return false;
     const auto& all = effect->coefficients();
     return std::any_of(all.begin(), all.end(), [&](const Coefficient& c) { return c.name == axis; });
   });
@@ -44,8 +44,8 @@ Pick next_pick(const ScoredFamily& winner, const std::vector<EffectPtr>& model, 
                const std::vector<Pick>& picked) {
   constexpr double kOwn = 1e-6;  // of a squared length: less is what the others hold already
   Pick best;
-  for (std::size_t h = 0; h < winner.suspect->hypotheses.size(); ++h) {
-    const Hypothesis& axis = winner.suspect->hypotheses[h];
+  for (std::size_t h = 0; h < winner.candidate_effect->hypotheses.size(); ++h) {
+    const Hypothesis& axis = winner.candidate_effect->hypotheses[h];
     if (axis.axes != 1 || axis.combine.cols() != 1 || has_axis(model, winner, axis.where)) continue;
     if (std::any_of(picked.begin(), picked.end(), [h](const Pick& p) { return p.hypothesis == h; })) continue;
     for (std::size_t v = 0; v < winner.signatures.size(); ++v) {
@@ -82,26 +82,28 @@ std::vector<Pick> few_axes(const ScoredFamily& winner, const std::vector<EffectP
 
 }  // namespace
 
-Result<ForwardStep> grown(const std::vector<EffectPtr>& model, const ScoredFamily& winner,
-                          const Residual& residual) {
+Result<ForwardStep> forward_step(const std::vector<EffectPtr>& model, const ScoredFamily& winner,
+                                 const Residual& residual) {
   ForwardStep out;
-  const CandidateEffect& suspect = *winner.suspect;
+  const CandidateEffect& candidate_effect = *winner.candidate_effect;
   const bool one_axis = winner.where().axes == 1;
   std::vector<Pick> picked;
-  if (winner.suspect->level == Level::axis && !one_axis) picked = few_axes(winner, model, residual);
+  if (winner.candidate_effect->level == Level::axis && !one_axis) picked = few_axes(winner, model, residual);
   if (picked.empty()) {
     if (one_axis && has_axis(model, winner, winner.where().where)) {
       return fail(ErrorCode::refused,
-                  winner.suspect->name + " of " + winner.where().where + " is in the model already");
+                  winner.candidate_effect->name + " of " + winner.where().where + " is in the model already");
     }
     const std::size_t variant = winner.winner().variant;
-    auto added = suspect.dipole_at ? Result<EffectPtr>(suspect.variants[variant])
-                                   : suspect.make(&winner.where(), suspect.values[variant]);
+    auto added = candidate_effect.dipole_at
+                     ? Result<EffectPtr>(candidate_effect.variants[variant])
+                     : candidate_effect.make(&winner.where(), candidate_effect.values[variant]);
     if (!added) return tl::unexpected(added.error());
     out.added.push_back(*std::move(added));
   }
   for (const Pick& p : picked) {
-    auto added = suspect.make(&suspect.hypotheses[p.hypothesis], suspect.values[p.variant]);
+    auto added =
+        candidate_effect.make(&candidate_effect.hypotheses[p.hypothesis], candidate_effect.values[p.variant]);
     if (!added) return tl::unexpected(added.error());
     out.added.push_back(*std::move(added));
   }

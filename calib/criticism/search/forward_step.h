@@ -20,7 +20,7 @@ struct ForwardStep {
 /// winner's axes, "s3.z" in "each-axis". Everything else stays beside it; an axis that has the law with
 /// another number does not get it twice. Refuses what the library refuses, and a winner of which nothing is
 /// left.
-[[nodiscard]] Result<ForwardStep> grown(const std::vector<EffectPtr>& model, const ScoredFamily& winner,
-                                        const Residual& residual);
+[[nodiscard]] Result<ForwardStep> forward_step(const std::vector<EffectPtr>& model,
+                                               const ScoredFamily& winner, const Residual& residual);
 
 }  // namespace mgtd::calib

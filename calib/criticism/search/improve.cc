@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/improve.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "calib/criticism/search/model_stage.h"
@@ -14,17 +12,15 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr std::size_t kRounds = 24;
-
 /// The model tidied up, where the error on poses left out does not rise; where that cannot be told, the
 /// residual.
-void polish(const PoseTable& table, const FitOptions& options, const JointOptions& joint,
-            const JointFit& last, FitOptions& best) {
+void prune_unless_worse(const PoseTable& table, const FitOptions& options, const JointOptions& joint,
+                        const JointFit& last, FitOptions& best) {
   JointOptions tidy = joint;
   tidy.effects = best.effects;
-  tidy.worse = last.worse;
+  tidy.noise_inflation = last.noise_inflation;
   JointFit fit = last;
-  polished(table, options.effects.size(), tidy, fit);
+  prune(table, options.effects.size(), tidy, fit);
   const auto before = left_out_nT(last), after = left_out_nT(fit);
   if (before && (!after || *after > kHeldOutVeto * *before)) return;
   const auto residual_nT = [](const JointFit& f) { return pose_residuals(f.problem, f.state).residual_nT(); };
@@ -32,17 +28,17 @@ void polish(const PoseTable& table, const FitOptions& options, const JointOption
   best.effects = std::move(tidy.effects);
 }
 
-std::string stop_text(const ExplainReport& explained) {
+ImproveStop stop_of(const ExplainReport& explained) {
   switch (explained.left) {
     case Finding::unknown:
-      return "something is left that no effect of the library looks like";
+      return ImproveStop::no_effect_looks_like_it;
     case Finding::bad_data:
-      return "the data contradict themselves";
+      return ImproveStop::bad_data;
     case Finding::pass:
-      return "nothing stands out any more";
+      return ImproveStop::nothing_stands_out;
     default:
-      if (explained.rounds.size() >= kRounds) return "the number of rounds is reached";
-      return "something stands out, and nothing that stands for it could be added";
+      return explained.rounds.size() >= kImproveRounds ? ImproveStop::round_limit
+                                                       : ImproveStop::nothing_can_be_added;
   }
 }
 
@@ -50,10 +46,10 @@ std::string stop_text(const ExplainReport& explained) {
 
 Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options) {
   const auto explained =
-      explain(table, {.fit = options, .rounds = static_cast<int>(kRounds), .suspects = {}});
+      explain(table, {.fit = options, .rounds = static_cast<int>(kImproveRounds), .candidate_effects = {}});
   if (!explained) return tl::unexpected(explained.error());
   ImproveReport out{
-      .finding = explained->left, .stopped = stop_text(*explained), .notes = explained->notes, .fit = {}};
+      .finding = explained->left, .stopped = stop_of(*explained), .notes = explained->notes, .fit = {}};
   const JointOptions joint = joint_options(options);
   std::shared_ptr<const JointFit> last = explained->fit;
   std::optional<double> held_out = left_out_nT(*last);
@@ -61,9 +57,8 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
   for (const Round& round : explained->rounds) {
     const auto after = left_out_nT(*round.fit);
     if (held_out && after && *after > kHeldOutVeto * *held_out) {
-      out.stopped =
-          fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
-                      round.added.spec, *held_out, *after);
+      out.stopped = ImproveStop::held_out_error_rises;
+      out.refused = RefusedEffect{round.added.spec, *held_out, *after};
       out.finding = Finding::partial;
       break;
     }
@@ -81,7 +76,7 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
     last = round.fit;
   }
   const FitOptions found = best;
-  if (!out.rounds.empty()) polish(table, options, joint, *last, best);
+  if (!out.rounds.empty()) prune_unless_worse(table, options, joint, *last, best);
   auto fitted = fit(table, best);
   if (!fitted) fitted = fit(table, found);
   if (!fitted) return tl::unexpected(fitted.error());

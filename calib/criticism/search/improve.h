@@ -20,12 +20,32 @@ struct ImproveRound {
   VariancePrice price{};                       ///< what the parameters of the sensors lose
 };
 
+/// Why no more was added.
+enum class ImproveStop {
+  nothing_stands_out,
+  no_effect_looks_like_it,
+  bad_data,
+  round_limit,           ///< kImproveRounds
+  nothing_can_be_added,  ///< something stands out, and no fit with what stands for it succeeds
+  held_out_error_rises,  ///< on poses that the fit has not seen: ImproveReport::refused
+};
+
+/// Rounds after which improve() stops: twice the effects that any simulated instrument has had.
+inline constexpr std::size_t kImproveRounds = 24;
+
+/// An effect that was not added, because the error on poses left out rises with it.
+struct RefusedEffect {
+  std::string spec{};
+  double held_out_before_nT{0}, held_out_after_nT{0};
+};
+
 struct ImproveReport {
   std::vector<ImproveRound> rounds{};
   Finding finding{Finding::pass};  ///< of what is left at the end
-  std::string stopped{};           ///< why no more was added
-  std::vector<std::string> notes{};
-  FitReport fit;  ///< with everything that was added
+  ImproveStop stopped{ImproveStop::nothing_stands_out};
+  std::optional<RefusedEffect> refused{};  ///< with ImproveStop::held_out_error_rises
+  std::vector<ExplainNote> notes{};        ///< of explain()
+  FitReport fit;                           ///< with everything that was added
 };
 
 [[nodiscard]] Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options);

@@ -32,8 +32,8 @@ Fall score_fall(const ModelStage& stage, const EffectPtr& effect) {
 /// Of the Wald test: what chi-square would rise by if these coefficients were zero.
 double wald_rise(const JointFit& fit, Eigen::Index first, Eigen::Index count) {
   const Eigen::VectorXd c = fit.state.coefficients.segment(first, count);
-  const Eigen::MatrixXd C =
-      fit.covariance.block(kEffectSlot + first, kEffectSlot + first, count, count) / std::pow(fit.spread, 2);
+  const Eigen::MatrixXd C = fit.covariance.block(kEffectSlot + first, kEffectSlot + first, count, count) /
+                            std::pow(fit.birge_ratio, 2);
   return c.dot(C.ldlt().solve(c));
 }
 
@@ -71,8 +71,8 @@ void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
   out.held_out_before_nT = residual_of(before.held_out);
   out.held_out_after_nT = residual_of(after.held_out);
   // A model that is far off in another way has its chi-square fall by thousands for nothing.
-  out.spread = (out.adding ? after : before).fit.spread;
-  const double fall = out.realised / (out.spread * out.spread);
+  out.birge_ratio = (out.adding ? after : before).fit.birge_ratio;
+  const double fall = out.realised / (out.birge_ratio * out.birge_ratio);
   out.log10_p = fall > 0 ? chi_square_log10_p(fall, std::max(1, out.k)) : 0;
 }
 
@@ -83,7 +83,7 @@ std::vector<Veto> ModelChange::vetoes() const {
   if (held_out_before_nT && held_out_after_nT && *held_out_after_nT > kHeldOutVeto * *held_out_before_nT)
     out.push_back(Veto::held_out);
   if (adding && log10_p > std::log10(kVetoChance)) out.push_back(Veto::not_shown);
-  if (adding && price.growth > kVetoPrice) out.push_back(Veto::price);
+  if (adding && price.sd_ratio > kVetoPrice) out.push_back(Veto::price);
   return out;
 }
 
@@ -100,9 +100,9 @@ Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options
   wider.effects.push_back(effect);
   const auto after = model_stage(table, wider);
   if (!after) return tl::unexpected(after.error());
-  const EffectPtr& tuned = after->fit.problem.effects.back();
-  ModelChange out{.adding = true, .effect = std::string(effect->name()), .spec = tuned->spec()};
-  const Fall fall = score_fall(*before, tuned);
+  const EffectPtr& profiled = after->fit.problem.effects.back();
+  ModelChange out{.adding = true, .effect = std::string(effect->name()), .spec = profiled->spec()};
+  const Fall fall = score_fall(*before, profiled);
   out.predicted = fall.chi2, out.k = fall.k;
   const auto same = fit_under_same_weights(table, *before, after->fit.problem.effects);
   out.realised = chi2_of(*before, before->fit) - chi2_of(*before, same ? *same : after->fit);

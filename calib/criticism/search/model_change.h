@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +33,7 @@ struct ModelChange {
   int k{0};                                       ///< coefficients that the poses can tell
   double predicted{0}, realised{0};               ///< fall (adding) or rise (dropping) of chi-square
   double log10_p{0};  ///< that chance alone makes so large a realised one, at the noise of the wider model
-  double spread{1};  ///< of what the wider model leaves, over the noise, where that is significantly above it
+  double birge_ratio{1};  ///< of the wider model, where it is significantly above one
   double chi2_before{0}, chi2_after{0}, dof_before{0}, dof_after{0};
   double rms_before_nT{0}, rms_after_nT{0}, noise_nT{0};
   double tensor_before_nT_per_m{0}, tensor_after_nT_per_m{0};
@@ -51,11 +50,5 @@ struct ModelChange {
 /// `which`: its place in options.effects.
 [[nodiscard]] Result<ModelChange> drop_effect(const PoseTable& table, const FitOptions& options,
                                               std::size_t which);
-
-/// Schema "mgt.model-change/1".
-[[nodiscard]] nlohmann::json to_json(const ModelChange& change);
-[[nodiscard]] std::string to_text(const ModelChange& change);
-/// What was measured, against which limit.
-[[nodiscard]] std::string to_text(const ModelChange& change, Veto veto);
 
 }  // namespace mgtd::calib

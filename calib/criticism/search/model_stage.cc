@@ -22,7 +22,7 @@ void weigh_alike(const JointProblem& from, JointProblem& to) {
 }  // namespace
 
 Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options) {
-  auto joint = tuned_options(table, options);
+  auto joint = profiled_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
   auto fit = fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
@@ -59,9 +59,9 @@ VariancePrice variance_price(const JointFit& narrow, const JointFit& wide) {
   const auto after = covariance_of(reduce(wide.problem, wide.state, 0).S);
   if (!before || !after) return out;
   for (int i = 0; i < kSensorBlock; ++i) {
-    const double growth = std::sqrt((*after)(i, i) / (*before)(i, i));
-    if (!std::isfinite(growth) || growth <= out.growth) continue;
-    out.growth = growth;
+    const double sd_ratio = std::sqrt((*after)(i, i) / (*before)(i, i));
+    if (!std::isfinite(sd_ratio) || sd_ratio <= out.sd_ratio) continue;
+    out.sd_ratio = sd_ratio;
     out.parameter = fmt::format("s{}.{}", i / kSensorParameters + 1,
                                 kParameterNames[static_cast<std::size_t>(i % kSensorParameters)]);
   }

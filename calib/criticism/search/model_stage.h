@@ -5,7 +5,7 @@
 
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_fit.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 
 /// One model of a run, fitted and judged, so that two of them can be weighed against each other.
 namespace mgtd::calib {
@@ -26,7 +26,7 @@ struct ModelStage {
 
 /// What a wider model costs: the parameter of a sensor whose standard deviation grows most.
 struct VariancePrice {
-  double growth{1};         ///< of its standard deviation
+  double sd_ratio{1};       ///< of its standard deviation
   std::string parameter{};  ///< "s3.cx"
 };
 /// Two fits of the same poses, both weighed as the wide one: what the data would tell without the effect at

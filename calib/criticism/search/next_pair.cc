@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "calib/criticism/tests/detectable.h"
 #include "calib/design/actions.h"
@@ -17,8 +15,6 @@
 
 namespace mgtd::calib {
 namespace {
-
-using nlohmann::json;
 
 Result<const Candidate*> candidate_of(const ExplainReport& report, const std::string& effect) {
   const std::string_view name = family_name(effect);
@@ -93,26 +89,20 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<NextMea
 std::optional<Candidate> open_question(const ExplainReport& report) {
   if (report.rounds.empty()) return std::nullopt;
   const Candidate& winner = report.rounds.front().added;
-  const bool open = std::any_of(winner.rivals.begin(), winner.rivals.end(),
-                                [](const Rival& rival) { return rival.possible; });
+  const bool open = std::any_of(winner.alternatives.begin(), winner.alternatives.end(),
+                                [](const Alternative& alternative) { return alternative.possible; });
   return open ? std::optional(winner) : std::nullopt;
 }
 
-/// Why nothing is to be settled, with the rival that comes nearest.
-std::string settled_text(const ExplainReport& report) {
-  if (report.rounds.empty())
-    return "nothing stands out on this run: there is nothing to settle (two names ask about a pair)";
+NothingToSettle nothing_to_settle(const ExplainReport& report) {
+  if (report.rounds.empty()) return {};
   const Candidate& winner = report.rounds.front().added;
-  if (winner.rivals.empty())
-    return fmt::format("no other effect comes near {}: there is nothing to settle", winner.effect);
-  return fmt::format(
-      "nothing else could stand in the place of {}; the nearest, {}, is told from it: there is nothing to "
-      "settle (two names ask about a pair)",
-      winner.effect, winner.rivals.front().effect);
+  return {winner.effect, winner.alternatives.empty() ? std::string() : winner.alternatives.front().effect};
 }
 
-Rival against(const Candidate& rival) {
-  return {.effect = rival.effect, .where = rival.where, .spec = rival.spec, .possible = true};
+Alternative against(const Candidate& alternative) {
+  return {
+      .effect = alternative.effect, .where = alternative.where, .spec = alternative.spec, .possible = true};
 }
 
 }  // namespace
@@ -130,81 +120,24 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
     if (!b) return tl::unexpected(b.error());
     if ((*b)->d > (*a)->d) std::swap(*a, *b);  // the one that the run rather speaks for is taken as true
     asked = sized(**a, out.assumed);
-    asked->rivals = {against(**b)};
+    asked->alternatives = {against(**b)};
   }
   if (!asked) {
-    out.text = settled_text(*explained);
+    out.nothing_to_settle = nothing_to_settle(*explained);
     return out;
   }
-  const auto hardest =
-      std::min_element(asked->rivals.begin(), asked->rivals.end(), [](const Rival& a, const Rival& b) {
+  const auto hardest = std::min_element(
+      asked->alternatives.begin(), asked->alternatives.end(), [](const Alternative& a, const Alternative& b) {
         return std::pair(!a.possible, a.p_right) < std::pair(!b.possible, b.p_right);
       });
-  out.effect = asked->spec, out.rival = hardest->spec, out.d = asked->d;
+  out.effect = asked->spec, out.alternative = hardest->spec, out.d = asked->d;
   const JointOptions joint = joint_options(options.fit);
   const auto fit = fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
   const NextMenu found = next_measurements(table, *fit, joint, *asked);
   out.steps = steps_of(table, found.steps, *fit);
+  out.none_helps = found.steps.empty();
   out.p_right_before = found.p_right_before;
-  if (found.steps.empty())
-    out.text = "none of the measurements that are known here would tell them apart better than this run does";
-  return out;
-}
-
-json to_json(const NextReport& r) {
-  json steps = json::array();
-  for (const NextStep& s : r.steps) {
-    steps.push_back({{"action", s.measurement.action},
-                     {"minutes", s.measurement.minutes},
-                     {"p_right_before", s.measurement.p_right_before},
-                     {"p_right_after", s.measurement.p_right_after},
-                     {"by_the_rig", s.by_the_rig},
-                     {"poses", s.poses.size()}});
-  }
-  const auto name = [](const std::string& spec) { return spec.empty() ? json() : json(spec); };
-  return {{"schema", "mgt.next/1"},    {"effect", name(r.effect)},
-          {"rival", name(r.rival)},    {"d", r.d},
-          {"size_assumed", r.assumed}, {"p_right_before", r.effect.empty() ? json() : json(r.p_right_before)},
-          {"next", std::move(steps)},  {"text", r.text}};
-}
-
-std::string to_text(const NextReport& r) {
-  std::string out;
-  const auto to = std::back_inserter(out);
-  if (!r.effect.empty()) {
-    fmt::format_to(to, "{} or {}?\n", r.effect, r.rival);
-    if (r.assumed)
-      out += "neither is large enough to be seen on this run; at the smallest size that would be,\n";
-    fmt::format_to(to, "these poses give the right name with probability {:.3f}\n", r.p_right_before);
-  }
-  if (!r.steps.empty())
-    fmt::format_to(to, "{:>8} {:>8}  {:<8} {}\n", "minutes", "p right", "by", "what to measure");
-  for (const NextStep& s : r.steps) {
-    fmt::format_to(to, "{:>8.0f} {:>8.3f}  {:<8} {}\n", s.measurement.minutes, s.measurement.p_right_after,
-                   s.by_the_rig ? "the rig" : "hand", s.measurement.action);
-  }
-  if (!r.text.empty()) out += r.text + "\n";
-  return out;
-}
-
-std::string pose_list(const NextStep& step) {
-  std::string note = step.by_the_rig ? "" : step.measurement.action;
-  std::replace(note.begin(), note.end(), ',', ';');  // a comma ends a cell
-  std::string out = "pose,set,azimuth_deg,pitch_deg,roll_deg,sense,dwell_s,since_stop_s";
-  out += note.empty() ? "\n" : ",note\n";
-  const auto to = std::back_inserter(out);
-  const auto degrees = [](const std::optional<double>& a) {
-    return a ? fmt::format("{:.2f}", to_deg(*a)) : std::string();
-  };
-  const auto number = [](const auto& x) { return x ? fmt::format("{}", *x) : std::string(); };
-  int k = 0;
-  for (const Pose& p : step.poses) {
-    fmt::format_to(to, "{},{},{},{},{},{},{},{}", ++k, p.set, degrees(p.azimuth_rad), degrees(p.pitch_rad),
-                   degrees(p.roll_rad), number(p.sense), number(p.dwell_s), number(p.since_stop_s));
-    if (!note.empty()) out += "," + (k == 1 ? note : std::string());
-    out += "\n";
-  }
   return out;
 }
 

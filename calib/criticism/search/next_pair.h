@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,25 +17,25 @@ struct NextStep {
   std::vector<Pose> poses;  ///< to be measured: attitude, set, sense, waits; no readings
 };
 
+/// Why no further measurement is asked for.
+struct NothingToSettle {
+  std::string winner{};   ///< of explain(); empty: nothing stands out on this run
+  std::string nearest{};  ///< the effect that comes nearest to it and is told from it; empty: none comes near
+};
+
 struct NextReport {
-  std::string effect{}, rival{};  ///< specs; empty when nothing is open
-  double d{0};                    ///< size of the effect as found, in its standard deviations
-  bool assumed{false};            ///< it was too small to be seen: the smallest that is stands for it
+  std::optional<NothingToSettle> nothing_to_settle{};
+  std::string effect{}, alternative{};  ///< specs; empty when nothing is open
+  double d{0};                          ///< size of the effect as found, in its standard deviations
+  bool assumed{false};                  ///< it was too small to be seen: the smallest that is stands for it
   double p_right_before{0};
+  bool none_helps{false};         ///< no measurement of the menu tells them apart better than this run does
   std::vector<NextStep> steps{};  ///< best first
-  std::string text{};             ///< why there is nothing to settle, or nothing that helps
 };
 
 /// `pair`: two effects, by name or spec; empty: the verdict's own. Refuses a pair of which one cannot be
 /// tested on this run, with what would make it testable.
 [[nodiscard]] Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options,
                                          const std::optional<std::pair<std::string, std::string>>& pair);
-
-[[nodiscard]] nlohmann::json to_json(const NextReport& report);
-[[nodiscard]] std::string to_text(const NextReport& report);
-
-/// The poses of a step as CSV: attitude, approach and dwell, in the columns of a pose table, without
-/// readings. Where a hand is needed, `note` of the first says for what.
-[[nodiscard]] std::string pose_list(const NextStep& step);
 
 }  // namespace mgtd::calib

@@ -95,7 +95,7 @@ bool step_once(const PoseTable& table, std::size_t given, JointOptions& options,
     if (!effect) return false;
     next.effects[n.effect] = *std::move(effect);
   }
-  next.worse = fit.worse;
+  next.noise_inflation = fit.noise_inflation;
   auto after = fit_joint_at_size(table, next, &fit.state);
   if (!after || size_of(*after) >= size_of(fit)) return false;
   options.effects = std::move(next.effects);
@@ -105,7 +105,8 @@ bool step_once(const PoseTable& table, std::size_t given, JointOptions& options,
 
 }  // namespace
 
-void refine_numbers(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
+void refine_nonlinear_parameters(const PoseTable& table, std::size_t given, JointOptions& options,
+                                 JointFit& fit) {
   for (int i = 0; i < kSteps && step_once(table, given, options, fit); ++i) {
   }
 }

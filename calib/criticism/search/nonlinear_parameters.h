@@ -14,6 +14,7 @@ namespace mgtd::calib {
 /// Steps until the numbers stand; `options` and `fit` go along. The first `given` effects keep theirs, and
 /// numbers in which the model is not smooth (a threshold, a moment) stay. Stops where a fit fails or gets no
 /// better.
-void refine_numbers(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit);
+void refine_nonlinear_parameters(const PoseTable& table, std::size_t given, JointOptions& options,
+                                 JointFit& fit);
 
 }  // namespace mgtd::calib

@@ -11,28 +11,28 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr double kTold = 3.5;    ///< standard deviations from zero: one of 2000 that are zero
-constexpr std::size_t kFew = 4;  ///< axes that are listed one by one
+constexpr double kSignificant = 3.5;  ///< standard deviations from zero: one of 2000 that are zero
+constexpr std::size_t kFew = 4;       ///< axes that are listed one by one
 
 /// Axes of an effect whose coefficients are told from zero. `first`: its slot in the fit.
-std::set<std::string> told_axes(const JointFit& fit, const Effect& effect, Eigen::Index first) {
+std::set<std::string> significant_axes(const JointFit& fit, const Effect& effect, Eigen::Index first) {
   std::set<std::string> out;
   for (std::size_t j = 0; j < effect.coefficients().size(); ++j) {
     const Eigen::Index slot = first + static_cast<Eigen::Index>(j);
     const double sd = std::sqrt(fit.covariance(kEffectSlot + slot, kEffectSlot + slot));
-    if (std::abs(fit.state.coefficients[slot]) > kTold * sd)
+    if (std::abs(fit.state.coefficients[slot]) > kSignificant * sd)
       out.insert(effect.coefficients()[j].name.substr(0, 4));
   }
   return out;
 }
 
 /// One effect for each of those axes; the effect itself where they are many.
-std::vector<EffectPtr> on_told_axes(const JointFit& fit, const EffectPtr& effect, Eigen::Index first) {
+std::vector<EffectPtr> on_significant_axes(const JointFit& fit, const EffectPtr& effect, Eigen::Index first) {
   auto spec = EffectSpec::parse(effect->spec());
   if (effect->level() != Level::axis || !spec || !spec->where ||
       spec->where->scale != Where::Scale::each_axis)
     return {effect};
-  const std::set<std::string> axes = told_axes(fit, *effect, first);
+  const std::set<std::string> axes = significant_axes(fit, *effect, first);
   if (axes.size() > kFew) return {effect};
   std::vector<EffectPtr> out;
   for (const std::string& axis : axes) {
@@ -48,7 +48,7 @@ std::vector<EffectPtr> on_told_axes(const JointFit& fit, const EffectPtr& effect
 
 }  // namespace
 
-void polished(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
+void prune(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
   JointOptions few = options;
   few.effects.clear();
   Eigen::Index slot = 0;
@@ -57,7 +57,7 @@ void polished(const PoseTable& table, std::size_t given, JointOptions& options, 
     if (i < given) {
       few.effects.push_back(effect);
     } else {
-      for (EffectPtr& part : on_told_axes(fit, effect, slot)) few.effects.push_back(std::move(part));
+      for (EffectPtr& part : on_significant_axes(fit, effect, slot)) few.effects.push_back(std::move(part));
     }
     slot += static_cast<Eigen::Index>(effect->coefficients().size());
   }
@@ -67,7 +67,7 @@ void polished(const PoseTable& table, std::size_t given, JointOptions& options, 
     options = std::move(few);
     fit = *std::move(narrow);
   }
-  refine_numbers(table, given, options, fit);
+  refine_nonlinear_parameters(table, given, options, fit);
 }
 
 }  // namespace mgtd::calib

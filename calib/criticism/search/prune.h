@@ -11,6 +11,6 @@ namespace mgtd::calib {
 /// Of an effect on each axis only those axes stay, if they are few, whose coefficient is told from zero; then
 /// the numbers that were tried on a grid are refined (nonlinear_parameters.h). The first `given` effects of
 /// the model are not touched. `options` and `fit` go along; where a fit fails both stay as they were.
-void polished(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit);
+void prune(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit);
 
 }  // namespace mgtd::calib

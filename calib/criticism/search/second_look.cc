@@ -48,10 +48,11 @@ std::optional<Narrow> without_winner(const PoseTable& table, const JointOptions&
 
 std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions& narrow,
                                       const Criticism& first, std::size_t winner,
-                                      const std::vector<Rival>& rivals, double worse, const JointFit& with,
-                                      std::uint64_t seed) {
+                                      const std::vector<Alternative>& alternatives, double noise_inflation,
+                                      const JointFit& with, std::uint64_t seed) {
   const double after = std::max(1.0, with.chi2 / std::max(with.dof, 1.0));
-  if (first.noise.reference.scale2 * worse * worse < kMuchLess * after) return std::nullopt;
+  if (first.noise.reference.scale2 * noise_inflation * noise_inflation < kMuchLess * after)
+    return std::nullopt;
   const auto at = without_winner(table, narrow, with);
   if (!at) return std::nullopt;
   Residual residual(at->problem, at->state, 0);
@@ -60,13 +61,14 @@ std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions
   std::vector<ScoredFamily> families;
   for (std::size_t f = 0; f < first.families.size(); ++f) {
     const ScoredFamily& known = first.families[f];
-    const bool asked = std::any_of(rivals.begin(), rivals.end(), [&](const Rival& rival) {
-      return rival.possible && rival.effect == known.suspect->name;
-    });
+    const bool asked =
+        std::any_of(alternatives.begin(), alternatives.end(), [&](const Alternative& alternative) {
+          return alternative.possible && alternative.effect == known.candidate_effect->name;
+        });
     if (f != winner && !asked) continue;
     // What the first look added to the family was made for its own residual, but is as good a start here.
-    ScoredFamily again{.suspect = known.suspect, .own = known.own};
-    for (const EffectPtr& variant : known.suspect->variants) {
+    ScoredFamily again{.candidate_effect = known.candidate_effect, .own = known.own};
+    for (const EffectPtr& variant : known.candidate_effect->variants) {
       again.signatures.push_back(signature_of(residual, effect_rows(at->problem, at->state, variant)));
       again.score_last(noise);
     }
@@ -80,11 +82,13 @@ std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions
   const auto best = std::min_element(families.begin(), families.end(), [](const auto& a, const auto& b) {
     return a.calibrated < b.calibrated;
   });
-  const std::string& name = first.families[winner].suspect->name;
+  const std::string& name = first.families[winner].candidate_effect->name;
   if (best == families.end()) return std::nullopt;
-  if (best->suspect->name != name) return SecondLook{.rivals = {}, .better = best->suspect->name};
-  return SecondLook{.rivals = rivals_of(families, static_cast<std::size_t>(best - families.begin()), seed),
-                    .better = {}};
+  if (best->candidate_effect->name != name)
+    return SecondLook{.alternatives = {}, .better = best->candidate_effect->name};
+  return SecondLook{
+      .alternatives = alternatives_of(families, static_cast<std::size_t>(best - families.begin()), seed),
+      .better = {}};
 }
 
 }  // namespace mgtd::calib

@@ -16,15 +16,16 @@
 namespace mgtd::calib {
 
 struct SecondLook {
-  std::vector<Rival> rivals{};          ///< of the winner, as alternatives.h tells them
-  std::optional<std::string> better{};  ///< the effect that has the smallest p, when it is not the winner
+  std::vector<Alternative> alternatives{};  ///< of the winner, as alternatives.h tells them
+  std::optional<std::string> better{};      ///< the effect that has the smallest p, when it is not the winner
 };
 
 /// `first`: the judgement of the model without the winner, `winner` its family there; `narrow` that model,
 /// and `with` the fit that has the winner. Empty where that fit leaves as large a misfit as there was before.
 [[nodiscard]] std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions& narrow,
                                                     const Criticism& first, std::size_t winner,
-                                                    const std::vector<Rival>& rivals, double worse,
-                                                    const JointFit& with, std::uint64_t seed);
+                                                    const std::vector<Alternative>& alternatives,
+                                                    double noise_inflation, const JointFit& with,
+                                                    std::uint64_t seed);
 
 }  // namespace mgtd::calib

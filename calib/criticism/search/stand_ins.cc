@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/local_lack_of_fit.h"
 #include "calib/effects/effect_spec.h"
 #include "calib/fit/joint/pose_residuals.h"
@@ -110,13 +110,13 @@ StandIns on_axis(const ExplainReport& report, const std::string& axis, const Rou
 
 /// Whether all names together leave more than a tenth of the misfit.
 bool much_is_left(const ExplainReport& report) {
-  return report.noise.told && beyond_noise(report, report.rounds.back().rms_after_nT) >
-                                  kSensorRest * beyond_noise(report, report.rounds.front().rms_before_nT);
+  return report.noise.known && beyond_noise(report, report.rounds.back().rms_after_nT) >
+                                   kSensorRest * beyond_noise(report, report.rounds.front().rms_before_nT);
 }
 
 /// The first round after which most of what is beyond the noise is still there.
 std::optional<std::size_t> lesser_part(const ExplainReport& report) {
-  if (!report.noise.told) return std::nullopt;
+  if (!report.noise.known) return std::nullopt;
   const auto beyond = [&](double rms_nT) { return beyond_noise(report, rms_nT); };
   const double last = beyond(report.rounds.back().rms_after_nT);
   for (std::size_t i = 0; i < report.rounds.size(); ++i)
@@ -136,7 +136,7 @@ double share_on(const Criticism& last, const std::string& place) {
 
 /// Whether what is left is left on this axis or sensor, where it is enough to tell.
 bool left_here(const Criticism& last, const std::string& place) {
-  if (rest_log10_p(last, place) >= std::log10(kRestAlarm)) return false;
+  if (local_lack_of_fit_log10_p(last, place) >= std::log10(kLackOfFitAlarm)) return false;
   return !last.rejects_omnibus() || share_on(last, place) > kHere;
 }
 

@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
+#include "calib/criticism/search/explain_report.h"
 #include "calib/criticism/tests/criticism.h"
-#include "calib/criticism/verdict/explain_report.h"
 
 /// Effects that describe a law of no library without being its cause. Laws enough follow any curve, so a
 /// search that goes on adds one after the other to the axis on which the unknown law acts, and each looks

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/take_back.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <set>
 #include <string>
 
@@ -47,19 +44,14 @@ void take_back(const StandIns& found, EffectSearch& search, ExplainReport& repor
   std::set<std::string> names;
   for (std::size_t i = found.first; i < report.rounds.size(); ++i)
     names.insert(report.rounds[i].added.effect);
-  const bool one = names.size() == 1;
-  report.notes.push_back(
-      fmt::format("{} follows something that is in no library: {} {}, so {} named or added", found.where,
-                  fmt::join(names, ", "),
-                  one ? "describes it and is not its cause" : "describe it together and are not its cause",
-                  one ? "it is not" : "none of them is"));
+  report.notes.emplace_back(LawOfNoLibrary{found.where, std::move(names)});
   search.joint.effects = found.first == 0 ? search.given : report.rounds[found.first - 1].model;
   report.rounds.resize(found.first);
   auto before = fit_joint_at_size(search.table, search.joint);
   if (!before) return;
   for (const std::string& place : places) loosen(*before, place, search.joint);
-  const JointState near = before->state;
-  before = fit_joint_at_size(search.table, search.joint, &near);
+  const JointState warm_start = before->state;
+  before = fit_joint_at_size(search.table, search.joint, &warm_start);
   if (!before) return;
   search.judge_anew(*before);
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calib/criticism/tests/contenders.h"
+#include "calib/criticism/tests/alternative_ranking.h"
 
 namespace mgtd::calib {
 namespace {
@@ -27,54 +27,57 @@ double share_inside(const Eigen::VectorXd& v, double outside) {
 }
 
 /// `drawn`: the chance that it fell behind is asked for.
-Rival compare(const Contenders& contenders, const std::vector<ScoredFamily>& families, const Contender& a,
-              const Contender& b, bool drawn) {
+Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredFamily>& families,
+                    const RankedAlternative& a, const RankedAlternative& b, bool drawn) {
   const ScoredFamily& family = families[b.family];
-  const Hypothesis& h = family.suspect->hypotheses[b.score->hypothesis];
-  const Eigen::VectorXd v_a = contenders.signature(a), v_b = contenders.signature(b);
-  const double lambda_ba = outside(v_b, contenders.space(a)), lambda_ab = outside(v_a, contenders.space(b));
-  Rival out{.effect = family.suspect->name,
-            .where = h.where,
-            .spec = spec_of(*family.suspect, h, b.score->variant)};
+  const Hypothesis& h = family.candidate_effect->hypotheses[b.score->hypothesis];
+  const Eigen::VectorXd v_a = ranking.signature(a), v_b = ranking.signature(b);
+  const double lambda_ba = outside(v_b, ranking.space(a)), lambda_ab = outside(v_a, ranking.space(b));
+  Alternative out{.effect = family.candidate_effect->name,
+                  .where = h.where,
+                  .spec = spec_of(*family.candidate_effect, h, b.score->variant)};
   out.alike = share_inside(v_b, lambda_ba);
-  const Hypothesis& won = families[a.family].suspect->hypotheses[a.score->hypothesis];
+  const Hypothesis& won = families[a.family].candidate_effect->hypotheses[a.score->hypothesis];
   if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
   // Of two fields of the site what a dipole has beyond its gradient is as exact as the gradient.
-  const bool exact = family.suspect->level == Level::site && families[a.family].suspect->level == Level::site;
-  out.form_only = !exact && out.alike > kAlike && family.suspect->reads == families[a.family].suspect->reads;
-  out.p_right = told_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
-  if (drawn && a.L - b.L < kGone) out.p_behind = contenders.behind(b);
+  const bool exact = family.candidate_effect->level == Level::site &&
+                     families[a.family].candidate_effect->level == Level::site;
+  out.form_only = !exact && out.alike > kAlike &&
+                  family.candidate_effect->reads == families[a.family].candidate_effect->reads;
+  out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
+  if (drawn && a.L - b.L < kGone) out.p_behind = ranking.behind(b);
   out.possible = out.p_behind >= kLost || out.form_only;
   return out;
 }
 
-bool nearer(const Rival& x, const Rival& y) {
+bool nearer(const Alternative& x, const Alternative& y) {
   return std::make_pair(x.possible, x.p_behind) > std::make_pair(y.possible, y.p_behind);
 }
 
 }  // namespace
 
-double told_right(double lambda) { return 0.5 * std::erfc(-std::sqrt(lambda / 8)); }
+double probability_right(double lambda) { return 0.5 * std::erfc(-std::sqrt(lambda / 8)); }
 
 double beyond_form(double lambda, double length2) { return std::max(0.0, lambda - (1 - kAlike) * length2); }
 
-std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a, std::uint64_t seed) {
-  Contenders contenders(families, a);
-  const auto& all = contenders.all();
-  const auto winner = std::find_if(all.begin(), all.end(), [&](const Contender& c) {
+std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& families, std::size_t a,
+                                         std::uint64_t seed) {
+  AlternativeRanking ranking(families, a);
+  const auto& all = ranking.all();
+  const auto winner = std::find_if(all.begin(), all.end(), [&](const RankedAlternative& c) {
     return c.family == a && c.score == &families[a].winner();
   });
   if (winner == all.end()) return {};
-  contenders.draw(seed, kRuns);
-  std::vector<Rival> out;
+  ranking.draw(seed, kRuns);
+  std::vector<Alternative> out;
   for (std::size_t b = 0; b < families.size(); ++b) {
     if (b == a) continue;
-    std::optional<Rival> nearest;
+    std::optional<Alternative> nearest;
     int asked = 0;
-    for (const Contender& c : all) {
+    for (const RankedAlternative& c : all) {
       if (c.family != b) continue;
-      Rival rival = compare(contenders, families, *winner, c, asked++ < kBestQuestions);
-      if (!nearest || nearer(rival, *nearest)) nearest = std::move(rival);
+      Alternative alternative = compare(ranking, families, *winner, c, asked++ < kBestQuestions);
+      if (!nearest || nearer(alternative, *nearest)) nearest = std::move(alternative);
     }
     if (nearest && (nearest->possible || nearest->p_right < kShown)) out.push_back(*std::move(nearest));
   }

@@ -35,12 +35,12 @@ inline constexpr double kAlike = 0.95;
 inline constexpr double kLost = 0.005;
 
 /// The right one of two effects wins with this probability.
-[[nodiscard]] double told_right(double lambda);
+[[nodiscard]] double probability_right(double lambda);
 
 /// lambda of two idealised laws less what their form alone may make, of a signature of `length2` in squares.
 [[nodiscard]] double beyond_form(double lambda, double length2);
 
-struct Rival {
+struct Alternative {
   std::string effect{}, where{};
   std::string spec{};     ///< as --with reads it
   double p_behind{0};     ///< chance that it fell so far behind although it is the true one
@@ -52,7 +52,7 @@ struct Rival {
 
 /// Against the winner of `families[a]`; most dangerous first. Hypotheses of one family are not rivals of each
 /// other.
-[[nodiscard]] std::vector<Rival> rivals_of(const std::vector<ScoredFamily>& families, std::size_t a,
-                                           std::uint64_t seed);
+[[nodiscard]] std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& families,
+                                                       std::size_t a, std::uint64_t seed);
 
 }  // namespace mgtd::calib

@@ -15,16 +15,16 @@ namespace {
 /// "s3.z.tau1" in parts; axis -1 for what belongs to no single axis.
 struct NamedPlace {
   int sensor{-1}, axis{-1};
-  std::string rest;
+  std::string suffix;
 };
 
 NamedPlace place_of(const std::string& name) {
-  NamedPlace out{.rest = name};
+  NamedPlace out{.suffix = name};
   if (name.size() < 4 || name[0] != 's' || name[2] != '.' || name[1] < '1' || name[1] > '4') return out;
   out.sensor = name[1] - '1';
   const auto axis = std::string_view("xyz").find(name[3]);
   if (axis != std::string_view::npos) out.axis = static_cast<int>(axis);
-  out.rest = out.axis < 0 ? name.substr(3) : name.substr(4);
+  out.suffix = out.axis < 0 ? name.substr(3) : name.substr(4);
   return out;
 }
 
@@ -89,8 +89,8 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
     const NamedPlace p = place_of(name);
     if (p.sensor < 0 || p.axis < 0) return out;
     const auto s = static_cast<std::size_t>(p.sensor);
-    const std::string of_sensor = fmt::format("s{}{}", p.sensor + 1, p.rest);
-    all["all" + p.rest].push_back(i);
+    const std::string of_sensor = fmt::format("s{}{}", p.sensor + 1, p.suffix);
+    all["all" + p.suffix].push_back(i);
     sensors[of_sensor].push_back(i);
     sensor[s][of_sensor].push_back(i);
     axis[3 * s + static_cast<std::size_t>(p.axis)][name].push_back(i);
@@ -108,13 +108,14 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
   return out;
 }
 
-std::string spec_of(const CandidateEffect& suspect, const Hypothesis& hypothesis, std::size_t variant) {
-  if (suspect.dipole_at) return suspect.variants[variant]->spec();
-  std::string out = suspect.name;
+std::string spec_of(const CandidateEffect& candidate_effect, const Hypothesis& hypothesis,
+                    std::size_t variant) {
+  if (candidate_effect.dipole_at) return candidate_effect.variants[variant]->spec();
+  std::string out = candidate_effect.name;
   const auto where = Where::parse(hypothesis.where);
   if (where && where->scale != Where::Scale::own) out += "@" + hypothesis.where;
-  if (variant < suspect.values.size() && suspect.values[variant])
-    out += fmt::format(",{}={:.6g}", suspect.parameter, *suspect.values[variant]);
+  if (variant < candidate_effect.values.size() && candidate_effect.values[variant])
+    out += fmt::format(",{}={:.6g}", candidate_effect.parameter, *candidate_effect.values[variant]);
   return out;
 }
 

@@ -58,11 +58,11 @@ struct CandidateEffects {
 [[nodiscard]] std::vector<Hypothesis> hypotheses_of(const Effect& finest);
 
 /// Every effect of the library on this run, less those called like one of `left_out`.
-[[nodiscard]] CandidateEffects library_suspects(const PoseTable& table,
-                                                const std::vector<EffectPtr>& left_out = {});
+[[nodiscard]] CandidateEffects library_candidates(const PoseTable& table,
+                                                  const std::vector<EffectPtr>& left_out = {});
 
 /// The effect of a hypothesis, as `--with` reads it: "axis.offset.temperature@s3.z".
-[[nodiscard]] std::string spec_of(const CandidateEffect& suspect, const Hypothesis& hypothesis,
+[[nodiscard]] std::string spec_of(const CandidateEffect& candidate_effect, const Hypothesis& hypothesis,
                                   std::size_t variant);
 
 }  // namespace mgtd::calib

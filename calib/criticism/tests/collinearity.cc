@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/collinearity.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "calib/criticism/tests/detectable.h"
 #include "calib/criticism/tests/noise.h"
@@ -22,8 +17,7 @@ namespace mgtd::calib {
 namespace {
 
 constexpr double kWorthTelling = 0.3;  ///< correlation
-constexpr std::size_t kToldAtMost = 5;
-constexpr double kTheSame = 0.98;
+constexpr std::size_t kNamedAtMost = 5;
 
 /// Share of the length of `Z` that lies in the space of `B`, as a correlation; columns of Z counted alike.
 double correlation(const Eigen::MatrixXd& Z, const Eigen::MatrixXd& B) {
@@ -39,10 +33,10 @@ double correlation(const Eigen::MatrixXd& Z, const Eigen::MatrixXd& B) {
 std::vector<Collinearity> alike(const JointFit& fit, const Residual& residual, const PoseTable& table,
                                 const Eigen::MatrixXd& Z) {
   std::vector<Collinearity> out;
-  const CandidateEffects library = library_suspects(table, fit.problem.effects);
-  for (const CandidateEffect& suspect : library.testable) {
-    Collinearity r{.effect = suspect.name};
-    for (const EffectPtr& variant : suspect.variants) {
+  const CandidateEffects library = library_candidates(table, fit.problem.effects);
+  for (const CandidateEffect& candidate_effect : library.testable) {
+    Collinearity r{.effect = candidate_effect.name};
+    for (const EffectPtr& variant : candidate_effect.variants) {
       const auto B = residual.project(effect_rows(fit.problem, fit.state, variant)).projected;
       r.correlation = std::max(r.correlation, correlation(Z, B));
     }
@@ -51,15 +45,16 @@ std::vector<Collinearity> alike(const JointFit& fit, const Residual& residual, c
   std::stable_sort(out.begin(), out.end(), [](const Collinearity& a, const Collinearity& b) {
     return a.correlation > b.correlation;
   });
-  if (out.size() > kToldAtMost) out.resize(kToldAtMost);
+  if (out.size() > kNamedAtMost) out.resize(kNamedAtMost);
   return out;
 }
 
-void tell_coefficients(const CandidateEffect& suspect, const ScoredFamily& scored, FormulaExamination& out) {
+void tell_coefficients(const CandidateEffect& candidate_effect, const ScoredFamily& scored,
+                       FormulaExamination& out) {
   const Score& score = scored.winner();
   const OneStep step = one_step(scored.signatures[score.variant], scored.where());
   out.S = score.S, out.rank = score.k, out.log10_p = score.log10_p;
-  const auto& coefficients = suspect.variants[score.variant]->coefficients();
+  const auto& coefficients = candidate_effect.variants[score.variant]->coefficients();
   out.unit = coefficients.front().unit;
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
@@ -73,7 +68,7 @@ void tell_coefficients(const CandidateEffect& suspect, const ScoredFamily& score
 
 double FormulaExamination::d() const { return std::sqrt(std::max(0.0, S - rank)); }
 
-Result<CandidateEffect> formula_suspect(const EffectSpec& formula) {
+Result<CandidateEffect> formula_candidate(const EffectSpec& formula) {
   const auto scan = open_scan(formula);
   CandidateEffect out{.name = formula.name};
   const std::vector<double> values = scan ? scan_values(*scan) : std::vector<double>{0};
@@ -110,9 +105,9 @@ Result<CandidateEffect> formula_suspect(const EffectSpec& formula) {
 
 Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOptions& options,
                                            const EffectSpec& formula) {
-  const auto suspect = formula_suspect(formula);
-  if (!suspect) return tl::unexpected(suspect.error());
-  for (const EffectPtr& variant : suspect->variants) {
+  const auto candidate_effect = formula_candidate(formula);
+  if (!candidate_effect) return tl::unexpected(candidate_effect.error());
+  for (const EffectPtr& variant : candidate_effect->variants) {
     if (const auto ok = variant->check(table); !ok) return tl::unexpected(ok.error());
     if (const auto ok = check_derivatives(*variant, table); !ok) return tl::unexpected(ok.error());
   }
@@ -121,62 +116,18 @@ Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOpti
   Residual residual(fit->problem, fit->state, pose_correlation(fit->problem, fit->state));
   const NoiseModel noise = noise_model(*fit, residual);
   residual.measure_by(noise.reference.scale2);
-  const ScoredFamily scored = score_family(fit->problem, fit->state, residual, noise.reference, *suspect);
+  const ScoredFamily scored =
+      score_family(fit->problem, fit->state, residual, noise.reference, *candidate_effect);
   FormulaExamination out{.name = formula.name,
-                         .where = suspect->hypotheses.front().where,
+                         .where = candidate_effect->hypotheses.front().where,
                          .expression = *formula.find("expr"),
-                         .k = static_cast<int>(suspect->variants.front()->coefficients().size())};
+                         .k = static_cast<int>(candidate_effect->variants.front()->coefficients().size())};
   const Signature& s = scored.signatures[scored.testable() ? scored.winner().variant : 0];
   const double length = s.norms.squaredNorm();
   out.absorbed = length > 0 ? 1 - s.columns.squaredNorm() / length : 1;
   if (!scored.testable()) return out;
-  tell_coefficients(*suspect, scored, out);
+  tell_coefficients(*candidate_effect, scored, out);
   out.alike = alike(*fit, residual, table, s.columns);
-  return out;
-}
-
-nlohmann::json to_json(const FormulaExamination& x) {
-  nlohmann::json alike = nlohmann::json::array(), coefficients = nlohmann::json::array();
-  for (const Collinearity& r : x.alike)
-    alike.push_back({{"effect", r.effect}, {"correlation", r.correlation}});
-  for (const EffectCoefficient& c : x.coefficients)
-    coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
-  return {{"name", x.name},
-          {"where", x.where},
-          {"expression", x.expression},
-          {"absorbed", x.absorbed},
-          {"k", x.k},
-          {"rank", x.rank},
-          {"d", x.d()},
-          {"log10_p", x.log10_p},
-          {"coefficients", std::move(coefficients)},
-          {"detectable_above", {{"value", x.detectable}, {"unit", x.unit}}},
-          {"resembles", std::move(alike)}};
-}
-
-std::string to_text(const FormulaExamination& x) {
-  std::string out = fmt::format("{} at {}: {}\n", x.name, x.where, x.expression);
-  const auto to = std::back_inserter(out);
-  if (x.wholly_absorbed()) {
-    out +=
-        "the calibration absorbs it whole: offsets, scales, angles, attitudes and field of these poses take\n"
-        "up every trace of it, so no residual can show it, and adding it changes nothing but the "
-        "parameters\n";
-    return out;
-  }
-  fmt::format_to(to, "{:.1f} % of it (in squares) is already absorbed by calibration, attitude and field\n",
-                 100 * x.absorbed);
-  if (x.rank < x.k) fmt::format_to(to, "of its {} coefficients these poses can tell {}\n", x.k, x.rank);
-  fmt::format_to(to, "seen in 99 of 100 runs like this from {:.3g} {}\n", x.detectable, x.unit);
-  if (x.alike.empty()) out += "no effect of the library looks like it\n";
-  for (const Collinearity& r : x.alike) {
-    fmt::format_to(to, "{} {:.1f} % the same as {}{}\n",
-                   r.correlation == x.alike.front().correlation ? "it is" : "     ", 100 * r.correlation,
-                   r.effect, r.correlation > kTheSame ? ": no run like this can tell them apart" : "");
-  }
-  fmt::format_to(to, "on this run, by the score test: d {:.1f}, {}\n", x.d(), p_phrase(x.log10_p));
-  for (const EffectCoefficient& c : x.coefficients)
-    fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", c.name, c.value, c.sd, c.unit);
   return out;
 }
 

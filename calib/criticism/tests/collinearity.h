@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "calib/criticism/tests/candidate_effect.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 
 /// What a user's formula would mean on a run, before it is used: how much of it the calibration takes up by
 /// itself, what it would show, and which known effect it cannot be told from.
@@ -15,6 +14,9 @@ struct Collinearity {
   std::string effect{};
   double correlation{0};  ///< of the formula with the best combination of the effect's coefficients
 };
+
+/// Correlation from which on no run like this can tell two effects apart.
+inline constexpr double kTheSame = 0.98;
 
 struct FormulaExamination {
   std::string name{}, where{}, expression{};
@@ -36,9 +38,6 @@ struct FormulaExamination {
                                                          const EffectSpec& formula);
 
 /// A formula among those that explain suspects, at the scale it was given.
-[[nodiscard]] Result<CandidateEffect> formula_suspect(const EffectSpec& formula);
-
-[[nodiscard]] nlohmann::json to_json(const FormulaExamination& x);
-[[nodiscard]] std::string to_text(const FormulaExamination& x);
+[[nodiscard]] Result<CandidateEffect> formula_candidate(const EffectSpec& formula);
 
 }  // namespace mgtd::calib

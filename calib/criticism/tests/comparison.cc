@@ -166,7 +166,7 @@ Fields fields_of(const JointFit& fit) {
     const JointPose& pose = fit.problem.poses[at];
     model.linearise(pose, fit.state.nuisances[at], linear);
     const Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
-    out.whitened.col(k) = fit.worse * pose.weight.cwiseProduct(e);
+    out.whitened.col(k) = fit.noise_inflation * pose.weight.cwiseProduct(e);
     const double field = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
     for (int i = 0; i < kSensors; ++i) {
       const SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
@@ -217,7 +217,7 @@ std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<
 }  // namespace
 
 Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
-  const auto joint = tuned_options(table, options);
+  const auto joint = profiled_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
   const auto fit = fit_joint_at_size(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
@@ -228,11 +228,11 @@ Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
                  .noise_nT = fit->noise_nT(),
                  .residual_nT = residuals.residual_nT(),
                  .axis_noise_nT = fit->pose_noise_nT};
-  out.axis_residual_nT = fit->pose_noise_nT.cwiseProduct(residuals.noise_ratio) * fit->worse;
-  out.chi2 = chi2_told(*fit, c, fit->table_sd_rad), out.dof = c.dof;
+  out.axis_residual_nT = fit->pose_noise_nT.cwiseProduct(residuals.noise_ratio) * fit->noise_inflation;
+  out.chi2 = chi2_at_stated_noise(*fit, c, fit->table_sd_rad), out.dof = c.dof;
   if (c.noise.reference.known) {
     out.log10_p = c.omnibus_log10_p;
-  } else if (c.noise.told && !c.noise.correlated()) {
+  } else if (c.noise.known && !c.noise.correlated()) {
     out.log10_p = chi_square_log10_p(out.chi2, out.dof);
   }
 

@@ -8,7 +8,7 @@
 
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/residual_maps.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 
 /// Model against measurement: how large the noise is, whether the model fits to it, and where it fails. Names
 /// no cause; explain.h does.

@@ -26,21 +26,21 @@ void judge_size(Criticism& out) {
 
 /// A channel that scatters less than its noise. The scalar reference, whose uncertainty is often only a
 /// bound, says nothing here.
-void judge_quiet(const JointFit& fit, Criticism& out) {
+void find_low_scatter(const JointFit& fit, Criticism& out) {
   if (!out.noise.reference.known) return;
   const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
   Eigen::Index sensor = 0, axis = 0;
-  out.quiet_ratio = ratio.minCoeff(&sensor, &axis);
-  out.quiet = fmt::format("s{}.{}", sensor + 1, "xyz"[axis]);
+  out.low_scatter_ratio = ratio.minCoeff(&sensor, &axis);
+  out.low_scatter = fmt::format("s{}.{}", sensor + 1, "xyz"[axis]);
   const double nu = out.dof / kChannels;
-  const double more = chi_square_p(std::pow(out.quiet_ratio, 2) * nu, nu);
-  out.quiet_log10_p = std::min(0.0, std::log10(kChannels * std::max(1 - more, 1e-300)));
+  const double more = chi_square_p(std::pow(out.low_scatter_ratio, 2) * nu, nu);
+  out.low_scatter_log10_p = std::min(0.0, std::log10(kChannels * std::max(1 - more, 1e-300)));
 }
 
 /// The model holds this law: nothing of it is left to test.
-bool in_model(const JointProblem& problem, const CandidateEffect& suspect) {
+bool in_model(const JointProblem& problem, const CandidateEffect& candidate_effect) {
   return std::any_of(problem.effects.begin(), problem.effects.end(),
-                     [&](const EffectPtr& effect) { return effect->name() == suspect.name; });
+                     [&](const EffectPtr& effect) { return effect->name() == candidate_effect.name; });
 }
 
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
@@ -68,48 +68,49 @@ double largest_S(const std::vector<ScoredFamily>& families) {
 /// Families that could still win with a better number. A dipole makes the gradient that is seen, once its
 /// place is known: it comes as near as site.gradient does. A dipole that came during the run is looked for
 /// where a step of the site is what stands out most.
-void refine_contenders(const JointFit& fit, Criticism& out) {
+void refine_alternatives(const JointFit& fit, Criticism& out) {
   constexpr double kInReach = 0.6;  // of the largest score
   const double largest = largest_S(out.families);
   double of_gradient = 0;
   for (std::size_t f = 0; f < out.families.size(); ++f) {
     ScoredFamily& family = out.families[f];
-    if (family.suspect->name == "site.gradient") of_gradient = family.winner().S;
+    if (family.candidate_effect->name == "site.gradient") of_gradient = family.winner().S;
     if (family.winner().S >= kInReach * largest && out.rejects_named(f))
       refine(fit.problem, fit.state, out.residual, out.noise.reference, family);
   }
   const double refined = largest_S(out.families);
   for (std::size_t f = 0; f < out.families.size(); ++f) {
     ScoredFamily& family = out.families[f];
-    const bool came = family.suspect->name == "site.step";
+    const bool came = family.candidate_effect->name == "site.step";
     const bool in_reach =
         came ? family.winner().S == refined : std::max(family.winner().S, of_gradient) >= kInReach * refined;
-    if (family.suspect->dipole_at && in_reach && out.rejects_named(f))
+    if (family.candidate_effect->dipole_at && in_reach && out.rejects_named(f))
       refine_place(fit.problem, fit.state, out.residual, out.noise.reference, family);
   }
 }
 
-Criticism tested(const JointFit& fit, Residual residual, const CandidateEffects& suspects, std::uint64_t seed,
-                 const Rates* before) {
+Criticism tested(const JointFit& fit, Residual residual, const CandidateEffects& candidate_effects,
+                 std::uint64_t seed, const Rates* before) {
   Criticism out{.residual = std::move(residual), .tested = std::make_shared<const JointFit>(fit)};
   out.noise = noise_model(fit, out.residual);
   out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
   out.residual.measure_by(out.noise.reference.scale2);
-  for (const CandidateEffect& suspect : suspects.testable) {
-    ScoredFamily scored = score_family(fit.problem, fit.state, out.residual, out.noise.reference, suspect);
+  for (const CandidateEffect& candidate_effect : candidate_effects.testable) {
+    ScoredFamily scored =
+        score_family(fit.problem, fit.state, out.residual, out.noise.reference, candidate_effect);
     if (scored.testable()) {
       out.families.push_back(std::move(scored));
-    } else if (!in_model(fit.problem, suspect)) {
+    } else if (!in_model(fit.problem, candidate_effect)) {
       out.untestable.push_back(
-          {suspect.name, "calibration, attitude and field of these poses absorb it whole"});
+          {candidate_effect.name, "calibration, attitude and field of these poses absorb it whole"});
     }
   }
   rate(before, seed, out);
-  refine_contenders(fit, out);
+  refine_alternatives(fit, out);
   std::stable_sort(out.families.begin(), out.families.end(),
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
   judge_size(out);
-  judge_quiet(fit, out);
+  find_low_scatter(fit, out);
   return out;
 }
 
@@ -177,17 +178,17 @@ bool Criticism::rejects_map() const {
 }
 bool Criticism::rejects_omnibus() const { return below(omnibus_log10_p, kOmnibusAlarm); }
 
-Criticism criticise(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
+Criticism criticise(const JointFit& fit, const CandidateEffects& candidate_effects, std::uint64_t seed,
                     const Rates* before) {
-  Criticism out = tested(fit, among_poses(fit), suspects, seed, before);
+  Criticism out = tested(fit, among_poses(fit), candidate_effects, seed, before);
   if (!contradicts_dwells(out)) return out;
   const double chi2 = out.chi2;
   const Rates rates = std::move(out.rates);
   const std::optional<PureError> revisits = out.noise.revisits;
   const JointFit again = weighed_by_residual(fit);
-  out = tested(again, among_poses(again), suspects, seed, &rates);
+  out = tested(again, among_poses(again), candidate_effects, seed, &rates);
   out.chi2 = chi2;
-  out.noise.told = true;
+  out.noise.known = true;
   out.noise.revisits = revisits;
   out.noise.beyond_dwells =
       std::sqrt(pose_residuals(fit.problem, fit.state).noise_ratio.array().square().mean());
@@ -195,13 +196,14 @@ Criticism criticise(const JointFit& fit, const CandidateEffects& suspects, std::
 }
 
 Criticism criticise_against_walk(const JointFit& fit, const WanderingRates& nT_per_sqrt_h,
-                                 const CandidateEffects& suspects, std::uint64_t seed, const Rates* before) {
-  return tested(fit, Residual(fit.problem, fit.state, 0, nT_per_sqrt_h), suspects, seed, before);
+                                 const CandidateEffects& candidate_effects, std::uint64_t seed,
+                                 const Rates* before) {
+  return tested(fit, Residual(fit.problem, fit.state, 0, nT_per_sqrt_h), candidate_effects, seed, before);
 }
 
-double chi2_told(const JointFit& fit, const Criticism& c, double table_sd_rad) {
+double chi2_at_stated_noise(const JointFit& fit, const Criticism& c, double table_sd_rad) {
   const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
-  return (c.chi2 - fit.chi2_table) * fit.worse * fit.worse + fit.chi2_table * angles;
+  return (c.chi2 - fit.chi2_table) * fit.noise_inflation * fit.noise_inflation + fit.chi2_table * angles;
 }
 
 void look_at_maps(Criticism& criticism) {

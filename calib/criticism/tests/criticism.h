@@ -26,8 +26,8 @@ struct Criticism {
   std::vector<MapScore> maps{};
   double omnibus_log10_p{0};  ///< residual larger than its noise; 0 where the noise is the residual's own
   /// The channel that scatters least for its noise, "s3.z", and the probability of so little, all counted.
-  std::string quiet{};
-  double quiet_log10_p{0}, quiet_ratio{1};
+  std::string low_scatter{};
+  double low_scatter_log10_p{0}, low_scatter_ratio{1};
   Residual residual;                         ///< in units of the noise
   std::shared_ptr<const JointFit> tested{};  ///< the fit, with the weights of the tests
 
@@ -39,19 +39,19 @@ struct Criticism {
   [[nodiscard]] bool rejects() const { return rejects_named() || rejects_map() || rejects_omnibus(); }
 };
 
-/// `suspects` must outlive the result. `before`: rates of a narrower model of the same run, which serve where
-/// no p-value is near to its alarm.
-[[nodiscard]] Criticism criticise(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
-                                  const Rates* before = nullptr);
+/// `candidate_effects` must outlive the result. `before`: rates of a narrower model of the same run, which
+/// serve where no p-value is near to its alarm.
+[[nodiscard]] Criticism criticise(const JointFit& fit, const CandidateEffects& candidate_effects,
+                                  std::uint64_t seed, const Rates* before = nullptr);
 /// Against offsets that wander at these rates, in nT per root hour where the white noise is that of the
 /// weights. Nothing wanders in `fit` itself.
 [[nodiscard]] Criticism criticise_against_walk(const JointFit& fit, const WanderingRates& nT_per_sqrt_h,
-                                               const CandidateEffects& suspects, std::uint64_t seed,
+                                               const CandidateEffects& candidate_effects, std::uint64_t seed,
                                                const Rates* before);
 /// Chi-square of readings, scalar reference and table angles: readings in units of the noise that the table
 /// tells, its angles in units of `table_sd_rad`. Every fit estimates that anew, and what an effect of the
 /// table explains would be gone with it.
-[[nodiscard]] double chi2_told(const JointFit& fit, const Criticism& c, double table_sd_rad);
+[[nodiscard]] double chi2_at_stated_noise(const JointFit& fit, const Criticism& c, double table_sd_rad);
 /// The generic maps, which cost as much as everything else: asked where nothing with a name stands out.
 void look_at_maps(Criticism& criticism);
 

@@ -5,10 +5,11 @@
 
 namespace mgtd::calib {
 
-Detectable detectable_of(const CandidateEffect& suspect, const Signature& s) {
-  Detectable out{.effect = suspect.name};
-  for (const Hypothesis& h : suspect.hypotheses) {
-    if (suspect.level == Level::axis ? h.axes != 1 : &h != &suspect.hypotheses.front()) continue;
+Detectable detectable_of(const CandidateEffect& candidate_effect, const Signature& s) {
+  Detectable out{.effect = candidate_effect.name};
+  for (const Hypothesis& h : candidate_effect.hypotheses) {
+    if (candidate_effect.level == Level::axis ? h.axes != 1 : &h != &candidate_effect.hypotheses.front())
+      continue;
     for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
       const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
       const double value = kSeen / std::sqrt(left);
@@ -17,7 +18,7 @@ Detectable detectable_of(const CandidateEffect& suspect, const Signature& s) {
       h.combine.col(j).maxCoeff(&of);
       out.value = value;
       out.where = h.names[static_cast<std::size_t>(j)];
-      out.unit = suspect.variants.front()->coefficients()[static_cast<std::size_t>(of)].unit;
+      out.unit = candidate_effect.variants.front()->coefficients()[static_cast<std::size_t>(of)].unit;
     }
   }
   return out;

@@ -20,6 +20,6 @@ struct Detectable {
 
 /// The worst of the single axes, or of the single coefficients of what has no axes. `value` is 0 where no
 /// coefficient leaves a trace.
-[[nodiscard]] Detectable detectable_of(const CandidateEffect& suspect, const Signature& signature);
+[[nodiscard]] Detectable detectable_of(const CandidateEffect& candidate_effect, const Signature& signature);
 
 }  // namespace mgtd::calib

@@ -16,8 +16,8 @@ constexpr std::size_t kStarts = 3;
 /// Cosine of two directions from which a better start counts as the same.
 constexpr double kSame = 0.8;
 constexpr int kSteps = 12;
-constexpr double kLongest = 0.4;  ///< step, of the distance
-constexpr double kEnough = 0.05;  ///< gain of S that is no more worth a step
+constexpr double kLongest = 0.4;      ///< step, of the distance
+constexpr double kEnoughGain = 0.05;  ///< gain of S that is no more worth a step
 constexpr double kFirstDamping = 1e-3, kMostDamping = 1e3;
 
 struct DipolePlace {
@@ -84,7 +84,7 @@ class DipoleSearch {
           break;
         }
       }
-      if (gain < kEnough) break;
+      if (gain < kEnoughGain) break;
     }
     return place;
   }

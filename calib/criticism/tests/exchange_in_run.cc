@@ -36,7 +36,7 @@ struct Normal {
     return out;
   }
   /// What is left of the squares.
-  [[nodiscard]] double rest() const { return std::max(0.0, c - b.dot(A.ldlt().solve(b))); }
+  [[nodiscard]] double misfit() const { return std::max(0.0, c - b.dot(A.ldlt().solve(b))); }
 };
 
 double mean_field_nT(const PoseTable& table, std::optional<double> field_nT) {
@@ -76,24 +76,24 @@ Sums sums_of(const PoseTable& table, double f_nT) {
 }
 
 struct Best {
-  double rest{std::numeric_limits<double>::max()};
+  double misfit{std::numeric_limits<double>::max()};
   std::array<std::size_t, kSensors> sensor{};
   std::size_t from{0};
 };
 
 /// The best of every exchange at one pose, into `best` by exchange.
 void look_at(const Sums& sums, std::size_t from, std::vector<Best>& best) {
-  std::array<std::array<double, kSensorCount>, kSensorCount> rest{};
+  std::array<std::array<double, kSensorCount>, kSensorCount> misfit{};
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     for (std::size_t j = 0; j < kSensorCount; ++j)
-      rest[i][j] = sums[i][from].with(sums[j].back(), sums[j][from]).rest();
+      misfit[i][j] = sums[i][from].with(sums[j].back(), sums[j][from]).misfit();
   }
   std::array<std::size_t, kSensors> sensor{0, 1, 2, 3};
   for (std::size_t number = 0; std::next_permutation(sensor.begin(), sensor.end()); ++number) {
     // What comes in a place from here on belongs to the sensor whose it is.
     double sum = 0;
-    for (std::size_t place = 0; place < kSensorCount; ++place) sum += rest[sensor[place]][place];
-    if (sum < best[number].rest) best[number] = {sum, sensor, from};
+    for (std::size_t place = 0; place < kSensorCount; ++place) sum += misfit[sensor[place]][place];
+    if (sum < best[number].misfit) best[number] = {sum, sensor, from};
   }
 }
 
@@ -106,16 +106,16 @@ std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table, std::option
   const double f_nT = mean_field_nT(table, field_nT);
   const Sums sums = sums_of(table, f_nT);
   double without = 0;
-  for (const auto& of_sensor : sums) without += of_sensor.back().rest();
+  for (const auto& of_sensor : sums) without += of_sensor.back().misfit();
   std::vector<Best> best(kExchanges);
   for (std::size_t from = kFewest; from + kFewest <= n; ++from) look_at(sums, from, best);
-  std::sort(best.begin(), best.end(), [](const Best& a, const Best& b) { return a.rest < b.rest; });
-  const auto to_nT = [&](double rest) {
-    return std::sqrt(rest / static_cast<double>(kSensorCount * n)) * f_nT / 2;
+  std::sort(best.begin(), best.end(), [](const Best& a, const Best& b) { return a.misfit < b.misfit; });
+  const auto to_nT = [&](double misfit) {
+    return std::sqrt(misfit / static_cast<double>(kSensorCount * n)) * f_nT / 2;
   };
-  const double taken_so = to_nT(best[0].rest), as_it_stands = to_nT(without);
+  const double taken_so = to_nT(best[0].misfit), as_it_stands = to_nT(without);
   if (as_it_stands < kLeast_nT || as_it_stands < kExchangeBetter * taken_so ||
-      to_nT(best[1].rest) < kOtherExchange * taken_so)
+      to_nT(best[1].misfit) < kOtherExchange * taken_so)
     return std::nullopt;
   ExchangeInRun out;
   out.what.sensor = best[0].sensor;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/criticism/tests/wandering_rival.h"
+#include "calib/criticism/tests/wandering_alternative.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib {
@@ -22,10 +22,11 @@ constexpr double kClearlyBetter = 6;
 /// Step of the walk from pose to pose over the noise, up to which a few slow terms describe it.
 constexpr double kMild = 0.7;
 
-Eigen::MatrixXd rows_of(const WanderingRival& rival, const ScoredFamily& family, const Score& score) {
-  const EffectPtr& effect = family.suspect->variants[score.variant];
-  return effect_rows(rival.problem(), rival.state(), effect) *
-         family.suspect->hypotheses[score.hypothesis].combine;
+Eigen::MatrixXd rows_of(const WanderingAlternative& alternative, const ScoredFamily& family,
+                        const Score& score) {
+  const EffectPtr& effect = family.candidate_effect->variants[score.variant];
+  return effect_rows(alternative.problem(), alternative.state(), effect) *
+         family.candidate_effect->hypotheses[score.hypothesis].combine;
 }
 
 /// The winner, and the best on a single axis: where all axes wander the winner acts on all of them.
@@ -33,7 +34,8 @@ std::vector<const Score*> questions(const ScoredFamily& family) {
   std::vector<const Score*> out{&family.winner()};
   const Score* one = nullptr;
   for (const Score& score : family.scores)
-    if (family.suspect->hypotheses[score.hypothesis].axes == 1 && (one == nullptr || score.S > one->S))
+    if (family.candidate_effect->hypotheses[score.hypothesis].axes == 1 &&
+        (one == nullptr || score.S > one->S))
       one = &score;
   if (one != nullptr && one != out.front()) out.push_back(one);
   return out;
@@ -48,30 +50,30 @@ struct AgainstWalk {
 };
 
 /// log10 p of one question against the walk.
-double against(const WanderingRival& rival, const ScoredFamily& family, const Score& score,
+double against(const WanderingAlternative& alternative, const ScoredFamily& family, const Score& score,
                const Eigen::MatrixXd& rows) {
-  const auto [R, instead, rank] = rival.ratio(rows);
+  const auto [R, instead, rank] = alternative.ratio(rows);
   if (rank == 0) return 0;
-  const Hypothesis& h = family.suspect->hypotheses[score.hypothesis];
-  const bool same_axis = h.axes == 1 && rival.estimate().where == std::vector<std::string>{h.where};
+  const Hypothesis& h = family.candidate_effect->hypotheses[score.hypothesis];
+  const bool same_axis = h.axes == 1 && alternative.estimate().where == std::vector<std::string>{h.where};
   if (same_axis && instead > kClearlyBetter) return family.calibrated;
   return best_of(std::min(0.0, chi_square_log10_p(std::max(R, 0.0), rank) + std::log10(h.alike)),
                  family.asked);
 }
 
-void ask(const WanderingRival& rival, const Criticism& c, AgainstWalk& out) {
+void ask(const WanderingAlternative& alternative, const Criticism& c, AgainstWalk& out) {
   std::size_t asked = 0;
   for (std::size_t f = 0; f < c.families.size() && asked < kQuestions && c.rejects_named(f); ++f) {
     const ScoredFamily& family = c.families[f];
-    if (out.log10_p.contains(family.suspect->name)) continue;
+    if (out.log10_p.contains(family.candidate_effect->name)) continue;
     ++asked;
-    double& p = out.log10_p[family.suspect->name] = 0;
+    double& p = out.log10_p[family.candidate_effect->name] = 0;
     for (const Score* score : questions(family)) {
-      const Eigen::MatrixXd rows = rows_of(rival, family, *score);
-      p = std::min(p, against(rival, family, *score, rows));
+      const Eigen::MatrixXd rows = rows_of(alternative, family, *score);
+      p = std::min(p, against(alternative, family, *score, rows));
       if (best_of(p, c.rates.best) >= std::log10(kNamedAlarm) || p >= out.least) continue;
       out.least = p, out.passed = true;
-      out.beside = rival.beside(rows);
+      out.beside = alternative.beside(rows);
     }
   }
 }
@@ -102,11 +104,12 @@ WanderingRates beside_white(const JointFit& fit, const WanderingRates& rates) {
 }
 
 /// At the noise that is told, whatever the readings were taken for: what made them worse is the walk.
-JointFit as_told(const JointFit& fit) {
+JointFit as_stated(const JointFit& fit) {
   JointFit out = fit;
-  if (!(fit.worse > 1)) return out;
-  for (JointPose& pose : out.problem.poses) pose.weight *= fit.worse, pose.f_weight *= fit.worse;
-  out.worse = 1;
+  if (!(fit.noise_inflation > 1)) return out;
+  for (JointPose& pose : out.problem.poses)
+    pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
+  out.noise_inflation = 1;
   refit_nuisances(out.problem, out.state);
   return out;
 }
@@ -128,7 +131,7 @@ double step_over_noise(const JointFit& fit, const WanderingRates& nT_per_sqrt_h)
 /// A family is as probable as the walk lets it be.
 void hold_against(const AgainstWalk& walk, Criticism& c) {
   for (ScoredFamily& family : c.families) {
-    const auto found = walk.log10_p.find(family.suspect->name);
+    const auto found = walk.log10_p.find(family.candidate_effect->name);
     if (found != walk.log10_p.end()) family.calibrated = std::max(family.calibrated, found->second);
   }
   std::stable_sort(c.families.begin(), c.families.end(),
@@ -146,8 +149,8 @@ WanderingRates with_margin(const WanderingRates& rates, const WanderingEstimate&
 }
 
 /// The readings' noise times a factor; scalar reference and table stay as good as they are.
-JointFit with_noise(const JointFit& told, double factor) {
-  JointFit out = told;
+JointFit with_noise(const JointFit& stated, double factor) {
+  JointFit out = stated;
   for (JointPose& pose : out.problem.poses) pose.weight /= factor;
   refit_nuisances(out.problem, out.state);
   return out;
@@ -180,14 +183,14 @@ double largest_fall(const Criticism& c) {
 /// Beside the walk the white noise may be larger than the dwells say, as 1/f noise or correlated samples make
 /// it. It is taken for that where this describes the readings better than any law does, by `fall` in
 /// chi-square. Empty where the dwells stay what counts.
-std::optional<Against> beside_larger_noise(const JointFit& told, const Against& dwells,
+std::optional<Against> beside_larger_noise(const JointFit& stated, const Against& dwells,
                                            const WanderingEstimate& found, double fall) {
   constexpr double kStep = 1.25, kMost = 20;
-  constexpr double kEnough = 20;  // of 2 ln of the odds
-  double factor = 1, least = deviance_of(told, dwells.rates) - std::max(fall, kEnough);
+  constexpr double kEnoughOdds = 20;  // of 2 ln of the odds
+  double factor = 1, least = deviance_of(stated, dwells.rates) - std::max(fall, kEnoughOdds);
   WanderingRates rates;
   for (double at = kStep; at < kMost; at *= kStep) {
-    const JointFit fit = with_noise(told, at);
+    const JointFit fit = with_noise(stated, at);
     const auto deviance = [&](const WanderingRates& r) { return deviance_of(fit, r); };
     const WanderingRates beside = at_least(found.nT_per_sqrt_h, deviance);
     if (const double now = deviance(beside); now < least) {
@@ -197,22 +200,23 @@ std::optional<Against> beside_larger_noise(const JointFit& told, const Against& 
     }
   }
   if (!(factor > 1)) return std::nullopt;
-  return Against{with_noise(told, factor), rates, factor};
+  return Against{with_noise(stated, factor), rates, factor};
 }
 
 /// The tests against a walk, and where it needs to be beside larger noise.
-Criticism judged_against_walk(const JointFit& told, const WanderingEstimate& found,
-                              const CandidateEffects& suspects, std::uint64_t seed, const Rates& before) {
-  Against against{told, beside_white(told, found.nT_per_sqrt_h)};
+Criticism judged_against_walk(const JointFit& stated, const WanderingEstimate& found,
+                              const CandidateEffects& candidate_effects, std::uint64_t seed,
+                              const Rates& before) {
+  Against against{stated, beside_white(stated, found.nT_per_sqrt_h)};
   const auto tests = [&](const WanderingRates& rates) {
-    Criticism out = criticise_against_walk(against.fit, rates, suspects, seed, &before);
+    Criticism out = criticise_against_walk(against.fit, rates, candidate_effects, seed, &before);
     if (!out.rejects_named()) look_at_maps(out);
     return out;
   };
   Criticism out = tests(against.rates);
   const double most = out.chi2 - out.dof - out.dof * std::log(std::max(1.0, out.chi2 / out.dof));
   if (out.rejects() && most > largest_fall(out)) {  // what a common factor of all noise could take away
-    if (auto larger = beside_larger_noise(told, against, found, largest_fall(out))) {
+    if (auto larger = beside_larger_noise(stated, against, found, largest_fall(out))) {
       against = *std::move(larger);
       out = tests(against.rates);
     }
@@ -224,36 +228,37 @@ Criticism judged_against_walk(const JointFit& told, const WanderingEstimate& fou
 }
 
 /// One axis follows time in a way that no walk does.
-bool is_a_curve(const WanderingRival& rival) {
-  const std::vector<std::string>& all = rival.estimate().where;
+bool is_a_curve(const WanderingAlternative& alternative) {
+  const std::vector<std::string>& all = alternative.estimate().where;
   if (all.size() != 1) return false;
   const auto where = Where::parse(all.front());
   return where && where->scale == Where::Scale::axis &&
-         rival.curve_instead(3 * where->sensor + where->axis) > 0;
+         alternative.curve_instead(3 * where->sensor + where->axis) > 0;
 }
 
 }  // namespace
 
-Judgement judge(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
+Judgement judge(const JointFit& fit, const CandidateEffects& candidate_effects, std::uint64_t seed,
                 const Rates* before) {
-  Judgement out{.fit = fit, .criticism = criticise(fit, suspects, seed, before)};
+  Judgement out{.fit = fit, .criticism = criticise(fit, candidate_effects, seed, before)};
   if (!out.criticism.rejects_named()) look_at_maps(out.criticism);
-  std::optional<WanderingRival> rival;
-  if (out.criticism.rejects_named() || out.criticism.rejects_map()) rival.emplace(*out.criticism.tested);
-  WanderingEstimate found = rival ? rival->estimate() : WanderingEstimate{};
+  std::optional<WanderingAlternative> alternative;
+  if (out.criticism.rejects_named() || out.criticism.rejects_map())
+    alternative.emplace(*out.criticism.tested);
+  WanderingEstimate found = alternative ? alternative->estimate() : WanderingEstimate{};
   const JointFit& judged = *out.criticism.tested;
   if (found.any() &&
-      (found.evidence < kWanderingEvidence + unequal_noise_evidence(judged) || is_a_curve(*rival)))
+      (found.evidence < kWanderingEvidence + unequal_noise_evidence(judged) || is_a_curve(*alternative)))
     found = {};
   if (!found.any()) return out;
   AgainstWalk walk;
-  const JointFit told = as_told(judged);
+  const JointFit stated = as_stated(judged);
   // A few slow terms do not tell a law from a walk that is far above the noise: a law then has to make it
   // vanish, or the tests stand against the walk as it was found without any law.
   const auto mild = [&](const WanderingEstimate& w) {
-    return step_over_noise(told, beside_white(told, w.nT_per_sqrt_h)) < kMild;
+    return step_over_noise(stated, beside_white(stated, w.nT_per_sqrt_h)) < kMild;
   };
-  ask(*rival, out.criticism, walk);
+  ask(*alternative, out.criticism, walk);
   if (walk.passed && (!walk.beside.any() || mild(walk.beside))) {
     found = std::move(walk.beside);
   } else if (walk.passed || !mild(found)) {
@@ -265,9 +270,9 @@ Judgement judge(const JointFit& fit, const CandidateEffects& suspects, std::uint
     out.fit.covariance = *std::move(covariance);
   const Rates rates = std::move(out.criticism.rates);
   const double chi2 = out.criticism.chi2;
-  out.criticism = judged_against_walk(told, found, suspects, seed, rates);
+  out.criticism = judged_against_walk(stated, found, candidate_effects, seed, rates);
   out.criticism.chi2 = chi2;
-  if (asked) ask(*rival, out.criticism, walk);
+  if (asked) ask(*alternative, out.criticism, walk);
   hold_against(walk, out.criticism);
   out.criticism.noise.wandering = std::move(found);
   return out;

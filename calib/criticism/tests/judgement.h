@@ -6,8 +6,8 @@
 ///
 /// Where nothing stands out against the noise that is assumed, nothing is asked. Where something does, the
 /// offsets may wander (wandering_estimate.h). Each law that stood out is then asked against the walk
-/// (wandering_rival.h), and only one that beats it can be named. The noise in force is what still wanders
-/// beside the best such law, or everything that wanders where there is none.
+/// (wandering_alternative.h), and only one that beats it can be named. The noise in force is what still
+/// wanders beside the best such law, or everything that wanders where there is none.
 namespace mgtd::calib {
 
 struct Judgement {
@@ -16,7 +16,7 @@ struct Judgement {
 };
 
 /// `before` as in criticise().
-[[nodiscard]] Judgement judge(const JointFit& fit, const CandidateEffects& suspects, std::uint64_t seed,
-                              const Rates* before = nullptr);
+[[nodiscard]] Judgement judge(const JointFit& fit, const CandidateEffects& candidate_effects,
+                              std::uint64_t seed, const Rates* before = nullptr);
 
 }  // namespace mgtd::calib

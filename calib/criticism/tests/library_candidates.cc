@@ -63,7 +63,7 @@ decltype(CandidateEffect::dipole_at) dipole_of(const EffectFamily& family) {
   return {};
 }
 
-CandidateEffect suspect_of(const EffectFamily& family, const EffectContext& context) {
+CandidateEffect candidate_effect_of(const EffectFamily& family, const EffectContext& context) {
   CandidateEffect out{.name = std::string(family.name),
                       .level = family.level,
                       .typical = family.typical,
@@ -114,7 +114,7 @@ std::string without_name(std::string message, std::string_view name) {
 
 }  // namespace
 
-CandidateEffects library_suspects(const PoseTable& table, const std::vector<EffectPtr>& left_out) {
+CandidateEffects library_candidates(const PoseTable& table, const std::vector<EffectPtr>& left_out) {
   CandidateEffects out;
   const EffectContext context{.table = &table, .offset_nT = {}};
   for (const EffectFamily& family : effect_families()) {
@@ -144,7 +144,7 @@ CandidateEffects library_suspects(const PoseTable& table, const std::vector<Effe
       out.untestable.push_back({std::string(family.name), "the temperatures of these poses never change"});
       continue;
     }
-    out.testable.push_back(suspect_of(family, context));
+    out.testable.push_back(candidate_effect_of(family, context));
   }
   return out;
 }

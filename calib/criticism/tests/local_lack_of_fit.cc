@@ -20,7 +20,7 @@ std::vector<std::size_t> channels_of(const std::string& where) {
 /// Values of the searched number that count as different.
 double values_of(const ScoredFamily& family) {
   double scales = 0;
-  for (const Hypothesis& h : family.suspect->hypotheses) scales += 1.0 / h.alike;
+  for (const Hypothesis& h : family.candidate_effect->hypotheses) scales += 1.0 / h.alike;
   return std::max(1.0, family.asked / scales);
 }
 
@@ -30,7 +30,7 @@ double of_effects(const Criticism& c, const std::string& channel) {
   for (const ScoredFamily& family : c.families) {
     bool any = false;
     for (const Score& score : family.scores) {
-      const Hypothesis& h = family.suspect->hypotheses[score.hypothesis];
+      const Hypothesis& h = family.candidate_effect->hypotheses[score.hypothesis];
       if (h.axes != 1 || h.where != channel) continue;
       smallest = std::min(smallest, score.log10_p);
       any = true;
@@ -51,7 +51,7 @@ double of_maps(const Criticism& c, std::size_t channel) {
 
 }  // namespace
 
-double rest_log10_p(const Criticism& c, const std::string& where) {
+double local_lack_of_fit_log10_p(const Criticism& c, const std::string& where) {
   const auto channels = channels_of(where);
   double smallest = 0;
   for (const std::size_t channel : channels)

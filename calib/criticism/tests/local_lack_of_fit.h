@@ -11,10 +11,10 @@
 namespace mgtd::calib {
 
 /// Right names that are called incomplete.
-inline constexpr double kRestAlarm = 0.01;
+inline constexpr double kLackOfFitAlarm = 0.01;
 
 /// log10 of the probability that noise alone leaves so much on `where` ("s3.z" or "s3"), named effects and
 /// maps counted; 0 for what acts on more than one sensor.
-[[nodiscard]] double rest_log10_p(const Criticism& criticism, const std::string& where);
+[[nodiscard]] double local_lack_of_fit_log10_p(const Criticism& criticism, const std::string& where);
 
 }  // namespace mgtd::calib

@@ -111,7 +111,7 @@ std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std
     const Signature& s = family.signatures[v];
     const Eigen::Index m = s.columns.cols();
     const Eigen::MatrixXd sums = draws.length.segment(at, m).asDiagonal() * draws.sums.middleRows(at, m);
-    for (const Hypothesis& h : family.suspect->hypotheses) {
+    for (const Hypothesis& h : family.candidate_effect->hypotheses) {
       const Eigen::MatrixXd basis = one_step(s, h).basis;
       if (basis.cols() == 0) continue;
       const Eigen::ArrayXd S = (basis.transpose() * sums).colwise().squaredNorm().transpose().array();
@@ -149,7 +149,7 @@ Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed) 
     const std::vector<double> own = smallest(family, together, f, tails);
     const double m = rate_of(own);
     for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
-    double& asked = out.family[family.suspect->name] = m;
+    double& asked = out.family[family.candidate_effect->name] = m;
     if (family.signatures.size() > kTogether) {
       const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1);
       asked = rate_of(smallest(family, alone, 0, tails));
@@ -162,7 +162,7 @@ Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed) 
 bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates) {
   bool all = true;
   for (ScoredFamily& family : families) {
-    const auto rate = rates.family.find(family.suspect->name);
+    const auto rate = rates.family.find(family.candidate_effect->name);
     all = all && rate != rates.family.end();
     family.asked = rate == rates.family.end() ? 1 : rate->second;
     family.calibrated = best_of(std::min(0.0, family.priced), family.asked);

@@ -180,8 +180,9 @@ std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof
   // its own error, pull at the attitudes.
   JointProblem problem = fit.problem;
   JointState state = fit.state;
-  if (fit.worse > 1) {
-    for (JointPose& pose : problem.poses) pose.weight *= fit.worse, pose.f_weight *= fit.worse;
+  if (fit.noise_inflation > 1) {
+    for (JointPose& pose : problem.poses)
+      pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
     refit_nuisances(problem, state);
   }
   const Fitted f = fitted(problem, state);
@@ -196,12 +197,13 @@ std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof
   if (!(expected > 0)) return std::nullopt;
   out.nu = expected / 2;
   out.ratio = squares / expected;
-  const double rest = std::max(0.0, chi2 * fit.worse * fit.worse - out.ratio * out.nu),
-               rest_dof = dof - out.nu;
-  if (rest_dof > 0) {
-    out.F = rest / rest_dof / out.ratio;
-    out.log10_p = f_log10_p(out.F, rest_dof, out.nu);
-    out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, rest / rest_dof - out.ratio));
+  const double lack_of_fit =
+                   std::max(0.0, chi2 * fit.noise_inflation * fit.noise_inflation - out.ratio * out.nu),
+               lack_of_fit_dof = dof - out.nu;
+  if (lack_of_fit_dof > 0) {
+    out.F = lack_of_fit / lack_of_fit_dof / out.ratio;
+    out.log10_p = f_log10_p(out.F, lack_of_fit_dof, out.nu);
+    out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, lack_of_fit / lack_of_fit_dof - out.ratio));
   }
   return out;
 }
@@ -210,14 +212,14 @@ NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
   NoiseModel out{.rho = residual.whitener().rho(),
                  .revisits = pure_error(fit, residual.chi2(), residual.dof()),
                  .reference = {.dof = residual.dof()}};
-  out.told = fit.sample_noise_nT.has_value();
+  out.known = fit.sample_noise_nT.has_value();
   out.quantisation_nT = fit.quantisation.step_nT;
   NoiseReference& n = out.reference;
   // What lasts from one pose to the next is not seen within a dwell, and what a model far off leaves is no
   // noise: its size is that of the residual.
-  const bool lasting = out.correlated() || fit.worse > 1 || residual.whitener().wanders();
-  n.known = out.told && !lasting;
-  n.by_channel = !out.told;
+  const bool lasting = out.correlated() || fit.noise_inflation > 1 || residual.whitener().wanders();
+  n.known = out.known && !lasting;
+  n.by_channel = !out.known;
   if (lasting) n.scale2 = residual.chi2() / residual.dof();
   if (n.known && out.revisits) {
     const PureError& p = *out.revisits;

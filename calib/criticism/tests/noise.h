@@ -34,7 +34,7 @@ struct NoiseModel {
   double rho{0};
   std::optional<PureError> revisits{};
   NoiseReference reference;
-  bool told{true};  ///< the noise of a pose mean, by the spreads within the dwells
+  bool known{true};  ///< the noise of a pose mean, from the spreads within the dwells
   /// Residual over the noise that the dwells tell, where it is larger and no law, no map and no revisit says
   /// that the model is at fault; else one.
   double beyond_dwells{1};

@@ -122,7 +122,7 @@ void RearrangementWatch::add(const Epoch& epoch, std::optional<bool> beyond) {
     calm_ = 0;
     explain(epoch);
   } else if (++calm_ >= kAgree) {
-    verdict_.reset();
+    finding_.reset();
     possible_.clear();
     explained_ = 0;
   }
@@ -141,7 +141,7 @@ void RearrangementWatch::explain(const Epoch& epoch) {
   possible_ = std::move(found);
   if (possible_.empty()) {
     explained_ = 0;
-    verdict_.reset();
+    finding_.reset();
     return;
   }
   if (++explained_ == kAgree || (explained_ > kAgree && fewer)) conclude(epoch);
@@ -149,7 +149,7 @@ void RearrangementWatch::explain(const Epoch& epoch) {
 
 void RearrangementWatch::conclude(const Epoch& epoch) {
   const double chi2 = pipeline_->apply(epoch).closure.chi2;
-  LiveVerdict out;
+  LiveFinding out;
   out.limit = "100, ten standard deviations";
   if (possible_.front().turned) {
     out.state = LiveState::turned;
@@ -169,7 +169,7 @@ void RearrangementWatch::conclude(const Epoch& epoch) {
         "swap the plugs back, of the digitisers or of the sensors behind them, or exchange the ports in the "
         "configuration";
   }
-  verdict_ = std::move(out);
+  finding_ = std::move(out);
 }
 
 }  // namespace mgtd::calib

@@ -47,7 +47,7 @@ class RearrangementWatch {
   /// `beyond`: as LiveCriticism says of this sample; nothing where it was not judged.
   void add(const Epoch& epoch, std::optional<bool> beyond);
   /// State exchanged or turned; empty while nothing is concluded.
-  [[nodiscard]] const std::optional<LiveVerdict>& verdict() const { return verdict_; }
+  [[nodiscard]] const std::optional<LiveFinding>& finding() const { return finding_; }
 
  private:
   void explain(const Epoch& epoch);
@@ -56,7 +56,7 @@ class RearrangementWatch {
   std::optional<TensorPipeline> pipeline_;
   std::vector<Rearrangement> possible_;  ///< explain all samples of those counted
   int explained_{0}, calm_{0};
-  std::optional<LiveVerdict> verdict_;
+  std::optional<LiveFinding> finding_;
 };
 
 }  // namespace mgtd::calib

@@ -12,9 +12,9 @@ namespace {
 constexpr int kHalvings = 4;
 
 /// The value next to that of the winner, below or above; empty at the end.
-std::optional<double> neighbour(const CandidateEffect& suspect, double value, bool above) {
+std::optional<double> neighbour(const CandidateEffect& candidate_effect, double value, bool above) {
   std::optional<double> out;
-  for (const auto& other : suspect.values) {
+  for (const auto& other : candidate_effect.values) {
     if (!other || (above ? *other <= value : *other >= value)) continue;
     if (!out || (above ? *other < *out : *other > *out)) out = other;
   }
@@ -23,9 +23,9 @@ std::optional<double> neighbour(const CandidateEffect& suspect, double value, bo
 
 /// The family with a suspect of its own, to which more may be added.
 CandidateEffect& widened(ScoredFamily& family) {
-  const auto wider = std::make_shared<CandidateEffect>(*family.suspect);
+  const auto wider = std::make_shared<CandidateEffect>(*family.candidate_effect);
   family.own = wider;
-  family.suspect = wider.get();
+  family.candidate_effect = wider.get();
   return *wider;
 }
 
@@ -41,7 +41,7 @@ void add_variant(const std::optional<double>& value, EffectPtr effect, Signature
 
 void refine(const JointProblem& problem, const JointState& state, const Residual& residual,
             const NoiseReference& noise, ScoredFamily& family) {
-  if (!family.suspect->between || !family.suspect->values[family.winner().variant]) return;
+  if (!family.candidate_effect->between || !family.candidate_effect->values[family.winner().variant]) return;
   CandidateEffect& wider = widened(family);
   for (int i = 0; i < kHalvings; ++i) {
     const double value = *wider.values[family.winner().variant];
@@ -59,7 +59,7 @@ void refine(const JointProblem& problem, const JointState& state, const Residual
 
 void refine_place(const JointProblem& problem, const JointState& state, const Residual& residual,
                   const NoiseReference& noise, ScoredFamily& family) {
-  if (!family.suspect->dipole_at) return;
+  if (!family.candidate_effect->dipole_at) return;
   CandidateEffect& wider = widened(family);
   const std::optional<double> value = wider.values[family.winner().variant];
   auto found = find_dipole(problem, state, residual, [&](const Eigen::Vector3d& place_S_m) {

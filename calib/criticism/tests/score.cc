@@ -69,8 +69,8 @@ Score score_one(const Signature& s, const Hypothesis& h) {
 }  // namespace
 
 void ScoredFamily::score_last(const NoiseReference& noise) {
-  for (std::size_t h = 0; h < suspect->hypotheses.size(); ++h) {
-    const Hypothesis& hypothesis = suspect->hypotheses[h];
+  for (std::size_t h = 0; h < candidate_effect->hypotheses.size(); ++h) {
+    const Hypothesis& hypothesis = candidate_effect->hypotheses[h];
     if (hypothesis.combine.rows() != signatures.back().columns.cols())
       continue;  // of another form of the law
     Score score = score_one(signatures.back(), hypothesis);
@@ -88,9 +88,9 @@ void ScoredFamily::score_last(const NoiseReference& noise) {
 }
 
 ScoredFamily score_family(const JointProblem& problem, const JointState& state, const Residual& residual,
-                          const NoiseReference& noise, const CandidateEffect& suspect) {
-  ScoredFamily out{.suspect = &suspect};
-  for (const EffectPtr& variant : suspect.variants) {
+                          const NoiseReference& noise, const CandidateEffect& candidate_effect) {
+  ScoredFamily out{.candidate_effect = &candidate_effect};
+  for (const EffectPtr& variant : candidate_effect.variants) {
     out.signatures.push_back(signature_of(residual, effect_rows(problem, state, variant)));
     out.score_last(noise);
   }

@@ -58,7 +58,7 @@ struct OneStep {
 };
 
 struct ScoredFamily {
-  const CandidateEffect* suspect{nullptr};
+  const CandidateEffect* candidate_effect{nullptr};
   std::shared_ptr<const CandidateEffect>
       own{};                            ///< that suspect, where it was refined: see scan_refinement.h
   std::vector<Signature> signatures{};  ///< by variant
@@ -68,7 +68,7 @@ struct ScoredFamily {
   double asked{1};       ///< independent questions in the family, by draws: see multiplicity.h
   double calibrated{0};  ///< log10 p of the family, that many questions counted
   [[nodiscard]] const Score& winner() const { return scores[best]; }
-  [[nodiscard]] const Hypothesis& where() const { return suspect->hypotheses[winner().hypothesis]; }
+  [[nodiscard]] const Hypothesis& where() const { return candidate_effect->hypotheses[winner().hypothesis]; }
   [[nodiscard]] bool testable() const { return !scores.empty(); }
   /// Scores every hypothesis of the signature added last.
   void score_last(const NoiseReference& noise);
@@ -78,6 +78,6 @@ struct ScoredFamily {
 [[nodiscard]] OneStep one_step(const Signature& signature, const Hypothesis& hypothesis);
 [[nodiscard]] ScoredFamily score_family(const JointProblem& problem, const JointState& state,
                                         const Residual& residual, const NoiseReference& noise,
-                                        const CandidateEffect& suspect);
+                                        const CandidateEffect& candidate_effect);
 
 }  // namespace mgtd::calib

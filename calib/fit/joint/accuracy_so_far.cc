@@ -14,11 +14,12 @@ double AccuracySoFar::worst_nT_per_m() const {
 }
 
 Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,
-                                      const JointState* near) {
+                                      const JointState* warm_start) {
   const JointOptions joint = joint_options(options);
-  Result<JointFit> fit = near != nullptr ? fit_joint(table, joint, *near) : fit_joint(table, joint);
+  Result<JointFit> fit =
+      warm_start != nullptr ? fit_joint(table, joint, *warm_start) : fit_joint(table, joint);
   // A start that lies in another gauge, or was spoilt by a bad pose, is no reason to know nothing.
-  if (!fit && near != nullptr) fit = fit_joint(table, joint);
+  if (!fit && warm_start != nullptr) fit = fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
   const double f_nT = fit->problem.common_field ? fit->state.f_nT : start_field_nT(fit->problem, joint);
   return AccuracySoFar{

@@ -15,9 +15,9 @@ struct AccuracySoFar {
   [[nodiscard]] double worst_nT_per_m() const;
 };
 
-/// Joint fit from `near` (null: from nothing). Refuses while the poses do not determine the parameters: too
-/// few, or about one axis so far.
+/// Joint fit from `warm_start` (null: from nothing). Refuses while the poses do not determine the parameters:
+/// too few, or about one axis so far.
 [[nodiscard]] Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,
-                                                    const JointState* near);
+                                                    const JointState* warm_start);
 
 }  // namespace mgtd::calib

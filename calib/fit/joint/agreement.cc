@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/agreement.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -13,13 +11,6 @@
 namespace mgtd::calib {
 namespace {
 
-/// Noise with heavy tails (Student's t with three degrees of freedom) reaches 1.6, a smooth law that the
-/// model misses 2.
-constexpr double kMaxTails = 3;
-constexpr double kMaxHeldOut = 3;
-/// Of fewer poses a tenth left out may leave the others too little to be predicted with.
-constexpr int kEnoughPoses = 40;
-constexpr double kMaxMoved = 1;
 /// In variance, of what the noise of the pose does on average: below, it is the design and not the reading.
 constexpr double kByNoise = 16;
 
@@ -43,7 +34,7 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
     if (!d.allFinite()) continue;
     const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * others * d.asDiagonal());
     if (llt.info() != Eigen::Success) continue;
-    const Eigen::VectorXd g = d.cwiseProduct(own.g) * (fit.worse / fit.spread);
+    const Eigen::VectorXd g = d.cwiseProduct(own.g) * (fit.noise_inflation / fit.birge_ratio);
     const double moved = g.dot(llt.solve(g));
     const double by_noise = llt.solve(d.asDiagonal() * own.S * d.asDiagonal()).trace();
     const double size = std::sqrt(moved / static_cast<double>(S.rows()));
@@ -85,28 +76,6 @@ Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double>
   out.scatter = scatter_of(fit);
   influence_of_poses(fit, out);
   return out;
-}
-
-Check agreement_check(const Agreement& a) {
-  const bool tails = a.scatter.few_far_off();
-  const bool unseen = a.poses >= kEnoughPoses && a.held_out_nT && *a.held_out_nT > kMaxHeldOut * a.fitted_nT;
-  const bool moved = a.moved > kMaxMoved;
-  std::string measured = fmt::format("residual {:.3g} nT rms, {:.3g} nT by the median", a.scatter.residual_nT,
-                                     a.scatter.typical_nT);
-  if (a.held_out_nT) measured += fmt::format("; {:.3g} nT on poses left out", *a.held_out_nT);
-  measured += a.pose > 0 ? fmt::format(
-                               "; without pose {} the calibration moves by {:.2g} of its standard "
-                               "deviations",
-                               a.pose, a.moved)
-                         : std::string("; no pose moves it by more than its noise");
-  return {"agreement", !tails && !unseen && !moved, std::move(measured),
-          fmt::format("rms {} times the median's, poses left out {} times, one pose {} standard deviation",
-                      kMaxTails, kMaxHeldOut, kMaxMoved),
-          moved ? fmt::format("the calibration rests on pose {}: measure it again", a.pose)
-          : tails
-              ? std::string("a few readings are far off and bend the others: look at the largest residuals")
-              : std::string("poses that were not fitted are missed: look for a change during the run, and "
-                            "measure more attitudes")};
 }
 
 }  // namespace mgtd::calib

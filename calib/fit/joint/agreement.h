@@ -10,6 +10,11 @@
 /// or poses that were left out and are missed by more than those that were fitted.
 namespace mgtd::calib {
 
+/// Ratio of the residual's rms to the rms that its median implies, above which a few readings are far off.
+/// Noise with heavy tails (Student's t with three degrees of freedom) reaches 1.6, a smooth law that the
+/// model misses 2.
+inline constexpr double kMaxTails = 3;
+
 /// How far the readings that were kept scatter.
 struct Scatter {
   double residual_nT{0};  ///< root of the mean square
@@ -32,6 +37,5 @@ struct Agreement {
 };
 
 [[nodiscard]] Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT);
-[[nodiscard]] Check agreement_check(const Agreement& agreement);
 
 }  // namespace mgtd::calib

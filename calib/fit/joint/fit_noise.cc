@@ -17,8 +17,8 @@ double settled(double freedom) { return std::max(kSettled, 0.1 / std::sqrt(2 * s
 
 void FitNoise::apply(JointProblem& problem) const {
   if (sample_nT) {
-    weight_by_samples(problem, *sample_nT * worse);
-    add_variance(problem, more_nT2 * worse * worse);
+    weight_by_samples(problem, *sample_nT * noise_inflation);
+    add_variance(problem, more_nT2 * noise_inflation * noise_inflation);
   } else {
     weight_by_pose(problem, pose_nT);
   }

@@ -17,7 +17,7 @@ struct FitNoise {
   AxisNoise pose_nT{AxisNoise::Constant(kStartNoise_nT)};  ///< of a pose mean, where no dwell tells it
   std::optional<AxisNoise> sample_nT{};                    ///< of a sample, where the dwells do
   double table_sd_rad{0};
-  double worse{1};  ///< JointOptions::worse
+  double noise_inflation{1};  ///< JointOptions::noise_inflation
   /// Beside the dwells' own, nT^2: of the digitiser's step, and what JointOptions adds.
   Channels more_nT2{Channels::Zero()};
 

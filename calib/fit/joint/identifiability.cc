@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/sensor/sensor_equations.h"
@@ -89,21 +90,20 @@ std::vector<NamedShare> parts(const JointProblem& problem, const Eigen::VectorXd
   return out;
 }
 
-/// The largest parts of a direction, until they make up most of it.
-std::string describe(const JointProblem& problem, const Eigen::VectorXd& v) {
+/// Names the largest parts of a direction, until they make up most of it.
+void name_parameters(const JointProblem& problem, WeakDirection& weak) {
   constexpr std::size_t kMaxNames = 4;
-  std::string text;
   double covered = 0;
-  const std::vector<NamedShare> all = parts(problem, v);
+  const std::vector<NamedShare> all = parts(problem, weak.direction);
   for (std::size_t j = 0; j < kMaxNames && covered < kNamedShare; ++j) {
-    text += (text.empty() ? "" : " with ") + all[j].name;
+    weak.parameters.push_back(all[j].name);
     covered += all[j].share;
   }
-  return covered < kNamedShare ? text + " and others" : text;
+  weak.others = covered < kNamedShare;
 }
 
-/// Mean direction of the field in the platform frame and how far it spreads, in degrees.
-std::string coverage_text(const JointProblem& problem, const JointState& state) {
+/// Mean direction of the field in the platform frame and how far it spreads.
+FieldCoverage field_coverage(const JointProblem& problem, const JointState& state) {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   std::vector<Eigen::Vector3d> directions;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
@@ -117,18 +117,13 @@ std::string coverage_text(const JointProblem& problem, const JointState& state) 
   for (const Eigen::Vector3d& b : directions) scatter += (b - mean) * (b - mean).transpose();
   Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
   if (axis.dot(mean) < 0) axis = -axis;
-  double low = 180, high = 0;
+  FieldCoverage out{.axis_P = axis, .least_rad = std::numbers::pi, .most_rad = 0};
   for (const Eigen::Vector3d& b : directions) {
-    const double angle = to_deg(std::acos(std::clamp(b.dot(axis), -1.0, 1.0)));
-    low = std::min(low, angle);
-    high = std::max(high, angle);
+    const double angle_rad = std::acos(std::clamp(b.dot(axis), -1.0, 1.0));
+    out.least_rad = std::min(out.least_rad, angle_rad);
+    out.most_rad = std::max(out.most_rad, angle_rad);
   }
-  Eigen::Index nearest = 0;
-  const double along = axis.cwiseAbs().maxCoeff(&nearest);
-  const std::string name = fmt::format("{}{}", axis[nearest] < 0 ? '-' : '+', "XYZ"[nearest]);
-  return fmt::format(
-      "seen from the rig the field stays between {:.0f} and {:.0f} deg from platform {}{}", low, high, name,
-      along > 0.95 ? "" : fmt::format(" (axis {:.2f}, {:.2f}, {:.2f})", axis[0], axis[1], axis[2]));
+  return out;
 }
 
 /// Greedy: each time the attitude that takes most variance out of the weak directions.
@@ -178,11 +173,6 @@ const std::vector<TableAngles>& candidate_attitudes() {
   return attitudes;
 }
 
-std::string to_text(const TableAngles& a) {
-  return fmt::format("azimuth {:.0f}, pitch {:.0f}, roll {:.0f} deg", to_deg(a.azimuth_rad),
-                     to_deg(a.pitch_rad), to_deg(a.roll_rad));
-}
-
 Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& state,
                                const TableAngles& angles, double f_nT) {
   JointProblem one;
@@ -228,11 +218,11 @@ Identifiability identifiability(const JointProblem& problem, const JointState& s
     const double lambda = eigen.eigenvalues()[j];
     const double sd = lambda > rounding ? 1 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
     if (sd < kWeak_nT) break;
-    out.weak.push_back({.sd_nT = sd,
-                        .what = describe(problem, eigen.eigenvectors().col(j)),
-                        .direction = eigen.eigenvectors().col(j)});
+    WeakDirection weak{.sd_nT = sd, .parameters = {}, .direction = eigen.eigenvectors().col(j)};
+    name_parameters(problem, weak);
+    out.weak.push_back(std::move(weak));
   }
-  out.coverage = coverage_text(problem, state);
+  out.coverage = field_coverage(problem, state);
   if (out.weak.empty()) return out;
   out.add = best_additions(problem, state, S,
                            eigen.eigenvectors().leftCols(static_cast<Eigen::Index>(out.weak.size())), d, f_nT,

@@ -6,7 +6,7 @@
 
 #include "calib/fit/joint/joint_problem.h"
 
-/// What the poses do not tell: combinations of parameters with large uncertainty, in the operator's words.
+/// Which combinations of parameters the poses do not determine.
 ///
 /// The information matrix is put into nanotesla at the mean field (offsets as they are, scale factors and
 /// angles times F), the common rotation is taken out (it turns the platform frame and leaves the tensor of a
@@ -14,9 +14,17 @@
 namespace mgtd::calib {
 
 struct WeakDirection {
-  double sd_nT{0};            ///< of the corrected field along it; infinite when nothing is known
-  std::string what;           ///< "s1 offset z with s1 scale z"
+  double sd_nT{0};  ///< of the corrected field along it; infinite when nothing is known
+  /// Those that make up most of it, largest part first: "s1 offset z", "scale z of all sensors".
+  std::vector<std::string> parameters;
+  bool others{false};         ///< further parameters have a part in it that counts
   Eigen::VectorXd direction;  ///< unit vector in the fixed block, nT units
+};
+
+/// Where the field of the site went in the platform frame: a ring about an axis.
+struct FieldCoverage {
+  Eigen::Vector3d axis_P{Eigen::Vector3d::UnitZ()};
+  double least_rad{0}, most_rad{0};  ///< angles between the field and that axis
 };
 
 /// Above this a direction is worth naming: 1e-3 of 50 000 nT, which is 125 nT/m across a 0.4 m cross.
@@ -27,7 +35,7 @@ inline constexpr double kUnusable = 0.005;
 struct Identifiability {
   std::vector<WeakDirection> weak;  ///< weakest first, those above kWeak_nT
   double condition{1};              ///< of what the rig's parameters do to the field; infinite when singular
-  std::string coverage;  ///< where the field went in the platform frame, in degrees; says what is missing
+  FieldCoverage coverage;
   std::vector<TableAngles> add;  ///< poses that would help most, best first; empty when nothing is weak
   [[nodiscard]] double worst_nT() const { return weak.empty() ? 0 : weak.front().sd_nT; }
 };
@@ -44,8 +52,5 @@ struct Identifiability {
 /// the scalar reference and the table of the problem's first pose.
 [[nodiscard]] Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& state,
                                              const TableAngles& angles, double f_nT);
-
-/// "azimuth 90, pitch -45, roll 0 deg"
-[[nodiscard]] std::string to_text(const TableAngles& angles);
 
 }  // namespace mgtd::calib

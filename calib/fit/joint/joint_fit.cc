@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/joint_fit.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -26,7 +24,7 @@ double most_left_out(const JointProblem& problem, const JointOptions& options) {
 
 void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, JointFit& fit) {
   const JointProblem& problem = fit.problem;
-  fit.chi2 = (reduced.cost.readings + reduced.cost.scalar) * fit.worse * fit.worse;
+  fit.chi2 = (reduced.cost.readings + reduced.cost.scalar) * fit.noise_inflation * fit.noise_inflation;
   fit.chi2_table = reduced.cost.attitude;
   fit.dof_table = residuals.attitude_freedom;
   double unknowns =
@@ -43,49 +41,31 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
   // Three standard deviations of a chi-square: wider than noise alone would make it, so the uncertainties
   // follow.
   if (fit.dof > 0 && fit.chi2 > fit.dof + 3 * std::sqrt(2 * fit.dof))
-    fit.spread = std::sqrt(fit.chi2 / fit.dof);
+    fit.birge_ratio = std::sqrt(fit.chi2 / fit.dof);
 }
 
-/// With readings and scalar reference worse by the spread; the table's angles have their own estimate.
+/// With the noise of readings and scalar reference inflated by the Birge ratio; the table's angles have their
+/// own estimate.
 Eigen::MatrixXd widened_information(const JointFit& fit) {
   JointProblem wide = fit.problem;
   for (JointPose& pose : wide.poses) {
-    pose.weight *= fit.worse / fit.spread;
-    pose.f_weight *= fit.worse / fit.spread;
+    pose.weight *= fit.noise_inflation / fit.birge_ratio;
+    pose.f_weight *= fit.noise_inflation / fit.birge_ratio;
   }
   return reduce(wide, fit.state, 0).S;
 }
 
-std::string describe_gauge(const JointFit& fit) {
-  const auto sd_deg = [&](int parameter) {
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(fit.covariance.rows());
+/// Of the mean alpha, beta and gamma of the four sensors.
+std::array<double, 3> common_rotation_sd(const Eigen::MatrixXd& covariance) {
+  const auto sd = [&](int parameter) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(covariance.rows());
     for (int i = 0; i < kSensors; ++i) row[kSensorParameters * i + parameter] = 1.0 / kSensors;
-    return to_deg(std::sqrt(row.dot(fit.covariance * row)));
+    return std::sqrt(row.dot(covariance * row));
   };
-  std::string text;
-  if (fit.gauge.angles == AngleCoverage::none) {
-    text =
-        "no table angles: mean alpha = mean beta = mean gamma = 0 of the four sensors, relative to their "
-        "mountings; the "
-        "common rotation against the platform is unknown";
-  } else {
-    const bool convention = fit.gauge.angles == AngleCoverage::one_axis && !fit.gauge.declination_known;
-    text = fmt::format(
-        "{} (table angles to {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, "
-        "{:.2g} about Y",
-        fit.gauge.angles == AngleCoverage::full ? "platform frame is the table frame"
-                                                : "platform by the table's one axis",
-        to_deg(fit.table_sd_rad), sd_deg(alpha), sd_deg(beta));
-    text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
-                       : fmt::format(", {:.2g} about Z", sd_deg(gamma));
-    if (fit.gauge.declination_known) text += "; declination as given";
-  }
-  if (!fit.gauge.scale_known)
-    text += fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}", kScaleIsFree);
-  return text;
+  return {sd(alpha), sd(beta), sd(gamma)};
 }
 
-Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* near,
+Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* warm_start,
                      bool& unsettled) {
   auto problem = joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
@@ -93,64 +73,69 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   fit.problem = std::move(*problem);
   fit.gauge = fix_gauge(fit.problem, options);
   const double f_nT = start_field_nT(fit.problem, options);
-  Result<JointState> state = near != nullptr
-                                 ? joint_state(fit.problem, near->sensors, near->direction, near->f_nT)
-                                 : joint_start(fit.problem, f_nT);
-  if (state && near != nullptr && near->coefficients.size() == state->coefficients.size())
-    state->coefficients = near->coefficients;
+  Result<JointState> state = warm_start != nullptr ? joint_state(fit.problem, warm_start->sensors,
+                                                                 warm_start->direction, warm_start->f_nT)
+                                                   : joint_start(fit.problem, f_nT);
+  if (state && warm_start != nullptr && warm_start->coefficients.size() == state->coefficients.size())
+    state->coefficients = warm_start->coefficients;
 
   FitNoise noise;
   noise.sample_nT = sample_noise(table);
   noise.table_sd_rad = options.table_sd_rad;
   fit.quantisation = quantisation_of(table);
   noise.more_nT2 = options.more_nT2 + fit.quantisation.variance_nT2.reshaped<Eigen::RowMajor>().matrix();
-  fit.worse = noise.worse = noise.sample_nT ? options.worse : 1;
-  for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.worse;
+  fit.noise_inflation = noise.noise_inflation = noise.sample_nT ? options.noise_inflation : 1;
+  for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.noise_inflation;
   const double most = most_left_out(fit.problem, options);
-  auto found = near != nullptr ? robust_fit_near(fit.problem, *std::move(state), noise, most, unsettled)
-                               : robust_fit(fit.problem, std::move(state), f_nT, noise, most, unsettled);
+  auto found = warm_start != nullptr
+                   ? robust_fit_from(fit.problem, *std::move(state), noise, most, unsettled)
+                   : robust_fit(fit.problem, std::move(state), f_nT, noise, most, unsettled);
   if (!found) return tl::unexpected(found.error());
   noise = found->noise;
+  fit.termination = found->termination;
+  fit.rounds = found->rounds;
   fit.iterations = found->iterations;
+  fit.start = std::move(found->start);
   fit.state = std::move(found->solution.state);
   fit.outliers = found->outliers.nodes(fit.problem, fit.state);
   fit.contradicting = std::max(found->outliers.share(), found->outliers.too_many());
-  fit.pose_noise_nT = assumed_noise(fit.problem) / fit.worse;
+  fit.pose_noise_nT = assumed_noise(fit.problem) / fit.noise_inflation;
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
   Reduced& reduced = found->solution.reduced;
   fill_statistics(found->residuals, reduced, fit);
-  auto covariance = covariance_of(fit.spread > 1 ? widened_information(fit) : std::move(reduced.S));
+  auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : std::move(reduced.S));
   if (!covariance) return tl::unexpected(covariance.error());
   fit.covariance = *std::move(covariance);
-  fit.gauge_text = describe_gauge(fit);
+  fit.common_rotation_sd_rad = common_rotation_sd(fit.covariance);
   return fit;
 }
 
 /// Again until the readings are as much worse as the residual says; as the table says where that is little.
-Result<JointFit> sized(const PoseTable& table, JointOptions options, const JointState* near, JointFit fit) {
+Result<JointFit> sized(const PoseTable& table, JointOptions options, const JointState* warm_start,
+                       JointFit fit) {
   constexpr int kMost = 10;  // where a law accounts for nearly all, the size falls by orders of magnitude
   for (int i = 0; i < kMost; ++i) {
     const double wanted = std::sqrt(fit.chi2 / std::max(fit.dof, 1.0));
-    options.worse = wanted > (fit.worse > 1 ? kNearAgain : kFarOff) ? wanted : 1;
-    if (std::abs(options.worse / fit.worse - 1) < kSizeSettled) break;
+    options.noise_inflation = wanted > (fit.noise_inflation > 1 ? kNearAgain : kFarOff) ? wanted : 1;
+    if (std::abs(options.noise_inflation / fit.noise_inflation - 1) < kSizeSettled) break;
     bool unsettled = false;
-    auto next = run(table, options, near, unsettled);
+    auto next = run(table, options, warm_start, unsettled);
     if (!next) return next;
     fit = *std::move(next);
   }
   return fit;
 }
 
-Result<JointFit> settled_run(const PoseTable& table, JointOptions options, const JointState* near) {
+Result<JointFit> settled_run(const PoseTable& table, JointOptions options, const JointState* warm_start) {
   bool unsettled = false;
-  auto fit = run(table, options, near, unsettled);
-  if (fit || !unsettled || options.worse > 1 || !sample_noise(table)) return fit;
-  options.worse = kVeryFarOff;
-  auto far = run(table, options, near, unsettled);
-  if (far) far = sized(table, options, near, *std::move(far));
+  auto fit = run(table, options, warm_start, unsettled);
+  if (fit || !unsettled || options.noise_inflation > 1 || !sample_noise(table)) return fit;
+  options.noise_inflation = kVeryFarOff;
+  auto far = run(table, options, warm_start, unsettled);
+  if (far) far = sized(table, options, warm_start, *std::move(far));
   if (!far) return fit;
-  options.worse = 1;
+  options.noise_inflation = 1;
   auto again = run(table, options, &far->state, unsettled);
   return again ? std::move(again) : std::move(far);
 }
@@ -163,14 +148,15 @@ Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options) 
   return settled_run(table, options, nullptr);
 }
 
-Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options, const JointState& near) {
-  return settled_run(table, options, &near);
+Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options,
+                           const JointState& warm_start) {
+  return settled_run(table, options, &warm_start);
 }
 
 Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& options,
-                                   const JointState* near) {
-  auto fit = settled_run(table, options, near);
-  return fit ? sized(table, options, near, *std::move(fit)) : std::move(fit);
+                                   const JointState* warm_start) {
+  auto fit = settled_run(table, options, warm_start);
+  return fit ? sized(table, options, warm_start, *std::move(fit)) : std::move(fit);
 }
 
 Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "calib/fit/fit_summary.h"
 #include "calib/fit/joint/joint_setup.h"
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/joint/outliers.h"
@@ -20,25 +20,25 @@
 /// collapses or explodes is refused by its determinant. Does not decide whether a calibration is acceptable.
 namespace mgtd::calib {
 
-/// Stands in the gauge's text of a fit that knew no field.
-inline constexpr std::string_view kScaleIsFree = "the overall scale is free";
-
 struct JointFit {
   JointProblem problem;  ///< final weights; points into the pose table
   JointState state;
-  /// Of the fixed block, gauge constraints included; readings taken as worse by `spread`.
+  /// Of the fixed block, gauge constraints included; the noise of the readings inflated by `birge_ratio`.
   Eigen::MatrixXd covariance;
   AxisNoise pose_noise_nT{AxisNoise::Zero()};
   std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
   Quantisation quantisation;                 ///< in the weights, where they come from the dwells
-  double worse{1};                           ///< JointOptions::worse: in the weights, not in what follows
-  double table_sd_rad{0};                    ///< estimated; 0 without angles
-  double chi2{0}, dof{0};                    ///< readings and scalar reference
+  double noise_inflation{1};  ///< JointOptions::noise_inflation: in the weights, not in what follows
+  double table_sd_rad{0};     ///< estimated; 0 without angles
+  double chi2{0}, dof{0};     ///< readings and scalar reference
   double chi2_table{0}, dof_table{0};
-  double spread{1};  ///< sqrt(chi2/dof) where significantly above one, else 1
-  int iterations{0};
+  double birge_ratio{1};  ///< sqrt(chi2/dof) where significantly above one, else 1
+  Termination termination{Termination::converged};
+  int rounds{0}, iterations{0};  ///< FitSummary
+  JointState start;              ///< where the solver began
   Gauge gauge;
-  std::string gauge_text;
+  /// Standard deviations of the mean alpha, beta and gamma of the four sensors.
+  std::array<double, 3> common_rotation_sd_rad{};
   std::vector<OutlierNode> outliers;
   /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
   double contradicting{0};
@@ -53,12 +53,12 @@ inline constexpr std::size_t kFewestPoses = 12;
 /// The same from a state that is already near (another fold, the run before the last pose). Nuisances are
 /// refitted.
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options,
-                                         const JointState& near);
+                                         const JointState& warm_start);
 
-/// With JointOptions::worse as large as the residual asks for; 1 where the model is not far off. `near` may
-/// be null.
+/// With JointOptions::noise_inflation as large as the residual asks for; 1 where the model is not far off.
+/// `warm_start` may be null.
 [[nodiscard]] Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& options,
-                                                 const JointState* near = nullptr);
+                                                 const JointState* warm_start = nullptr);
 
 /// (S)^-1 of the information of the fixed block; refuses when it is not positive definite.
 [[nodiscard]] Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S);

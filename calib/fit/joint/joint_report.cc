@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/joint_report.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "calib/calibration/array_model.h"
+#include "calib/fit/calibration_frame.h"
 #include "calib/fit/error_summary.h"
 #include "calib/fit/joint/agreement.h"
 #include "calib/fit/joint/joint_errors.h"
-#include "calib/fit/joint/joint_verdict.h"
+#include "calib/fit/joint/joint_findings.h"
 #include "calib/fit/joint/profile_search.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
-#include "calib/fit/joint/wandering_text.h"
-#include "calib/fit/report_parts.h"
 #include "calib/fit/two_step/two_step.h"
 
 namespace mgtd::calib {
@@ -96,21 +94,20 @@ std::optional<ErrorSummary> errors_of_check_poses(const PoseTable& table, const 
   return joint_errors(*problem, state, FixedBlock::frozen).summary;
 }
 
-std::vector<std::string> weak_texts(const Identifiability& known) {
-  std::vector<std::string> out;
-  for (const WeakDirection& weak : known.weak) {
-    out.push_back(fmt::format("{} ({})", weak.what,
-                              std::isfinite(weak.sd_nT) ? fmt::format("{:.0f} nT of field", weak.sd_nT)
-                                                        : std::string("not at all")));
-  }
-  return out;
+/// How the iterations ended. The start is weighed as the end is, so that the two chi-squares compare.
+FitSummary summary_of(const JointFit& fit, double final_cost) {
+  return {.termination = fit.termination,
+          .rounds = fit.rounds,
+          .iterations = fit.iterations,
+          .initial_cost = reduce(fit.problem, fit.start, 0).cost.total(),
+          .final_cost = final_cost};
 }
 
 void fill_statistics(const JointFit& fit, FitReport& report) {
   report.chi2 = fit.chi2;
   report.dof = fit.dof;
   report.noise_nT = fit.noise_nT();
-  report.noise_told = fit.sample_noise_nT.has_value();
+  report.noise_known = fit.sample_noise_nT.has_value();
   report.chi2_table = fit.chi2_table;
   report.dof_table = fit.dof_table;
   report.table_sd_rad = fit.table_sd_rad;
@@ -163,19 +160,18 @@ JointOptions joint_options(const FitOptions& options) {
   return out;
 }
 
-Result<JointOptions> tuned_options(const PoseTable& table, const FitOptions& options) {
+Result<JointOptions> profiled_options(const PoseTable& table, const FitOptions& options) {
   JointOptions out = joint_options(options);
-  auto tuned = tune(table, out);
-  if (!tuned) return tl::unexpected(tuned.error());
-  out.effects = *std::move(tuned);
+  auto profiled = profile_search(table, out);
+  if (!profiled) return tl::unexpected(profiled.error());
+  out.effects = *std::move(profiled);
   return out;
 }
 
 void fill_calibration(const JointFit& fit, Calibration& c) {
   c.sensors = fit.state.sensors;
   c.covariance = fit.covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
-  c.pose_noise_nT = fit.pose_noise_nT * fit.spread;
-  c.gauge = fit.gauge_text;
+  c.pose_noise_nT = fit.pose_noise_nT * fit.birge_ratio;
   const auto m = fit.state.coefficients.size();
   c.effect_covariance.resize(m, kArrayParameters + m);
   c.effect_covariance << fit.covariance.block(kEffectSlot, 0, m, kArrayParameters),
@@ -194,7 +190,7 @@ void fill_calibration(const JointFit& fit, Calibration& c) {
 }
 
 Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options) {
-  const auto joint = tuned_options(table, options);
+  const auto joint = profiled_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
   auto fit = fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
@@ -213,23 +209,17 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   fill_statistics(*fit, report);
   compare_methods(*readings, with_field, *fit, report);
   report.check_poses = errors_of_check_poses(table, *joint, *fit);
-  const Eigen::MatrixXd information = reduce(fit->problem, fit->state, 0).S;
-  const Identifiability known = identifiability(fit->problem, fit->state, information, report.site.f_nT);
-  report.weak = weak_texts(known);
-  report.calibration.verdict = joint_verdict(report, known, options);
-  report.calibration.verdict.push_back(
-      agreement_check(agreement(*fit, report.residual_nT, report.held_out_residual_nT)));
-  std::vector<std::string> said = joint_remarks(report, known, fit->spread);
-  if (std::string rough = rough_table_text(report.table_sd_rad, options.table_sd_rad); !rough.empty())
-    said.push_back(std::move(rough));
-  if (wandering.any())
-    said.push_back(wandering_text(wandering) +
-                   ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it, "
-                   "offsets as at the end of the run");
-  if (fit->quantisation.seen())
-    said.push_back(fmt::format("readings stand in steps of {:.3g} nT: the uncertainties contain it",
-                               fit->quantisation.step_nT));
-  conclude(report, std::move(said));
+  report.stated_table_sd_rad = options.table_sd_rad;
+  const Reduced reduced = reduce(fit->problem, fit->state, 0);
+  report.summary = summary_of(*fit, reduced.cost.total());
+  report.joint = std::make_shared<const JointFindings>(
+      JointFindings{.gauge = fit->gauge,
+                    .common_rotation_sd_rad = fit->common_rotation_sd_rad,
+                    .birge_ratio = fit->birge_ratio,
+                    .known = identifiability(fit->problem, fit->state, reduced.S, report.site.f_nT),
+                    .agreement = agreement(*fit, report.residual_nT, report.held_out_residual_nT),
+                    .wandering = wandering,
+                    .quantisation = fit->quantisation});
   return report;
 }
 

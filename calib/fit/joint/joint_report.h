@@ -5,14 +5,14 @@
 
 namespace mgtd::calib {
 
-/// fit() by joint maximum likelihood: everything the two-step reports, the effects, the outlier nodes, and
-/// what the poses do not tell.
+/// A fit by joint maximum likelihood: everything that the two-step method reports, the effects, the outlier
+/// nodes, and what the poses do not determine. The calibration has no gauge text, no checks and no seal yet.
 [[nodiscard]] Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options);
 
 [[nodiscard]] JointOptions joint_options(const FitOptions& options);
 /// The same, with the numbers that its effects leave open searched on these poses: see profile_search.h. Fit,
 /// compare, explain and add begin with it, so that all of them speak of one model.
-[[nodiscard]] Result<JointOptions> tuned_options(const PoseTable& table, const FitOptions& options);
+[[nodiscard]] Result<JointOptions> profiled_options(const PoseTable& table, const FitOptions& options);
 
 /// The 48 parameters, the effects, their covariance and the noise of a fit, into a calibration.
 void fill_calibration(const JointFit& fit, Calibration& calibration);

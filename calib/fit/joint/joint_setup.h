@@ -27,7 +27,7 @@ struct JointOptions {
   Channels more_nT2{Channels::Zero()};
   /// Readings and scalar reference are taken as so much worse than the table says: for a model that is known
   /// to be far off, whose misfit would else be pressed into what is weakly known.
-  double worse{1};
+  double noise_inflation{1};
   /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
   /// is.
   double most_left_out{1.0 / 3};

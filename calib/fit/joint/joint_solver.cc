@@ -8,14 +8,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kMaxIterations = 200;
-/// A predicted fall of the chi-square below this share of it is rounding, not progress.
-constexpr double kRelativeDecrease = 1e-11;
-constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
-/// A chi-square that fell by less than this over the last iterations only creeps along what is weakly known.
-constexpr double kCreep = 1e-2, kRelativeCreep = 1e-6;
-constexpr int kCreeping = 12;
-
 /// S^-1 g with the diagonal scaled to one, which takes out the units.
 std::optional<Eigen::VectorXd> scaled_solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g) {
   if (!(S.diagonal().minCoeff() > 0)) return std::nullopt;
@@ -54,7 +46,7 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
   double before = best.reduced.cost.total();
   for (; best.iterations < kMaxIterations; ++best.iterations) {
     if (problem.stop.stop_requested()) return fail(ErrorCode::state, "the fit was stopped");
-    if (best.iterations == kMaxIterations - kCreeping) before = best.reduced.cost.total();
+    if (best.iterations == kMaxIterations - kSlowIterations) before = best.reduced.cost.total();
     const auto step = scaled_solve(best.reduced.S, best.reduced.g);
     if (step) {
       const double decrease = best.reduced.predicted_decrease + step->dot(best.reduced.g);
@@ -86,8 +78,9 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
     best.reduced = reduce(problem, best.state, damping);
   }
   const double now = best.reduced.cost.total();
-  if (best.iterations == kMaxIterations && before - now < kCreep + kRelativeCreep * now) {
+  if (best.iterations == kMaxIterations && before - now < kSlowFall + kRelativeSlowFall * now) {
     best.reduced = reduce(problem, best.state, 0);
+    best.slow_progress = true;
     return best;
   }
   return fail(

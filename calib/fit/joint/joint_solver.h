@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "calib/fit/joint/joint_limits.h"
 #include "calib/fit/joint/joint_problem.h"
 #include "calib/fit/joint/pose_model.h"
 #include "proto/error.h"
@@ -56,10 +57,9 @@ struct JointSolution {
   JointState state;
   Reduced reduced;  ///< at `state`, undamped
   int iterations{0};
+  bool slow_progress{false};  ///< Termination::slow_progress
 };
 
-/// Predicted fall of chi-square by the next step at which solve() may stop.
-inline constexpr double kConverged = 1e-9, kNearlyConverged = 0.1;
 /// Stops at `enough`. Refuses when it does not get there, when it is told to stop (ErrorCode::state), or when
 /// the information is not positive definite (which parameters that is about says identifiability.h).
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,

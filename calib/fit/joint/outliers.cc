@@ -230,8 +230,8 @@ std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const Join
       together(fmt::format("s{}", sensor + 1), 3 * sensor, 3);
     }
     for (int row = 0; row < kObservations; ++row) {
-      const bool told = row < kChannels && (disturbed(rows) || sensor >= 0);
-      if (rows[static_cast<std::size_t>(row)] && !told) out.push_back(node(problem, state, k, row));
+      const bool covered = row < kChannels && (disturbed(rows) || sensor >= 0);
+      if (rows[static_cast<std::size_t>(row)] && !covered) out.push_back(node(problem, state, k, row));
     }
   }
   return out;

@@ -213,9 +213,9 @@ EffectPtr searched(const PoseTable& table, const JointOptions& options, Fitted f
 
 }  // namespace
 
-Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& options) {
+Result<std::vector<EffectPtr>> profile_search(const PoseTable& table, const JointOptions& options) {
   const EffectContext context{.table = &table, .offset_nT = {}};
-  JointOptions tuned = options;
+  JointOptions profiled = options;
   std::vector<std::pair<std::size_t, OpenNumber>> open;
   for (std::size_t i = 0; i < options.effects.size(); ++i) {
     if (auto number = open_number(*options.effects[i], context)) open.emplace_back(i, std::move(*number));
@@ -223,16 +223,16 @@ Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& 
   const int rounds = open.empty() ? 0 : open.size() == 1 ? 1 : 2;
   for (int round = 0; round < rounds; ++round) {
     for (const auto& [slot, number] : open) {
-      JointOptions others = tuned;
+      JointOptions others = profiled;
       others.effects[slot] = options.effects[slot];
       auto fitted =
           number.range == Scan::Range::index ? fit_around(table, others, slot) : fit_with(table, others);
       if (!fitted) return tl::unexpected(fitted.error());
       if (EffectPtr best = searched(table, others, std::move(*fitted), context, slot, number))
-        tuned.effects[slot] = std::move(best);
+        profiled.effects[slot] = std::move(best);
     }
   }
-  return tuned.effects;
+  return profiled.effects;
 }
 
 }  // namespace mgtd::calib

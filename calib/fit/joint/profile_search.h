@@ -16,6 +16,7 @@
 namespace mgtd::calib {
 
 /// The effects of `options` with their numbers. Refuses what a fit refuses.
-[[nodiscard]] Result<std::vector<EffectPtr>> tune(const PoseTable& table, const JointOptions& options);
+[[nodiscard]] Result<std::vector<EffectPtr>> profile_search(const PoseTable& table,
+                                                            const JointOptions& options);
 
 }  // namespace mgtd::calib

@@ -14,10 +14,6 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kMaxRounds = 30;
-/// Of chi-square: less is not worth a step before the weights are known.
-constexpr double kWeightsUnknown = 10;
-
 Result<void> plausible(const JointState& state) {
   for (std::size_t i = 0; i < kSensors; ++i) {
     const double gain = std::abs(state.sensors[i].response().determinant());
@@ -39,9 +35,11 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
   RobustFit out;
   out.outliers = std::move(outliers);
   out.noise = start;
+  out.start = state;
   FitNoise& noise = out.noise;
-  // While weights still move the fit need not be exact; after kMaxRounds they are taken as they are.
+  // While weights still move the fit need not be exact; after kMaxWeighingRounds they are taken as they are.
   double enough = kWeightsUnknown;
+  bool settled = false;
   for (int round = 1;; ++round) {
     out.outliers.restore(problem);
     noise.apply(problem);
@@ -50,18 +48,25 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
     unsettled = !solution;
     if (!solution) return tl::unexpected(solution.error());
     if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
+    out.rounds = round;
     out.iterations += solution->iterations;
+    out.termination = solution->slow_progress ? Termination::slow_progress : Termination::converged;
     out.solution = *std::move(solution);
     JointState& found = out.solution.state;
     out.residuals = pose_residuals(problem, found);
-    if (round > kMaxRounds) return out;
+    if (round > kMaxWeighingRounds) {
+      if (!settled) out.termination = Termination::round_limit;
+      return out;
+    }
     const bool judged = out.outliers.judge(problem, found, out.residuals);
     const bool moved = noise.update(out.residuals, problem);
     if (moved && !judged) {
       settle(noise, problem, found);
       enough = kConverged;
     }
-    if ((!judged && !moved) || round == kMaxRounds) {
+    settled = !judged && !moved;
+    if (settled || round == kMaxWeighingRounds) {
+      if (!settled) out.termination = Termination::round_limit;
       if (enough == kConverged) return out;
       enough = kConverged;
     }
@@ -109,6 +114,7 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
   outliers.judge(problem, state, pose_residuals(problem, state));
   auto out = weighed(problem, std::move(state), first->noise, std::move(outliers), unsettled);
   if (!out) return std::nullopt;
+  out->rounds += first->rounds;
   out->iterations += first->iterations;
   return *std::move(out);
 }
@@ -142,13 +148,13 @@ double cost(const JointProblem& problem, const RobustFit& fit) {
 
 }  // namespace
 
-Result<RobustFit> robust_fit_near(JointProblem& problem, JointState near, const FitNoise& noise,
+Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start, const FitNoise& noise,
                                   double most_left_out, bool& unsettled) {
   Outliers outliers(most_left_out);
   noise.apply(problem);
-  refit_nuisances(problem, near);
-  outliers.judge(problem, near, pose_residuals(problem, near));
-  return weighed(problem, std::move(near), noise, std::move(outliers), unsettled);
+  refit_nuisances(problem, warm_start);
+  outliers.judge(problem, warm_start, pose_residuals(problem, warm_start));
+  return weighed(problem, std::move(warm_start), noise, std::move(outliers), unsettled);
 }
 
 Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, double f_nT,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "calib/fit/fit_summary.h"
 #include "calib/fit/joint/fit_noise.h"
 #include "calib/fit/joint/outliers.h"
 
@@ -14,7 +15,9 @@ struct RobustFit {
   PoseResiduals residuals;
   Outliers outliers;
   FitNoise noise;
-  int iterations{0};
+  JointState start;  ///< where the solver began
+  Termination termination{Termination::converged};
+  int rounds{0}, iterations{0};
 };
 
 /// Weighs `problem` and leaves out of it as it goes. `start` may be an error: then only the poses that agree
@@ -23,7 +26,7 @@ struct RobustFit {
                                            const FitNoise& noise, double most_left_out, bool& unsettled);
 
 /// From the end of a fit of these readings: what contradicts there is left out before anything moves.
-[[nodiscard]] Result<RobustFit> robust_fit_near(JointProblem& problem, JointState near, const FitNoise& noise,
-                                                double most_left_out, bool& unsettled);
+[[nodiscard]] Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start,
+                                                const FitNoise& noise, double most_left_out, bool& unsettled);
 
 }  // namespace mgtd::calib

@@ -17,7 +17,7 @@
 /// the number of places that were asked (all channels, one of four sensors, one of twelve channels).
 ///
 /// A law that the model lacks and that follows time makes an offset wander too. This says how well a walk
-/// describes the residual, never that nothing better does: see criticism/wandering_rival.h.
+/// describes the residual, never that nothing better does: see criticism/wandering_alternative.h.
 namespace mgtd::calib {
 
 /// Sums of the linearised fit, one column per channel and term, for rates of 1 nT per root hour.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/fit/azimuth_origin.h"
 #include "calib/fit/two_step/step2.h"
 
 /// The gauge of step 2. The standard set leaves one turn about Z common to the four sensors: the direction D
@@ -12,16 +13,6 @@
 ///   - set so that the mean gamma of the four sensors is zero.
 /// The tensor of a uniform field does not depend on it.
 namespace mgtd::calib {
-
-enum class AzimuthGauge { declination_given, table_frame, mean_gamma_zero };
-
-struct AzimuthOrigin {
-  AzimuthGauge gauge{AzimuthGauge::mean_gamma_zero};
-  double declination_rad{0};
-  /// Rms angle between where the tilted poses put the field and where it was; 0 without such poses. Large:
-  /// wrong sense of an angle.
-  double misfit_rad{0};
-};
 
 /// `alignment` has D = 0.
 [[nodiscard]] AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignment,

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/calibration_frame.h"
 #include "calib/fit/error_summary.h"
 #include "calib/fit/orientation.h"
-#include "calib/fit/report_parts.h"
 #include "calib/fit/two_step/agreeing_readings.h"
 #include "calib/fit/two_step/influence.h"
 #include "calib/fit/two_step/two_step.h"
-#include "calib/fit/two_step/verdict.h"
 
 namespace mgtd::calib {
 namespace {
@@ -132,9 +131,12 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
   const AxisNoise effective = effective_noise(readings, fitted, report.after_step1);
   c.pose_noise_nT = (readings.pose_noise_nT.array() > 0).select(readings.pose_noise_nT, effective);
   report.noise_nT = rms(c.pose_noise_nT);
-  report.noise_told = (readings.pose_noise_nT.array() > 0).all();
+  report.noise_known = (readings.pose_noise_nT.array() > 0).all();
   const FieldTable b = corrected_fields(readings, fitted.sensors);
   report.chi2 = field_chi2(b, readings, fitted.sensors, c.pose_noise_nT);
+  report.summary = {.termination = Termination::closed_form,
+                    .initial_cost = field_chi2(raw_fields(readings), readings, {}, c.pose_noise_nT),
+                    .final_cost = report.chi2};
   report.dof = static_cast<double>(kSensors * (readings.poses() - 9));
   const Influence spread = influence(readings, options, fitted, effective);
   c.covariance = spread.covariance;
@@ -144,7 +146,7 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
                  .declination_rad = fitted.origin.declination_rad,
                  .inclination_sd_rad = spread.inclination_sd_rad,
                  .declination_sd_rad = spread.declination_sd_rad};
-  c.gauge = gauge_text(fitted.origin, spread.declination_sd_rad);
+  report.azimuth_origin = fitted.origin;
 }
 
 }  // namespace
@@ -178,8 +180,7 @@ Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& opti
   report.halves = compare_halves(*readings, *fitted, c.geometry);
   report.outliers = left_out_nodes(*all, agreeing, *fitted);
   report.contradicting = static_cast<double>(agreeing.left_out.size()) / static_cast<double>(all->poses());
-  c.verdict = verdict(report, *fitted, options);
-  conclude(report, remarks(report));
+  report.stated_table_sd_rad = options.table_sd_rad;
   return report;
 }
 

@@ -4,7 +4,8 @@
 
 namespace mgtd::calib {
 
-/// fit() by the simplified and the two-step method.
+/// A fit by the simplified or the two-step method. The calibration has no gauge text, no checks and no seal
+/// yet.
 [[nodiscard]] Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& options);
 
 }  // namespace mgtd::calib

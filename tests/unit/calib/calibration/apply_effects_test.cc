@@ -3,7 +3,7 @@
 
 #include "calib/calibration/apply.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "proto/units.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 

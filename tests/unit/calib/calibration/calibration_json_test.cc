@@ -37,7 +37,7 @@ Calibration random_calibration(std::uint64_t seed) {
   c.data_hash = "abc";
   c.poses = 157;
   c.accepted_by_checks = true;
-  c.verdict = {{"volume", true, "1.0", "0.1 to 10", ""}, {"residual", false, "9", "5", "look"}};
+  c.checks = {{"volume", true, "1.0", "0.1 to 10", ""}, {"residual", false, "9", "5", "look"}};
   c.software = "mgtd";
   c.seal();
   return c;
@@ -60,7 +60,7 @@ TEST(CalibrationJson, ReadsBackBitForBit) {
     EXPECT_EQ(again->gauge, c.gauge);
     EXPECT_EQ(again->reference.T_degC, c.reference.T_degC);
     EXPECT_EQ(again->reference.f_nT, c.reference.f_nT);
-    EXPECT_EQ(again->verdict.size(), 2U);
+    EXPECT_EQ(again->checks.size(), 2U);
     EXPECT_EQ(to_json_text(*again), to_json_text(c));
   }
 }

@@ -66,7 +66,7 @@ class AxisLaw final : public EffectOf<AxisLaw> {
   std::array<std::vector<int>, 4> at_;
 };
 
-inline CandidateEffect suspect(const std::string& name, const AxisLaw::Shape& shape) {
+inline CandidateEffect candidate_effect(const std::string& name, const AxisLaw::Shape& shape) {
   CandidateEffect out{.name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
   out.hypotheses = hypotheses_of(*out.variants.front());
   out.make = [name, shape](const Hypothesis* part, const std::optional<double>&) -> Result<EffectPtr> {
@@ -87,12 +87,14 @@ inline CandidateEffect suspect(const std::string& name, const AxisLaw::Shape& sh
 inline std::vector<CandidateEffect> few_suspects() {
   const auto warmer = [](const Pose& p, int i) { return *p.T_degC[static_cast<std::size_t>(i)] - 20; };
   return {
-      suspect("offset.temperature", [warmer](const Pose& p, double, int i, double) { return warmer(p, i); }),
-      suspect("gain.temperature",
-              [warmer](const Pose& p, double, int i, double v) { return warmer(p, i) * v / 50'000; }),
-      suspect("offset.drift", [](const Pose&, double t_h, int, double) { return t_h; }),
-      suspect("quadratic", [](const Pose&, double, int, double v) { return std::pow(v / 50'000, 2); }),
-      suspect("cubic", [](const Pose&, double, int, double v) { return std::pow(v / 50'000, 3); })};
+      candidate_effect("offset.temperature",
+                       [warmer](const Pose& p, double, int i, double) { return warmer(p, i); }),
+      candidate_effect("gain.temperature", [warmer](const Pose& p, double, int i,
+                                                    double v) { return warmer(p, i) * v / 50'000; }),
+      candidate_effect("offset.drift", [](const Pose&, double t_h, int, double) { return t_h; }),
+      candidate_effect("quadratic",
+                       [](const Pose&, double, int, double v) { return std::pow(v / 50'000, 2); }),
+      candidate_effect("cubic", [](const Pose&, double, int, double v) { return std::pow(v / 50'000, 3); })};
 }
 
 }  // namespace mgtd::calib::testing

@@ -23,9 +23,9 @@ inline std::shared_ptr<CandidateEffect> suspect_of_columns(const std::string& na
   return out;
 }
 
-inline ScoredFamily scored(const std::shared_ptr<CandidateEffect>& suspect, const Eigen::MatrixXd& columns,
-                           const Eigen::VectorXd& residual) {
-  ScoredFamily out{.suspect = suspect.get(), .own = suspect};
+inline ScoredFamily scored(const std::shared_ptr<CandidateEffect>& candidate_effect,
+                           const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
+  ScoredFamily out{.candidate_effect = candidate_effect.get(), .own = candidate_effect};
   for (Eigen::Index v = 0; v < columns.cols(); ++v) {
     const Eigen::MatrixXd z = columns.col(v);
     out.signatures.push_back({.columns = z,

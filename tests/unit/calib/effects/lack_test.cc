@@ -4,7 +4,7 @@
 
 #include "calib/criticism/tests/candidate_effect.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "tests/blind/hidden_run.h"
 
 namespace mgtd::calib {
@@ -30,7 +30,7 @@ TEST(Backlash, TheFirstPoseOfARunNeedNotHaveASense) {
   for (const std::size_t lacking : {0U, 1U, 15U}) {
     const PoseTable table = with_sense(lacking);
     EXPECT_TRUE((*make_effect("table.backlash"))->check(table)) << lacking;
-    EXPECT_EQ(find(library_suspects(table).untestable, "table.backlash"), nullptr) << lacking;
+    EXPECT_EQ(find(library_candidates(table).untestable, "table.backlash"), nullptr) << lacking;
     FitOptions options;
     options.effects = {*make_effect("table.backlash")};
     EXPECT_TRUE(fit(table, options)) << lacking;
@@ -44,7 +44,7 @@ TEST(Lack, SaysHowManyPosesAndWhatToDo) {
   EXPECT_EQ(refused.error().message,
             "table.backlash needs sense, which 16 of 157 poses have not (the first: pose 1)");
   EXPECT_THAT(refused.error().remedy, HasSubstr("leave the poses without it out of the table"));
-  const CandidateEffects suspects = library_suspects(table);
+  const CandidateEffects suspects = library_candidates(table);
   const Untestable* listed = find(suspects.untestable, "table.backlash");
   ASSERT_NE(listed, nullptr);
   EXPECT_THAT(listed->why, StartsWith("needs sense, which 16 of 157"));
@@ -60,7 +60,7 @@ TEST(Lack, AnAngleIsNeededOfEveryPose) {
 TEST(Lack, ATemperatureThatNeverChangesTestsNothing) {
   PoseTable table = with_sense(0);
   for (Pose& pose : table.poses) pose.T_degC = {20, 20, 21, 20};
-  const CandidateEffects suspects = library_suspects(table);
+  const CandidateEffects suspects = library_candidates(table);
   const Untestable* listed = find(suspects.untestable, "axis.offset.temperature");
   ASSERT_NE(listed, nullptr);
   EXPECT_THAT(listed->why, HasSubstr("never change"));
@@ -68,7 +68,7 @@ TEST(Lack, ATemperatureThatNeverChangesTestsNothing) {
 }
 
 TEST(Lack, NoReasonBeginsWithTheNameItStandsBeside) {
-  for (const Untestable& u : library_suspects(with_sense(157)).untestable)
+  for (const Untestable& u : library_candidates(with_sense(157)).untestable)
     EXPECT_THAT(u.why, ::testing::Not(StartsWith(u.effect))) << u.effect;
 }
 

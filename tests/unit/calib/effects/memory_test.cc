@@ -72,7 +72,7 @@ TEST(Hysteresis, IsLeftOutWhereTheReadingsBeforeAreUnknown) {
 
 TEST(Tune, FindsTheWidthOfAHysteresis) {
   const PoseTable table = testing::run_with(hysteresis_of(4, 0.3), {}, 6);
-  const auto effects = tune(table, options_with("axis.hysteresis@s2.x"));
+  const auto effects = profile_search(table, options_with("axis.hysteresis@s2.x"));
   ASSERT_TRUE(effects) << effects.error().text();
   const auto spec = *EffectSpec::parse(effects->front()->spec());
   EXPECT_NEAR(*spec.number("w", 0, 0, 10), 0.3, 0.03);
@@ -86,7 +86,7 @@ TEST(Tune, FindsTheWidthOfAHysteresis) {
 
 TEST(Tune, LeavesAGivenNumberAlone) {
   const PoseTable table = testing::run_with(hysteresis_of(4, 0.3), {}, 6);
-  const auto effects = tune(table, options_with("axis.hysteresis@s2.x,w=0.15"));
+  const auto effects = profile_search(table, options_with("axis.hysteresis@s2.x,w=0.15"));
   ASSERT_TRUE(effects);
   EXPECT_EQ(effects->front()->spec(), "axis.hysteresis@s2.x,w=0.15");
 }
@@ -97,7 +97,7 @@ TEST(Tune, FindsTheTimeOfAStep) {
         return sensor == 3 && axis == 1 && p.number > 60 ? 3.0 : 0.0;
       }};
   const PoseTable table = testing::run_with(step, {}, 7);
-  const auto effects = tune(table, options_with("axis.offset.step@s4.y"));
+  const auto effects = profile_search(table, options_with("axis.offset.step@s4.y"));
   ASSERT_TRUE(effects) << effects.error().text();
   const auto spec = *EffectSpec::parse(effects->front()->spec());
   // Ten times the noise: no pose can be on the wrong side.
@@ -111,7 +111,7 @@ TEST(Tune, FindsADipoleFromTheGrid) {
     return 100 * (3 * moment.dot(d) * d / std::pow(d.norm(), 5) - moment / std::pow(d.norm(), 3));
   }};
   const PoseTable table = testing::run_with(magnet, {}, 8);
-  const auto effects = tune(table, options_with("site.dipole"));
+  const auto effects = profile_search(table, options_with("site.dipole"));
   ASSERT_TRUE(effects) << effects.error().text();
   JointOptions options;
   options.effects = *effects;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_reasons.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 /// Data that cannot carry a calibration: refused, or given with a check that fails, a reason in the
@@ -31,7 +32,7 @@ std::vector<TableAngles> nearly_level(double tilt_deg, int count) {
 }
 
 const Check* failed(const FitReport& report, std::string_view name) {
-  for (const Check& check : report.calibration.verdict)
+  for (const Check& check : report.calibration.checks)
     if (check.name == name && !check.passed) return &check;
   return nullptr;
 }
@@ -53,7 +54,7 @@ TEST(Coverage, OneAxisIsRefusedWhicheverItIs) {
 TEST(Coverage, LevelFlightIsNotAcceptedAndSaysWhatToAdd) {
   const auto report = fit(at({.noise_nT = 10, .table_sd_rad = to_rad(0.1)}, nearly_level(2.5, 100)), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_FALSE(report->calibration.accepted_by_checks) << ::testing::PrintToString(report->weak);
+  EXPECT_FALSE(report->calibration.accepted_by_checks);
   const Check* const check = failed(*report, "coverage");
   ASSERT_NE(check, nullptr);
   EXPECT_THAT(check->measured, HasSubstr("of all sensors with offset"));
@@ -90,13 +91,13 @@ TEST(Coverage, NearThePoleALevelTurnTellsNothing) {
   // Turned over in all directions the field's direction does not matter.
   const auto whole = fit(simulate(sim, 36, 121, 3), {});
   ASSERT_TRUE(whole) << whole.error().text();
-  EXPECT_TRUE(whole->calibration.accepted_by_checks) << ::testing::PrintToString(whole->reasons);
+  EXPECT_TRUE(whole->calibration.accepted_by_checks) << ::testing::PrintToString(fit_reasons(*whole));
 }
 
 TEST(Coverage, WithoutAFieldTheFreeScaleIsSaid) {
   const auto report = fit(testing::simulate({.with_f = false}, 36, 121, 3), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_THAT(report->reasons, Contains(HasSubstr("overall scale is free")));
+  EXPECT_THAT(fit_reasons(*report), Contains(HasSubstr("overall scale is free")));
 }
 
 /// Constant readings, and readings near one point: |b| can be made constant exactly, by a gain that vanishes

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
-#include "calib/fit/fit_report_json.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_report_json.h"
 #include "calib/report/fit_report_text.h"
 #include "tests/support/paper_rigs.h"
 
@@ -42,6 +43,15 @@ TEST(FitReportJson, HoldsTheDocumentedKeys) {
   }
   EXPECT_EQ(out["before"]["total_field_rmse_nT"].size(), 4U);
   EXPECT_TRUE(out["held_out"]["tensor_rmse_nT_per_m"]["yz"].is_number());
+}
+
+TEST(FitReportJson, TheTwoStepIsSolvedInClosedForm) {
+  const nlohmann::json out = to_json(report())["summary"];
+  EXPECT_EQ(out["termination"], "closed-form");
+  EXPECT_EQ(out["converged"], true);
+  EXPECT_EQ(out["iterations"], 0);
+  EXPECT_GT(out["initial_cost"].get<double>(), out["final_cost"].get<double>());
+  EXPECT_THAT(to_text(report()), HasSubstr("fit:   solved in closed form: chi-square fell from "));
 }
 
 TEST(FitReportJson, AnglesAreDegrees) {
@@ -88,7 +98,7 @@ TEST(FitReportText, SaysWhichReadingsNoRowCounts) {
 TEST(FitReportText, AFailedCheckShowsItsRemedy) {
   FitReport bad = report();
   bad.calibration.accepted_by_checks = false;
-  bad.calibration.verdict.push_back({"residual", false, "90 nT", "54 nT", "look for iron near the rig"});
+  bad.calibration.checks.push_back({"residual", false, "90 nT", "54 nT", "look for iron near the rig"});
   const std::string text = to_text(bad);
   EXPECT_THAT(text, HasSubstr("NOT ACCEPTED"));
   EXPECT_THAT(text, HasSubstr("FAIL  residual"));

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "calib/report/fit_reasons.h"
 #include "tests/support/paper_rigs.h"
 
 namespace mgtd::calib {
@@ -74,7 +75,7 @@ TEST(TwoStepFit, FindsTheTableFrameFromTiltedPosesWithinItsUncertainty) {
   const auto report = fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_TRUE(report->calibration.accepted_by_checks)
-      << (report->reasons.empty() ? "" : report->reasons.front());
+      << (fit_reasons(*report).empty() ? "" : fit_reasons(*report).front());
   EXPECT_NEAR(report->site.declination_rad, to_rad(-5), 4.5 * report->site.declination_sd_rad);
   EXPECT_LT(to_deg(report->site.declination_sd_rad), 0.05);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -169,7 +170,7 @@ TEST(TwoStepFit, EveryTurnedAndMirroredSensorIsRecognised) {
       ASSERT_TRUE(report) << report.error().text();
       EXPECT_EQ(report->calibration.sensors[2].mounting, Eigen::Matrix3d(wiring.transpose()));
       EXPECT_LT(report->after.tensor_rmse_nT_per_m.xx, 30);
-      EXPECT_EQ(report->reasons.empty(), wiring.isIdentity());
+      EXPECT_EQ(fit_reasons(*report).empty(), wiring.isIdentity());
     }
   }
 }

@@ -3,8 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "calib/criticism/search/candidate.h"
+#include "calib/criticism/tests/candidate.h"
 #include "calib/effects/library/library.h"
+#include "calib/report/size_text.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -15,14 +16,15 @@ using ::testing::Not;
 
 TEST(Sentence, NotesBeginWithACapitalUnlessWithAName) {
   ExplainReport report;
-  report.notes = {"the way of the table is not in these data",
-                  "axis.cubic accounts for 30 % of the excess only", "s3.z scatters little",
-                  "lamp accounts for 20 % of the excess only"};
+  report.notes = {StepsFollowCurve{}, ExcessRemains{"axis.cubic", 0.3}, NoiseOverstated{"s3.z", 0.5},
+                  ExcessRemains{"lamp", 0.2}};
   report.candidates.push_back({.effect = "lamp"});
   EXPECT_THAT(
       sentence(report),
-      HasSubstr(". The way of the table is not in these data. axis.cubic accounts for 30 % of the excess "
-                "only. s3.z scatters little. lamp accounts for"));
+      HasSubstr(". Several steps or thresholds on one axis follow a smooth curve: they are not evidence of "
+                "steps. axis.cubic accounts for 30 % of the excess only. s3.z scatters only 0.50 of what its "
+                "noise says: spreads or counts in the table are wrong, or poses are copies. lamp accounts "
+                "for"));
 }
 
 TEST(Sentence, SizesHaveTheDigitsThatTheirUncertaintyAllows) {
@@ -89,7 +91,7 @@ TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
 TEST(Sentence, SaysWhenWhatWasFoundIsTheLesserPart) {
   ExplainReport report;
   report.finding = Finding::partial;
-  report.noise.told = true;
+  report.noise.known = true;
   report.noise_nT = 0.02;
   Round round{.added = {.effect = "axis.offset.step", .where = "s1.y"}};
   round.rms_before_nT = 0.0911, round.rms_after_nT = 0.0809;

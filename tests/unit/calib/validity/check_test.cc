@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "calib/report/validity_report.h"
 #include "calib/validity/validity_check.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +42,7 @@ TEST(Check, RemountedArrayIsStillValid) {
   later.rig = turned(later.rig, Q).sensors;
   const auto report = check(calibrated(rig(), 7), dozen(later, 8), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid) << report->reasons.front();
+  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
 }
 
 TEST(Check, SiteMayBeAnotherOne) {
@@ -55,7 +56,7 @@ TEST(Check, SiteMayBeAnotherOne) {
   with.effects = {*make_effect("site.gradient")};
   const auto report = check(fit(simulate(before, 36, 121, 31), with)->calibration, dozen(later, 32), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid) << report->reasons.front();
+  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
   // Without the gradient in the model the poses do not follow it; added at the command it is accounted for.
   const Calibration plain = calibrated(rig(), 33);
   EXPECT_FALSE(check(plain, dozen(later, 34), {})->valid);
@@ -69,7 +70,7 @@ TEST(Check, ScatterThatNoParameterExplainsIsNotValid) {
   ASSERT_TRUE(report);
   EXPECT_FALSE(report->valid);
   EXPECT_NEAR(report->excess, 4, 1);
-  EXPECT_THAT(report->reasons.front(), HasSubstr("scatter"));
+  EXPECT_THAT(validity_reasons(*report).front(), HasSubstr("scatter"));
 }
 
 TEST(Check, DriftOfOneOffsetIsFoundAndNamed) {
@@ -81,7 +82,7 @@ TEST(Check, DriftOfOneOffsetIsFoundAndNamed) {
   ASSERT_EQ(report->change.named.size(), 1U);
   EXPECT_EQ(report->change.named.front().name, "s3 iz");
   EXPECT_NEAR(report->change.named.front().change, 8, 2.5);
-  EXPECT_THAT(report->reasons.front(), HasSubstr("sensor s3"));
+  EXPECT_THAT(validity_reasons(*report).front(), HasSubstr("sensor s3"));
 }
 
 TEST(Check, LackOfFitOfTheOwnRunIsNoNews) {
@@ -130,7 +131,7 @@ TEST(Check, WithoutAFieldOnlyRatiosOfScaleAreTested) {
   for (SensorModel& sensor : later.rig) sensor.scale *= 1.001;  // as good as another field
   const auto report = check(old, dozen(later, 64), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid) << report->reasons.front();
+  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
   FitOptions known;
   known.field_nT = later.f_nT;
   EXPECT_FALSE(check(old, dozen(later, 64), known)->valid);
@@ -143,7 +144,7 @@ TEST(Check, OneSpoiledPoseIsListedAndDoesNotCondemn) {
   ASSERT_TRUE(report);
   ASSERT_EQ(report->outliers.size(), 1U);
   EXPECT_EQ(report->outliers.front().pose, 6);
-  EXPECT_TRUE(report->valid) << report->reasons.front();
+  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
 }
 
 }  // namespace

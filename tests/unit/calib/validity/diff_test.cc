@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/diff_report.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib {
@@ -40,15 +41,15 @@ TEST(Diff, NamesTheParameterThatChanged) {
   EXPECT_TRUE(report.changed);
   std::vector<std::string> named;
   for (const ParameterChange& p : report.change.named) named.push_back(p.name);
-  EXPECT_THAT(named, ::testing::UnorderedElementsAre("s2 gamma", "s4 cx")) << report.conclusion;
+  EXPECT_THAT(named, ::testing::UnorderedElementsAre("s2 gamma", "s4 cx")) << conclusion_text(report);
 }
 
 TEST(Diff, TurnedArrayIsNoChange) {
   Simulation later = rig();
   later.rig = turned(later.rig, testing::passive(to_rad(-75), 2) * testing::passive(to_rad(3), 1)).sensors;
   const DiffReport report = diff(calibrated(rig(), 27), calibrated(later, 28));
-  EXPECT_FALSE(report.changed) << report.conclusion;
-  EXPECT_THAT(report.remarks.back(), HasSubstr("turn of the whole array"));
+  EXPECT_FALSE(report.changed) << conclusion_text(report);
+  EXPECT_THAT(remarks_of(report).back(), HasSubstr("turn of the whole array"));
 }
 
 TEST(Diff, GaugesMayDiffer) {
@@ -56,10 +57,10 @@ TEST(Diff, GaugesMayDiffer) {
   Simulation blind = rig();
   blind.with_angles = blind.with_f = false;
   const DiffReport same = diff(calibrated(rig(), 29), calibrated(blind, 30));
-  EXPECT_FALSE(same.changed) << same.conclusion;
+  EXPECT_FALSE(same.changed) << conclusion_text(same);
   blind.rig[2].offset_nT[0] += 10;
   const DiffReport moved = diff(calibrated(rig(), 29), calibrated(blind, 30));
-  ASSERT_EQ(moved.change.named.size(), 1U) << moved.conclusion;
+  ASSERT_EQ(moved.change.named.size(), 1U) << conclusion_text(moved);
   EXPECT_EQ(moved.change.named.front().name, "s3 ix");
 }
 
@@ -68,7 +69,7 @@ TEST(Diff, RewiredSensorIsRemarked) {
   later.rig[0].mounting << -1, 0, 0, 0, 1, 0, 0, 0, 1;
   const DiffReport report = diff(calibrated(rig(), 23), calibrated(later, 24));
   EXPECT_TRUE(report.changed);
-  EXPECT_THAT(report.remarks, ::testing::Contains(HasSubstr("sensor s1 stands differently")));
+  EXPECT_THAT(remarks_of(report), ::testing::Contains(HasSubstr("sensor s1 stands differently")));
 }
 
 TEST(Diff, EffectsAreCompared) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/plan/plan_from_list.h"
+#include "calib/report/next_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -47,10 +47,10 @@ TEST(LimitsCost, SaysHowMuchLargerEveryErrorIsAndWhatToDo) {
   EXPECT_NEAR(c.left_out, 2 / 3.0, 1e-12);
   ASSERT_EQ(c.groups.size(), 5U);
   const auto offsets_nT = [&](const TableLimits& table) {
-    calib::PlanRequest request;
+    calib::DesignRequest request;
     request.power = false;
     request.poses = *planned_poses(options, table);
-    const auto report = calib::plan(request);
+    const auto report = calib::evaluate_design(request);
     double sum = 0;
     for (const calib::Expected& e : report->parameters)
       if (e.unit == "nT") sum += e.sd * e.sd;

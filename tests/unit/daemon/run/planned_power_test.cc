@@ -18,7 +18,7 @@ namespace mgtd::daemon {
 namespace {
 
 struct Power {
-  calib::PlanPower all;
+  calib::DesignPower all;
   [[nodiscard]] int told_apart() const { return all.pairs - static_cast<int>(all.inseparable.size()); }
   [[nodiscard]] double smallest(const std::string& effect) const {
     for (const auto& d : all.detectable)
@@ -28,15 +28,16 @@ struct Power {
   [[nodiscard]] bool sees(const std::string& effect) const { return smallest(effect) > 0; }
   [[nodiscard]] const calib::LookAlike* confuses(const std::string& a, const std::string& b) const {
     for (const auto& pair : all.inseparable)
-      if ((pair.effect == a && pair.rival == b) || (pair.effect == b && pair.rival == a)) return &pair;
+      if ((pair.effect == a && pair.alternative == b) || (pair.effect == b && pair.alternative == a))
+        return &pair;
     return nullptr;
   }
 };
 
 Power power_of(const PoseTable& poses) {
-  calib::PlanRequest request;
+  calib::DesignRequest request;
   request.poses = poses;
-  auto planned = calib::plan(request);
+  auto planned = calib::evaluate_design(request);
   EXPECT_TRUE(planned) << planned.error().text();
   return planned ? Power{*planned->power} : Power{};
 }
@@ -54,7 +55,8 @@ TEST(PlannedPower, TheDefaultRunSeparatesWhatItsOwnPosesCan) {
   for (const char* const memory : {"axis.hysteresis", "axis.settling", "table.backlash"}) {
     EXPECT_TRUE(power.sees(memory)) << memory;
     for (const auto& pair : power.all.inseparable)
-      EXPECT_TRUE(pair.effect != memory && pair.rival != memory) << pair.effect << " - " << pair.rival;
+      EXPECT_TRUE(pair.effect != memory && pair.alternative != memory)
+          << pair.effect << " - " << pair.alternative;
   }
 }
 

@@ -23,7 +23,7 @@ calib::Calibration calibration(int variant, bool good = true) {
   c.sensors[1].offset_nT.x() = 10.0 + variant / 3.0;
   c.poses = 157;
   c.accepted_by_checks = good;
-  c.verdict = {{"total field", good, "1.2 nT", "1.0 nT", ""}};
+  c.checks = {{"total field", good, "1.2 nT", "1.0 nT", ""}};
   c.software = "mgtd test";
   c.seal();
   return c;

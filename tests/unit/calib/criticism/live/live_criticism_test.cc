@@ -83,13 +83,13 @@ Seen live(const Life& life, std::uint64_t seed) {
     q << 1, b / kF_nT;
     Eigen::Vector4d closure = W * q + noise * colour;
     if (life.truth) closure += life.truth(t_s, b / kF_nT, T);
-    const LiveState before = criticism.verdict().state;
+    const LiveState before = criticism.finding().state;
     if (!criticism.add({t_s, closure, b, T})) continue;
-    const LiveState now = criticism.verdict().state;
+    const LiveState now = criticism.finding().state;
     if (now == before || (now != LiveState::suspect && now != LiveState::near_source)) continue;
     if (seen.suspect + seen.near_source == 0) seen.first_s = t_s;
     ++(now == LiveState::suspect ? seen.suspect : seen.near_source);
-    seen.measured = criticism.verdict().measured;
+    seen.measured = criticism.finding().measured;
   }
   return seen;
 }
@@ -193,9 +193,9 @@ TEST(LiveCriticism, HasNothingToSayWithoutNoise) {
   Calibration c = calibration();
   c.sample_noise_nT(2, 1) = 0;
   c.seal();
-  EXPECT_EQ(LiveCriticism(c).verdict().state, LiveState::none);
-  EXPECT_EQ(LiveCriticism().verdict().state, LiveState::none);
-  EXPECT_EQ(LiveCriticism(calibration()).verdict().state, LiveState::learning);
+  EXPECT_EQ(LiveCriticism(c).finding().state, LiveState::none);
+  EXPECT_EQ(LiveCriticism().finding().state, LiveState::none);
+  EXPECT_EQ(LiveCriticism(calibration()).finding().state, LiveState::learning);
 }
 
 }  // namespace

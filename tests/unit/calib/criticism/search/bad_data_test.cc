@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/criticism/search/explain.h"
+#include "calib/report/explain_note_text.h"
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
 
@@ -79,8 +80,8 @@ TEST_P(BadData, IsSaidWithItsReason) {
   EXPECT_TRUE(r->rounds.empty());
   ASSERT_EQ(r->notes.size(), 1U);
   for (const std::string& part : GetParam().says)
-    EXPECT_NE(r->notes.front().find(part), std::string::npos) << r->notes.front();
-  EXPECT_NE(sentence(*r).find(as_sentence(r->notes.front())), std::string::npos) << sentence(*r);
+    EXPECT_NE(to_text(r->notes.front()).find(part), std::string::npos) << to_text(r->notes.front());
+  EXPECT_NE(sentence(*r).find(as_sentence(to_text(r->notes.front()))), std::string::npos) << sentence(*r);
 }
 
 INSTANTIATE_TEST_SUITE_P(Explain, BadData, ::testing::ValuesIn(rows()), &title_of);

@@ -9,6 +9,7 @@
 #include "calib/criticism/search/model_change.h"
 #include "calib/criticism/tests/comparison.h"
 #include "calib/effects/library/library.h"
+#include "calib/report/choice_text.h"
 #include "tests/blind/hidden_run.h"
 
 namespace mgtd::calib {
@@ -52,11 +53,12 @@ Chosen chosen(PoseTable table, const std::string& spec) {
 TEST(Choice, KeepsWhatCouldStandInItsPlaceUntilOtherPosesSettleIt) {
   const Chosen c = chosen(warm(true, 1), "axis.offset.temperature@s3.z");
   EXPECT_EQ(c.choice.finding, "AMBIGUOUS");
-  ASSERT_THAT(c.choice.rivals, ElementsAre("axis.offset.drift@s3.z"));
+  ASSERT_THAT(c.choice.alternatives, ElementsAre("axis.offset.drift@s3.z"));
   EXPECT_FALSE(c.choice.describes);
   EXPECT_THAT(to_text(c.choice), HasSubstr("axis.offset.drift@s3.z could stand in its place"));
-  EXPECT_EQ(on_these_poses(c.choice, c.table, c.model).rivals, c.choice.rivals) << "the same poses";
-  EXPECT_EQ(on_these_poses(c.choice, warm(true, 2), c.model).rivals, c.choice.rivals)
+  EXPECT_EQ(on_these_poses(c.choice, c.table, c.model).alternatives, c.choice.alternatives)
+      << "the same poses";
+  EXPECT_EQ(on_these_poses(c.choice, warm(true, 2), c.model).alternatives, c.choice.alternatives)
       << "other poses that do not tell them apart either";
   EXPECT_FALSE(on_these_poses(c.choice, warm(false, 2), c.model).open());
 }
@@ -81,7 +83,7 @@ TEST(Choice, AStandInDescribesAndDoesNotExplain) {
 
 TEST(Choice, ReadsBackAndAnEarlierFileHasNone) {
   const Choice choice{
-      .spec = "a", .finding = "AMBIGUOUS", .rivals = {"b", "c"}, .describes = true, .data = "d"};
+      .spec = "a", .finding = "AMBIGUOUS", .alternatives = {"b", "c"}, .describes = true, .data = "d"};
   const Choice read = choice_from_json(to_json(choice));
   EXPECT_EQ(to_json(read), to_json(choice));
   EXPECT_FALSE(choice_from_json(nlohmann::json::object()).open());

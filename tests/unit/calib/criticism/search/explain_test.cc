@@ -15,7 +15,7 @@ using testing::hidden_run;
 using testing::HiddenRun;
 
 ExplainReport must_explain(const PoseTable& table) {
-  auto report = explain(table, {.fit = {}, .suspects = few_suspects()});
+  auto report = explain(table, {.fit = {}, .candidate_effects = few_suspects()});
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }

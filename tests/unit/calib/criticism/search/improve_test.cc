@@ -36,8 +36,8 @@ TEST(Improve, ThePriceOfAnEffectIsThatOfItsCoefficientNotOfTheMisfitBefore) {
   EXPECT_GT(round.rms_before_nT, 10 * round.rms_after_nT);
   const auto alone = add_effect(table, {}, make_effect(round.added.spec).value());
   ASSERT_TRUE(alone);
-  EXPECT_LT(round.price.growth, 3);
-  EXPECT_NEAR(round.price.growth, alone->price.growth, 0.02);
+  EXPECT_LT(round.price.sd_ratio, 3);
+  EXPECT_NEAR(round.price.sd_ratio, alone->price.sd_ratio, 0.02);
   EXPECT_EQ(round.price.parameter, alone->price.parameter);
 }
 
@@ -74,7 +74,7 @@ TEST(Numbers, TheWidthOfAHysteresisIsRefinedBesideEverythingElse) {
   auto fit = fit_joint(table, options);
   ASSERT_TRUE(fit);
   const double before = pose_residuals(fit->problem, fit->state).residual_nT();
-  refine_numbers(table, 0, options, *fit);
+  refine_nonlinear_parameters(table, 0, options, *fit);
   const auto spec = EffectSpec::parse(options.effects.front()->spec());
   ASSERT_TRUE(spec);
   EXPECT_NEAR(*spec->number("w", 0, 0, 10), 0.3, 0.03);
@@ -84,7 +84,7 @@ TEST(Numbers, TheWidthOfAHysteresisIsRefinedBesideEverythingElse) {
   kept.effects.push_back(make_effect("axis.hysteresis@s2.x,w=0.22").value());
   auto same = fit_joint(table, kept);
   ASSERT_TRUE(same);
-  refine_numbers(table, 1, kept, *same);
+  refine_nonlinear_parameters(table, 1, kept, *same);
   EXPECT_EQ(kept.effects.front()->spec(), "axis.hysteresis@s2.x,w=0.22") << "what was given stays";
 }
 

@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/effects/library/library.h"
-#include "calib/report/waterfall.h"
+#include "calib/report/model_change_report.h"
+#include "calib/report/waterfall_report.h"
 #include "tests/blind/hidden_run.h"
 #include "tests/blind/planted.h"
 
@@ -49,7 +50,7 @@ TEST(ModelChange, AnEffectThatIsNotThereBuysNothingAndHasItsPrice) {
   ASSERT_TRUE(change);
   EXPECT_LT(change->realised, 12);  // p 5e-4
   EXPECT_NEAR(change->realised, change->predicted, 0.1);
-  EXPECT_GT(change->price.growth, 1.2);
+  EXPECT_GT(change->price.sd_ratio, 1.2);
   EXPECT_EQ(change->price.parameter, "s2.cy") << "a cubic hides behind the scale of its own axis";
   EXPECT_THAT(to_text(*change), ::testing::HasSubstr("weak evidence")) << "p = 0.048";
 }
@@ -89,7 +90,7 @@ TEST(ModelChange, InAModelFarOffChanceIsJudgedByWhatIsLeft) {
   const auto change =
       add_effect(hidden_run({.noise_nT = 0.02, .G_nT_per_m = G}, 2), {}, effect("axis.cubic@s2.y"));
   ASSERT_TRUE(change);
-  EXPECT_GT(change->spread, 50);
+  EXPECT_GT(change->birge_ratio, 50);
   EXPECT_GT(change->realised, 100);
   EXPECT_GT(change->log10_p, -2);
 }
@@ -123,20 +124,20 @@ TEST(ModelChange, DroppingWhatIsNeededIsVetoedByPosesLeftOut) {
 TEST(ModelChange, ChanceAndPriceForbidAnAdditionAndNoRemoval) {
   ModelChange change;
   change.log10_p = -1.2;
-  change.price = {.growth = 1540, .parameter = "s2.scale.z"};
+  change.price = {.sd_ratio = 1540, .parameter = "s2.scale.z"};
   change.held_out_before_nT = 1, change.held_out_after_nT = 1.005;
   EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::not_shown, Veto::price));
   EXPECT_THAT(to_text(change, Veto::price), ::testing::HasSubstr("s2.scale.z would be 1540 times"));
   EXPECT_THAT(to_text(change, Veto::not_shown), ::testing::HasSubstr("not shown to be there"));
   EXPECT_EQ(to_json(change)["vetoes"].size(), 2U);
   change.log10_p = -1.4;
-  change.price.growth = 99;
+  change.price.sd_ratio = 99;
   EXPECT_FALSE(change.vetoed());
   change.held_out_after_nT = 1.02;
   EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::held_out));
   change.adding = false;
   change.log10_p = 0;
-  change.price.growth = 1540;
+  change.price.sd_ratio = 1540;
   EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::held_out));
 }
 

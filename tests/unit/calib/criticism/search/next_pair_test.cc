@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "calib/report/next_report.h"
 #include "tests/unit/calib/criticism/hidden.h"
 
 namespace mgtd::calib::testing {

@@ -15,7 +15,7 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
 

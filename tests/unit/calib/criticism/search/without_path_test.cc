@@ -54,8 +54,8 @@ TEST_P(WithoutPath, AMemoryIsNotGivenAnotherName) {
   if (row.sigmas < 30) return;  // a sketch of so little may be missed
   EXPECT_NE(r->finding, Finding::pass);
   EXPECT_TRUE(named_or_possible(*r) || r->named.empty()) << sentence(*r);
-  EXPECT_TRUE(std::any_of(r->notes.begin(), r->notes.end(), [](const std::string& note) {
-    return note.find("the way of the table between its poses is not in these data") != std::string::npos;
+  EXPECT_TRUE(std::any_of(r->notes.begin(), r->notes.end(), [](const ExplainNote& note) {
+    return std::holds_alternative<TablePathUnknown>(note);
   }));
 }
 

@@ -15,12 +15,12 @@ constexpr int kRivals = 8;
 
 /// Law 0 and others that share `alike` of its signature (not in squares), each in a direction of its own.
 struct Laws {
-  std::vector<std::shared_ptr<CandidateEffect>> suspects;
+  std::vector<std::shared_ptr<CandidateEffect>> candidate_effects;
   std::vector<Eigen::VectorXd> columns;
 
   explicit Laws(double alike) {
     for (int i = 0; i <= kRivals; ++i) {
-      suspects.push_back(suspect_of_columns("law " + std::to_string(i), 1));
+      candidate_effects.push_back(suspect_of_columns("law " + std::to_string(i), 1));
       columns.push_back(Eigen::VectorXd::Zero(kRows));
       columns.back()[0] = i == 0 ? 1 : alike;
       if (i > 0) columns.back()[i] = std::sqrt(1 - alike * alike);
@@ -29,7 +29,8 @@ struct Laws {
 
   [[nodiscard]] std::vector<ScoredFamily> scored_on(const Eigen::VectorXd& residual) const {
     std::vector<ScoredFamily> out;
-    for (std::size_t i = 0; i < columns.size(); ++i) out.push_back(scored(suspects[i], columns[i], residual));
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      out.push_back(scored(candidate_effects[i], columns[i], residual));
     std::stable_sort(out.begin(), out.end(), [](const ScoredFamily& a, const ScoredFamily& b) {
       return a.calibrated < b.calibrated;
     });
@@ -47,11 +48,11 @@ Counts ask(const Laws& laws, double d, int runs) {
   Counts out;
   for (int i = 0; i < runs; ++i) {
     const auto families = laws.scored_on(d * laws.columns[0] + normal(kRows, random));
-    const auto rivals = rivals_of(families, 0, static_cast<std::uint64_t>(i));
-    bool named = families.front().suspect->name == "law 0";
+    const auto alternatives = alternatives_of(families, 0, static_cast<std::uint64_t>(i));
+    bool named = families.front().candidate_effect->name == "law 0";
     out.first += named ? 1 : 0;
     int possible = 0;
-    for (const Rival& r : rivals) {
+    for (const Alternative& r : alternatives) {
       named = named || (r.possible && r.effect == "law 0");
       possible += r.possible ? 1 : 0;
     }
@@ -87,7 +88,7 @@ TEST(Rivals, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
 TEST(Rivals, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
   constexpr int kRuns = 20;
   Laws laws(0.99);
-  for (std::size_t i = 1; i < laws.suspects.size(); ++i) laws.suspects[i]->reads = "t_s";
+  for (std::size_t i = 1; i < laws.candidate_effects.size(); ++i) laws.candidate_effects[i]->reads = "t_s";
   const Counts seen = ask(laws, 200, kRuns);
   EXPECT_EQ(seen.first, kRuns);
   EXPECT_EQ(seen.alone, kRuns);
@@ -96,7 +97,7 @@ TEST(Rivals, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
 TEST(Rivals, FormAloneTellsNothingApart) {
   EXPECT_EQ(beyond_form(40, 1600), 0);
   EXPECT_DOUBLE_EQ(beyond_form(400, 1600), 320);
-  EXPECT_DOUBLE_EQ(told_right(0), 0.5);
+  EXPECT_DOUBLE_EQ(probability_right(0), 0.5);
 }
 
 }  // namespace

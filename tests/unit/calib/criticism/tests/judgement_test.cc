@@ -17,7 +17,7 @@ using testing::HiddenRun;
 using testing::wandering_offsets;
 
 ExplainReport must_explain(const PoseTable& table) {
-  auto report = explain(table, {.fit = {}, .suspects = few_suspects()});
+  auto report = explain(table, {.fit = {}, .candidate_effects = few_suspects()});
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }

@@ -27,18 +27,19 @@ Eigen::MatrixXd steps() {
 // Nothing is there: the smallest p of all, its search counted, must be uniform where alarms are raised.
 TEST(Null, TheSearchOverANumberIsCounted) {
   std::mt19937_64 random(3);
-  std::vector<std::shared_ptr<CandidateEffect>> suspects;
+  std::vector<std::shared_ptr<CandidateEffect>> candidate_effects;
   std::vector<Eigen::MatrixXd> columns;
   for (int i = 0; i < 5; ++i) {
-    suspects.push_back(suspect_of_columns("law", 1));
+    candidate_effects.push_back(suspect_of_columns("law", 1));
     columns.emplace_back(normal(kRows, random));
   }
   columns.push_back(steps());
-  suspects.push_back(suspect_of_columns("step", static_cast<std::size_t>(columns.back().cols())));
+  candidate_effects.push_back(suspect_of_columns("step", static_cast<std::size_t>(columns.back().cols())));
   const auto ask = [&] {
     const Eigen::VectorXd residual = normal(kRows, random);
     std::vector<ScoredFamily> out;
-    for (std::size_t f = 0; f < columns.size(); ++f) out.push_back(scored(suspects[f], columns[f], residual));
+    for (std::size_t f = 0; f < columns.size(); ++f)
+      out.push_back(scored(candidate_effects[f], columns[f], residual));
     return out;
   };
   auto families = ask();

@@ -84,7 +84,7 @@ TEST(Residual, IsTheNoiseWhereTheModelIsComplete) {
   EXPECT_NEAR(fitted->residual_nT, kNoise_nT, 0.06 * kNoise_nT);
   ASSERT_TRUE(fitted->held_out_residual_nT);
   EXPECT_NEAR(*fitted->held_out_residual_nT, kNoise_nT, 0.1 * kNoise_nT);
-  EXPECT_TRUE(fitted->noise_told);
+  EXPECT_TRUE(fitted->noise_known);
 }
 
 TEST(NoiseText, SaysFromWhatItWasReallyEstimated) {
@@ -104,7 +104,7 @@ TEST(NoiseText, SaysFromWhatItWasReallyEstimated) {
   };
   const auto far = compare(hidden_run({.noise_nT = 0.02, .hidden = cubic}, 6), {});
   ASSERT_TRUE(far);
-  EXPECT_TRUE(far->noise.told);
+  EXPECT_TRUE(far->noise.known);
   EXPECT_THAT(noise_of_tests(far->noise), HasSubstr("far above that noise"));
   EXPECT_THAT(to_text(*far), HasSubstr("p < 1e-30"));
 }

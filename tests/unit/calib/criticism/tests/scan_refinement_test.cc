@@ -37,8 +37,9 @@ TEST(Refinement, AStaircaseIsNotOneLaw) {
   const HiddenLaw& drift = law("axis.offset.drift");
   const PoseTable table = hidden_run({.hidden = hide(drift, 0, 0, 20 * crb_of(drift, 0, 0, 74'004))}, 74'004);
   ExplainOptions options;
-  options.suspects = library_suspects(table).testable;
-  std::erase_if(*options.suspects, [](const CandidateEffect& s) { return s.name == "axis.offset.drift"; });
+  options.candidate_effects = library_candidates(table).testable;
+  std::erase_if(*options.candidate_effects,
+                [](const CandidateEffect& s) { return s.name == "axis.offset.drift"; });
   const auto report = explain(table, options);
   ASSERT_TRUE(report.has_value());
   EXPECT_TRUE(report->named.empty()) << report->named.front();

@@ -9,7 +9,8 @@
 #include "calib/effects/formula/angle_unit.h"
 #include "calib/effects/formula/expression.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/formula_report.h"
 #include "tests/blind/hidden_run.h"
 
 namespace mgtd::calib {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib {

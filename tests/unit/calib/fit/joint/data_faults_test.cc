@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include "calib/criticism/search/explain.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/explain_note_text.h"
+#include "calib/report/fit_reasons.h"
 #include "calib/report/verdict_text.h"
 #include "tests/blind/hidden_run.h"
 
@@ -102,8 +104,8 @@ TEST(DataFaults, AMirroredSensorIsRefusedByTheFitInTheWordsOfExplain) {
   EXPECT_EQ(explained->finding, Finding::bad_data);
   const std::string words =
       "sensor 2 is mirrored: left-handed axes, two leads are swapped or one is inverted";
-  EXPECT_THAT(fitted->reasons, ::testing::Contains(HasSubstr(words)));
-  EXPECT_THAT(explained->notes, ::testing::Contains(HasSubstr(words)));
+  EXPECT_THAT(fit_reasons(*fitted), ::testing::Contains(HasSubstr(words)));
+  EXPECT_THAT(note_texts(explained->notes), ::testing::Contains(HasSubstr(words)));
 }
 
 TEST(DataFaults, ATableSetByHandPassesAndItsUncertaintyIsTold) {
@@ -112,17 +114,17 @@ TEST(DataFaults, ATableSetByHandPassesAndItsUncertaintyIsTold) {
   const auto untold = explain(run, {});
   ASSERT_TRUE(untold) << untold.error().text();
   EXPECT_EQ(untold->finding, Finding::pass) << sentence(*untold);
-  EXPECT_THAT(untold->notes, ::testing::Contains(HasSubstr("the table angles are good to")));
+  EXPECT_THAT(note_texts(untold->notes), ::testing::Contains(HasSubstr("the table angles are good to")));
   const auto untold_fit = fit(run, {});
   ASSERT_TRUE(untold_fit) << untold_fit.error().text();
-  EXPECT_TRUE(untold_fit->calibration.accepted_by_checks) << untold_fit->reasons.front();
-  EXPECT_THAT(untold_fit->reasons, ::testing::Contains(HasSubstr("the table angles are good to")));
+  EXPECT_TRUE(untold_fit->calibration.accepted_by_checks) << fit_reasons(*untold_fit).front();
+  EXPECT_THAT(fit_reasons(*untold_fit), ::testing::Contains(HasSubstr("the table angles are good to")));
   FitOptions told;
   told.table_sd_rad = to_rad(2);
   const auto fitted = fit(run, told);
   const auto explained = explain(run, {.fit = told});
   ASSERT_TRUE(fitted && explained);
-  EXPECT_TRUE(fitted->calibration.accepted_by_checks) << fitted->reasons.front();
+  EXPECT_TRUE(fitted->calibration.accepted_by_checks) << fit_reasons(*fitted).front();
   EXPECT_EQ(explained->finding, Finding::pass) << sentence(*explained);
   EXPECT_TRUE(explained->notes.empty());
 }

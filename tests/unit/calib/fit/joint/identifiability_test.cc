@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/identifiability.h"
+#include "calib/fit/checks/identifiability_text.h"
 
 #include <gtest/gtest.h>
 
@@ -50,8 +51,9 @@ TEST(Identifiability, LevelPosesLeaveTheVerticalWeakAndTheAdvicePays) {
   ASSERT_TRUE(fit) << fit.error().text();
   const Identifiability before = of(*fit, sim.f_nT);
   ASSERT_FALSE(before.weak.empty());
-  EXPECT_EQ(before.weak.front().what.rfind("scale z of all sensors", 0), 0U) << before.weak.front().what;
-  EXPECT_NE(before.coverage.find("platform +Z"), std::string::npos) << before.coverage;
+  EXPECT_EQ(to_text(before.weak.front()).rfind("scale z of all sensors", 0), 0U)
+      << to_text(before.weak.front());
+  EXPECT_NE(to_text(before.coverage).find("platform +Z"), std::string::npos) << to_text(before.coverage);
   ASSERT_FALSE(before.add.empty());
   poses.insert(poses.end(), before.add.begin(), before.add.end());
   const PoseTable more = at(sim, poses, 2);

@@ -5,7 +5,7 @@
 
 #include "calib/calibration/array_model.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib {

@@ -2,11 +2,13 @@
 #include "calib/fit/joint/joint_report.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/calibration/array_model.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/fit_report_json.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_reasons.h"
+#include "calib/report/fit_report_json.h"
 #include "calib/report/fit_report_text.h"
 #include "tests/support/paper_rigs.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
@@ -43,6 +45,23 @@ TEST(JointReport, IsTheDefaultAndHoldsTheDocumentedKeys) {
   EXPECT_TRUE(out["check_poses"]["tensor_rmse_nT_per_m"]["yz"].is_number());
   EXPECT_LT(out["held_out"]["total_field_rmse_nT"][0].get<double>(), 1.3);
   EXPECT_THAT(to_text(*report), HasSubstr("joint calibration"));
+}
+
+TEST(JointReport, SaysHowTheFitEnded) {
+  const auto report = fit(papers_run(), {});
+  ASSERT_TRUE(report) << report.error().text();
+  const FitSummary& s = report->summary;
+  EXPECT_EQ(s.termination, Termination::converged);
+  EXPECT_TRUE(s.converged());
+  EXPECT_GE(s.rounds, 2) << "the noise of the table is estimated, so one round is not enough";
+  EXPECT_LE(s.rounds, kMaxWeighingRounds);
+  EXPECT_GE(s.iterations, s.rounds - 1);
+  EXPECT_GT(s.initial_cost, s.final_cost);
+  EXPECT_NEAR(s.final_cost, report->chi2 + report->chi2_table, 1e-6 * s.final_cost);
+  const nlohmann::json out = to_json(*report)["summary"];
+  EXPECT_EQ(out["termination"], "converged");
+  EXPECT_EQ(out["iterations"], s.iterations);
+  EXPECT_THAT(to_text(*report), HasSubstr("fit:   converged in "));
 }
 
 TEST(JointReport, LeavesLessThanTheTwoStep) {
@@ -96,7 +115,7 @@ TEST(JointReport, WrongDeclinationIsNoticed) {
   const auto report = fit(simulate(sim, 36, 121, 7), options);
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_FALSE(report->calibration.accepted_by_checks);
-  EXPECT_THAT(report->reasons.front(), HasSubstr("declination"));
+  EXPECT_THAT(fit_reasons(*report).front(), HasSubstr("declination"));
 }
 
 TEST(JointReport, BadPosesAreNamed) {
@@ -105,7 +124,7 @@ TEST(JointReport, BadPosesAreNamed) {
   const auto report = fit(table, {});
   ASSERT_TRUE(report);
   ASSERT_EQ(report->outliers.size(), 1U);
-  EXPECT_THAT(report->reasons, ::testing::Contains(HasSubstr("pose 61, s4.z")));
+  EXPECT_THAT(fit_reasons(*report), ::testing::Contains(HasSubstr("pose 61, s4.z")));
 }
 
 }  // namespace

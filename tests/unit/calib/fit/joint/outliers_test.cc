@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "calib/fit/joint/joint_fit.h"
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_reasons.h"
+#include "calib/report/outlier_text.h"
 #include "tests/accuracy/contamination.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
@@ -124,7 +126,7 @@ TEST(Contaminated, TwoStepFitLeavesOutPoses) {
   ASSERT_TRUE(report);
   EXPECT_EQ(report->outliers.size(), 16U);
   for (const OutlierNode& node : report->outliers) EXPECT_THAT(node.where, HasSubstr("s"));
-  EXPECT_THAT(report->reasons, Contains(HasSubstr("left out of the fit")));
+  EXPECT_THAT(fit_reasons(*report), Contains(HasSubstr("left out of the fit")));
   // The same run without a gross reading, and without these poses.
   PoseTable told = scene.run(1);
   std::erase_if(told.poses, [&](const Pose& pose) {

@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "calib/fit/methods/fit.h"
+#include "calib/fit/method_choice/fit.h"
 #include "tests/support/paper_rigs.h"
 
 /// Stated uncertainties against what many runs scatter by. Every run is measured anew: other noise, other

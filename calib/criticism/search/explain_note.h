@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calib/criticism/tests/candidate.h"
+#include "calib/criticism/tests/exchange_in_run.h"
+
+/// What explain() noticed beside its verdict, as values; report/explain_note_text.h has the sentences.
+namespace mgtd::calib {
+
+// Of the data:
+struct SensorsMirrored {
+  std::vector<std::size_t> sensors;  ///< by number, from 1
+};
+struct TableAnglesContradict {
+  double sd_rad{0}, limit_rad{0};  ///< rms of the attitudes about the table angles, per pose
+};
+struct TableAnglesRough {
+  double estimated_rad{0}, stated_rad{0};  ///< standard deviation of a table angle
+};
+struct PosesContradict {
+  double share{0};  ///< of all poses
+};
+struct NoiseOverstated {
+  std::string channel;       ///< "s3.z"
+  double residual_ratio{0};  ///< its residual over the stated noise
+};
+/// A residual far above the noise that has no shape, or that a few readings make.
+struct ResidualWithoutLaw {
+  double noise_inflation{1};             ///< residual over noise
+  double residual_nT{0}, typical_nT{0};  ///< Scatter
+  double contradicting{0};               ///< share of all poses
+};
+struct SensorsExchanged {
+  ExchangeInRun exchange;
+};
+/// The run file does not hold how the table moved between poses, which a memory of the cores depends on.
+struct TablePathUnknown {};
+
+// Of the effects that were found:
+struct ExcessRemains {
+  std::string effect;
+  double share{0};  ///< of the excess that it accounts for
+};
+struct FallNotAsPredicted {
+  double realised{0}, predicted{0};  ///< fall of chi-square
+};
+struct LackOfFitRemains {
+  std::string effect, where;
+  double log10_p{0};
+};
+struct SizeTooSmall {
+  std::string effect;
+  double d{0};
+};
+/// Several steps or thresholds on one axis.
+struct StepsFollowCurve {};
+struct EvidenceOfOnePose {
+  int pose{0};
+  std::string effect;
+};
+struct FitWithEffectFailed {
+  std::string spec, why;
+};
+struct SizeUnusual {
+  Candidate candidate;
+};
+struct SizeBeyondAll {
+  Candidate candidate;  ///< as last seen; it is not named
+};
+struct LawOfNoLibrary {
+  std::string where;
+  std::set<std::string> effects;  ///< that only describe it
+};
+
+using ExplainNote =
+    std::variant<SensorsMirrored, TableAnglesContradict, TableAnglesRough, PosesContradict, NoiseOverstated,
+                 ResidualWithoutLaw, SensorsExchanged, TablePathUnknown, ExcessRemains, FallNotAsPredicted,
+                 LackOfFitRemains, SizeTooSmall, StepsFollowCurve, EvidenceOfOnePose, FitWithEffectFailed,
+                 SizeUnusual, SizeBeyondAll, LawOfNoLibrary>;
+
+}  // namespace mgtd::calib

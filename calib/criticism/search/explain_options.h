@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "calib/criticism/tests/candidate_effect.h"
+#include "calib/fit/fit_options.h"
+
+namespace mgtd::calib {
+
+/// What explain() is asked, and what is suspected beside or instead of the library.
+struct ExplainOptions {
+  FitOptions fit;  ///< method joint; its effects are the model that is asked about
+  int rounds{4};
+  /// What is suspected instead of the library.
+  std::optional<std::vector<CandidateEffect>> candidate_effects{};
+  /// What is suspected beside it: formulas of the user.
+  std::vector<CandidateEffect> also{};
+};
+
+}  // namespace mgtd::calib

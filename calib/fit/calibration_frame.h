@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/fit_report.h"
+#include "calib/fit/readings.h"
+
+/// The part of a calibration that does not depend on the method of the fit.
+namespace mgtd::calib {
+
+[[nodiscard]] Reference reference_of(const PoseTable& table, const Readings& readings);
+/// Method, geometry, reference, hashes and versions.
+[[nodiscard]] Calibration calibration_frame(const PoseTable& table, const Readings& readings,
+                                            const FitOptions& options);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/fit/checks/gauge_text.h"
+
+#include <fmt/format.h>
+
+#include "calib/calibration/scale_gauge.h"
+#include "calib/fit/joint/joint_findings.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+
+std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
+  switch (origin.gauge) {
+    case AzimuthGauge::declination_given:
+      return fmt::format(
+          "platform Z is the axis of the standard turn; azimuth from the given declination {:.4f} deg, taken "
+          "as exact",
+          to_deg(origin.declination_rad));
+    case AzimuthGauge::table_frame:
+      return fmt::format(
+          "platform frame is the table frame: Z by the standard turn, azimuth by the tilted poses, "
+          "declination {:.4f} +- {:.4f} deg",
+          to_deg(origin.declination_rad), to_deg(declination_sd_rad));
+    case AzimuthGauge::mean_gamma_zero:
+      return "platform Z is the axis of the standard turn; the azimuth is free: mean gamma of the four "
+             "sensors set to zero";
+  }
+  return {};
+}
+
+std::string gauge_text(const Gauge& gauge, double table_sd_rad,
+                       const std::array<double, 3>& rotation_sd_rad) {
+  std::string text;
+  if (gauge.angles == AngleCoverage::none) {
+    text =
+        "no table angles: mean alpha = mean beta = mean gamma = 0 of the four sensors, relative to their "
+        "mountings; the "
+        "common rotation against the platform is unknown";
+  } else {
+    const bool convention = gauge.angles == AngleCoverage::one_axis && !gauge.declination_known;
+    text = fmt::format(
+        "{} (table angles to {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, "
+        "{:.2g} about Y",
+        gauge.angles == AngleCoverage::full ? "platform frame is the table frame"
+                                            : "platform by the table's one axis",
+        to_deg(table_sd_rad), to_deg(rotation_sd_rad[0]), to_deg(rotation_sd_rad[1]));
+    text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
+                       : fmt::format(", {:.2g} about Z", to_deg(rotation_sd_rad[2]));
+    if (gauge.declination_known) text += "; declination as given";
+  }
+  if (!gauge.scale_known)
+    text += fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}", kScaleIsFree);
+  return text;
+}
+
+std::string gauge_text(const FitReport& report) {
+  if (report.joint)
+    return gauge_text(report.joint->gauge, report.table_sd_rad, report.joint->common_rotation_sd_rad);
+  return report.azimuth_origin ? gauge_text(*report.azimuth_origin, report.site.declination_sd_rad)
+                               : std::string();
+}
+
+}  // namespace mgtd::calib

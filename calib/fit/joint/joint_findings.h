@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+
+#include "calib/fit/joint/agreement.h"
+#include "calib/fit/joint/identifiability.h"
+#include "calib/fit/joint/joint_setup.h"
+#include "calib/fit/joint/wandering_estimate.h"
+#include "calib/fit/quantisation.h"
+
+/// What only a joint fit finds out, as values: part of FitReport.
+namespace mgtd::calib {
+
+struct JointFindings {
+  Gauge gauge;
+  std::array<double, 3> common_rotation_sd_rad{};  ///< JointFit::common_rotation_sd_rad
+  double birge_ratio{1};                           ///< JointFit::birge_ratio
+  Identifiability known;                           ///< which combinations of parameters the poses determine
+  Agreement agreement;                             ///< whether the readings that were kept agree
+  WanderingEstimate wandering;                     ///< the covariance of the calibration contains it
+  Quantisation quantisation;                       ///< the weights of the fit contain it
+};
+
+}  // namespace mgtd::calib

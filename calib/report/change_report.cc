@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/change_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/report/json_number.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json parameter_json(const ParameterChange& p) {
+  json out{{"name", p.name},
+           {"change", number_or_null(p.change)},
+           {"sd", number_or_null(p.sd)},
+           {"unit", p.unit},
+           {"sigmas", p.sigmas},
+           {"log10_p", p.log10_p}};
+  if (p.seen > 0 && std::isfinite(p.seen)) out["smallest_seen"] = p.seen;
+  return out;
+}
+
+/// Scale factors are written in parts per million, where their changes live.
+std::string amount(double value, const std::string& unit, bool sign) {
+  const double shown = unit.empty() ? 1e6 * value : value;
+  return fmt::format("{}{:.3g} {}", sign && value > 0 ? "+" : "", shown, unit.empty() ? "ppm" : unit);
+}
+
+}  // namespace
+
+json to_json(const Change& c) {
+  json sensors = json::array(), named = json::array(), parameters = json::array();
+  for (std::size_t i = 0; i < kSensors; ++i)
+    sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"others_log10_p", c.others_log10_p[i]}});
+  for (const ParameterChange& p : c.named) named.push_back(parameter_json(p));
+  for (const ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
+  return {{"chi2", c.chi2},
+          {"dof", c.dof},
+          {"log10_p", c.log10_p},
+          {"log10_p_single", c.log10_p_single},
+          {"p", c.p()},
+          {"sensors", std::move(sensors)},
+          {"named", std::move(named)},
+          {"parameters", std::move(parameters)}};
+}
+
+std::string figures_text(const Change& c) {
+  return fmt::format("{}; chi-square {:.1f} for {:.0f} directions", p_phrase(std::log10(c.p())), c.chi2,
+                     c.dof);
+}
+
+std::string named_text(const Change& change) {
+  std::string out;
+  for (const ParameterChange& n : change.named) {
+    out += fmt::format("{}{} by {} ({:.1f} sigma)", out.empty() ? "" : ", ", n.name,
+                       amount(n.change, n.unit, true), std::abs(n.sigmas));
+  }
+  return out;
+}
+
+std::string change_table(const Change& change, std::size_t rows) {
+  std::string out = "were it one sensor that changed, would the others be as they were?";
+  for (std::size_t i = 0; i < kSensors; ++i)
+    out += fmt::format("   s{} {}", i + 1, p_phrase(change.others_log10_p[i]));
+  out += fmt::format("\n\n{:<24} {:>20} {:>18} {:>8} {:>20}\n", "as if it alone changed", "by", "sd",
+                     "sigmas", "smallest to be seen");
+  for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
+    const ParameterChange& p = change.parameters[j];
+    out += fmt::format("{:<24} {:>20} {:>18} {:>8.1f} {:>20}\n", p.name, amount(p.change, p.unit, true),
+                       amount(p.sd, p.unit, false), p.sigmas,
+                       std::isfinite(p.seen) ? amount(p.seen, p.unit, false) : "none");
+  }
+  return out;
+}
+
+std::string seen_text(const Change& change) {
+  struct Kind {
+    const char* what;
+    const char* keys;
+    std::string unit;
+    double worst{0};
+  };
+  std::array<Kind, 4> kinds{{{"offset", " ix iy iz ", "nT"},
+                             {"scale factor", " cx cy cz ", ""},
+                             {"angle between axes", " theta phi psi ", "deg"},
+                             {"turn of a sensor", " alpha beta gamma ", "deg"}}};
+  for (const ParameterChange& p : change.parameters) {
+    if (p.name.size() < 4 || p.name[0] != 's' || p.name[2] != ' ') continue;
+    for (Kind& kind : kinds) {
+      if (std::string_view(kind.keys).find(p.name.substr(2) + " ") != std::string_view::npos)
+        kind.worst = std::max(kind.worst, p.seen);
+    }
+  }
+  std::string out;
+  for (const Kind& kind : kinds) {
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", kind.what,
+                       std::isfinite(kind.worst) ? amount(kind.worst, kind.unit, false) : "not at all");
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "calib/criticism/search/choice.h"
+
+namespace mgtd::calib {
+
+/// One or two clauses; empty when nothing is open.
+[[nodiscard]] std::string to_text(const Choice& choice);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/experiment_design_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calib/calibration/scale_gauge.h"
+#include "calib/fit/checks/identifiability_text.h"
+#include "calib/fit/joint/joint_setup.h"
+#include "calib/report/experiment_power_report.h"
+#include "calib/report/json_number.h"
+#include "calib/sensor/shown_parameters.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+json tensor_components(const Gradient& g) {
+  return {{"xx", number_or_null(g.xx)}, {"yy", number_or_null(g.yy)}, {"zz", number_or_null(g.zz)},
+          {"xy", number_or_null(g.xy)}, {"xz", number_or_null(g.xz)}, {"yz", number_or_null(g.yz)}};
+}
+
+json angles_json(const TableAngles& a) {
+  return {{"azimuth_deg", to_deg(a.azimuth_rad)},
+          {"pitch_deg", to_deg(a.pitch_rad)},
+          {"roll_deg", to_deg(a.roll_rad)}};
+}
+
+std::string tensor_row(std::string_view what, const Gradient& g) {
+  std::string row = fmt::format("{:<34}", what);
+  for (const double sd : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += fmt::format("{:>9.3f}", sd);
+  return row + "\n";
+}
+
+/// Scale factors in parts per million.
+std::string amount(const Expected& e) {
+  return e.unit.empty() ? fmt::format("{:.3g} ppm", 1e6 * e.sd) : fmt::format("{:.3g} {}", e.sd, e.unit);
+}
+
+std::string parameter_table(const DesignReport& r) {
+  std::string out = fmt::format("{:<20}", "standard error");
+  for (int i = 1; i <= kSensors; ++i) out += fmt::format("{:>16}", fmt::format("s{}", i));
+  out += "\n";
+  for (std::size_t p = 0; p < kSensorParameters; ++p) {
+    out += fmt::format("{:<20}", shown_parameters()[p].name);
+    for (std::size_t i = 0; i < kSensors; ++i)
+      out += fmt::format("{:>16}", amount(r.parameters[i * kSensorParameters + p]));
+    out += "\n";
+  }
+  for (std::size_t j = kSensors * kSensorParameters; j < r.parameters.size(); ++j) {
+    const Separation& s = r.separations[j - kSensors * kSensorParameters];
+    out +=
+        fmt::format("{:<28}{:>18}   {:.2f} times what it would be alone; most like {} ({:.2f})\n",
+                    r.parameters[j].name, amount(r.parameters[j]), s.inflation, s.alternative, s.correlation);
+  }
+  return out;
+}
+
+std::string weak_list(const DesignReport& r) {
+  if (r.known.weak.empty()) return {};
+  std::string out = "weakly known\n";
+  for (const WeakDirection& w : r.known.weak) {
+    out += fmt::format("  {}: {}\n", to_text(w), weak_sd_text(w.sd_nT));
+  }
+  out += fmt::format("  {}\n", to_text(r.known.coverage));
+  return out;
+}
+
+std::string help_list(const DesignReport& r) {
+  std::string out = "poses that would help most\n";
+  if (!r.known.add.empty()) {
+    for (const TableAngles& a : r.known.add) out += fmt::format("  {}\n", to_text(a));
+    return out;
+  }
+  for (const DesignReport::Helpful& h : r.helpful) {
+    out +=
+        fmt::format("  {:<44} takes {:.1f} % off the tensor's variance\n", to_text(h.angles), 100 * h.share);
+  }
+  return out;
+}
+
+std::string gauge_text(const Gauge& gauge) {
+  std::string out;
+  switch (gauge.angles) {
+    case AngleCoverage::none:
+      out = "the angles do not fix the platform frame: mean alpha = beta = gamma = 0 by convention";
+      break;
+    case AngleCoverage::one_axis:
+      out = "the angles turn about one axis: mean gamma = 0 by convention";
+      break;
+    case AngleCoverage::full:
+      out = "the table angles fix the platform frame";
+      break;
+  }
+  return gauge.scale_known ? out : fmt::format("{}; no field is known: {}", out, kScaleIsFree);
+}
+
+std::string assumed_text(const DesignAssumptions& r) {
+  const std::string field =
+      r.scalar_sd_nT  ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
+      : r.field_known ? fmt::format("known to {} nT", std::max(r.field_sd_nT, kCommonFieldSpread_nT))
+                      : std::string("not known");
+  return fmt::format(
+      "field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg; heads that "
+      "warm "
+      "by {} degC where the poses tell no temperature",
+      r.f_nT, field, to_deg(r.inclination_rad), r.pose_noise_nT, to_deg(r.table_sd_rad), r.warming_degC);
+}
+
+}  // namespace
+
+json to_json(const DesignReport& r) {
+  json parameters = json::array(), separations = json::array(), weak = json::array(), add = json::array(),
+       helpful = json::array();
+  for (const Expected& e : r.parameters)
+    parameters.push_back({{"name", e.name}, {"sd", e.sd}, {"unit", e.unit}});
+  for (const Separation& s : r.separations) {
+    separations.push_back({{"name", s.name},
+                           {"inflation", s.inflation},
+                           {"rival", s.alternative},
+                           {"correlation", s.correlation}});
+  }
+  for (const WeakDirection& w : r.known.weak)
+    weak.push_back({{"what", to_text(w)}, {"sd_nT", number_or_null(w.sd_nT)}});
+  for (const TableAngles& a : r.known.add) add.push_back(angles_json(a));
+  for (const DesignReport::Helpful& h : r.helpful) {
+    helpful.push_back(angles_json(h.angles));
+    helpful.back()["variance_share"] = h.share;
+  }
+  json out{{"schema", "mgt.plan/1"},
+           {"poses", r.poses},
+           {"determined", r.determined},
+           {"assumed", assumed_text(r.assumed)},
+           {"gauge", gauge_text(r.gauge)},
+           {"parameters", std::move(parameters)},
+           {"separations", std::move(separations)},
+           {"tensor_sd_nT_per_m", tensor_components(r.tensor_sd_nT_per_m)},
+           {"noise_sd_nT_per_m", tensor_components(r.noise_sd_nT_per_m)},
+           {"weak", std::move(weak)},
+           {"coverage", to_text(r.known.coverage)},
+           {"add", std::move(add)},
+           {"helpful", std::move(helpful)}};
+  if (r.power) add_json(*r.power, out);
+  return out;
+}
+
+std::string to_text(const DesignReport& r) {
+  std::string out = fmt::format("{} poses: {}\n", r.poses,
+                                r.determined ? "every parameter would be determined"
+                                             : "NOT ENOUGH, some parameters would stay unknown");
+  out += fmt::format("assumed: {}\ngauge: {}\n", assumed_text(r.assumed), gauge_text(r.gauge));
+  if (r.determined) {
+    out += fmt::format("\n{:<34}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "standard error of the tensor, nT/m", "xx",
+                       "yy", "zz", "xy", "xz", "yz");
+    out += tensor_row("by the calibration", r.tensor_sd_nT_per_m);
+    out += tensor_row("by the noise of one pose mean", r.noise_sd_nT_per_m);
+    out += "\n" + parameter_table(r);
+  }
+  const std::string weak = weak_list(r);
+  out += (weak.empty() ? "" : "\n" + weak) + "\n" + help_list(r);
+  return r.power ? out + "\n" + to_text(*r.power) : out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calib/design/experiment_design.h"
+
+/// A plan's report as an object, schema "mgt.plan/1", and for a person.
+namespace mgtd::calib {
+
+[[nodiscard]] nlohmann::json to_json(const DesignReport& report);
+[[nodiscard]] std::string to_text(const DesignReport& report);
+
+}  // namespace mgtd::calib

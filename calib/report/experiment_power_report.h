@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calib/design/experiment_power.h"
+
+/// The part of a plan's report that is about missing effects: keys "detectable_above", "inseparable",
+/// "pairs" and "untestable" of "mgt.plan/1", and their tables for a person.
+namespace mgtd::calib {
+
+void add_json(const DesignPower& power, nlohmann::json& report);
+[[nodiscard]] std::string to_text(const DesignPower& power);
+
+}  // namespace mgtd::calib

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/criticism/search/explain_note.h"
+
+namespace mgtd::calib {
+
+/// A clause without capital letter and full stop.
+[[nodiscard]] std::string to_text(const ExplainNote& note);
+
+/// Of each note, none twice: a search that begins anew after it took effects back may notice the same again.
+[[nodiscard]] std::vector<std::string> note_texts(const std::vector<ExplainNote>& notes);
+
+}  // namespace mgtd::calib

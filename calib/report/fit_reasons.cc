@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/fit_reasons.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <iterator>
+
+#include "calib/calibration/scale_gauge.h"
+#include "calib/fit/checks/check_limits.h"
+#include "calib/fit/checks/identifiability_text.h"
+#include "calib/fit/joint/joint_findings.h"
+#include "calib/report/outlier_text.h"
+#include "calib/report/wandering_text.h"
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+std::vector<std::string> remarks_on_any(const FitReport& report) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < kSensorCount; ++i) {
+    const SensorModel& s = report.calibration.sensors[i];
+    if (s.mounting.isIdentity()) continue;
+    const bool mirrored = s.mounting.determinant() < 0;
+    std::string axes;
+    for (int p = 0; p < 3; ++p) {
+      int a = 0;
+      s.mounting.row(p).cwiseAbs().maxCoeff(&a);
+      axes += fmt::format("{}{} is platform {}", axes.empty() ? "" : ", ",
+                          s.mounting(p, a) < 0 ? std::string("-") + "xyz"[a] : std::string(1, "xyz"[a]),
+                          "XYZ"[p]);
+    }
+    out.push_back(fmt::format(
+        "sensor s{} is {}: its {}", i + 1,
+        mirrored ? "mirrored (an axis wired backwards, or two swapped)" : "mounted turned", axes));
+  }
+  if (std::string left = lack_of_fit_text(report); !left.empty()) out.push_back(std::move(left));
+  for (const std::string& text : outlier_texts(report.outliers))
+    out.push_back(text + "; left out of the fit");
+  return out;
+}
+
+/// What only a joint fit recognises.
+std::vector<std::string> remarks_on_joint(const FitReport& report) {
+  const JointFindings& found = *report.joint;
+  std::vector<std::string> out;
+  if (found.birge_ratio > 1) {
+    out.push_back(fmt::format(
+        "for the uncertainties the readings count as {:.4g} times as noisy (the root of chi-square "
+        "per degree of freedom), so that they cover what the model leaves out",
+        found.birge_ratio));
+  }
+  if (scale_is_free(report.calibration)) {
+    out.push_back(
+        fmt::format("no field is known, so {}: fields and gradients are in units of the mean scale "
+                    "factor; give the field of the site with --field, or measure it",
+                    kScaleIsFree));
+  }
+  for (const std::string& weak : weak_texts(report)) out.push_back("weakly known: " + weak);
+  if (!found.known.add.empty()) {
+    out.push_back(fmt::format("{}; the poses that would help most: {}", to_text(found.known.coverage),
+                              to_text(found.known.add)));
+  }
+  if (table_is_rough(report.table_sd_rad, report.stated_table_sd_rad))
+    out.push_back(rough_table_text(report.table_sd_rad, report.stated_table_sd_rad));
+  if (found.wandering.any()) {
+    out.push_back(wandering_text(found.wandering) +
+                  ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it, "
+                  "offsets as at the end of the run");
+  }
+  if (found.quantisation.seen()) {
+    out.push_back(fmt::format("readings stand in steps of {:.3g} nT: the uncertainties contain it",
+                              found.quantisation.step_nT));
+  }
+  return out;
+}
+
+void append(std::vector<std::string> texts, std::vector<std::string>& out) {
+  out.insert(out.end(), std::make_move_iterator(texts.begin()), std::make_move_iterator(texts.end()));
+}
+
+}  // namespace
+
+std::vector<std::string> fit_reasons(const FitReport& report) {
+  std::vector<std::string> out = report.found_beside;
+  for (const Check& check : report.calibration.checks) {
+    if (check.passed) continue;
+    out.push_back(fmt::format("{}: {}; limit {}; {}", check.name, check.measured, check.limit, check.remedy));
+  }
+  append(remarks_on_any(report), out);
+  if (report.joint) append(remarks_on_joint(report), out);
+  return out;
+}
+
+std::string lack_of_fit_text(const FitReport& report) {
+  if (!(report.dof > 0)) return {};
+  const double ratio = std::sqrt(report.chi2 / report.dof);
+  // The square root of chi-square per degree of freedom scatters by 1/sqrt(2 dof).
+  if (ratio <= 1 + 5 / std::sqrt(2 * report.dof)) return {};
+  const std::string size =
+      report.residual_nT > 0
+          ? fmt::format("the residual is {:.3g} nT", report.residual_nT)
+          : fmt::format("|b| less F scatters as if that noise were {:.3g} nT", ratio * report.noise_nT);
+  return fmt::format("the model leaves something out: {}, and the noise of a pose mean is {:.3g} nT", size,
+                     report.noise_nT);
+}
+
+std::vector<std::string> weak_texts(const FitReport& report) {
+  std::vector<std::string> out;
+  if (!report.joint) return out;
+  for (const WeakDirection& weak : report.joint->known.weak)
+    out.push_back(fmt::format("{} ({})", to_text(weak), weak_sd_text(weak.sd_nT)));
+  return out;
+}
+
+std::string rough_table_text(double estimated_rad, double stated_rad) {
+  return fmt::format(
+      "the table angles are good to {0:.2g} deg a pose, estimated, where {1:.2g} deg was told: --table-sd "
+      "{0:.2g} tells it; of a table with a motor, check the zero and the sense of each axis",
+      to_deg(estimated_rad), to_deg(stated_rad));
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+
+#include "calib/fit/fit_report.h"
+
+/// The result of `mgt fit --json`, schema "mgt.fit/1". Plain numbers in the unit named by the key's suffix,
+/// angles in degrees, standard deviations beside the values. What does not exist (no held-out error, no
+/// halves) is null.
+namespace mgtd::calib {
+
+[[nodiscard]] nlohmann::json to_json(const FitReport& report);
+[[nodiscard]] nlohmann::json to_json(const ErrorSummary& errors);
+[[nodiscard]] nlohmann::json to_json(const FitSummary& summary);
+
+}  // namespace mgtd::calib

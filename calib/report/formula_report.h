@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "calib/criticism/tests/collinearity.h"
+
+/// The examination of a user's formula, as an object and for a person.
+namespace mgtd::calib {
+
+[[nodiscard]] nlohmann::json to_json(const FormulaExamination& x);
+[[nodiscard]] std::string to_text(const FormulaExamination& x);
+
+}  // namespace mgtd::calib

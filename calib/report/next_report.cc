@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/next_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "proto/units.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+/// Why there is nothing to settle, or nothing that helps; else empty.
+std::string reason_text(const NextReport& r) {
+  if (r.nothing_to_settle) {
+    const auto& [winner, nearest] = *r.nothing_to_settle;
+    if (winner.empty())
+      return "nothing stands out on this run: there is nothing to settle (two names ask about a pair)";
+    if (nearest.empty())
+      return fmt::format("no other effect comes near {}: there is nothing to settle", winner);
+    return fmt::format(
+        "nothing else could stand in the place of {}; the nearest, {}, is told from it: there is nothing to "
+        "settle (two names ask about a pair)",
+        winner, nearest);
+  }
+  return r.none_helps
+             ? "none of the measurements that are known here would tell them apart better than this run does"
+             : "";
+}
+
+}  // namespace
+
+json to_json(const NextReport& r) {
+  json steps = json::array();
+  for (const NextStep& s : r.steps) {
+    steps.push_back({{"action", s.measurement.action},
+                     {"minutes", s.measurement.minutes},
+                     {"p_right_before", s.measurement.p_right_before},
+                     {"p_right_after", s.measurement.p_right_after},
+                     {"by_the_rig", s.by_the_rig},
+                     {"poses", s.poses.size()}});
+  }
+  const auto name = [](const std::string& spec) { return spec.empty() ? json() : json(spec); };
+  return {
+      {"schema", "mgt.next/1"},       {"effect", name(r.effect)},
+      {"rival", name(r.alternative)}, {"d", r.d},
+      {"size_assumed", r.assumed},    {"p_right_before", r.effect.empty() ? json() : json(r.p_right_before)},
+      {"next", std::move(steps)},     {"text", reason_text(r)}};
+}
+
+std::string to_text(const NextReport& r) {
+  std::string out;
+  const auto to = std::back_inserter(out);
+  if (!r.effect.empty()) {
+    fmt::format_to(to, "{} or {}?\n", r.effect, r.alternative);
+    if (r.assumed)
+      out += "neither is large enough to be seen on this run; at the smallest size that would be,\n";
+    fmt::format_to(to, "these poses give the right name with probability {:.3f}\n", r.p_right_before);
+  }
+  if (!r.steps.empty())
+    fmt::format_to(to, "{:>8} {:>8}  {:<8} {}\n", "minutes", "p right", "by", "what to measure");
+  for (const NextStep& s : r.steps) {
+    fmt::format_to(to, "{:>8.0f} {:>8.3f}  {:<8} {}\n", s.measurement.minutes, s.measurement.p_right_after,
+                   s.by_the_rig ? "the rig" : "hand", s.measurement.action);
+  }
+  if (const std::string why = reason_text(r); !why.empty()) out += why + "\n";
+  return out;
+}
+
+std::string pose_list(const NextStep& step) {
+  std::string note = step.by_the_rig ? "" : step.measurement.action;
+  std::replace(note.begin(), note.end(), ',', ';');  // a comma ends a cell
+  std::string out = "pose,set,azimuth_deg,pitch_deg,roll_deg,sense,dwell_s,since_stop_s";
+  out += note.empty() ? "\n" : ",note\n";
+  const auto to = std::back_inserter(out);
+  const auto degrees = [](const std::optional<double>& a) {
+    return a ? fmt::format("{:.2f}", to_deg(*a)) : std::string();
+  };
+  const auto number = [](const auto& x) { return x ? fmt::format("{}", *x) : std::string(); };
+  int k = 0;
+  for (const Pose& p : step.poses) {
+    fmt::format_to(to, "{},{},{},{},{},{},{},{}", ++k, p.set, degrees(p.azimuth_rad), degrees(p.pitch_rad),
+                   degrees(p.roll_rad), number(p.sense), number(p.dwell_s), number(p.since_stop_s));
+    if (!note.empty()) out += "," + (k == 1 ? note : std::string());
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "calib/criticism/search/next_pair.h"
+
+/// The next measurement as an object, schema "mgt.next/1", and for a person.
+namespace mgtd::calib {
+
+[[nodiscard]] nlohmann::json to_json(const NextReport& report);
+[[nodiscard]] std::string to_text(const NextReport& report);
+
+/// The poses of a step as CSV: attitude, approach and dwell, in the columns of a pose table, without
+/// readings. Where a hand is needed, `note` of the first says for what.
+[[nodiscard]] std::string pose_list(const NextStep& step);
+
+}  // namespace mgtd::calib

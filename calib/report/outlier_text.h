@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/fit/outlier_node.h"
+
+namespace mgtd::calib {
+
+/// One line for what is left out of one pose, or of consecutive poses at the same place: "pose 17, s3.z: 300
+/// nT off by 60 times what the others allow", "poses 41-45 disturbed: all sensors contradict the rest, by 37
+/// nT (rms)".
+[[nodiscard]] std::vector<std::string> outlier_texts(const std::vector<OutlierNode>& nodes);
+
+}  // namespace mgtd::calib

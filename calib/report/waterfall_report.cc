@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/waterfall_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "calib/report/text_bar.h"
+
+namespace mgtd::calib {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kBarWidth = 24;
+
+}  // namespace
+
+json to_json(const Waterfall& w) {
+  json steps = json::array();
+  for (const WaterfallStep& s : w.steps) {
+    steps.push_back({{"effect", s.effect},
+                     {"spec", s.spec},
+                     {"added_first_nT", s.first_nT},
+                     {"added_first_nT_per_m", s.first_nT_per_m},
+                     {"dropped_last_nT", s.last_nT},
+                     {"dropped_last_nT_per_m", s.last_nT_per_m}});
+  }
+  return {{"steps", std::move(steps)},
+          {"without_nT", w.without_nT},
+          {"without_nT_per_m", w.without_nT_per_m},
+          {"with_nT", w.with_nT},
+          {"with_nT_per_m", w.with_nT_per_m},
+          {"noise_floor_nT", w.floor_nT},
+          {"noise_floor_nT_per_m", w.floor_nT_per_m}};
+}
+
+std::string to_text(const Waterfall& w) {
+  std::string out;
+  const auto to = std::back_inserter(out);
+  double top = w.without_nT;
+  for (const WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
+  const auto total = [&](const char* what, double nT, double nT_per_m) {
+    fmt::format_to(to, "{:<40} {:>9.3f} {:>9.3f}  {}\n", what, nT, nT_per_m, bar(nT, top, kBarWidth));
+  };
+  fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
+  total("without any effect", w.without_nT, w.without_nT_per_m);
+  for (const WaterfallStep& s : w.steps) {
+    fmt::format_to(to, "  {}\n", s.spec);
+    total("    added first takes out", s.first_nT, s.first_nT_per_m);
+    total("    dropped last brings back", s.last_nT, s.last_nT_per_m);
+  }
+  total("with all of them", w.with_nT, w.with_nT_per_m);
+  total("noise", w.floor_nT, w.floor_nT_per_m);
+  out += "nT: the residual; nT/m: error of the tensor, rms of its six components; parts add up in squares\n";
+  return out;
+}
+
+}  // namespace mgtd::calib

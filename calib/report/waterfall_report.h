@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "calib/criticism/search/waterfall.h"
+
+namespace mgtd::calib {
+
+[[nodiscard]] nlohmann::json to_json(const Waterfall& w);
+[[nodiscard]] std::string to_text(const Waterfall& w);
+
+}  // namespace mgtd::calib
