@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/acquire/instruments.h"
 
+#include <array>
+
 namespace mgtd::daemon {
 namespace {
 
-constexpr std::size_t kTable = kSensors;
-constexpr Duration kTick = std::chrono::milliseconds(20);
 /// drivers::Direction as the journal calls it.
 constexpr std::array<RawDirection, 6> kRecorded{RawDirection::received, RawDirection::sent,
                                                 RawDirection::opened,   RawDirection::closed,
@@ -33,100 +33,60 @@ void carry_out(const TableOrder& order, drivers::Turntable& table) {
   }
 }
 
-Instruments::Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
-                         Callbacks callbacks)
-    : callbacks_(std::move(callbacks)), clock_(clock), timer_(io) {
+Instruments::Instruments(const Config& config, Callbacks callbacks) : callbacks_(std::move(callbacks)) {
   const auto devices = devices_of(config);
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    if (devices[i] != nullptr) add(io, clock, *devices[i], static_cast<std::uint8_t>(i));
+    Instrument& instrument = instruments_.emplace_back();
+    if (devices[i] == nullptr) continue;
+    const Slot slot = Slot::numbered(i);
+    slots_.push_back(slot);
+    instrument.driver = devices[i]->driver;
+    instrument.port = devices[i]->port;
+    instrument.link = std::make_unique<drivers::DeviceLink>(devices[i]->device,
+                                                            callbacks_of(slot, !instrument.port.empty()));
   }
 }
 
-void Instruments::add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device,
-                      std::uint8_t number) {
-  const std::string name = device.name;
-  if (device.port.empty()) {
-    instruments_.push_back({name, device.driver, {}, device.device, nullptr});
-    return;
-  }
-  drivers::PortCallbacks port;
-  port.on_events = [this, name](std::vector<DeviceEvent> events) {
-    for (const DeviceEvent& event : events) callbacks_.on_event(name, event);
+/// The journal holds what crosses ports, nothing of a device that has none.
+drivers::LinkCallbacks Instruments::callbacks_of(Slot slot, bool has_port) {
+  drivers::LinkCallbacks out;
+  out.on_send = [this, slot](std::string_view bytes) { callbacks_.on_send(slot, bytes); };
+  out.on_events = [this, slot](const std::vector<DeviceEvent>& events, Stamp now) {
+    for (const DeviceEvent& event : events) callbacks_.on_event(slot, event, now);
   };
-  port.on_state = [this, name](const LinkHealth& health) { callbacks_.on_link(name, health); };
-  port.on_raw = [this, number](drivers::Direction direction, std::span<const std::byte> bytes, Stamp at) {
-    callbacks_.on_raw({.device = number,
+  out.on_state = [this, slot](const LinkHealth& health, Stamp now) { callbacks_.on_link(slot, health, now); };
+  if (!has_port) return out;
+  out.on_raw = [this, slot](drivers::Direction direction, std::span<const std::byte> bytes, Stamp at) {
+    callbacks_.on_raw({.device = slot.number(),
                        .direction = kRecorded.at(static_cast<std::size_t>(direction)),
                        .at = at,
                        .bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
   };
-  instruments_.push_back(
-      {name, device.driver, device.port, device.device,
-       std::make_unique<drivers::PortLink>(io, clock, drivers::PortSettings{device.port, device.baud},
-                                           device.device, std::move(port))});
+  return out;
 }
 
-void Instruments::start() {
-  bool without_port = false;
-  for (Instrument& instrument : instruments_) {
-    if (instrument.link != nullptr) {
-      instrument.link->start();
-      continue;
-    }
-    without_port = true;
-    instrument.device->on_open(clock_.now());
-    callbacks_.on_link(instrument.name, instrument.device->health());
-  }
-  if (without_port) listen();
-}
-
-void Instruments::listen() {
-  for (const Instrument& instrument : instruments_) {
-    if (instrument.link != nullptr) continue;
-    instrument.device->on_tick(clock_.now());
-    deliver(instrument);
-  }
-  timer_.wait(kTick, [this] { listen(); });
-}
-
-void Instruments::deliver(const Instrument& instrument) {
-  for (const DeviceEvent& event : instrument.device->take_events()) {
-    if (const auto* reading = std::get_if<TableReading>(&event))
-      callbacks_.on_note(TableNote{*reading}, reading->arrival);
-    callbacks_.on_event(instrument.name, event);
+void Instruments::start(Stamp now) {
+  for (const Slot slot : slots_) {
+    if (!has_port(slot)) link(slot).opened(now);
   }
 }
 
-void Instruments::shutdown() {
-  timer_.cancel();
-  if (instruments_[kTable].link != nullptr) instruments_[kTable].link->shutdown();
-  for (Instrument& instrument : instruments_)
-    if (instrument.link != nullptr) instrument.link->shutdown();
-}
-
-drivers::Turntable& Instruments::table() {
-  return static_cast<drivers::Turntable&>(*instruments_[kTable].device);
-}
-
-void Instruments::order(const TableOrder& order) {
-  if (instruments_[kTable].link != nullptr) callbacks_.on_note(order, clock_.now());
-  carry_out(order, table());
-  if (instruments_[kTable].link != nullptr) instruments_[kTable].link->flush();
-}
-
-LinkHealth Instruments::health(const Instrument& instrument) {
-  return instrument.link != nullptr ? instrument.link->health() : instrument.device->health();
+void Instruments::tick(Stamp now) {
+  for (const Slot slot : slots_) {
+    if (!has_port(slot)) link(slot).tick(now);
+  }
 }
 
 std::vector<DeviceStatus> Instruments::status() const {
   std::vector<DeviceStatus> out;
-  for (const Instrument& i : instruments_) out.push_back({i.name, i.driver, i.port, health(i)});
+  for (const Slot slot : slots_)
+    out.push_back({slot.name(), at(slot).driver, at(slot).port, link(slot).health()});
   return out;
 }
 
-std::vector<std::pair<std::string, LinkHealth>> Instruments::links() const {
-  std::vector<std::pair<std::string, LinkHealth>> out;
-  for (const Instrument& i : instruments_) out.emplace_back(i.name, health(i));
+std::vector<std::pair<Slot, LinkHealth>> Instruments::links() const {
+  std::vector<std::pair<Slot, LinkHealth>> out;
+  for (const Slot slot : slots_) out.emplace_back(slot, link(slot).health());
   return out;
 }
 

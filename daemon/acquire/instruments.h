@@ -3,22 +3,23 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "drivers/clock.h"
-#include "drivers/patient_timer.h"
-#include "drivers/port_link.h"
+#include "drivers/device_link.h"
 #include "proto/journal_note.h"
 #include "proto/raw_log.h"
+#include "proto/slot.h"
 #include "proto/status_report.h"
 
-/// The instruments of the rig on their ports: four sensors, the table and, where configured, the scalar
-/// reference and auxiliary inputs. Opens and keeps them, and tells its owner what they say. Does not know
-/// what their words are for.
+/// Instruments holds the links of all instruments of the rig: four sensors, the table and, where configured,
+/// the scalar reference and auxiliary inputs. It tells its owner what they say. It knows neither what that is
+/// for, nor the ports.
 namespace mgtd::daemon {
 
-/// Every device at its number in the journal: sensors, table, scalar (null without one), auxiliary inputs.
+/// Every device at the number of its slot; null where there is none (a rig without scalar reference).
 [[nodiscard]] std::vector<const DeviceConfig*> devices_of(const Config& config);
 
 void carry_out(const TableOrder& order, drivers::Turntable& table);
@@ -26,49 +27,47 @@ void carry_out(const TableOrder& order, drivers::Turntable& table);
 class Instruments {
  public:
   struct Callbacks {
-    std::function<void(const std::string& device, const DeviceEvent& event)> on_event;
+    std::function<void(Slot slot, std::string_view bytes)> on_send;
+    std::function<void(Slot slot, const DeviceEvent& event, Stamp now)> on_event;
     /// The link became live, or is no longer, or has another reason for it.
-    std::function<void(const std::string& device, const LinkHealth& health)> on_link;
+    std::function<void(Slot slot, const LinkHealth& health, Stamp now)> on_link;
     std::function<void(const RawRecord& record)> on_raw;
-    /// What the journal has to know beside the wires.
-    std::function<void(const JournalNote& note, Stamp at)> on_note;
   };
 
-  /// `io` and `clock` outlive this.
-  Instruments(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
-              Callbacks callbacks);
+  Instruments(const Config& config, Callbacks callbacks);
+  Instruments(const Instruments&) = delete;
+  Instruments& operator=(const Instruments&) = delete;
 
-  void start();
-  /// The table is told to stop, then every port is closed.
-  void shutdown();
-
-  [[nodiscard]] drivers::Turntable& table();
-  /// Asks the table and sends what it says to that.
-  void order(const TableOrder& order);
-  /// Who answers in the place of a sensor, as it told last.
-  [[nodiscard]] const std::string& told(int slot) const {
-    return instruments_.at(static_cast<std::size_t>(slot)).device->health().identity;
+  /// Those that are there, in the order of their numbers.
+  [[nodiscard]] const std::vector<Slot>& slots() const { return slots_; }
+  [[nodiscard]] drivers::DeviceLink& link(Slot slot) { return *at(slot).link; }
+  [[nodiscard]] const drivers::DeviceLink& link(Slot slot) const { return *at(slot).link; }
+  /// A table that is turned by hand has none.
+  [[nodiscard]] bool has_port(Slot slot) const { return !at(slot).port.empty(); }
+  [[nodiscard]] drivers::Turntable& table() {
+    return static_cast<drivers::Turntable&>(link(Slot::table()).device());
   }
+
+  /// Opens what has no port.
+  void start(Stamp now);
+  /// Tells the time to what has no port.
+  void tick(Stamp now);
+
   [[nodiscard]] std::vector<DeviceStatus> status() const;
-  [[nodiscard]] std::vector<std::pair<std::string, LinkHealth>> links() const;
+  [[nodiscard]] std::vector<std::pair<Slot, LinkHealth>> links() const;
 
  private:
   struct Instrument {
-    std::string name, driver, port;
-    std::shared_ptr<drivers::Device> device;
-    std::unique_ptr<drivers::PortLink> link;  ///< null: the device has no port
+    std::string driver, port;
+    std::unique_ptr<drivers::DeviceLink> link;  ///< null: there is none
   };
-  void add(boost::asio::io_context& io, const drivers::Clock& clock, const DeviceConfig& device,
-           std::uint8_t number);
-  [[nodiscard]] static LinkHealth health(const Instrument& instrument);
-  /// What a device without a port has to say.
-  void listen();
-  void deliver(const Instrument& instrument);
+  [[nodiscard]] Instrument& at(Slot slot) { return instruments_.at(slot.number()); }
+  [[nodiscard]] const Instrument& at(Slot slot) const { return instruments_.at(slot.number()); }
+  [[nodiscard]] drivers::LinkCallbacks callbacks_of(Slot slot, bool has_port);
 
   Callbacks callbacks_;
-  const drivers::Clock& clock_;
-  drivers::PatientTimer timer_;
-  std::vector<Instrument> instruments_;  ///< s1 .. s4, table, scalar, aux1, ...
+  std::vector<Slot> slots_;
+  std::vector<Instrument> instruments_;  ///< by the number of their slot
 };
 
 }  // namespace mgtd::daemon

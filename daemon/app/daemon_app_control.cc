@@ -63,7 +63,7 @@ Reply DaemonApp::answer_run(const ControlRequest& request) {
     const auto wanted = parse_run_request(request.args);
     if (!wanted) return tl::unexpected(wanted.error());
     if (request.command == ControlCommand::run_dry_run) return dry_run(*wanted);
-    if (magnet_ && !magnet_->ended())
+    if (core_.probing())
       return fail(ErrorCode::state, "a magnet test is going on", "wait for its end, or: mgt run abort");
     done = run_.start(*wanted, now);
   } else if (request.command == ControlCommand::run_pause) {
@@ -79,38 +79,32 @@ Reply DaemonApp::answer_run(const ControlRequest& request) {
     if (!scales) return tl::unexpected(scales.error());
     done = run_.enter(*scales, now);
   } else if (request.command == ControlCommand::run_abort) {
-    if (magnet_ && !magnet_->ended()) return abort_magnet(now);
+    if (core_.probing()) return abort_magnet(now);
     done = run_.request(Request::abort, now);
   }
   if (!done) return tl::unexpected(done.error());
-  watch_links(now);
+  core_.show_links(now);
   return to_json(run_.status(now.mono));
 }
 
 Reply DaemonApp::answer_magnet(const ControlRequest& request) {
-  const bool under_way = magnet_ && !magnet_->ended();
   if (request.command == ControlCommand::magnet_start) {
-    if (under_way)
-      return fail(ErrorCode::state, "a magnet test is going on", "Ctrl-C where it runs, or: mgt run abort");
-    if (run_.active())
-      return fail(ErrorCode::state, "a run is going on: a magnet would spoil it",
-                  "wait for it, or: mgt run abort");
-    if (auto ready = ready_for_magnet(instruments_.status()); !ready) return tl::unexpected(ready.error());
-    spdlog::info("magnet test: begun");
-    magnet_.emplace(clock_.now().mono, config_.speed_up);
-  } else if (request.command == ControlCommand::magnet_stop && under_way) {
-    magnet_->stop();
+    if (auto begun = core_.begin_probe(clock_.now()); !begun) return tl::unexpected(begun.error());
+  } else if (request.command == ControlCommand::magnet_stop) {
+    core_.stop_probe();
   }
-  if (!magnet_) return fail(ErrorCode::state, "there was no magnet test", "mgt run magnet-test begins one");
-  return to_json(magnet_->status());
+  if (!core_.probe())
+    return fail(ErrorCode::state, "there was no magnet test", "mgt run magnet-test begins one");
+  return to_json(core_.probe()->status());
 }
 
 /// Whose client is gone, too.
 Reply DaemonApp::abort_magnet(Stamp now) {
-  magnet_->stop();
-  spdlog::info("magnet test: {}", magnet_->status().text);
+  core_.stop_probe();
+  const std::string text = core_.probe()->status().text;
+  spdlog::info("magnet test: {}", text);
   RunStatus run = run_.status(now.mono);
-  run.message = "the magnet test is ended: " + magnet_->status().text;
+  run.message = "the magnet test is ended: " + text;
   return to_json(run);
 }
 

@@ -9,16 +9,6 @@ namespace mgtd::daemon {
 
 namespace {
 
-RecordingStatus recording(const Journal& journal) {
-  RecordingStatus out;
-  out.state = journal.recording() && !journal.trouble() ? "writing" : "stopped";
-  if (journal.trouble()) out.why = journal.trouble()->text();
-  out.bytes = journal.bytes_written();
-  out.bytes_lost = journal.bytes_lost();
-  out.stops = journal.stops();
-  return out;
-}
-
 /// What every input measures now.
 std::vector<InputStatus> inputs_now(const Config& config, const LatestInputs& latest, Instant now) {
   std::vector<InputStatus> out;
@@ -42,6 +32,7 @@ std::vector<InputStatus> inputs_now(const Config& config, const LatestInputs& la
 }  // namespace
 
 StatusReport DaemonApp::report() const {
+  const LivePipeline& pipeline = core_.pipeline();
   const Stamp now = clock_.now();
   StatusReport out;
   out.at = now;
@@ -50,38 +41,36 @@ StatusReport DaemonApp::report() const {
   out.rig = config_.rig_name;
   out.speed_up = config_.speed_up;
   out.calibration = store_.active_id();
-  if (const auto& used = pipeline_.live().calibration()) {
+  if (const auto& used = pipeline.live().calibration()) {
     out.calibration_use.forced = !used->accepted_by_checks;
-    for (const auto& [effect, lacks] : pipeline_.live().left_out())
+    for (const auto& [effect, lacks] : pipeline.live().left_out())
       out.calibration_use.left_out.push_back({effect, lacks});
   }
-  const calib::LiveFinding& verdict = pipeline_.verdict();
+  const calib::LiveFinding& verdict = pipeline.verdict();
   out.criticism = {std::string(calib::to_string(verdict.state)), verdict.measured, verdict.limit,
                    verdict.remedy};
-  if (const InstrumentWatch& instruments = pipeline_.instruments(); instruments.another())
+  if (const InstrumentWatch& instruments = pipeline.instruments(); instruments.another())
     out.criticism = {"identity", instruments.measured(),
                      "the calibration holds for the sensors that it was made with", instruments.remedy()};
-  out.devices = instruments_.status();
-  out.inputs = inputs_now(config_, pipeline_.inputs(), now.mono);
-  const SamplerHealth sampler = pipeline_.sampler().health();
+  out.devices = core_.instruments().status();
+  out.inputs = inputs_now(config_, pipeline.inputs(), now.mono);
+  const SamplerHealth sampler = pipeline.sampler().health();
   for (std::size_t i = 0; i < kSensors; ++i) {
     if (sampler.sensors[i].clock.samples > 0)
       out.devices.at(i).clock = clock_report(sampler.sensors[i].clock, config_.rate_hz);
   }
-  out.sampler = {
-      .epochs = sampler.epochs, .gaps = sampler.gaps, .rate_hz = rate_hz_, .skew_bound_s = last_skew_s_};
+  out.sampler = {.epochs = sampler.epochs,
+                 .gaps = sampler.gaps,
+                 .rate_hz = rate_.rate_hz(),
+                 .skew_bound_s = last_skew_s_};
   out.stream = stream_.stats();
   out.control = control_.stats();
-  if (journal_) out.journal = recording(*journal_);
-  if (disk_ring_) {
-    out.ring = recording(disk_ring_->journal());
-    out.oldest_seq = disk_ring_->oldest_seq();
-  }
+  recording_.report(out);
   std::error_code ec;
   if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
     out.disk_free_bytes = space.available;
   out.run = run_.status(now.mono);
-  if (magnet_ && !magnet_->ended()) out.magnet = magnet_->status();
+  if (core_.probing()) out.magnet = core_.probe()->status();
   return out;
 }
 

@@ -18,6 +18,8 @@
 /// What a run goes by, beside its plan.
 namespace mgtd::daemon {
 
+struct Config;
+
 struct RunConfig {
   std::string run_id;
   drivers::TableLimits limits;
@@ -50,5 +52,8 @@ struct RunConfig {
   double store_max_s{30};
   double solve_max_s{900};
 };
+
+/// As the configuration wants it, on a table of these limits.
+[[nodiscard]] RunConfig run_config(const Config& config, const drivers::TableLimits& limits);
 
 }  // namespace mgtd::daemon

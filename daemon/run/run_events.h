@@ -10,9 +10,9 @@
 #include "proto/health.h"
 #include "proto/reading.h"
 #include "proto/run_status.h"
+#include "proto/slot.h"
 
-/// All that can happen to a run. Devices are named as in the configuration: "s1" .. "s4", "table", "scalar",
-/// "aux1", ...
+/// An Event is all that can happen to a run.
 namespace mgtd::daemon {
 
 enum class Request { pause, resume, abort, finish, redo };  ///< of the operator
@@ -30,19 +30,19 @@ struct Tick {};  ///< time passes; every 20-50 ms
 
 /// The link was live and is no more. To be told before the faults the device reports on losing its port.
 struct DeviceLost {
-  std::string device;
+  Slot slot;
   std::string why;
 };
 struct DeviceBack {
-  std::string device;
+  Slot slot;
 };
 struct DeviceFaulted {
-  std::string device;
+  Slot slot;
   DeviceFault fault;
 };
 /// Now and then, at least once before the preflight ends.
 struct LinkSeen {
-  std::string device;
+  Slot slot;
   LinkHealth health;
 };
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <system_error>
 
-#include "calib/fit/joint/joint_fit.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/plan/run_plan_json.h"
@@ -53,11 +52,12 @@ RunOptions run_options(const Config& c, const RunRequest& r) {
 }  // namespace
 
 RunExecutor::RunExecutor(const Config& config, std::filesystem::path directory, CalibrationStore& store,
-                         Worker& worker, RunHooks hooks)
+                         Worker& worker, CurrentRun& run, RunHooks hooks)
     : config_(config),
       directory_(std::move(directory)),
       store_(store),
       worker_(worker),
+      run_(run),
       hooks_(std::move(hooks)) {}
 
 /// Nothing for a file whose plan cannot be read.
@@ -99,41 +99,19 @@ void RunExecutor::find_interrupted() {
 
 Result<RunPlan> RunExecutor::plan(const RunRequest& request) const {
   const PlanOptions options = plan_options(config_, request);
-  const drivers::TableLimits& limits = hooks_.table().limits();
+  const drivers::TableLimits& limits = hooks_.limits();
   return request.poses.empty() ? make_plan(options, limits) : listed_plan(request, options, limits);
 }
 
 Pace RunExecutor::pace() const { return {}; }
 
 RunConfig RunExecutor::run_config(const std::string& run_id, const RunRequest& request) const {
-  RunConfig out;
+  RunConfig out = daemon::run_config(config_, hooks_.limits());
   out.run_id = run_id;
-  out.fewest_poses = calib::kFewestPoses;
-  out.limits = hooks_.table().limits();
-  out.preflight.length_s = config_.run.preflight_s;
-  out.preflight.field_nT = config_.field_nT;
-  out.preflight.scalar = config_.scalar.has_value();
-  out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config_.rate_hz;
-  out.settle.min_s = config_.run.settle_min_s;
-  out.settle.max_s = config_.run.settle_max_s;
-  out.unrest = {.limit_nT = config_.run.disturbance_nT, .false_alarm = config_.run.false_alarm};
-  out.field_step_nT = config_.run.field_step_nT;
-  out.calm_s = config_.run.calm_s;
-  out.calm_max_s = config_.run.calm_max_s;
-  // A sped-up clock makes the host's own delays longer: 1 ms of scheduling or disk is that many ms of the
-  // rig's time.
-  // What the clocks then show is the host, not the rig.
-  if (config_.speed_up > 1) out.preflight.max_skew_s = 60;
-  for (double* limit :
-       {&out.preflight.wait_s, &out.store_max_s, &out.solve_max_s, &out.stop_max_s, &out.dwell.grace_s}) {
-    *limit *= config_.speed_up;
-  }
   if (const auto active = store_.active(); active && *active)
     out.calibrated = instruments_among((*active)->checks);
-  out.retries = request.retries.value_or(config_.run.retries);
+  out.retries = request.retries.value_or(out.retries);
   out.pace = pace();
-  out.by_hand = config_.by_hand();
-  out.answer_max_s = config_.run.answer_max_s * config_.speed_up;  // hands and eyes keep their own time
   return out;
 }
 
@@ -185,16 +163,14 @@ void RunExecutor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
   learning_job_.request_stop();
   solving_job_.request_stop();
   solved_.reset();
-  answers_.clear();
   ++generation_;
   spdlog::info("run {}: {} poses into {}", config.run_id, plan.poses.size(), file_->path().string());
-  fsm_ = std::make_unique<RunFsm>(std::move(config), std::move(plan), now, earlier);
-  feed(Tick{}, now);
+  run_.begin(std::move(config), std::move(plan), now, earlier);
 }
 
 /// How far it may turn is known from itself.
 Result<void> RunExecutor::table_is_there() const {
-  const LinkHealth& table = hooks_.table().health();
+  const LinkHealth table = hooks_.table();
   if (table.state == LinkState::live) return {};
   return fail(ErrorCode::state, "the table is not connected: " + table.detail,
               "when mgt status shows it live, say it again");
@@ -236,7 +212,7 @@ Result<void> RunExecutor::drop_interrupted() {
   given_up_ = status_of(*interrupted_, RunState::aborted, "given up; " + rest);
   spdlog::info("run {}: {}", given_up_->run_id, given_up_->message);
   interrupted_.reset();
-  fsm_.reset();
+  run_.drop();
   return {};
 }
 
@@ -250,34 +226,21 @@ Result<void> RunExecutor::request(Request request, Stamp now) {
   if (interrupted_ && request == Request::resume) return resume_interrupted(now);
   if (interrupted_ && request == Request::abort) return drop_interrupted();
   if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
-  if (auto possible = fsm_->possible(request); !possible) return possible;
-  feed(request, now);
+  if (auto possible = run_.fsm()->possible(request); !possible) return possible;
+  run_.feed(request, now);
   return {};
 }
 
 Result<void> RunExecutor::enter(const TableAngles& scales, Stamp now) {
   if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
   const ScaleEntered entered{scales};
-  if (auto possible = fsm_->possible(entered); !possible) return possible;
-  feed(entered, now);
+  if (auto possible = run_.fsm()->possible(entered); !possible) return possible;
+  run_.feed(entered, now);
   return {};
 }
 
-void RunExecutor::feed(const Event& event, Stamp now) {
-  if (!active()) return;
-  carry_out(fsm_->step(event, now), now);
-  while (!answers_.empty()) {
-    const std::vector<Event> answers = std::exchange(answers_, {});
-    for (const Event& answer : answers) carry_out(fsm_->step(answer, now), now);
-  }
-}
-
-void RunExecutor::carry_out(const std::vector<Action>& actions, Stamp now) {
-  for (const Action& action : actions) std::visit([&](const auto& a) { act(a, now); }, action);
-}
-
 RunStatus RunExecutor::status(Instant now) const {
-  if (fsm_ != nullptr) return fsm_->status(now);
+  if (run_.fsm() != nullptr) return run_.fsm()->status(now);
   if (interrupted_)
     return status_of(
         *interrupted_, RunState::interrupted,
@@ -290,7 +253,6 @@ RunStatus RunExecutor::status(Instant now) const {
 
 void RunExecutor::abandon() {
   if (!active()) return;
-  hooks_.order({TableOrder::What::stop, {}});
   spdlog::warn("run {} is left with its poses on disk; it can be resumed when the daemon is back",
                file_->header().run_id);
 }

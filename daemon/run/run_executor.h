@@ -11,22 +11,22 @@
 #include "calib/fit/joint/accuracy_so_far.h"
 #include "daemon/config/config.h"
 #include "daemon/plan/run_duration.h"
-#include "daemon/run/run_fsm.h"
+#include "daemon/run/current_run.h"
 #include "daemon/store/calibration_store.h"
 #include "daemon/store/run_file.h"
 #include "daemon/store/worker.h"
 #include "proto/journal_note.h"
 #include "proto/run_request.h"
 
-/// Carries out what the run's state machine asks for: moves the table, keeps the run file, has the worker
-/// solve, proposes the calibration. One run at a time; the last one stays readable. A run that a dead daemon
-/// left behind is found at start and offered. After each pose the worker says what the calibration would be
-/// worth so far.
+/// RunExecutor begins runs and carries out what they ask for: it keeps the run file, has the worker solve,
+/// and proposes the calibration. (The core gives the table its orders itself.) A run that a dead daemon left
+/// behind is found at start and offered. After each pose the worker says what the calibration would be worth
+/// so far.
 namespace mgtd::daemon {
 
 struct RunHooks {
-  std::function<drivers::Turntable&()> table;
-  std::function<void(const TableOrder&)> order;
+  std::function<const drivers::TableLimits&()> limits;  ///< as the table knows them by now
+  std::function<LinkHealth()> table;
   std::function<void(const RunStatus&)> publish;
   /// What repeats is for the owner's QuietLog: topic, message.
   std::function<void(std::string_view, const std::string&, Instant)> warn;
@@ -35,15 +35,14 @@ struct RunHooks {
 class RunExecutor {
  public:
   RunExecutor(const Config& config, std::filesystem::path directory, CalibrationStore& store, Worker& worker,
-              RunHooks hooks);
+              CurrentRun& run, RunHooks hooks);
 
   /// Looks for a run that was under way when the daemon died.
   void find_interrupted();
 
   [[nodiscard]] Result<RunPlan> plan(const RunRequest& request) const;
   [[nodiscard]] Pace pace() const;
-  /// As the table knows them by now.
-  [[nodiscard]] const drivers::TableLimits& limits() const { return hooks_.table().limits(); }
+  [[nodiscard]] const drivers::TableLimits& limits() const { return hooks_.limits(); }
   /// Refused while a run is active, or one is waiting to be resumed or aborted.
   [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
   /// Resume and abort also settle an interrupted run; resume takes up the last run when it failed. A new run
@@ -53,10 +52,12 @@ class RunExecutor {
   /// What the scales say that the run asks for. Refused when it asks for nothing.
   [[nodiscard]] Result<void> enter(const TableAngles& scales, Stamp now);
 
-  void feed(const Event& event, Stamp now);
+  void carry_out(const Action& action, Stamp now) {
+    std::visit([&](const auto& a) { act(a, now); }, action);
+  }
   [[nodiscard]] RunStatus status(Instant now) const;
-  [[nodiscard]] bool active() const { return fsm_ != nullptr && !fsm_->ended(); }
-  /// The daemon ends: the table stops, the run file is left to be resumed.
+  [[nodiscard]] bool active() const { return run_.active(); }
+  /// The daemon ends: the run file is left to be resumed.
   void abandon();
 
  private:
@@ -83,13 +84,12 @@ class RunExecutor {
   }
   void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
-  void carry_out(const std::vector<Action>& actions, Stamp now);
   void learn_accuracy();
-  void act(const HomeTable&, Stamp);
-  void act(const MoveTable& action, Stamp);
-  void act(const SetTable& action, Stamp);
+  void act(const HomeTable&, Stamp) {}  // the core's, as are the next three
+  void act(const MoveTable&, Stamp) {}
+  void act(const SetTable&, Stamp) {}
+  void act(const StopTable&, Stamp) {}
   void act(const DropPoses& action, Stamp);
-  void act(const StopTable&, Stamp);
   void act(const StorePose& action, Stamp now);
   void act(const StorePath& action, Stamp now);
   void act(const StoreChecks& action, Stamp now);
@@ -104,8 +104,8 @@ class RunExecutor {
   std::filesystem::path directory_;
   CalibrationStore& store_;
   Worker& worker_;
+  CurrentRun& run_;
   RunHooks hooks_;
-  std::unique_ptr<RunFsm> fsm_;
   std::optional<RunFile> file_;
   PoseTable poses_;                                ///< stored so far; the worker gets copies
   std::shared_ptr<const calib::JointState> near_;  ///< of the last fit while measuring
@@ -116,7 +116,6 @@ class RunExecutor {
   std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins
   /// The last run, when it failed with poses on disk: resume takes it up.
   std::optional<Interrupted> failed_;
-  std::vector<Event> answers_;  ///< of actions carried out at once, fed after them
   std::uint64_t generation_{0};
 };
 

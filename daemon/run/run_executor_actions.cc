@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the run asks to be done: orders to the table, poses and checks to disk, fits to the worker.
+// What the run asks to be done: poses and checks to disk, fits to the worker.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -10,19 +10,8 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/run/run_executor.h"
 #include "daemon/run/solver.h"
-#include "drivers/hand_table.h"
 
 namespace mgtd::daemon {
-
-void RunExecutor::act(const HomeTable&, Stamp) { hooks_.order({TableOrder::What::home, {}}); }
-
-void RunExecutor::act(const MoveTable& action, Stamp) {
-  hooks_.order({TableOrder::What::move, action.target});
-}
-
-void RunExecutor::act(const SetTable& action, Stamp) {
-  if (auto* const table = dynamic_cast<drivers::HandTable*>(&hooks_.table())) table->set(action.angles);
-}
 
 void RunExecutor::act(const DropPoses& action, Stamp) {
   if (auto dropped = file_->remove_poses(action.numbers); !dropped) {
@@ -34,15 +23,13 @@ void RunExecutor::act(const DropPoses& action, Stamp) {
   });
 }
 
-void RunExecutor::act(const StopTable&, Stamp) { hooks_.order({TableOrder::What::stop, {}}); }
-
 void RunExecutor::act(const StorePose& action, Stamp) {
   auto stored = file_->append_pose(action.pose);
   if (stored) {
     poses_.poses.push_back(action.pose);
     learn_accuracy();
   }
-  answers_.push_back(PoseStored{action.pose.number, std::move(stored)});
+  run_.answer(PoseStored{action.pose.number, std::move(stored)});
 }
 
 /// One fit at a time; what was stored meanwhile is fitted after it.
@@ -59,7 +46,7 @@ void RunExecutor::learn_accuracy() {
         if (generation != generation_ || !active()) return;
         learning_ = false;
         if (known) {
-          answers_.push_back(AccuracyKnown{known->poses, known->worst_nT_per_m()});
+          run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
           near_ = std::make_shared<const calib::JointState>(std::move(known->state));
         }
         if (poses_.poses.size() != count) learn_accuracy();
@@ -93,7 +80,7 @@ void RunExecutor::act(const StartSolve&, Stamp) {
                     } else {
                       done.result = tl::unexpected(report.error());
                     }
-                    answers_.push_back(std::move(done));
+                    run_.answer(std::move(done));
                   });
 }
 
@@ -105,7 +92,7 @@ void RunExecutor::act(const ProposeCalibration& action, Stamp now) {
   if (solved_ && solved_->id == action.calibration_id)
     proposed = store_.propose(*solved_, file_->header().run_id, now.wall);
   if (proposed) proposed = file_->set_document("proposed", calib::to_json_text(*solved_));
-  answers_.push_back(CalibrationProposed{std::move(proposed)});
+  run_.answer(CalibrationProposed{std::move(proposed)});
 }
 
 void RunExecutor::act(const PublishStatus& action, Stamp now) {

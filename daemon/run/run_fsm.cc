@@ -90,9 +90,10 @@ void RunFsm::follow_settling(phase::Moving& moving, const TableReading& reading)
 }
 
 void RunFsm::on(const LinkSeen& seen) {
-  if (auto* now = in<phase::Preflighting>()) now->preflight.add(seen.device, seen.health);
-  if (answers(seen.health.state)) look_at_identity({seen.device, seen.health.identity});
-  const auto lost = lost_.find(seen.device);
+  const std::string device = seen.slot.name();
+  if (auto* now = in<phase::Preflighting>()) now->preflight.add(device, seen.health);
+  if (answers(seen.health.state)) look_at_identity({device, seen.health.identity});
+  const auto lost = lost_.find(device);
   if (lost == lost_.end() || answers(seen.health.state) || lost->second == seen.health.detail) return;
   lost->second = seen.health.detail;
   published_.reset();

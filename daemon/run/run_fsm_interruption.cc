@@ -108,12 +108,12 @@ void RunFsm::advance(phase::Stopping&) {
   const bool rests = table_.reported_after(entered_) && !table_.latest()->moving;
   if (rests) {
     finish(RunState::aborted, "aborted by the operator, the table is at rest; " + kept());
-  } else if (lost_.contains("table") || timed_out(config_.stop_max_s)) {
-    finish(
-        RunState::aborted,
-        fmt::format("aborted by the operator, but {}: look at it; {}",
-                    lost_.contains("table") ? kUnreachable : "the table has not reported that it is at rest",
-                    kept()));
+  } else if (lost_.contains(Slot::table().name()) || timed_out(config_.stop_max_s)) {
+    finish(RunState::aborted,
+           fmt::format("aborted by the operator, but {}: look at it; {}",
+                       lost_.contains(Slot::table().name()) ? kUnreachable
+                                                            : "the table has not reported that it is at rest",
+                       kept()));
   }
 }
 
@@ -243,39 +243,44 @@ bool RunFsm::identity_settled() {
 // A fault, or a device that is lost.
 
 void RunFsm::on(const DeviceLost& lost) {
-  if (lost.device == "table") table_.lost();
-  lost_.insert_or_assign(lost.device, lost.why);
+  const std::string device = lost.slot.name();
+  const bool is_table = lost.slot == Slot::table();
+  if (is_table) table_.lost();
+  lost_.insert_or_assign(device, lost.why);
   published_.reset();
-  act(Record{fmt::format("{} is lost: {}{}", lost.device, lost.why,
-                         lost.device == "table" ? fmt::format("; {}", kUnreachable) : "")});
+  act(Record{
+      fmt::format("{} is lost: {}{}", device, lost.why, is_table ? fmt::format("; {}", kUnreachable) : "")});
   if (auto* now = in<phase::Preflighting>()) {  // it reports on links itself
     LinkHealth health;
     health.detail = lost.why;
-    now->preflight.add(lost.device, health);
+    now->preflight.add(device, health);
     return;
   }
   if (!is_measuring(phase_) || in<phase::Waiting>()) return;
   act(StopTable{});
-  enter(phase::Waiting{}, "waiting for " + lost.device);
+  enter(phase::Waiting{}, "waiting for " + device);
 }
 
 void RunFsm::on(const DeviceBack& back) {
-  if (lost_.erase(back.device) == 0) return;
-  act(Record{back.device + " is back"});
+  const std::string device = back.slot.name();
+  if (lost_.erase(device) == 0) return;
+  act(Record{device + " is back"});
   published_.reset();
 }
 
 void RunFsm::advance(phase::Waiting&) {
   if (lost_.empty()) return go_on();
   if (timed_out(config_.lost_max_s))
-    finish(RunState::failed,
-           fmt::format("{} did not come back within {:.0f} s ({}){}; reconnect it and resume the run: {}",
-                       lost_.begin()->first, config_.lost_max_s, lost_.begin()->second,
-                       lost_.contains("table") ? "; it cannot be reached and may still move" : "", kept()));
+    finish(
+        RunState::failed,
+        fmt::format("{} did not come back within {:.0f} s ({}){}; reconnect it and resume the run: {}",
+                    lost_.begin()->first, config_.lost_max_s, lost_.begin()->second,
+                    lost_.contains(Slot::table().name()) ? "; it cannot be reached and may still move" : "",
+                    kept()));
 }
 
 std::string RunFsm::in_status() const {
-  const bool unreachable = lost_.contains("table");
+  const bool unreachable = lost_.contains(Slot::table().name());
   if (in<phase::Waiting>() && !lost_.empty()) {
     std::string who;
     for (const auto& [device, why] : lost_)
@@ -289,9 +294,10 @@ std::string RunFsm::in_status() const {
 }
 
 void RunFsm::on(const DeviceFaulted& faulted) {
-  const std::string what = fmt::format("{}: {}{}{}", faulted.device, faulted.fault.what,
+  const std::string device = faulted.slot.name();
+  const std::string what = fmt::format("{}: {}{}{}", device, faulted.fault.what,
                                        faulted.fault.remedy.empty() ? "" : "; ", faulted.fault.remedy);
-  if (!is_measuring(phase_) || lost_.contains(faulted.device)) return act(Record{what});
+  if (!is_measuring(phase_) || lost_.contains(device)) return act(Record{what});
   if (in<phase::Preflighting>() && progress_.done() == 0) return finish(RunState::failed, what);
   hold(what);
 }

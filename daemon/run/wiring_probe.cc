@@ -137,15 +137,13 @@ MagnetStatus WiringProbe::status() const {
   return out;
 }
 
-Result<void> ready_for_magnet(const std::vector<DeviceStatus>& devices) {
+Result<void> ready_for_magnet(const std::vector<std::pair<Slot, LinkHealth>>& links) {
   std::string dumb;
-  for (const DeviceStatus& device : devices) {
-    const bool sensor = device.name.size() == 2 && device.name.front() == 's';
-    if (!sensor || device.health.state == LinkState::live) continue;
-    const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(device.health.state));
-    const std::string& why = device.health.detail;
-    dumb += fmt::format("{}{} is {}{}", dumb.empty() ? "" : "; ", device.name, state,
-                        why.empty() ? "" : " (" + why + ")");
+  for (const auto& [slot, health] : links) {
+    if (!slot.sensor_index() || health.state == LinkState::live) continue;
+    const std::string_view state = kLinkStateNames.at(static_cast<std::size_t>(health.state));
+    dumb += fmt::format("{}{} is {}{}", dumb.empty() ? "" : "; ", slot.name(), state,
+                        health.detail.empty() ? "" : " (" + health.detail + ")");
   }
   if (dumb.empty()) return {};
   return fail(ErrorCode::state, "a magnet test needs all four sensors live: " + dumb,

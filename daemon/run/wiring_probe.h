@@ -3,12 +3,14 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "proto/epoch.h"
 #include "proto/error.h"
+#include "proto/health.h"
 #include "proto/magnet_status.h"
-#include "proto/status_report.h"
+#include "proto/slot.h"
 #include "proto/time.h"
 
 /// Which sensor is on which arm? The operator holds a magnet to the end of one arm after the other; the
@@ -72,6 +74,6 @@ class WiringProbe {
 };
 
 /// All four sensors speak; otherwise an arm would wait for one that cannot answer.
-[[nodiscard]] Result<void> ready_for_magnet(const std::vector<DeviceStatus>& devices);
+[[nodiscard]] Result<void> ready_for_magnet(const std::vector<std::pair<Slot, LinkHealth>>& links);
 
 }  // namespace mgtd::daemon

@@ -117,11 +117,15 @@ class Acquisition {
       drivers::Settings settings(fmt::format("sensor s{}", slot + 1), 1);
       settings.set("profile", std::string("mag-13-100"), 1);
       const drivers::DriverEntry* const driver = drivers::find_driver("obsdaq");
-      links_.push_back(std::make_unique<drivers::PortLink>(
-          io, clock_, drivers::PortSettings{scratch / fmt::format("s{}", slot + 1), 19200},
-          std::shared_ptr<drivers::Device>(driver->make(slot, settings)),
-          drivers::PortCallbacks{[this](const std::vector<DeviceEvent>& events) { take(events); }, {}, {}}));
-      links_.back()->start();
+      const auto at = static_cast<std::size_t>(slot);
+      drivers::LinkCallbacks callbacks;
+      callbacks.on_send = [this, at](std::string_view bytes) { ports_[at]->send(bytes); };
+      callbacks.on_events = [this](const std::vector<DeviceEvent>& events, Stamp) { take(events); };
+      links_.push_back(std::make_unique<drivers::DeviceLink>(
+          std::shared_ptr<drivers::Device>(driver->make(slot, settings)), std::move(callbacks)));
+      ports_.push_back(std::make_unique<drivers::PortLink>(
+          io, clock_, drivers::PortSettings{scratch / fmt::format("s{}", slot + 1), 19200}, *links_.back()));
+      ports_.back()->start();
     }
   }
 
@@ -145,7 +149,8 @@ class Acquisition {
   Sampler sampler_{SamplerConfig{}};
   calib::TensorPipeline pipeline_{calib::Geometry{}};
   std::vector<EpochOrGap> complete_;
-  std::vector<std::unique_ptr<drivers::PortLink>> links_;
+  std::vector<std::unique_ptr<drivers::DeviceLink>> links_;
+  std::vector<std::unique_ptr<drivers::PortLink>> ports_;
 };
 
 /// When each TENSOR line had been received.

@@ -76,7 +76,7 @@ TEST(Replay, MakesTheSameStreamToTheLastByte) {
   VirtualStream& daemon = live.daemon;
   daemon.run(30);
   daemon.use(perfect_calibration(table6()));
-  daemon.set_calibrating(true);
+  daemon.begin_probe();
   daemon.order({TableOrder::What::home, {}});
   daemon.run(60);
   int azimuth_deg = 0;
@@ -92,7 +92,7 @@ TEST(Replay, MakesTheSameStreamToTheLastByte) {
   daemon.wall_step_s = -3600.5;
   daemon.run(5);
   daemon.order({TableOrder::What::stop, {}});
-  daemon.set_calibrating(false);
+  daemon.stop_probe();
   daemon.wall_step_s = 2;
   daemon.run(10);
   daemon.use(nullptr);

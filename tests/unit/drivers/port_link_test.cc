@@ -59,17 +59,21 @@ class PortLinkTest : public ::testing::Test {
   }
   std::unique_ptr<PortLink> link(const std::string& path) {
     device_ = std::make_shared<Parrot>();
-    return std::make_unique<PortLink>(
-        io_, clock_, PortSettings{path, 0}, device_,
-        PortCallbacks{[this](const std::vector<DeviceEvent>& events) {
-                        if (!states_.empty()) told_ = states_.back().state;
-                        for (const auto& event : events) lines_.push_back(std::get<DeviceNote>(event).what);
-                      },
-                      [this](Direction direction, std::span<const std::byte> bytes, Stamp) {
-                        (direction == Direction::in ? raw_in_ : raw_out_)
-                            .append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-                      },
-                      [this](const LinkHealth& health) { states_.push_back(health); }});
+    link_ = std::make_unique<DeviceLink>(
+        device_, LinkCallbacks{[this](std::string_view bytes) { port_->send(bytes); },
+                               [this](const std::vector<DeviceEvent>& events, Stamp) {
+                                 if (!states_.empty()) told_ = states_.back().state;
+                                 for (const auto& event : events)
+                                   lines_.push_back(std::get<DeviceNote>(event).what);
+                               },
+                               [this](const LinkHealth& health, Stamp) { states_.push_back(health); },
+                               [this](Direction direction, std::span<const std::byte> bytes, Stamp) {
+                                 (direction == Direction::in ? raw_in_ : raw_out_)
+                                     .append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+                               }});
+    auto port = std::make_unique<PortLink>(io_, clock_, PortSettings{path, 0}, *link_);
+    port_ = port.get();
+    return port;
   }
 
   mgtd::testing::TemporaryDirectory directory_;
@@ -77,6 +81,8 @@ class PortLinkTest : public ::testing::Test {
   boost::asio::io_context io_;
   Clock clock_{10};  ///< so that what is a matter of seconds does not take them
   std::shared_ptr<Parrot> device_;
+  std::unique_ptr<DeviceLink> link_;
+  PortLink* port_{nullptr};
   std::vector<std::string> lines_;
   std::vector<LinkHealth> states_;
   LinkState told_{LinkState::opening};  ///< state known when the last event came
@@ -94,8 +100,8 @@ TEST_F(PortLinkTest, CarriesBytesBothWaysAndJournalsThem) {
   ASSERT_TRUE(until([&] { return lines_ == std::vector<std::string>{"one", "two"}; }));
   EXPECT_EQ(raw_in_, "one\ntwo\n");
   EXPECT_EQ(raw_out_, "hello\n");
-  EXPECT_EQ(port->health().state, LinkState::live);
-  EXPECT_TRUE(port->health().balanced());
+  EXPECT_EQ(link_->health().state, LinkState::live);
+  EXPECT_TRUE(link_->health().balanced());
   EXPECT_TRUE(until([&] { return device_->ticks > 3; }));
 }
 
@@ -106,18 +112,17 @@ TEST_F(PortLinkTest, FlushSendsWhatWasAskedOfTheDevice) {
   const std::string much(100'000, 'x');  // more than a pty holds: the write queue must wait, in order
   device_->say(much);
   device_->say("end\n");
-  port->flush();
+  link_->flush(clock_.now());
   ASSERT_TRUE(until([&] { return master.received() == "hello\n" + much + "end\n"; }));
 }
 
-TEST_F(PortLinkTest, WhatARequestProvokesIsToldAfterFlushHasReturned) {
+TEST_F(PortLinkTest, WhatARequestProvokesIsToldAtOnce) {
   PtyMaster master(path_);
   auto port = link(path_);
   port->start();
   device_->note("refused");
-  port->flush();
-  EXPECT_TRUE(lines_.empty());
-  EXPECT_TRUE(until([&] { return lines_ == std::vector<std::string>{"refused"}; }));
+  link_->flush(clock_.now());
+  EXPECT_EQ(lines_, std::vector<std::string>{"refused"});
 }
 
 TEST_F(PortLinkTest, APortThatIsNotThereIsAwaited) {
@@ -136,16 +141,16 @@ TEST_F(PortLinkTest, UnplugAndReplugStartOver) {
   port->start();
   ASSERT_TRUE(until([&] { return master->received() == "hello\n"; }));
   master->write("half a li");
-  ASSERT_TRUE(until([&] { return port->health().bytes_in == 9; }));
+  ASSERT_TRUE(until([&] { return link_->health().bytes_in == 9; }));
   master.reset();
-  ASSERT_TRUE(until([&] { return port->health().state == LinkState::gone; }));
-  EXPECT_TRUE(port->health().balanced());
-  EXPECT_EQ(port->health().closes, 1U);
+  ASSERT_TRUE(until([&] { return link_->health().state == LinkState::gone; }));
+  EXPECT_TRUE(link_->health().balanced());
+  EXPECT_EQ(link_->health().closes, 1U);
   EXPECT_EQ(lines_, std::vector<std::string>{"alas"});
   EXPECT_EQ(told_, LinkState::gone) << "the loss is told first";
   master.emplace(path_);
   ASSERT_TRUE(until([&] { return master->received() == "hello\n"; }));
-  EXPECT_EQ(port->health().opens, 2U);
+  EXPECT_EQ(link_->health().opens, 2U);
   master->write("ne\n");
   ASSERT_TRUE(until([&] { return lines_ == (std::vector<std::string>{"alas", "ne"}); }));
 }
@@ -168,7 +173,7 @@ TEST_F(PortLinkTest, ADeviceThatAsksForItIsOpenedAgain) {
   port->start();
   ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
   device_->impatient = true;
-  ASSERT_TRUE(until([&] { return port->health().closes == 1; }));
+  ASSERT_TRUE(until([&] { return link_->health().closes == 1; }));
   device_->impatient = false;
   ASSERT_TRUE(until([&] { return master.received() == "hello\nhello\n"; }));
 }
@@ -179,7 +184,7 @@ TEST_F(PortLinkTest, LastWordsAreSent) {
   port->start();
   ASSERT_TRUE(until([&] { return master.received() == "hello\n"; }));
   port->shutdown();
-  EXPECT_EQ(port->health().state, LinkState::absent);
+  EXPECT_EQ(link_->health().state, LinkState::absent);
   ASSERT_TRUE(until([&] { return master.received() == "hello\nbye\n"; }));
   EXPECT_EQ(raw_out_, "hello\nbye\n");
 }

@@ -91,8 +91,8 @@ class RunBench {
   }
 
   FakeTable table;
-  std::set<std::string> lost;           ///< devices whose port is gone
-  std::set<std::string> silent;         ///< devices that say nothing
+  std::set<Slot> lost;                  ///< devices whose port is gone
+  std::set<Slot> silent;                ///< devices that say nothing
   std::array<bool, kSensors> frozen{};  ///< sensors that repeat their last value
   bool saturated{false};
   double disturbance_nT{0};
@@ -135,13 +135,15 @@ class RunBench {
     table.advance(kTick_s);
     answer();
     if (ticks_ % 2 == 0) sample();
-    if (ticks_ % 2 == 1 && says("table")) send(reading());
-    if (ticks_ % 20 == 5 && says("scalar")) send(ScalarReading{now(), 50000 + noise() * 0.05, 99, true});
+    if (ticks_ % 2 == 1 && says(Slot::table())) send(reading());
+    if (ticks_ % 20 == 5 && says(Slot::scalar()))
+      send(ScalarReading{now(), 50000 + noise() * 0.05, 99, true});
     if (ticks_ % 20 == 7) {
-      for (const char* device : {"s1", "s2", "s3", "s4", "table", "scalar"}) {
+      for (std::size_t number = 0; number <= Slot::scalar().number(); ++number) {
+        const Slot slot = Slot::numbered(number);
         LinkHealth health;
-        health.state = says(device) ? LinkState::live : LinkState::silent;
-        send(LinkSeen{device, health});
+        health.state = says(slot) ? LinkState::live : LinkState::silent;
+        send(LinkSeen{slot, health});
       }
     }
     send(Tick{});
@@ -159,17 +161,15 @@ class RunBench {
   bool run_to(RunState state, double limit_s = 600) {
     return run(limit_s, [&] { return status && status->state == state; });
   }
-  void lose(const std::string& device) {
-    lost.insert(device);
-    send(DeviceLost{device, "the port is gone"});
+  void lose(Slot slot) {
+    lost.insert(slot);
+    send(DeviceLost{slot, "the port is gone"});
   }
-  void give_back(const std::string& device) {
-    lost.erase(device);
-    send(DeviceBack{device});
+  void give_back(Slot slot) {
+    lost.erase(slot);
+    send(DeviceBack{slot});
   }
-  [[nodiscard]] bool says(const std::string& device) const {
-    return !lost.contains(device) && !silent.contains(device);
-  }
+  [[nodiscard]] bool says(Slot slot) const { return !lost.contains(slot) && !silent.contains(slot); }
   [[nodiscard]] TableReading reading() const {
     return {now(), table.at, table.referenced, table.moving, !table.moving};
   }
@@ -179,7 +179,7 @@ class RunBench {
  private:
   void carry_out(const HomeTable&) {
     EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
-    if (lost.contains("table")) return;
+    if (lost.contains(Slot::table())) return;
     table.referenced = false;
     table.homing = true;
     table.go({});
@@ -210,7 +210,7 @@ class RunBench {
   }
   void carry_out(const StopTable&) {
     ++stops;
-    if (!lost.contains("table")) table.stop();
+    if (!lost.contains(Slot::table())) table.stop();
   }
   void carry_out(StorePose& store) {
     EXPECT_FALSE(storing_);
@@ -238,7 +238,7 @@ class RunBench {
     status = publish.status;
     if (states.empty() || states.back() != status->state) states.push_back(status->state);
     EXPECT_FALSE(status->message.empty());
-    if (status->state == RunState::paused && !lost.contains("table")) {
+    if (status->state == RunState::paused && !lost.contains(Slot::table())) {
       EXPECT_FALSE(table.moving) << "paused on the move";
     }
   }
@@ -246,7 +246,7 @@ class RunBench {
     finished = finish;
     EXPECT_FALSE(is_active(finish.state));
     EXPECT_FALSE(finish.message.empty());
-    EXPECT_TRUE(!table.moving || lost.contains("table"));
+    EXPECT_TRUE(!table.moving || lost.contains(Slot::table()));
     if (finish.state != RunState::done) {
       EXPECT_TRUE(status->proposed.empty());
     }
@@ -280,9 +280,9 @@ class RunBench {
 
   void sample() {
     const std::uint64_t seq = seq_++;
-    for (const char* sensor : {"s1", "s2", "s3", "s4"}) {
-      if (!says(sensor)) {
-        send(Gap{seq, seq, now(), std::string(sensor) + " silent"});
+    for (int i = 0; i < kSensors; ++i) {
+      if (const Slot sensor = Slot::sensor(i); !says(sensor)) {
+        send(Gap{seq, seq, now(), sensor.name() + " silent"});
         return;
       }
     }

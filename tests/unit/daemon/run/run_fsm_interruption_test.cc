@@ -77,7 +77,7 @@ TEST(RunFsmInterruption, AbortReachesAbortedFromEveryStep) {
 TEST(RunFsmInterruption, AbortWorksWhilePausedAndWhileADeviceIsAway) {
   at_every_step([](RunBench& bench) {
     bench.send(Request::pause);
-    bench.lose("table");
+    bench.lose(Slot::table());
     bench.run(0.3);
     if (bench.finished) return;  // the fit was done and needs no table
     bench.send(Request::abort);
@@ -109,13 +109,13 @@ TEST(RunFsmInterruption, PauseStopsTheTableAndResumeRepeatsThePose) {
 }
 
 TEST(RunFsmInterruption, DeviceThatComesBackCostsOnePose) {
-  for (const char* device : {"s3", "table", "scalar"}) {
-    SCOPED_TRACE(device);
+  for (const Slot slot : {Slot::sensor(2), Slot::table(), Slot::scalar()}) {
+    SCOPED_TRACE(slot.name());
     at_every_step([&](RunBench& bench) {
       const bool measuring = bench.solves == 0;
       const bool preflight = !bench.status || bench.status->state == RunState::preflight;
-      bench.lose(device);
-      if (device == std::string("table")) {
+      bench.lose(slot);
+      if (slot == Slot::table()) {
         bench.table.stop();  // its driver's port closed: the controller was stopped on reopening
         bench.table.referenced = false;
       }
@@ -124,7 +124,7 @@ TEST(RunFsmInterruption, DeviceThatComesBackCostsOnePose) {
         EXPECT_EQ(bench.status->state, RunState::paused);
       }
       bench.run(1.5);
-      bench.give_back(device);
+      bench.give_back(slot);
       bench.run(400);
       ASSERT_TRUE(bench.finished);
       if (!preflight || bench.finished->state == RunState::done) {
@@ -148,24 +148,24 @@ TEST(RunFsmInterruption, ATableThatIsLostIsNotSaidToBeStopped) {
   const std::string unreachable = "the table cannot be reached and may still move";
   RunBench bench(short_plan(), quick_config());
   move(bench);
-  bench.lose("s2");
+  bench.lose(Slot::sensor(1));
   EXPECT_THAT(bench.status->message, HasSubstr("s2 is lost ("));
   EXPECT_THAT(bench.status->message, HasSubstr("; the table is stopped, waiting up to 20 s"));
-  bench.lose("table");
+  bench.lose(Slot::table());
   EXPECT_THAT(bench.status->message, HasSubstr("; " + unreachable + ", waiting up to 20 s"));
   EXPECT_THAT(bench.status->message, HasSubstr("s2 is lost ("));
   bench.send(Request::pause);
   EXPECT_THAT(bench.status->message, HasSubstr("paused by the operator"));
   EXPECT_THAT(bench.status->message, HasSubstr(unreachable));
   EXPECT_EQ(bench.fsm.possible(Request::resume).error().code, ErrorCode::state);
-  bench.give_back("table");
+  bench.give_back(Slot::table());
   EXPECT_THAT(bench.status->message, testing::Not(HasSubstr(unreachable)));
 }
 
 TEST(RunFsmInterruption, ATableThatStaysAwayMayStillMoveWhenTheRunHasFailed) {
   RunBench bench(short_plan(), quick_config());
   move(bench);
-  bench.lose("table");
+  bench.lose(Slot::table());
   bench.run(40);
   ASSERT_TRUE(bench.finished);
   EXPECT_THAT(bench.finished->message, HasSubstr("it cannot be reached and may still move"));
@@ -174,27 +174,27 @@ TEST(RunFsmInterruption, ATableThatStaysAwayMayStillMoveWhenTheRunHasFailed) {
 TEST(RunFsmInterruption, WhileItWaitsTheRunSaysWhatTheLinkSays) {
   RunBench bench(short_plan(), quick_config());
   move(bench);
-  bench.lose("s2");
+  bench.lose(Slot::sensor(1));
   LinkHealth link;
   link.state = LinkState::failed;
   link.detail = "wrong device on the port: its serial number is 7, not 8";
-  bench.send(LinkSeen{"s2", link});
+  bench.send(LinkSeen{Slot::sensor(1), link});
   EXPECT_THAT(bench.status->message,
               HasSubstr("s2 is lost (wrong device on the port: its serial number is 7"));
 }
 
 TEST(RunFsmInterruption, DeviceThatStaysAwayFailsTheRunInLimitedTime) {
-  for (const char* device : {"s1", "table", "scalar"}) {
-    SCOPED_TRACE(device);
+  for (const Slot slot : {Slot::sensor(0), Slot::table(), Slot::scalar()}) {
+    SCOPED_TRACE(slot.name());
     at_every_step([&](RunBench& bench) {
       const bool measuring = bench.solves == 0;
-      bench.lose(device);
+      bench.lose(slot);
       bench.run(40);
       ASSERT_TRUE(bench.finished);
       EXPECT_EQ(bench.finished->state, measuring ? RunState::failed : RunState::done)
           << bench.finished->message;
       if (measuring) {
-        EXPECT_THAT(bench.finished->message, HasSubstr(device));
+        EXPECT_THAT(bench.finished->message, HasSubstr(slot.name()));
         EXPECT_EQ(bench.proposals, 0);
       }
     });
@@ -205,7 +205,7 @@ TEST(RunFsmInterruption, FaultOfADeviceStopsTheTableAndAsks) {
   at_every_step([](RunBench& bench) {
     const bool measuring = bench.solves == 0;
     const bool preflight = !bench.status || bench.status->state == RunState::preflight;
-    bench.send(DeviceFaulted{"table", {bench.now(), "error 1004: motion", "clear the axis"}});
+    bench.send(DeviceFaulted{Slot::table(), {bench.now(), "error 1004: motion", "clear the axis"}});
     EXPECT_FALSE(bench.table.moving);
     if (!measuring) return;
     EXPECT_THAT(bench.status->message, HasSubstr("error 1004: motion; clear the axis"));
@@ -265,11 +265,11 @@ TEST(RunFsmInterruption, EveryEventIsHandledInEveryState) {
                               ScalarReading{bench.now(), 0, 0, false},
                               TableReading{bench.now(), {1, 1, 1}, true, true, false},
                               TableReading{bench.now(), {}, false, false, true},
-                              LinkSeen{"s1", {}},
-                              DeviceLost{"s1", "gone"},
-                              DeviceLost{"table", "gone"},
-                              DeviceBack{"s1"},
-                              DeviceFaulted{"s1", {bench.now(), "what", "remedy"}},
+                              LinkSeen{Slot::sensor(0), {}},
+                              DeviceLost{Slot::sensor(0), "gone"},
+                              DeviceLost{Slot::table(), "gone"},
+                              DeviceBack{Slot::sensor(0)},
+                              DeviceFaulted{Slot::sensor(0), {bench.now(), "what", "remedy"}},
                               PoseStored{99, {}},
                               PoseStored{1, fail(ErrorCode::io, "full")},
                               SolveDone{fail(ErrorCode::internal, "no")},
@@ -298,17 +298,17 @@ TEST(RunFsmInterruption, RandomTroubleNeverBreaksAPromise) {
     SCOPED_TRACE(seed);
     std::mt19937_64 engine(seed);
     RunBench bench(short_plan(), quick_config());
-    const char* devices[] = {"s1", "s4", "table", "scalar"};
+    const Slot slots[] = {Slot::sensor(0), Slot::sensor(3), Slot::table(), Slot::scalar()};
     for (int i = 0; i < 4000 && !bench.finished; ++i) {
       bench.tick();
-      const std::string device = devices[engine() % 4];
+      const Slot slot = slots[engine() % 4];
       switch (engine() % 400) {
         case 0:
           bench.send(Request::pause);
           break;
         case 1:
-          bench.lose(device);
-          if (device == "table") bench.table.stop();
+          bench.lose(slot);
+          if (slot == Slot::table()) bench.table.stop();
           break;
         case 3:
           bench.disk_full = !bench.disk_full;
@@ -322,7 +322,7 @@ TEST(RunFsmInterruption, RandomTroubleNeverBreaksAPromise) {
           bench.send(bench.reading());
           break;
         case 6:
-          bench.send(DeviceFaulted{device, {bench.now(), "what", "remedy"}});
+          bench.send(DeviceFaulted{slot, {bench.now(), "what", "remedy"}});
           break;
         case 7:
         case 8:
@@ -331,14 +331,14 @@ TEST(RunFsmInterruption, RandomTroubleNeverBreaksAPromise) {
         case 9:
         case 10:
         case 11:
-          bench.give_back(device);
+          bench.give_back(slot);
           break;
         default:
           break;
       }
     }
     bench.disk_full = bench.saturated = false;
-    for (const char* device : devices) bench.give_back(device);
+    for (const Slot slot : slots) bench.give_back(slot);
     for (int i = 0; i < 20 && !bench.finished; ++i) {
       bench.send(Request::resume);
       bench.run(300);

@@ -136,7 +136,7 @@ TEST(RunFsm, FailedPreflightMovesNothingAndSaysWhatToDo) {
 
 TEST(RunFsm, RunWithPosesPausesWhenItsPreflightFails) {
   RunBench bench(bench_plan(3), bench_config(), EarlierLife{WallTime{1'799'999'000'000'000'000}, {1}, 900});
-  bench.silent = {"scalar"};
+  bench.silent = {Slot::scalar()};
   ASSERT_TRUE(bench.run_to(RunState::paused));
   EXPECT_THAT(bench.status->message, HasSubstr("scalar"));
   bench.silent.clear();
@@ -150,7 +150,7 @@ TEST(RunFsm, RunWithPosesPausesWhenItsPreflightFails) {
 TEST(RunFsm, PoseWithTooManyGapsIsMeasuredAgain) {
   RunBench bench(bench_plan(2));
   ASSERT_TRUE(bench.run_to(RunState::dwelling));
-  bench.silent = {"s2"};  // silent, the port stays
+  bench.silent = {Slot::sensor(1)};  // silent, the port stays
   bench.run(1.5);
   bench.silent.clear();
   ASSERT_TRUE(ends(bench, RunState::done));
@@ -232,7 +232,7 @@ TEST(RunFsm, TableRestingElsewhereHasNotArrived) {
 TEST(RunFsm, ScalarThatFallsSilentSpoilsThePose) {
   RunBench bench(bench_plan(2));
   ASSERT_TRUE(bench.run_to(RunState::settling));
-  bench.silent = {"scalar"};
+  bench.silent = {Slot::scalar()};
   ASSERT_TRUE(bench.run_to(RunState::paused));
   EXPECT_THAT(bench.status->message, HasSubstr("scalar reference"));
 }

@@ -138,13 +138,14 @@ TEST(MagnetTestTest, StoppedItNamesTheArmsThatWereNotAskedForAndTheMagnet) {
 }
 
 TEST(MagnetTestTest, ASensorThatIsNotLiveIsNamedWithItsState) {
-  std::vector<DeviceStatus> devices;
-  for (const char* name : {"s1", "s2", "s3", "s4", "table"}) devices.push_back({name, "", "", {}});
-  for (std::size_t i = 0; i < kSensors; ++i) devices[i].health.state = LinkState::live;
-  EXPECT_TRUE(ready_for_magnet(devices)) << "the table is not needed";
-  devices[2].health.state = LinkState::silent;
-  devices[2].health.detail = "no frame for 3 s";
-  const auto refused = ready_for_magnet(devices);
+  std::vector<std::pair<Slot, LinkHealth>> links;
+  for (int i = 0; i < kSensors; ++i) links.emplace_back(Slot::sensor(i), LinkHealth{});
+  for (auto& [slot, health] : links) health.state = LinkState::live;
+  links.emplace_back(Slot::table(), LinkHealth{});
+  EXPECT_TRUE(ready_for_magnet(links)) << "the table is not needed";
+  links[2].second.state = LinkState::silent;
+  links[2].second.detail = "no frame for 3 s";
+  const auto refused = ready_for_magnet(links);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("s3 is silent (no frame for 3 s)"));
 }

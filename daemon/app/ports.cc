@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/app/ports.h"
+
+namespace mgtd::daemon {
+
+Ports::Ports(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
+             Instruments& instruments) {
+  const auto devices = devices_of(config);
+  for (const Slot slot : instruments.slots()) {
+    if (!instruments.has_port(slot)) continue;
+    const DeviceConfig& device = *devices.at(slot.number());
+    ports_.emplace(
+        slot, std::make_unique<drivers::PortLink>(io, clock, drivers::PortSettings{device.port, device.baud},
+                                                  instruments.link(slot)));
+  }
+}
+
+void Ports::start() {
+  for (auto& [slot, port] : ports_) port->start();
+}
+
+void Ports::shutdown() {
+  if (const auto table = ports_.find(Slot::table()); table != ports_.end()) table->second->shutdown();
+  for (auto& [slot, port] : ports_) port->shutdown();
+}
+
+}  // namespace mgtd::daemon
