@@ -3,13 +3,16 @@
 #include "calib/calibration/calibration.h"
 #include "proto/pose.h"
 
-/// The step of the digitiser, from the grid that the readings themselves stand on.
+/// The step that readings stand in, that of the digitiser or of the table, from the readings' own grid.
 ///
 /// Where the noise of a sample is small against the step q, all samples of a dwell are the same number, and
 /// their mean is off by up to q/2 however many there are: the spread within the dwell says zero. Readings of
 /// dwells without spread are multiples of q; the largest q that fits them is the step. Its error is uniform,
 /// with variance q^2/12, at the share of the readings that are stuck; a sample that moves by a step or more
 /// within its dwell averages it out.
+///
+/// Means can stand on a grid as well, when they were rounded before they were written down. Then every
+/// reading is off by up to q/2, whatever its spread; a step below half the noise of a mean is not looked for.
 namespace mgtd::calib {
 
 struct Quantisation {

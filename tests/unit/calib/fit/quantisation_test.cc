@@ -37,6 +37,42 @@ TEST(Quantisation, TheStepIsReadOffTheGrid) {
   }
 }
 
+/// A table in whole nanotesla: the samples spread, their means are rounded.
+TEST(Quantisation, MeansThatWereRoundedShowTheirStep) {
+  for (const double step_nT : {0.1, 1.0}) {
+    PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
+    for (Pose& pose : table.poses) {
+      pose.n = 200;
+      for (std::size_t i = 0; i < kSensors; ++i) {
+        for (std::size_t a = 0; a < 3; ++a) {
+          double& y = pose.y_nT[i][static_cast<Eigen::Index>(a)];
+          y = step_nT * std::round(y / step_nT);
+          pose.sd_nT[i][a] = 0.3;
+        }
+      }
+    }
+    const Quantisation q = quantisation_of(table);
+    EXPECT_NEAR(q.step_nT, step_nT, 1e-9);
+    EXPECT_NEAR(q.variance_nT2(2, 1), step_nT * step_nT / 12, 1e-9);
+  }
+}
+
+/// Digits enough: a table with five of them has a grid that nobody needs to know.
+TEST(Quantisation, AGridFarBelowTheNoiseOfAMeanShowsNone) {
+  PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
+  for (Pose& pose : table.poses) {
+    pose.n = 200;
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        double& y = pose.y_nT[i][static_cast<Eigen::Index>(a)];
+        y = 0.01 * std::round(y / 0.01);
+        pose.sd_nT[i][a] = 0.3;
+      }
+    }
+  }
+  EXPECT_FALSE(quantisation_of(table).seen());
+}
+
 TEST(Quantisation, ReadingsThatSpreadWithinTheirDwellsShowNone) {
   EXPECT_FALSE(quantisation_of(testing::hidden_run({.noise_nT = 0.01}, 3)).seen());
 }
