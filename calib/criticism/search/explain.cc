@@ -16,6 +16,10 @@
 namespace mgtd::calib {
 namespace {
 
+/// Residual with a law and all readings, over the residual without those that the fit left out. Where the law
+/// is their cause, the two are one noise; where it is not, single readings far off make it many times larger.
+constexpr double kAsLittle = 1.5;
+
 std::vector<Detectable> detectable(const Criticism& c) {
   std::vector<Detectable> out;
   for (const ScoredFamily& f : c.families)
@@ -91,6 +95,11 @@ bool may_be_a_law(const JointFit& fit) {
     const double f_nT = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
     return node.unit != "nT" || std::abs(node.shift) < kOfField * f_nT;
   });
+}
+
+/// The residual after the last round.
+double left_nT(const ExplainReport& report) {
+  return report.rounds.empty() ? report.residual_nT : report.rounds.back().rms_after_nT;
 }
 
 Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out) {
@@ -176,13 +185,15 @@ std::string_view to_string(Finding finding) {
   return "";
 }
 
-/// A law that accounts for everything outranks leaving out what it does.
+/// A law that accounts for what the fit left out outranks leaving it out: with all readings in, the law
+/// leaves no more than the fit without them does.
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
   auto out = explained(table, options, JointOptions().most_left_out);
   if (!out || !may_be_a_law(*out->fit)) return out;
   auto with_all = explained(table, options, 0);
   const bool accounts =
-      with_all && (with_all->finding == Finding::explained || with_all->finding == Finding::ambiguous);
+      with_all && (with_all->finding == Finding::explained || with_all->finding == Finding::ambiguous) &&
+      left_nT(*with_all) < kAsLittle * left_nT(*out);
   return accounts ? with_all : out;
 }
 

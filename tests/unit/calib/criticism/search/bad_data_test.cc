@@ -3,10 +3,13 @@
 // wrong on a rig.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib/criticism/search/explain.h"
 #include "calib/report/explain_note_text.h"
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
+#include "tests/blind/real_kind.h"
 
 namespace mgtd::calib {
 namespace {
@@ -91,6 +94,21 @@ TEST(GoodData, IsNotCalledBad) {
   const auto r = explain(testing::planted_run(testing::full_stage(kSeed), {}, kSeed), {});
   ASSERT_TRUE(r);
   EXPECT_EQ(r->finding, Finding::pass) << sentence(*r);
+}
+
+/// Sensor 4 is off by 300 nT in ten poses. A step of the offset describes a part of it, and leaves 30 nT
+/// where the fit without these poses leaves 0.02.
+TEST(GoodData, ASensorThatIsOffForTenPosesIsLeftOutAndGetsNoName) {
+  const auto& kinds = testing::real_kinds();
+  const auto kind =
+      std::find_if(kinds.begin(), kinds.end(), [](const auto& k) { return k.name == "gross-sensor"; });
+  ASSERT_NE(kind, kinds.end());
+  const testing::RealRun run = kind->make(107);
+  const auto r = explain(run.table, {});
+  ASSERT_TRUE(r) << r.error().text();
+  EXPECT_EQ(r->finding, Finding::pass) << sentence(*r);
+  EXPECT_TRUE(r->named.empty());
+  EXPECT_EQ(r->outliers.size(), 10U);
 }
 
 }  // namespace
