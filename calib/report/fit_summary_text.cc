@@ -42,11 +42,10 @@ std::string_view to_string(Termination termination) {
 }
 
 std::string to_text(const FitSummary& s) {
-  const std::string count =
-      s.termination == Termination::closed_form
-          ? std::string()
-          : fmt::format(" in {} round{}, {} step{}", s.rounds, s.rounds == 1 ? "" : "s", s.iterations,
-                        s.iterations == 1 ? "" : "s");
+  const std::string count = s.termination == Termination::closed_form
+                                ? std::string()
+                                : fmt::format(" in {} round{}, {} step{}", s.rounds, s.rounds == 1 ? "" : "s",
+                                              s.iterations, s.iterations == 1 ? "" : "s");
   return fmt::format("{}{}: chi-square fell from {:.5g} to {:.5g}", ending(s), count, s.initial_cost,
                      s.final_cost);
 }
