@@ -37,21 +37,20 @@ TEST(Quantisation, TheStepIsReadOffTheGrid) {
   }
 }
 
-/// A table in whole nanotesla: the samples spread, their means are rounded.
+/// The samples spread by 0.3 nT, 200 of them a dwell, and their means are rounded.
+PoseTable with_rounded_means(double step_nT) {
+  PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
+  for (Pose& pose : table.poses) {
+    pose.n = 200;
+    for (auto& sensor : pose.sd_nT) sensor.fill(0.3);
+    for (Eigen::Vector3d& y_nT : pose.y_nT) y_nT = step_nT * (y_nT / step_nT).array().round();
+  }
+  return table;
+}
+
 TEST(Quantisation, MeansThatWereRoundedShowTheirStep) {
   for (const double step_nT : {0.1, 1.0}) {
-    PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
-    for (Pose& pose : table.poses) {
-      pose.n = 200;
-      for (std::size_t i = 0; i < kSensors; ++i) {
-        for (std::size_t a = 0; a < 3; ++a) {
-          double& y = pose.y_nT[i][static_cast<Eigen::Index>(a)];
-          y = step_nT * std::round(y / step_nT);
-          pose.sd_nT[i][a] = 0.3;
-        }
-      }
-    }
-    const Quantisation q = quantisation_of(table);
+    const Quantisation q = quantisation_of(with_rounded_means(step_nT));
     EXPECT_NEAR(q.step_nT, step_nT, 1e-9);
     EXPECT_NEAR(q.variance_nT2(2, 1), step_nT * step_nT / 12, 1e-9);
   }
@@ -59,18 +58,7 @@ TEST(Quantisation, MeansThatWereRoundedShowTheirStep) {
 
 /// Digits enough: a table with five of them has a grid that nobody needs to know.
 TEST(Quantisation, AGridFarBelowTheNoiseOfAMeanShowsNone) {
-  PoseTable table = testing::hidden_run({.noise_nT = 0.01}, 3);
-  for (Pose& pose : table.poses) {
-    pose.n = 200;
-    for (std::size_t i = 0; i < kSensors; ++i) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        double& y = pose.y_nT[i][static_cast<Eigen::Index>(a)];
-        y = 0.01 * std::round(y / 0.01);
-        pose.sd_nT[i][a] = 0.3;
-      }
-    }
-  }
-  EXPECT_FALSE(quantisation_of(table).seen());
+  EXPECT_FALSE(quantisation_of(with_rounded_means(0.01)).seen());
 }
 
 TEST(Quantisation, ReadingsThatSpreadWithinTheirDwellsShowNone) {
