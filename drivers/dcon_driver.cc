@@ -123,53 +123,53 @@ void DconDriver::answered(Instant now) {
   strange_.clear();
 }
 
-Verdict DconDriver::unasked() {
+FrameResult DconDriver::unasked() {
   proved_ = false;
-  return Verdict::resync();
+  return FrameResult::resync();
 }
 
-Verdict DconDriver::on_line(std::string_view line, Stamp arrival) {
+FrameResult DconDriver::on_line(std::string_view line, Stamp arrival) {
   const Reply reply = parse_reply(line, settings_.address, settings_.checksum);
   if (const auto* why = std::get_if<Reject>(&reply)) {
     strange_ = line;
-    return Verdict::rejected(*why);
+    return FrameResult::rejected(*why);
   }
   if (const auto* name = std::get_if<Name>(&reply)) return on_name(*name, arrival);
   if (const auto* values = std::get_if<Values>(&reply)) return on_values(*values, arrival);
   return on_refusal(arrival);
 }
 
-Verdict DconDriver::on_name(const Name& name, Stamp arrival) {
+FrameResult DconDriver::on_name(const Name& name, Stamp arrival) {
   if (asked_ != Asked::name) return unasked();
   health_.identity = name.text;
   has_name_ = true;
   answered(arrival.mono);
-  return Verdict::accepted();
+  return FrameResult::accepted();
 }
 
-Verdict DconDriver::on_refusal(Stamp arrival) {
+FrameResult DconDriver::on_refusal(Stamp arrival) {
   if (asked_ == Asked::nothing) return unasked();
   const bool of_the_name = asked_ == Asked::name;
   answered(arrival.mono);
-  if (of_the_name) return Verdict::accepted();
+  if (of_the_name) return FrameResult::accepted();
   set_state(LinkState::failed, "the module refuses to be read (?" + settings_.address +
                                    "): it is no analogue input module, or its firmware is another");
-  return Verdict::accepted();
+  return FrameResult::accepted();
 }
 
-Verdict DconDriver::on_values(const Values& values, Stamp arrival) {
+FrameResult DconDriver::on_values(const Values& values, Stamp arrival) {
   if (asked_ != Asked::values) return unasked();
   answered(arrival.mono);
   if (values.channels.size() < settings_.inputs) {
     set_state(LinkState::failed,
               fmt::format("the module sends {} channels, {} are configured; shorten 'channels'",
                           values.channels.size(), settings_.inputs));
-    return Verdict::rejected(Reject::length);
+    return FrameResult::rejected(Reject::length);
   }
   report_inputs(settings_.channels, values.channels, arrival,
                 [this](DeviceEvent event) { emit(std::move(event)); });
   if (health_.state != LinkState::live) set_state(LinkState::live, "reading its inputs");
-  return Verdict::accepted();
+  return FrameResult::accepted();
 }
 
 }  // namespace mgtd::drivers::dcon

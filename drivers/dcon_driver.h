@@ -55,7 +55,7 @@ class DconDriver final : public LineDevice {
   [[nodiscard]] std::span<const InputChannel> inputs() const override { return settings_.channels; }
 
  protected:
-  Verdict on_line(std::string_view line, Stamp arrival) override;
+  FrameResult on_line(std::string_view line, Stamp arrival) override;
 
  private:
   enum class Asked { nothing, name, values };
@@ -63,10 +63,10 @@ class DconDriver final : public LineDevice {
   void ask(Asked what, double patience_s, Instant now);
   void unanswered(Stamp now);
   void answered(Instant now);
-  Verdict on_name(const Name& name, Stamp arrival);
-  Verdict on_values(const Values& values, Stamp arrival);
-  Verdict on_refusal(Stamp arrival);
-  Verdict unasked();
+  FrameResult on_name(const Name& name, Stamp arrival);
+  FrameResult on_values(const Values& values, Stamp arrival);
+  FrameResult on_refusal(Stamp arrival);
+  FrameResult unasked();
 
   DconSettings settings_;
   Deadline next_, answer_;

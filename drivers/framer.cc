@@ -43,18 +43,18 @@ void Framer::finish(std::size_t bytes_after, LinkHealth& health, const Taker& ta
   const bool status = line.size() == 1 && is_status_byte(line.front()) && ending_ == Ending::gcs;
   const bool clean =
       status || std::all_of(line.begin(), line.end(), [&](char c) { return printable(c, ending_); });
-  Verdict verdict = take({line, bytes_after, clean ? std::nullopt : std::optional(Reject::framing)});
-  if (!clean) verdict = Verdict::rejected(Reject::framing);
-  switch (verdict.kind) {
-    case Verdict::Kind::accepted:
+  FrameResult result = take({line, bytes_after, clean ? std::nullopt : std::optional(Reject::framing)});
+  if (!clean) result = FrameResult::rejected(Reject::framing);
+  switch (result.kind) {
+    case FrameResult::Kind::accepted:
       health.bytes_in_frames += size;
       ++health.frames;
       break;
-    case Verdict::Kind::resync:
+    case FrameResult::Kind::resync:
       health.bytes_resync += size;
       break;
-    case Verdict::Kind::rejected:
-      health.reject(verdict.why, size);
+    case FrameResult::Kind::rejected:
+      health.reject(result.why, size);
       break;
   }
   pending_.clear();

@@ -13,9 +13,9 @@
 /// the same result for any split.
 ///
 /// Every byte is accounted for in the LinkHealth it is given, so that bytes_in = frames + rejected + resync +
-/// pending holds after every call: the taker of a frame says what it was (Verdict), the framer itself rejects
-/// what is too long (Reject::length, then skips to the next ending as resync) or holds bytes that no such
-/// line contains (Reject::framing), and tells the taker of both.
+/// pending holds after every call: the taker of a frame says what it was (FrameResult), the framer itself
+/// rejects what is too long (Reject::length, then skips to the next ending as resync) or holds bytes that no
+/// such line contains (Reject::framing), and tells the taker of both.
 ///
 ///   Ending::cr   frame ends at CR; an LF in front of a frame is skipped as part of it
 ///   Ending::lf   frame ends at LF; a CR before it is not part of the text
@@ -28,26 +28,26 @@ namespace mgtd::drivers {
 enum class Ending { cr, lf, gcs };
 
 /// What the taker makes of a frame.
-struct Verdict {
+struct FrameResult {
   enum class Kind { accepted, resync, rejected } kind{Kind::accepted};
   Reject why{Reject::framing};
 
-  [[nodiscard]] static constexpr Verdict accepted() { return {}; }
+  [[nodiscard]] static constexpr FrameResult accepted() { return {}; }
   /// Not an error: the rest of a stream that was cut off, or lines of no interest before the start.
-  [[nodiscard]] static constexpr Verdict resync() { return {Kind::resync, Reject::framing}; }
-  [[nodiscard]] static constexpr Verdict rejected(Reject why) { return {Kind::rejected, why}; }
+  [[nodiscard]] static constexpr FrameResult resync() { return {Kind::resync, Reject::framing}; }
+  [[nodiscard]] static constexpr FrameResult rejected(Reject why) { return {Kind::rejected, why}; }
 };
 
 struct Frame {
   std::string_view text;       ///< without its ending; valid during the call only
   std::size_t bytes_after{0};  ///< bytes of the same chunk behind it: it arrived that much before the last
-  /// The framer itself rejects it; the taker is told so that it can count, its verdict is not asked.
+  /// The framer itself rejects it; the taker is told so that it can count, its result is ignored.
   std::optional<Reject> damage{};
 };
 
 class Framer {
  public:
-  using Taker = std::function<Verdict(const Frame&)>;
+  using Taker = std::function<FrameResult(const Frame&)>;
 
   Framer(Ending ending, std::size_t max_bytes) : ending_(ending), max_bytes_(max_bytes) {}
 

@@ -17,9 +17,9 @@ constexpr int kNotReferenced = 5;
 
 }  // namespace
 
-Verdict Gcs2Driver::on_line(std::string_view line, Stamp arrival) {
+FrameResult Gcs2Driver::on_line(std::string_view line, Stamp arrival) {
   now_ = arrival;
-  if (line.empty()) return Verdict::resync();
+  if (line.empty()) return FrameResult::resync();
   const std::string form = form_of(line);
   const Heard heard = queue_.hear(form, arrival.mono);
   if (heard == Heard::strange && !form.empty() && form != kReadyForm) strange_ = line;
@@ -27,12 +27,12 @@ Verdict Gcs2Driver::on_line(std::string_view line, Stamp arrival) {
     const Question question = queue_.current();
     if (!take(question, line)) {
       queue_.refused(arrival.mono);
-      return Verdict::rejected(Reject::number);
+      return FrameResult::rejected(Reject::number);
     }
     strange_.clear();
   }
   if (phase_ != Phase::waiting) pump();
-  return heard == Heard::answer ? Verdict::accepted() : Verdict::resync();
+  return heard == Heard::answer ? FrameResult::accepted() : FrameResult::resync();
 }
 
 bool Gcs2Driver::take(const Question& question, std::string_view line) {

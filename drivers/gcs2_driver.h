@@ -46,7 +46,7 @@ class Gcs2Driver final : public LineBased<Turntable> {
   [[nodiscard]] const TableLimits& limits() const override { return limits_; }
 
  protected:
-  Verdict on_line(std::string_view line, Stamp arrival) override;
+  FrameResult on_line(std::string_view line, Stamp arrival) override;
 
  private:
   enum class Phase { closed, starting, ready, waiting };

@@ -80,16 +80,16 @@ void GsmDriver::on_tick(Stamp now) {
   emit(DeviceNote{now, health_.detail});
 }
 
-Verdict GsmDriver::on_line(std::string_view line, Stamp arrival) {
+FrameResult GsmDriver::on_line(std::string_view line, Stamp arrival) {
   const GsmLine parsed = parse_line(line);
   if (const auto* reading = std::get_if<GsmReading>(&parsed)) return on_reading(*reading, arrival);
   last_text_ = line;
   last_text_at_ = arrival.mono;
-  if (const auto* why = std::get_if<Reject>(&parsed)) return Verdict::rejected(*why);
+  if (const auto* why = std::get_if<Reject>(&parsed)) return FrameResult::rejected(*why);
   if (line.find("z-save") != std::string_view::npos) send("z");
   if (std::get<GsmText>(parsed).header && line.find("GSM") != std::string_view::npos)
     identify(line.substr(1), arrival);
-  return Verdict::resync();
+  return FrameResult::resync();
 }
 
 void GsmDriver::identify(std::string_view header, Stamp now) {
@@ -102,16 +102,16 @@ void GsmDriver::identify(std::string_view header, Stamp now) {
   another_ = wanted ? std::nullopt : std::optional(wanted.error());
 }
 
-Verdict GsmDriver::on_reading(const GsmReading& reading, Stamp arrival) {
-  if (another_) return Verdict::resync();
+FrameResult GsmDriver::on_reading(const GsmReading& reading, Stamp arrival) {
+  if (another_) return FrameResult::resync();
   if (reading.f_nT < settings_.min_nT || reading.f_nT > settings_.max_nT)
-    return Verdict::rejected(Reject::range);
+    return FrameResult::rejected(Reject::range);
   silence_.set(arrival.mono, settings_.silence_s);
   last_text_.clear();
   if (health_.state != LinkState::live) set_state(LinkState::live, "reading the total field");
   emit(ScalarReading{arrival, reading.f_nT, reading.quality.value_or(-1),
                      reading.quality.value_or(kBestQuality) == kBestQuality});
-  return Verdict::accepted();
+  return FrameResult::accepted();
 }
 
 }  // namespace mgtd::drivers::gsm

@@ -50,12 +50,12 @@ class GsmDriver final : public LineDevice {
   void on_tick(Stamp now) override;
 
  protected:
-  Verdict on_line(std::string_view line, Stamp arrival) override;
+  FrameResult on_line(std::string_view line, Stamp arrival) override;
 
  private:
   void send_init(Stamp now);
   void identify(std::string_view header, Stamp now);
-  Verdict on_reading(const GsmReading& reading, Stamp arrival);
+  FrameResult on_reading(const GsmReading& reading, Stamp arrival);
 
   GsmSettings settings_;
   std::size_t next_init_{0};

@@ -41,11 +41,11 @@ class LineBased : public Base {
       const Stamp at{arrival.mono - behind, WallTime{arrival.wall.ns - behind.count()}};
       if (frame.damage) {
         on_damaged_line(frame.text);
-        return Verdict::rejected(*frame.damage);
+        return FrameResult::rejected(*frame.damage);
       }
-      const Verdict verdict = on_line(frame.text, at);
-      if (verdict.kind == Verdict::Kind::accepted) this->health_.last_frame = at.mono;
-      return verdict;
+      const FrameResult result = on_line(frame.text, at);
+      if (result.kind == FrameResult::Kind::accepted) this->health_.last_frame = at.mono;
+      return result;
     });
   }
   void on_tick(Stamp now) override {
@@ -65,7 +65,7 @@ class LineBased : public Base {
   explicit LineBased(LineTraits traits) : traits_(traits), framer_(traits.ending, traits.longest_line) {}
 
   /// One line without its ending. What it returns goes to the books.
-  virtual Verdict on_line(std::string_view line, Stamp arrival) = 0;
+  virtual FrameResult on_line(std::string_view line, Stamp arrival) = 0;
 
   /// A line that holds what no line may; already rejected. `text` may contain any byte.
   virtual void on_damaged_line(std::string_view /*text*/) {}

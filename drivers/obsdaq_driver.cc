@@ -225,34 +225,34 @@ void ObsdaqDriver::watch_silence(Stamp now) {
   start(any_good_line_ ? Patience::brisk : Patience::patient, now);
 }
 
-Verdict ObsdaqDriver::on_line(std::string_view line, Stamp arrival) {
+FrameResult ObsdaqDriver::on_line(std::string_view line, Stamp arrival) {
   if (phase_ == Phase::streaming) return on_stream_line(line, arrival);
-  if (phase_ != Phase::starting || line.empty()) return Verdict::resync();
+  if (phase_ != Phase::starting || line.empty()) return FrameResult::resync();
   if (line.starts_with('*') || line.starts_with(":R,")) {  // still streaming from before, or already again
-    return Verdict::resync();
+    return FrameResult::resync();
   }
   dialogue_.on_line(line, arrival.mono);
   pump(arrival);
-  return Verdict::accepted();
+  return FrameResult::accepted();
 }
 
 void ObsdaqDriver::on_damaged_line(std::string_view text) {
   if (phase_ == Phase::streaming && any_good_line_) seq_ += samples_lost(text);
 }
 
-Verdict ObsdaqDriver::on_stream_line(std::string_view line, Stamp arrival) {
+FrameResult ObsdaqDriver::on_stream_line(std::string_view line, Stamp arrival) {
   const auto sample = parse_data_line(line);
   if (!sample || sample->time_stamped != settings_.palmacq) {
     without_time_ = without_time_ || (sample && !sample->time_stamped);
-    if (!any_good_line_) return Verdict::resync();
+    if (!any_good_line_) return FrameResult::resync();
     seq_ += samples_lost(line);
-    return Verdict::rejected(sample ? Reject::framing : sample.error());
+    return FrameResult::rejected(sample ? Reject::framing : sample.error());
   }
   if (!std::exchange(any_good_line_, true)) show_live();
   bytes_at_good_line_ = health_.bytes_in;
   silence_.set(arrival.mono, silence_s(), kSilentTicks);
   emit_sample(*sample, arrival);
-  return Verdict::accepted();
+  return FrameResult::accepted();
 }
 
 void ObsdaqDriver::emit_sample(const Sample& sample, Stamp arrival) {

@@ -42,7 +42,7 @@ class ObsdaqDriver final : public LineDevice {
   }
 
  protected:
-  Verdict on_line(std::string_view line, Stamp arrival) override;
+  FrameResult on_line(std::string_view line, Stamp arrival) override;
   void on_damaged_line(std::string_view text) override;
 
  private:
@@ -60,7 +60,7 @@ class ObsdaqDriver final : public LineDevice {
   void refuse(Stamp now, std::string what, std::string remedy);
   void watch_silence(Stamp now);
   void watch_rate(Stamp now);
-  Verdict on_stream_line(std::string_view line, Stamp arrival);
+  FrameResult on_stream_line(std::string_view line, Stamp arrival);
   void emit_sample(const Sample& sample, Stamp arrival);
   [[nodiscard]] double silence_s() const;
 

@@ -46,7 +46,7 @@ struct RunStatus {
   std::string message;   ///< one sentence for the operator: what is happening, or why it ended and what to do
   std::string proposed;  ///< calibration id when done
   bool goes_on{false};   ///< paused, but by itself: it waits for a device that is lost
-  std::vector<Check> checks;  ///< of preflight and verdict
+  std::vector<Check> checks;  ///< of the preflight and of the calibration
   /// Of the tensor by the calibration, from the poses so far, worst component; empty until they tell.
   std::optional<double> tensor_sd_nT_per_m;
   std::optional<OperatorPrompt> prompt;             ///< while asking

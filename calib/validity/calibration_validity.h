@@ -11,7 +11,7 @@ namespace mgtd::calib {
 /// signed permutation; noise below zero; a number of coefficients or a shape of their covariance that the
 /// effects do not have; a covariance that is none (least eigenvalue of its correlation below -1e-6); a start
 /// that is no time. What the text form cannot hold (not a number, infinite) never comes here, nor does a
-/// content that differs from its id. Says nothing of how good the calibration is: that is its verdict.
+/// content that differs from its id. Says nothing of how good the calibration is: its checks do.
 [[nodiscard]] Result<void> validate(const Calibration& calibration);
 
 }  // namespace mgtd::calib

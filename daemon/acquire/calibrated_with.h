@@ -10,8 +10,8 @@
 
 /// The instruments that a run was measured with, and that its calibration therefore holds for. They are among
 /// the checks, one for each: "instrument.s2", measured "obsDAQ V5.5.7, serial 1002". So they are kept in the
-/// run file (stage "instruments") and in the calibration's verdict, are part of its id, and are read by every
-/// version.
+/// run file (stage "instruments") and among the calibration's checks, are part of its id, and are read by
+/// every version.
 namespace mgtd::daemon {
 
 inline constexpr const char* kInstrumentsStage = "instruments";
@@ -20,7 +20,7 @@ inline constexpr const char* kInstrumentsStage = "instruments";
 /// Those among the checks; other checks are passed over.
 [[nodiscard]] std::vector<InstrumentIdentity> instruments_among(const std::vector<Check>& checks);
 
-/// Adds those that the run file knows to the calibration's verdict and seals it again. A pose table in CSV
+/// Adds those that the run file knows to the calibration's checks and seals it again. A pose table in CSV
 /// knows none, nor does a run that was measured before they were kept: then nothing changes.
 void name_instruments(calib::Calibration& calibration, const std::filesystem::path& run);
 

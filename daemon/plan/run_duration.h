@@ -22,7 +22,7 @@ struct Pace {
 /// Move, settle and dwell of the pose at `index`, coming from the one before it (the first: from zero
 /// angles), by way of an overshoot where the azimuth has to arrive in the other sense.
 [[nodiscard]] double pose_s(const Pace& pace, const RunPlan& plan, std::size_t index);
-/// From the reference move to the verdict.
+/// From the reference move to the checks of the calibration.
 [[nodiscard]] double total_s(const Pace& pace, const RunPlan& plan);
 
 /// "157 poses: 36 standard, 121 random (24 of them revisits) ..." and the notes, one per line.

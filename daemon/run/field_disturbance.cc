@@ -65,7 +65,7 @@ std::string FieldDisturbance::in_words() const {
 }
 
 /// Reads the noise.
-struct UnrestTest {
+struct DisturbanceStatistic {
   const FieldBlocks& field;
   const FieldNoise& noise;
   double log10_p;  ///< limit of one look at one of the two
@@ -79,29 +79,29 @@ struct UnrestTest {
         scatter_nT2.cwiseQuotient(noise.weight_nT2_).sum() / (kFieldAxes * n) / (noise.sum_ / noise.dof_);
     const double noise_nT = noise.block_nT();
     const double change_nT = std::sqrt(std::max(0.0, per_sensor(scatter_nT2) / n - noise_nT * noise_nT));
-    return verdict(change_nT, f, dof_of(field.blocks()), noise.dof_, false);
+    return disturbance(change_nT, f, dof_of(field.blocks()), noise.dof_, false);
   }
   [[nodiscard]] std::optional<FieldDisturbance> scalar() const {
     if (field.scalar_nT().size() < kScalarReadings) return std::nullopt;
     const double n = static_cast<double>(field.scalar_nT().size()) - 1;
     const double square_nT2 = square_sum(field.scalar_nT()) / n,
                  at_rest_nT2 = noise.scalar_sum_nT2_ / noise.scalar_dof_;
-    return verdict(std::sqrt(std::max(0.0, square_nT2 - at_rest_nT2)), square_nT2 / at_rest_nT2, n,
-                   noise.scalar_dof_, true);
+    return disturbance(std::sqrt(std::max(0.0, square_nT2 - at_rest_nT2)), square_nT2 / at_rest_nT2, n,
+                       noise.scalar_dof_, true);
   }
-  [[nodiscard]] std::optional<FieldDisturbance> verdict(double change_nT, double f, double k, double nu,
-                                                        bool by_scalar) const {
+  [[nodiscard]] std::optional<FieldDisturbance> disturbance(double change_nT, double f, double k, double nu,
+                                                            bool by_scalar) const {
     if (change_nT <= limit_nT || calib::f_log10_p(f, k, nu) > log10_p) return std::nullopt;
     return FieldDisturbance{change_nT, limit_nT, by_scalar};
   }
 };
 
-std::optional<FieldDisturbance> unrest(const FieldBlocks& field, const FieldNoise& noise,
-                                       const DisturbanceLimits& limits, std::size_t looks) {
+std::optional<FieldDisturbance> disturbance_in(const FieldBlocks& field, const FieldNoise& noise,
+                                               const DisturbanceLimits& limits, std::size_t looks) {
   const double share = limits.false_alarm / (2 * static_cast<double>(std::max<std::size_t>(looks, 1)));
-  const UnrestTest test{field, noise, std::log10(share), limits.limit_nT};
-  if (auto seen = test.array()) return seen;
-  return test.scalar();
+  const DisturbanceStatistic statistic{field, noise, std::log10(share), limits.limit_nT};
+  if (auto seen = statistic.array()) return seen;
+  return statistic.scalar();
 }
 
 }  // namespace mgtd::daemon

@@ -39,7 +39,7 @@ class FieldNoise {
   [[nodiscard]] double block_nT() const;
 
  private:
-  friend struct UnrestTest;
+  friend struct DisturbanceStatistic;
   FieldBlocks::Axes weight_nT2_{FieldBlocks::Axes::Ones()};
   double sum_{0}, dof_{0};
   double scalar_sum_nT2_, scalar_dof_;
@@ -53,7 +53,9 @@ struct FieldDisturbance {
 };
 
 /// `looks`: how often one dwell is judged. Nothing while there are fewer than two blocks.
-[[nodiscard]] std::optional<FieldDisturbance> unrest(const FieldBlocks& field, const FieldNoise& noise,
-                                                     const DisturbanceLimits& limits, std::size_t looks);
+[[nodiscard]] std::optional<FieldDisturbance> disturbance_in(const FieldBlocks& field,
+                                                             const FieldNoise& noise,
+                                                             const DisturbanceLimits& limits,
+                                                             std::size_t looks);
 
 }  // namespace mgtd::daemon

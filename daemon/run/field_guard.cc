@@ -19,8 +19,8 @@ void FieldGuard::watch(Instant from) {
 std::optional<FieldDisturbance> FieldGuard::disturbed(double length_s) {
   if (blocks_.blocks() == judged_) return std::nullopt;
   judged_ = blocks_.blocks();
-  return unrest(blocks_, noise_, config_.limits,
-                static_cast<std::size_t>(std::ceil(length_s / FieldBlocks::kBlock_s)));
+  return disturbance_in(blocks_, noise_, config_.limits,
+                        static_cast<std::size_t>(std::ceil(length_s / FieldBlocks::kBlock_s)));
 }
 
 std::optional<std::string> FieldGuard::at_another_level(std::optional<double> f_nT) const {

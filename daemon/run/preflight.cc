@@ -190,20 +190,20 @@ Check Preflight::noise(int slot, const Statistics& s) const {
                "look for mains hum, a loose connector, or a powered motor near this sensor");
 }
 
-Check Preflight::rest(int slot, const Statistics& s) const {
+Check Preflight::scatter(int slot, const Statistics& s) const {
   int worst = 3 * slot;
   double most = 0;
   for (int axis = 3 * slot; axis < 3 * slot + 3; ++axis) {
     const double excess = s.scatter_nT[axis] / std::max(s.noise_nT[axis], 1e-9);
-    if (s.scatter_nT[axis] <= config_.unrest_free_nT || excess <= most) continue;
+    if (s.scatter_nT[axis] <= config_.scatter_floor_nT || excess <= most) continue;
     most = excess;
     worst = axis;
   }
-  return check(named("rest", slot), most <= config_.max_unrest,
+  return check(named("rest", slot), most <= config_.max_scatter_ratio,
                most > 0 ? fmt::format("{} scatters by {:.2f} nT, {:.1f} x its noise",
                                       calib::channel_name(worst), s.scatter_nT[worst], most)
-                        : fmt::format("below {:.0f} nT", config_.unrest_free_nT),
-               fmt::format("{:.0f} x the noise", config_.max_unrest),
+                        : fmt::format("below {:.0f} nT", config_.scatter_floor_nT),
+               fmt::format("{:.0f} x the noise", config_.max_scatter_ratio),
                "the field moves: keep people, cars and tools away, see that the table stands still");
 }
 
@@ -280,7 +280,7 @@ std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant
   }
   all.insert(all.end(), {rate(), gaps(), saturation(), skew()});
   for (int slot = 0; slot < kSensors; ++slot)
-    all.insert(all.end(), {alive(slot, s), noise(slot, s), rest(slot, s), field(slot, s)});
+    all.insert(all.end(), {alive(slot, s), noise(slot, s), scatter(slot, s), field(slot, s)});
   all.push_back(wiring(s));
   if (config_.scalar) all.push_back(scalar());
   all.push_back(table(limits, now));

@@ -26,14 +26,14 @@ namespace mgtd::daemon {
 
 struct PreflightConfig {
   double length_s{5};
-  double wait_s{20};  ///< for the first word of an instrument that has said nothing yet
+  double wait_s{20};  ///< for the first reading of an instrument that has sent none yet
   double rate_hz{50};
   double max_rate_error{0.02};  ///< relative
   double max_gap_share{0.05};
-  double max_noise_nT{30};   ///< of one sample
-  double max_unrest{6};      ///< total scatter against noise ...
-  double unrest_free_nT{5};  ///< ... not counted below this
-  bool frozen_check{true};   ///< off for instruments whose resolution is coarser than their noise
+  double max_noise_nT{30};      ///< of one sample
+  double max_scatter_ratio{6};  ///< total scatter against noise ...
+  double scatter_floor_nT{5};   ///< ... not counted below this
+  bool frozen_check{true};      ///< off for instruments whose resolution is coarser than their noise
   double max_skew_s{0.04};
   double max_field_error{0.25};      ///< |y| of a sensor not calibrated yet against the field, relative
   std::optional<double> field_nT{};  ///< of the site, used when there is no scalar reference
@@ -49,8 +49,8 @@ class Preflight {
   void add(const ScalarReading& reading);
   void add(const TableReading& reading) { table_ = reading; }
   void add(const std::string& device, const LinkHealth& health) { links_[device] = health; }
-  /// Told at every event. A long time between two of them means that this program was not served by the
-  /// computer, and readings that are missing say nothing of the cables.
+  /// To be called at every event. A long time between two of them means that this program was not served by
+  /// the computer, and readings that are missing say nothing of the cables.
   void passes(Instant now);
 
   /// length_s after the first epoch (gaps count) when every instrument was heard, else after wait_s.
@@ -75,7 +75,7 @@ class Preflight {
   [[nodiscard]] Check skew() const;
   [[nodiscard]] Check wiring(const Statistics& s) const;
   [[nodiscard]] Check noise(int slot, const Statistics& s) const;
-  [[nodiscard]] Check rest(int slot, const Statistics& s) const;
+  [[nodiscard]] Check scatter(int slot, const Statistics& s) const;
   [[nodiscard]] Check alive(int slot, const Statistics& s) const;
   [[nodiscard]] Check field(int slot, const Statistics& s) const;
   [[nodiscard]] Check scalar() const;

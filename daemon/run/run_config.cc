@@ -16,7 +16,7 @@ RunConfig run_config(const Config& config, const drivers::TableLimits& limits) {
   out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config.rate_hz;
   out.settle.min_s = config.run.settle_min_s;
   out.settle.max_s = config.run.settle_max_s;
-  out.unrest = {.limit_nT = config.run.disturbance_nT, .false_alarm = config.run.false_alarm};
+  out.disturbance = {.limit_nT = config.run.disturbance_nT, .false_alarm = config.run.false_alarm};
   out.field_step_nT = config.run.field_step_nT;
   out.calm_s = config.run.calm_s;
   out.calm_max_s = config.run.calm_max_s;

@@ -15,7 +15,7 @@
 #include "proto/instrument_identity.h"
 #include "proto/units.h"
 
-/// What a run goes by, beside its plan.
+/// Settings of one calibration run, beside its plan; angles in radians, times in seconds.
 namespace mgtd::daemon {
 
 struct Config;
@@ -41,10 +41,10 @@ struct RunConfig {
   bool by_hand{false};       ///< the table is turned by hand: its scales are asked for
   double answer_max_s{900};  ///< wait for the operator's entry, then the run pauses
 
-  DisturbanceLimits unrest;  ///< the field while the table stands
-  double field_step_nT{5};   ///< of the scalar reference from one pose to the next; 0: not looked at
-  double calm_s{5};          ///< without unrest, and a disturbance is over
-  double calm_max_s{600};    ///< wait for that, then the run pauses
+  DisturbanceLimits disturbance;  ///< the field while the table stands
+  double field_step_nT{5};        ///< of the scalar reference from one pose to the next; 0: not looked at
+  double calm_s{5};               ///< without a change of the field, after which a disturbance is over
+  double calm_max_s{600};         ///< wait for that, then the run pauses
 
   double home_max_s{180};
   double lost_max_s{120};  ///< wait for a device to come back

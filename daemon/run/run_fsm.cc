@@ -20,7 +20,7 @@ Stamp origin(Stamp now, const std::optional<EarlierLife>& earlier) {
 }
 
 FieldGuardConfig field_guard(const RunConfig& config) {
-  return {config.unrest, config.field_step_nT, config.calm_s, config.dwell.rate_hz,
+  return {config.disturbance, config.field_step_nT, config.calm_s, config.dwell.rate_hz,
           config.dwell.scalar_sd_nT};
 }
 

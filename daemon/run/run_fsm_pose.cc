@@ -147,14 +147,14 @@ void RunFsm::advance(phase::Approaching& now) {
 
 void RunFsm::advance(phase::Moving& now) {
   if (!table_.referenced()) return lost_reference();
-  const SettleVerdict verdict = now.settle.judge(now_.mono);
-  if (verdict.state == SettleState::settling) return;
-  if (verdict.state == SettleState::settled) {
+  const SettleOutcome outcome = now.settle.judge(now_.mono);
+  if (outcome.state == SettleState::settling) return;
+  if (outcome.state == SettleState::settled) {
     if (now_.mono >= wished_begin(now)) begin_dwell(now);
     return;
   }
-  bad_pose({ErrorCode::refused, fmt::format("not settled: {} (limit {})", verdict.measured, verdict.limit),
-            verdict.remedy});
+  bad_pose({ErrorCode::refused, fmt::format("not settled: {} (limit {})", outcome.measured, outcome.limit),
+            outcome.remedy});
 }
 
 /// When the table really came to rest.

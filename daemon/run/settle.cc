@@ -86,14 +86,14 @@ Settle::Worst Settle::measure() const {
   return worst;
 }
 
-SettleVerdict Settle::judge(Instant now) {
+SettleOutcome Settle::judge(Instant now) {
   if (final_) return *final_;
-  SettleVerdict verdict = stopped_ ? judge_field(now) : judge_table(now);
-  if (verdict.state != SettleState::settling) final_ = verdict;
-  return verdict;
+  SettleOutcome outcome = stopped_ ? judge_field(now) : judge_table(now);
+  if (outcome.state != SettleState::settling) final_ = outcome;
+  return outcome;
 }
 
-SettleVerdict Settle::judge_table(Instant now) const {
+SettleOutcome Settle::judge_table(Instant now) const {
   const double waited_s = to_seconds(now - commanded_);
   return {waited_s > config_.move_max_s ? SettleState::timed_out : SettleState::settling,
           fmt::format("the table is not on target {:.1f} s after the command", waited_s),
@@ -101,7 +101,7 @@ SettleVerdict Settle::judge_table(Instant now) const {
           "look whether the table is blocked, and at its error register"};
 }
 
-SettleVerdict Settle::judge_field(Instant now) const {
+SettleOutcome Settle::judge_field(Instant now) const {
   const double since_s = to_seconds(now - *stopped_);
   const bool last_chance = since_s > config_.max_s;
   const SettleState open = last_chance ? SettleState::timed_out : SettleState::settling;

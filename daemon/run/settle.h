@@ -31,7 +31,7 @@ struct SettleConfig {
 
 enum class SettleState { settling, settled, disturbed, timed_out };
 
-struct SettleVerdict {
+struct SettleOutcome {
   SettleState state{SettleState::settling};
   std::string measured;  ///< "s3.y drifts 14.2 nT over 1.0 s"
   std::string limit;     ///< "2.0 nT"
@@ -46,7 +46,7 @@ class Settle {
   void add(const EpochOrGap& item);
   void add(const TableReading& reading);
   /// Answers of the past do not change: once settled, disturbed or timed out, it stays.
-  [[nodiscard]] SettleVerdict judge(Instant now);
+  [[nodiscard]] SettleOutcome judge(Instant now);
   /// When the table was first seen at rest on target.
   [[nodiscard]] std::optional<Instant> stopped() const { return stopped_; }
 
@@ -64,14 +64,14 @@ class Settle {
   };
   [[nodiscard]] bool window_full() const;
   [[nodiscard]] Worst measure() const;
-  [[nodiscard]] SettleVerdict judge_table(Instant now) const;
-  [[nodiscard]] SettleVerdict judge_field(Instant now) const;
+  [[nodiscard]] SettleOutcome judge_table(Instant now) const;
+  [[nodiscard]] SettleOutcome judge_field(Instant now) const;
 
   SettleConfig config_;
   Instant commanded_;
   std::optional<Instant> stopped_;
   std::deque<Point> window_;
-  std::optional<SettleVerdict> final_;
+  std::optional<SettleOutcome> final_;
 };
 
 }  // namespace mgtd::daemon

@@ -21,7 +21,7 @@ std::vector<std::string> run(Ending ending, std::span<const std::byte> bytes, st
     const std::size_t size = std::min(piece, bytes.size());
     framer.feed(bytes.first(size), health, [&](const Frame& frame) {
       frames.emplace_back(frame.damage ? "damaged" : frame.text);
-      return frame.text.size() % 3 == 0 ? Verdict::rejected(Reject::number) : Verdict::accepted();
+      return frame.text.size() % 3 == 0 ? FrameResult::rejected(Reject::number) : FrameResult::accepted();
     });
     if (!health.balanced()) std::abort();
     bytes = bytes.subspan(size);

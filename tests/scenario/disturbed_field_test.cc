@@ -80,7 +80,7 @@ TEST(DisturbedField, TheSameTrafficSpoilsPosesWhenNobodyLooks) {
   VirtualDaemon daemon(scenario_of(kRig + traffic(40, 2400)));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
   RunConfig config = daemon.run_config();
-  config.unrest.limit_nT = 1e9;
+  config.disturbance.limit_nT = 1e9;
   config.field_step_nT = 0;
   daemon.start(plan_for(daemon), config);
   ASSERT_TRUE(daemon.run(3600));

@@ -33,12 +33,12 @@ Taken run(Ending ending, std::string_view text, std::vector<std::size_t> cuts = 
     framer.feed(bytes_of(text.substr(from, to - from)), taken.health, [&](const Frame& frame) {
       if (frame.damage) {
         ++taken.damaged;
-        return Verdict::accepted();  // not asked
+        return FrameResult::accepted();  // not asked
       }
       taken.frames.emplace_back(frame.text);
-      if (frame.text.starts_with('?')) return Verdict::rejected(Reject::number);
-      if (frame.text.empty()) return Verdict::resync();
-      return Verdict::accepted();
+      if (frame.text.starts_with('?')) return FrameResult::rejected(Reject::number);
+      if (frame.text.empty()) return FrameResult::resync();
+      return FrameResult::accepted();
     });
     taken.balanced = taken.balanced && taken.health.balanced();
     from = to;
@@ -94,7 +94,7 @@ TEST(Framer, GivesUpAnUnfinishedFrame) {
   std::vector<std::string> frames;
   const auto take = [&](const Frame& frame) {
     frames.emplace_back(frame.text);
-    return Verdict::accepted();
+    return FrameResult::accepted();
   };
   framer.feed(bytes_of("half a li"), health, take);
   framer.drop(health);
@@ -110,7 +110,7 @@ TEST(Framer, SaysHowManyBytesCameBehind) {
   std::vector<std::size_t> behind;
   framer.feed(bytes_of("ab\rcd\re"), health, [&](const Frame& frame) {
     behind.push_back(frame.bytes_after);
-    return Verdict::accepted();
+    return FrameResult::accepted();
   });
   EXPECT_EQ(behind, (std::vector<std::size_t>{4, 1}));
 }

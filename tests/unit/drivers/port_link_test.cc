@@ -40,10 +40,10 @@ class Parrot final : public LineDevice {
   bool impatient{false};  ///< wants a fresh port when nothing comes
 
  protected:
-  Verdict on_line(std::string_view line, Stamp arrival) override {
+  FrameResult on_line(std::string_view line, Stamp arrival) override {
     set_state(line == "mute" ? LinkState::silent : LinkState::live, std::string(line));
     emit(DeviceNote{arrival, std::string(line)});
-    return Verdict::accepted();
+    return FrameResult::accepted();
   }
 };
 

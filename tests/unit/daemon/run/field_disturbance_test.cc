@@ -45,7 +45,7 @@ class Site {
   /// Judged as a run does: after each block.
   bool disturbed(double length_s, const FieldNoise& noise) {
     for (double t = 1; t <= length_s; t += FieldBlocks::kBlock_s) {
-      if (unrest(watch(t), noise, {.limit_nT = 1e-6, .false_alarm = 0.02}, kLooks)) return true;
+      if (disturbance_in(watch(t), noise, {.limit_nT = 1e-6, .false_alarm = 0.02}, kLooks)) return true;
     }
     return false;
   }
@@ -83,14 +83,14 @@ TEST(FieldDisturbance, TheNoiseIsLearntFromThePreflightAlone) {
   ASSERT_TRUE(noise.known());
   // Of a block's vector: three axes, 25 samples.
   EXPECT_NEAR(noise.block_nT(), kNoise_nT * std::sqrt(3.0 / 25), 0.03);
-  EXPECT_FALSE(unrest(site.watch(8), noise, {}, kLooks));
+  EXPECT_FALSE(disturbance_in(site.watch(8), noise, {}, kLooks));
 }
 
 TEST(FieldDisturbance, APassingVehicleIsSeenByTheArrayAndByTheReference) {
   Site site(5);
   const FieldNoise noise = learnt(site);
   site.change_nT = [](double t) { return 3 * std::exp(-(t - 3) * (t - 3)); };
-  const auto seen = unrest(site.watch(6), noise, {}, kLooks);
+  const auto seen = disturbance_in(site.watch(6), noise, {}, kLooks);
   ASSERT_TRUE(seen);
   EXPECT_FALSE(seen->scalar);
   EXPECT_GT(seen->change_nT, 0.5);
@@ -103,7 +103,7 @@ TEST(FieldDisturbance, WhatOnlyTheReferenceSeesIsSeenToo) {
   Site site(6);
   site.reference = 1e6;
   site.change_nT = [](double t) { return 3e-6 * t; };
-  const auto seen = unrest(site.watch(4), noise, {}, kLooks);
+  const auto seen = disturbance_in(site.watch(4), noise, {}, kLooks);
   ASSERT_TRUE(seen);
   EXPECT_TRUE(seen->scalar);
 }
@@ -113,15 +113,15 @@ TEST(FieldDisturbance, WhatIsBelowTheLimitNeverMatters) {
   const FieldNoise noise = learnt(site);
   site.change_nT = [](double t) { return t < 4 ? 0.0 : 0.6; };  // 0.3 nT rms, ten times its noise
   const FieldBlocks field = site.watch(8);
-  EXPECT_FALSE(unrest(field, noise, {.limit_nT = 0.5}, kLooks));
-  EXPECT_TRUE(unrest(field, noise, {.limit_nT = 0.1}, kLooks));
+  EXPECT_FALSE(disturbance_in(field, noise, {.limit_nT = 0.5}, kLooks));
+  EXPECT_TRUE(disturbance_in(field, noise, {.limit_nT = 0.1}, kLooks));
 }
 
 TEST(FieldDisturbance, WithoutNoiseToJudgeByTheArrayIsSilent) {
   Site site(9);
   site.change_nT = [](double t) { return 10 * t; };
   site.reference = 0;
-  EXPECT_FALSE(unrest(site.watch(8), FieldNoise(0.05), {}, kLooks));
+  EXPECT_FALSE(disturbance_in(site.watch(8), FieldNoise(0.05), {}, kLooks));
 }
 
 TEST(StillFieldTest, ABlockThatIsMostlyMissingCountsAsNone) {

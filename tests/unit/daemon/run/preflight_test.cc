@@ -24,7 +24,7 @@ struct Rig {
   std::array<double, kSensors> scale{1, 1, 1, 1};
   int frozen_axis{-1};
   int saturated_from{1 << 30};
-  double unrest_nT{0};
+  double scatter_nT{0};
   double skew_s{1e-4};
   std::uint64_t lost{0};
   bool table{true}, moving{false}, table_referenced{true};
@@ -55,7 +55,7 @@ struct Rig {
         const Eigen::Vector3d before = epoch.y_nT[i];
         const Eigen::Vector3d b_nT = scale[i] * 50'000 * Eigen::Vector3d(0.6, 0, 0.8);
         epoch.y_nT[i] = b_nT + Eigen::Vector3d(normal(engine), normal(engine), normal(engine)) * noise_nT +
-                        Eigen::Vector3d::Constant(unrest_nT * std::sin(t_s));
+                        Eigen::Vector3d::Constant(scatter_nT * std::sin(t_s));
         if (frozen_axis / 3 == static_cast<int>(i) && frozen_axis >= 0 && k > 0)
           epoch.y_nT[i][frozen_axis % 3] = before[frozen_axis % 3];
       }
@@ -97,7 +97,7 @@ TEST(Preflight, HealthyRigPassesEveryCheck) {
 TEST(Preflight, NoiseIsThatOfASample) {
   Rig rig;
   rig.noise_nT = 2;
-  rig.unrest_nT = 10;  // slow: not noise. Largest of 12 estimates from 249 differences: sd 5.5 %
+  rig.scatter_nT = 10;  // slow: not noise. Largest of 12 estimates from 249 differences: sd 5.5 %
   EXPECT_NEAR(rig.look().noise_nT(), 2, 0.4);
   EXPECT_EQ(failed(rig.checks()), "");
 }
@@ -109,7 +109,7 @@ TEST(Preflight, EachTroubleFailsItsOwnCheck) {
   EXPECT_EQ(failed(Rig{.scale = {1, 1, 1, 1.5}}.checks()), "field.s4");
   EXPECT_EQ(failed(Rig{.frozen_axis = 7}.checks()), "alive.s3");
   EXPECT_EQ(failed(Rig{.saturated_from = 200}.checks()), "saturation");
-  EXPECT_EQ(failed(Rig{.unrest_nT = 50}.checks()), "rest.s1 rest.s2 rest.s3 rest.s4");
+  EXPECT_EQ(failed(Rig{.scatter_nT = 50}.checks()), "rest.s1 rest.s2 rest.s3 rest.s4");
   EXPECT_EQ(failed(Rig{.skew_s = 0.05}.checks()), "clock");
   EXPECT_EQ(failed(Rig{.lost = 40}.checks()), "rate gaps");
   EXPECT_EQ(failed(Rig{.table = false}.checks()), "table");

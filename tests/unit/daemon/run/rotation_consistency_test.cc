@@ -76,11 +76,11 @@ TEST(RotationConsistency, SaysByHowMuchAndAgainstWhichPose) {
     turn.add(site.pose(a, a));
   }
   const TableAngles truth{0, 0, 0}, entered{0, to_rad(90), 0};
-  const auto verdict = turn.judge(site.pose(truth, entered));
-  EXPECT_FALSE(verdict.agrees);
-  EXPECT_GE(verdict.against, 1);
-  EXPECT_LE(verdict.against, 5);
-  EXPECT_GT(std::abs(verdict.measured_rad - verdict.entered_rad), to_rad(10));
+  const auto judged = turn.judge(site.pose(truth, entered));
+  EXPECT_FALSE(judged.agrees);
+  EXPECT_GE(judged.against, 1);
+  EXPECT_LE(judged.against, 5);
+  EXPECT_GT(std::abs(judged.measured_rad - judged.entered_rad), to_rad(10));
 }
 
 TEST(RotationConsistency, TheFirstPoseHasNothingToDisagreeWith) {

@@ -267,7 +267,7 @@ TEST(RunFsm, DiskThatDoesNotAnswerNeverLetsTheTableGoOn) {
   EXPECT_EQ(bench.stored.size(), 3u);
 }
 
-// ---- verdict
+// ---- checks of the calibration
 
 TEST(RunFsm, CalibrationThatFailsItsChecksIsNotProposed) {
   RunBench bench(bench_plan(2));

@@ -20,14 +20,14 @@ TableReading table(double t_s, bool on_target) {
   return r;
 }
 
-/// The table moves from 0 to 2 s; then s3.y decays by decay_nT exp(-t/tau). Gives the verdict and when it
+/// The table moves from 0 to 2 s; then s3.y decays by decay_nT exp(-t/tau). Gives the outcome and when it
 /// fell.
-struct Outcome {
-  SettleVerdict verdict;
+struct Ended {
+  SettleOutcome outcome;
   double at_s{0};
 };
-Outcome settle(double decay_nT, double tau_s, double noise_nT, SettleConfig config = {},
-               double known_noise_nT = 1) {
+Ended settle(double decay_nT, double tau_s, double noise_nT, SettleConfig config = {},
+             double known_noise_nT = 1) {
   config.noise_nT = known_noise_nT;
   Settle judge(config, stamp_at(0).mono);
   std::mt19937_64 random(5);
@@ -40,36 +40,36 @@ Outcome settle(double decay_nT, double tau_s, double noise_nT, SettleConfig conf
     for (auto& y : e.y_nT) y = {normal(random), normal(random), normal(random)};
     e.y_nT[2].y() += t_s < 2 ? 5000 * t_s : decay_nT * std::exp(-(t_s - 2) / tau_s);
     judge.add(EpochOrGap{e});
-    const SettleVerdict v = judge.judge(stamp_at(t_s).mono);
+    const SettleOutcome v = judge.judge(stamp_at(t_s).mono);
     if (v.state != SettleState::settling) return {v, t_s - 2};
   }
 }
 
 TEST(Settle, QuietFieldNeedsOneWindow) {
-  const Outcome o = settle(0, 1, 1);
-  EXPECT_EQ(o.verdict.state, SettleState::settled);
+  const Ended o = settle(0, 1, 1);
+  EXPECT_EQ(o.outcome.state, SettleState::settled);
   EXPECT_LT(o.at_s, 1.5);
   EXPECT_GE(o.at_s, 0.5);
 }
 
 TEST(Settle, WaitsForADecayAndNotLonger) {
-  const Outcome o = settle(500, 1, 1);
-  EXPECT_EQ(o.verdict.state, SettleState::settled);
+  const Ended o = settle(500, 1, 1);
+  EXPECT_EQ(o.outcome.state, SettleState::settled);
   EXPECT_GT(o.at_s, 4);  // 500 exp(-4) = 9 nT are still to come
   EXPECT_LT(o.at_s, 8);  // 500 exp(-7) = 0.5 nT are within the noise of the slope
 }
 
 TEST(Settle, TimesOutNamingTheAxisThatDrifts) {
-  const Outcome o = settle(5000, 30, 1);
-  EXPECT_EQ(o.verdict.state, SettleState::timed_out);
-  EXPECT_TRUE(o.verdict.measured.starts_with("s3.y drifts")) << o.verdict.measured;
+  const Ended o = settle(5000, 30, 1);
+  EXPECT_EQ(o.outcome.state, SettleState::timed_out);
+  EXPECT_TRUE(o.outcome.measured.starts_with("s3.y drifts")) << o.outcome.measured;
   EXPECT_NEAR(o.at_s, 20, 0.1);
-  EXPECT_FALSE(o.verdict.remedy.empty());
+  EXPECT_FALSE(o.outcome.remedy.empty());
 }
 
 TEST(Settle, ScatterFarAboveTheKnownNoiseIsADisturbance) {
-  EXPECT_EQ(settle(0, 1, 8).verdict.state, SettleState::disturbed);
-  EXPECT_EQ(settle(0, 1, 8, {}, 0).verdict.state, SettleState::settled);  // no noise known: not judged
+  EXPECT_EQ(settle(0, 1, 8).outcome.state, SettleState::disturbed);
+  EXPECT_EQ(settle(0, 1, 8, {}, 0).outcome.state, SettleState::settled);  // no noise known: not judged
 }
 
 TEST(Settle, TableThatNeverArrivesTimesOut) {
