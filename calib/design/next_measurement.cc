@@ -106,7 +106,7 @@ bool differ_in_form(const std::string& a, const std::string& b) {
   return reads(a) == reads(b) && (reads(a).empty() || quantity(a) == quantity(b));
 }
 
-/// Smallest probability over the rivals that the winner's name is told right, were it true.
+/// Smallest probability, over the alternatives, that the winner's name comes out right if it is true.
 double p_right(const Longer& run, const JointFit& fit, const JointOptions& options, const Candidate& winner,
                const std::vector<Alternative>& alternatives) {
   const auto design = design_of(run.table, fit, options);
@@ -140,7 +140,7 @@ std::vector<Alternative> hardest(const Candidate& winner) {
   return out;
 }
 
-/// Of rivals that nobody has held against the winner yet.
+/// For alternatives that were not compared with the winner yet.
 void find_form_only(const PoseTable& table, const JointFit& fit, const JointOptions& options,
                     const Candidate& winner, std::vector<Alternative>& alternatives) {
   const Longer run = as_it_is(table);

@@ -18,7 +18,7 @@ namespace mgtd::calib {
 struct NextMeasurement {
   std::string action{};
   double minutes{0};
-  double p_right_before{0}, p_right_after{0};  ///< against the rival that is hardest to tell
+  double p_right_before{0}, p_right_after{0};  ///< against the alternative that is hardest to tell from it
 };
 
 struct NextMenu {
@@ -26,9 +26,9 @@ struct NextMenu {
   std::vector<NextMeasurement> steps{};
 };
 
-/// For the winner of a round against its possible rivals (or its nearest one), best first; actions that gain
-/// nothing, or no more than more of the same, are left out. `model`: the effects of the fit that the round
-/// started from.
+/// For the winner of a round against its possible alternatives (or its nearest one), best first; actions that
+/// gain nothing, or no more than more of the same, are left out. `model`: the effects of the fit that the
+/// round started from.
 [[nodiscard]] NextMenu next_measurements(const PoseTable& table, const JointFit& fit,
                                          const JointOptions& options, const Candidate& winner);
 

@@ -6,7 +6,7 @@
 
 namespace mgtd::calib {
 
-/// For the terminal: verdict, table of suspects, what could have been seen, what cannot be told.
+/// For the terminal: verdict, table of candidates, what could have been seen, what these poses cannot tell.
 [[nodiscard]] std::string to_text(const ExplainReport& report);
 
 }  // namespace mgtd::calib

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kCandidates = 12;
 
-std::string rivals_text(const calib::Candidate& candidate) {
+std::string alternatives_text(const calib::Candidate& candidate) {
   std::vector<std::string> names;
   for (const calib::Alternative& r : candidate.alternatives)
     if (r.possible) names.push_back(r.effect);
@@ -42,7 +42,7 @@ std::string candidates_section(const ReportContent& c) {
         std::find(c.explained.named.begin(), c.explained.named.end(), x.effect) != c.explained.named.end();
     bars.push_back({x.effect, x.d, fmt::format("{:.1f}", x.d), named ? 1 : 2});
     rows.push_back({x.effect, x.where, fmt::format("{:.1f}", x.d), calib::p_text(x.log10_p),
-                    calib::size_text(x), x.plausible ? "" : "beyond what occurs", rivals_text(x)});
+                    calib::size_text(x), x.plausible ? "" : "beyond what occurs", alternatives_text(x)});
   }
   return "<h2>What could be missing</h2><p class=\"quiet\">Every effect of the library was tried on what the "
          "model "

@@ -16,7 +16,8 @@ namespace {
 double told_at_best(const ExplainReport& r) {
   double out = 1;
   if (r.rounds.empty()) return out;
-  for (const Alternative& rival : r.rounds.front().added.alternatives) out = std::min(out, rival.p_right);
+  for (const Alternative& alternative : r.rounds.front().added.alternatives)
+    out = std::min(out, alternative.p_right);
   return out;
 }
 

@@ -108,7 +108,7 @@ TEST_F(Loop, AFormulaIsExaminedKeptAndUsedByItsName) {
   const json examined = json::parse(define.out);
   EXPECT_EQ(examined.at("resembles").at(0).at("effect"), "axis.offset.temperature");
   EXPECT_TRUE(examined.at("exploratory"));
-  // explain suspects it too, and says what it is worth here.
+  // explain has it among its candidates too, and says what it is worth here.
   const Finished explain = mgt({"explain", run_file(), "--json"});
   EXPECT_THAT(explain.err, HasSubstr("warmth was suggested by this run"));
   EXPECT_THAT(explain.out, HasSubstr("\"effect\":\"warmth\""));

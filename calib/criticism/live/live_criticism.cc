@@ -20,7 +20,7 @@ constexpr double kBeyondTurn = 5;               // closure over what a turn may 
 constexpr int kCalmBlocks = 6, kLookEvery = 6;  // blocks of 10 s
 constexpr double kLeastShare = 0.5,
                  kLeastSwing = 1;  // swing in standard deviations that the calibration states
-constexpr double kRivalShare = 0.1, kEventMargin = 0.02;
+constexpr double kAmbiguousShare = 0.1, kEventMargin = 0.02;
 constexpr double kHourBlock_s = 10, kDayBlock_s = 600;
 constexpr std::size_t kHourBlocks = 360, kDayBlocks = 144, kLearned = 6;
 
@@ -162,7 +162,7 @@ void LiveCriticism::judge(const LiveWindow& window) {
                         unit_of(f.component));
     for (std::size_t k = 0; k < found.follows.size(); ++k) {
       if (k != best && is_followed(found.follows.at(k), static_cast<Follows>(k)) &&
-          found.follows.at(k).share > f.share - kRivalShare)
+          found.follows.at(k).share > f.share - kAmbiguousShare)
         followed += fmt::format("; or it follows {}: they went together", kFollowsNames.at(k));
     }
   }

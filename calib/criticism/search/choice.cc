@@ -24,7 +24,7 @@ std::string spec_of(const std::string& family, const std::string& where) {
 }
 
 /// Everything that could stand in the place of `effect`, where a round of the search found it or one of its
-/// rivals.
+/// alternatives.
 std::vector<std::string> alternatives_of(const ExplainReport& before, const std::string& effect) {
   for (const Round& round : before.rounds) {
     std::vector<std::string> names = round.possible;

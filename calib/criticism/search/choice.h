@@ -10,9 +10,10 @@
 /// and whether it was the whole of what stood out. A fit with the effect in it shows neither any more, so it
 /// is kept with the effect until other data settle it.
 ///
-///     a rival goes   when on other data the model with the rival in the place of the effect leaves more, by
-///                    more than chance: dof ln(ratio of chi-square per dof) above 2 ln 1000
-///     `describes`    goes when on other data nothing stands out beside the model
+///     an alternative is dropped   when on other data the model with it in the place of the effect leaves
+///                                 more, by more than chance: dof ln(ratio of chi-square per dof) above
+///                                 2 ln 1000
+///     `describes` is cleared      when on other data nothing stands out beside the model
 namespace mgtd::calib {
 
 struct Choice {
@@ -20,7 +21,7 @@ struct Choice {
   std::string finding{};  ///< the verdict at the time
   std::vector<std::string>
       alternatives{};     ///< specs of those that could stand in its place; numbers left open
-  bool describes{false};  ///< it was one of several stand-ins, or beside something unknown
+  bool describes{false};  ///< it was one of several surrogates, or beside something unknown
   std::string data{};     ///< hash of the poses that said so
 
   [[nodiscard]] bool open() const { return describes || !alternatives.empty(); }
@@ -30,7 +31,7 @@ struct Choice {
 [[nodiscard]] Choice choice_of(const ExplainReport& before, const PoseTable& table, const EffectPtr& effect);
 
 /// What is left of the doubt on these poses. `options`: the model, with the effect in it. The same poses
-/// leave it as it was. A rival that cannot be fitted here stays.
+/// leave it as it was. An alternative that cannot be fitted here stays.
 [[nodiscard]] Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& options);
 
 [[nodiscard]] nlohmann::json to_json(const Choice& choice);

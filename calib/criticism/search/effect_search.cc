@@ -99,7 +99,7 @@ bool possible_in(const std::vector<Alternative>& alternatives, const std::string
   });
 }
 
-/// Rivals that a second look does not find possible any more.
+/// Marks the alternatives that a second look does not find possible any more.
 void exclude(const std::vector<Alternative>& again, Round& round) {
   for (Alternative& alternative : round.added.alternatives) {
     if (!alternative.possible || possible_in(again, alternative.effect)) continue;
@@ -109,7 +109,7 @@ void exclude(const std::vector<Alternative>& again, Round& round) {
 }
 
 /// Adds family `f` and fits again. False when the fit with it fails. A `first_choice` gives way where a
-/// second look prefers one of its rivals.
+/// second look prefers one of its alternatives.
 bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_choice = true) {
   const ScoredFamily& best = search.criticism.families[f];
   Round round{.added = candidate_of(best, search.criticism, search.fit.noise_inflation)};

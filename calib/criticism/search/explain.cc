@@ -5,7 +5,7 @@
 
 #include "calib/criticism/search/conclusion.h"
 #include "calib/criticism/search/effect_search.h"
-#include "calib/criticism/search/stand_ins.h"
+#include "calib/criticism/search/surrogates.h"
 #include "calib/criticism/search/take_back.h"
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/exchange_in_run.h"
@@ -144,7 +144,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   bool memory = memory_may_be_it(search, out);
   for (int axis = 0; axis < kChannels; ++axis) {
     if (criticism.maps.empty()) look_at_maps(criticism);
-    const StandIns found = stand_ins(out, criticism, search.unknown);
+    const Surrogates found = find_surrogates(out, criticism, search.unknown);
     if (!found.any()) break;
     memory = memory || memory_may_be_it(search, out);
     take_back(found, search, out);

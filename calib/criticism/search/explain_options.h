@@ -8,13 +8,13 @@
 
 namespace mgtd::calib {
 
-/// What explain() is asked, and what is suspected beside or instead of the library.
+/// Options of explain(): the model, and candidates beside or instead of the library.
 struct ExplainOptions {
   FitOptions fit;  ///< method joint; its effects are the model that is asked about
   int rounds{4};
-  /// What is suspected instead of the library.
+  /// Candidates instead of the library.
   std::optional<std::vector<CandidateEffect>> candidate_effects{};
-  /// What is suspected beside it: formulas of the user.
+  /// Candidates beside the library: formulas of the user.
   std::vector<CandidateEffect> also{};
 };
 

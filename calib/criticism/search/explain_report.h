@@ -13,7 +13,7 @@
 #include "calib/design/next_measurement.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// What explain() found: explain.h.
+/// The result of explain(), as values; see explain.h.
 namespace mgtd::calib {
 
 enum class Finding { pass, explained, ambiguous, partial, unknown, bad_data };

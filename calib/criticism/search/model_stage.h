@@ -29,8 +29,8 @@ struct VariancePrice {
   double sd_ratio{1};       ///< of its standard deviation
   std::string parameter{};  ///< "s3.cx"
 };
-/// Two fits of the same poses, both weighed as the wide one: what the data would tell without the effect at
-/// the noise that is left with it. No growth where one of them tells nothing.
+/// Compares two fits of the same poses, both with the weights of the wide one: the noise that is left with
+/// the effect. The ratio is 1 where one of them has no covariance.
 [[nodiscard]] VariancePrice variance_price(const JointFit& narrow, const JointFit& wide);
 
 /// Rise of the error on poses left out that is not chance any more: beyond it an effect is not added.

@@ -38,7 +38,7 @@ std::set<std::string> closed_by(const std::string& place, const std::set<std::st
 
 }  // namespace
 
-void take_back(const StandIns& found, EffectSearch& search, ExplainReport& report) {
+void take_back(const Surrogates& found, EffectSearch& search, ExplainReport& report) {
   const std::set<std::string> places = closed_by(found.where, search.unknown);
   search.unknown.insert(places.begin(), places.end());
   std::set<std::string> names;

@@ -11,8 +11,8 @@ namespace mgtd::calib {
 namespace {
 
 constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
-constexpr int kBestQuestions = 3;  ///< the best questions of a rival stand for all of its
-constexpr double kShown = 0.999;   ///< pairs that are told apart better than this are no rivals
+constexpr int kBestQuestions = 3;  ///< the best questions of an alternative stand for all of its questions
+constexpr double kShown = 0.999;   ///< a pair that is told apart better than this is not listed
 constexpr double kNothing = 1e-3;  ///< of a chi-square
 /// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
 constexpr double kGone = 16;

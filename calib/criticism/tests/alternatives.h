@@ -14,7 +14,7 @@
 /// the best of all other questions then beats the best of b's own by D. What was seen is D_0. With
 ///     p_behind = P(D >= D_0)
 /// b stays possible while p_behind is at least 1/200: the true name is lost in one run of 200 at the most,
-/// however many rivals there are and however close they lie.
+/// however many alternatives there are and however close they lie.
 ///
 /// If a is true with fitted signature v_a, b falls short of it by lambda_ab = |(I - P_b) v_a|^2 in the mean,
 /// the difference of the two falls of chi-square is normal (lambda, 4 lambda), and the right one of the two
@@ -50,8 +50,8 @@ struct Alternative {
   bool possible{false};
 };
 
-/// Against the winner of `families[a]`; most dangerous first. Hypotheses of one family are not rivals of each
-/// other.
+/// Against the winner of `families[a]`; most dangerous first. Hypotheses of one family are not alternatives
+/// to each other.
 [[nodiscard]] std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& families,
                                                        std::size_t a, std::uint64_t seed);
 

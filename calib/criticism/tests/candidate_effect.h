@@ -9,8 +9,8 @@
 
 #include "calib/effects/library/library.h"
 
-/// What is suspected: a family of effects, tested at several scales and, where it has a fixed number, at
-/// several values of it.
+/// A candidate effect is a family of effects that is tested at several scales and, where it has a fixed
+/// number, at several values of it.
 namespace mgtd::calib {
 
 /// One question: coefficients of the finest scale, combined. Column j of `combine` says which of them are

@@ -6,8 +6,8 @@
 #include "calib/criticism/tests/candidate_effect.h"
 #include "calib/fit/method_choice/fit.h"
 
-/// What a user's formula would mean on a run, before it is used: how much of it the calibration takes up by
-/// itself, what it would show, and which known effect it cannot be told from.
+/// Examines a user's formula on a run before it is used: how much of it the calibration absorbs, how large it
+/// would have to be to be seen, and with which known effects it is collinear.
 namespace mgtd::calib {
 
 struct Collinearity {
@@ -15,7 +15,7 @@ struct Collinearity {
   double correlation{0};  ///< of the formula with the best combination of the effect's coefficients
 };
 
-/// Correlation from which on no run like this can tell two effects apart.
+/// Correlation above which no run like this can tell two effects apart.
 inline constexpr double kTheSame = 0.98;
 
 struct FormulaExamination {
@@ -37,7 +37,7 @@ struct FormulaExamination {
 [[nodiscard]] Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOptions& options,
                                                          const EffectSpec& formula);
 
-/// A formula among those that explain suspects, at the scale it was given.
+/// A formula as one of the candidates of explain(), at the scale it was given.
 [[nodiscard]] Result<CandidateEffect> formula_candidate(const EffectSpec& formula);
 
 }  // namespace mgtd::calib

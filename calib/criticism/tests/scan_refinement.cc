@@ -21,7 +21,7 @@ std::optional<double> neighbour(const CandidateEffect& candidate_effect, double 
   return out;
 }
 
-/// The family with a suspect of its own, to which more may be added.
+/// Gives the family a candidate of its own, to which more variants may be added.
 CandidateEffect& widened(ScoredFamily& family) {
   const auto wider = std::make_shared<CandidateEffect>(*family.candidate_effect);
   family.own = wider;

@@ -60,7 +60,7 @@ struct OneStep {
 struct ScoredFamily {
   const CandidateEffect* candidate_effect{nullptr};
   std::shared_ptr<const CandidateEffect>
-      own{};                            ///< that suspect, where it was refined: see scan_refinement.h
+      own{};                            ///< that candidate, where it was refined: see scan_refinement.h
   std::vector<Signature> signatures{};  ///< by variant
   std::vector<Score> scores{};          ///< every hypothesis that has a rank, every variant
   std::size_t best{0};

@@ -101,12 +101,12 @@ void Outliers::fill_saturated(const JointProblem& problem) {
   }
 }
 
-/// What is to blame in each pose, of the suspects.
+/// What is to blame in each of the poses to examine; nothing in the others.
 std::vector<Rows> Outliers::blamed(const JointProblem& whole, const JointState& state,
-                                   const BlameLimits& limits, const std::vector<std::size_t>& suspects) {
+                                   const BlameLimits& limits, const std::vector<std::size_t>& examined) {
   std::vector<Rows> out(left_out_.size());
   PoseBlame blame(whole, state, limits);
-  for (const std::size_t k : suspects) out[k] = blame.of(k, left_out_[k].any() ? kTakeBack : 1);
+  for (const std::size_t k : examined) out[k] = blame.of(k, left_out_[k].any() ? kTakeBack : 1);
   return out;
 }
 
@@ -150,18 +150,18 @@ bool Outliers::judge(JointProblem& problem, const JointState& state, const PoseR
   BlameLimits limits = BlameLimits::of(residuals, left_out_);
   widen_tails(residuals, limits);
   const std::vector<Rows> before = left_out_;
-  std::vector<std::size_t> suspects;
+  std::vector<std::size_t> examined;  // poses that had something left out or stand out now
   for (std::size_t k = 0; k < n; ++k) {
     const Eigen::Array<double, kObservations, 1> t =
         residuals.t.col(static_cast<Eigen::Index>(k)).cast<double>().array() / limits.spread;
-    if (before[k].any() || limits.excess(t) > 1) suspects.push_back(k);
+    if (before[k].any() || limits.excess(t) > 1) examined.push_back(k);
     if (before[k].none()) sigmas_[k] = t.maxCoeff();
   }
-  if (suspects.empty()) return false;
+  if (examined.empty()) return false;
   restore(problem);
-  std::vector<Rows> found = blamed(problem, state, limits, suspects);
-  if (spare_tails(residuals, found, limits)) found = blamed(problem, state, limits, suspects);
-  for (const std::size_t k : suspects) {
+  std::vector<Rows> found = blamed(problem, state, limits, examined);
+  if (spare_tails(residuals, found, limits)) found = blamed(problem, state, limits, examined);
+  for (const std::size_t k : examined) {
     if (before[k].any() && found[k] != before[k] && ++changed_[k] > kChanges) continue;
     left_out_[k] = found[k];
   }

@@ -43,7 +43,7 @@ class Outliers {
   [[nodiscard]] OutlierNode node(const JointProblem& whole, const JointState& state, std::size_t k,
                                  int row) const;
   [[nodiscard]] std::vector<Rows> blamed(const JointProblem& whole, const JointState& state,
-                                         const BlameLimits& limits, const std::vector<std::size_t>& suspects);
+                                         const BlameLimits& limits, const std::vector<std::size_t>& examined);
   [[nodiscard]] bool spare_tails(const PoseResiduals& residuals, const std::vector<Rows>& found,
                                  BlameLimits& limits);
   void widen_tails(const PoseResiduals& residuals, BlameLimits& limits) const;

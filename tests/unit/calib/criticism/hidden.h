@@ -9,7 +9,7 @@
 #include "calib/criticism/tests/candidate_effect.h"
 #include "tests/blind/hidden_run.h"
 
-/// Effects to suspect that share no code with the library.
+/// Candidate effects that share no code with the library.
 namespace mgtd::calib::testing {
 
 /// y += c f(pose, v, axis), one coefficient for each of the axes it is laid over.
@@ -84,7 +84,7 @@ inline CandidateEffect candidate_effect(const std::string& name, const AxisLaw::
 }
 
 /// Five laws of an axis: two of temperature, one of time, two of the field.
-inline std::vector<CandidateEffect> few_suspects() {
+inline std::vector<CandidateEffect> few_candidates() {
   const auto warmer = [](const Pose& p, int i) { return *p.T_degC[static_cast<std::size_t>(i)] - 20; };
   return {
       candidate_effect("offset.temperature",

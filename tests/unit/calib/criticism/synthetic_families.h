@@ -12,7 +12,7 @@
 namespace mgtd::calib::testing {
 
 /// One column on one axis; several are values of a searched number.
-inline std::shared_ptr<CandidateEffect> suspect_of_columns(const std::string& name, std::size_t values) {
+inline std::shared_ptr<CandidateEffect> candidate_of_columns(const std::string& name, std::size_t values) {
   auto out = std::make_shared<CandidateEffect>();
   out->name = name;
   out->variants.resize(values);

@@ -44,8 +44,8 @@ TEST(Lack, SaysHowManyPosesAndWhatToDo) {
   EXPECT_EQ(refused.error().message,
             "table.backlash needs sense, which 16 of 157 poses have not (the first: pose 1)");
   EXPECT_THAT(refused.error().remedy, HasSubstr("leave the poses without it out of the table"));
-  const CandidateEffects suspects = library_candidates(table);
-  const Untestable* listed = find(suspects.untestable, "table.backlash");
+  const CandidateEffects candidates = library_candidates(table);
+  const Untestable* listed = find(candidates.untestable, "table.backlash");
   ASSERT_NE(listed, nullptr);
   EXPECT_THAT(listed->why, StartsWith("needs sense, which 16 of 157"));
 }
@@ -60,11 +60,11 @@ TEST(Lack, AnAngleIsNeededOfEveryPose) {
 TEST(Lack, ATemperatureThatNeverChangesTestsNothing) {
   PoseTable table = with_sense(0);
   for (Pose& pose : table.poses) pose.T_degC = {20, 20, 21, 20};
-  const CandidateEffects suspects = library_candidates(table);
-  const Untestable* listed = find(suspects.untestable, "axis.offset.temperature");
+  const CandidateEffects candidates = library_candidates(table);
+  const Untestable* listed = find(candidates.untestable, "axis.offset.temperature");
   ASSERT_NE(listed, nullptr);
   EXPECT_THAT(listed->why, HasSubstr("never change"));
-  EXPECT_EQ(find(suspects.untestable, "axis.offset.drift"), nullptr);
+  EXPECT_EQ(find(candidates.untestable, "axis.offset.drift"), nullptr);
 }
 
 TEST(Lack, NoReasonBeginsWithTheNameItStandsBeside) {

@@ -71,7 +71,7 @@ TEST(Choice, ANameThatStoodAloneLeavesNothingOpen) {
 }
 
 /// Something that is in no library: a ninth harmonic of the azimuth.
-TEST(Choice, AStandInDescribesAndDoesNotExplain) {
+TEST(Choice, ASurrogateDescribesAndDoesNotExplain) {
   HiddenRun run;
   run.hidden = [](const Pose& p, int i, int a, const Eigen::Vector3d&) {
     return i == 1 && a == 0 ? 8 * std::sin(9 * *p.azimuth_rad) : 0.0;

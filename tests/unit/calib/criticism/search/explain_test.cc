@@ -10,12 +10,12 @@
 namespace mgtd::calib {
 namespace {
 
-using testing::few_suspects;
+using testing::few_candidates;
 using testing::hidden_run;
 using testing::HiddenRun;
 
 ExplainReport must_explain(const PoseTable& table) {
-  auto report = explain(table, {.fit = {}, .candidate_effects = few_suspects()});
+  auto report = explain(table, {.fit = {}, .candidate_effects = few_candidates()});
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }

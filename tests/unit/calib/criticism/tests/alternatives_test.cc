@@ -11,7 +11,7 @@ namespace mgtd::calib::testing {
 namespace {
 
 constexpr Eigen::Index kRows = 40;
-constexpr int kRivals = 8;
+constexpr int kAlternatives = 8;
 
 /// Law 0 and others that share `alike` of its signature (not in squares), each in a direction of its own.
 struct Laws {
@@ -19,8 +19,8 @@ struct Laws {
   std::vector<Eigen::VectorXd> columns;
 
   explicit Laws(double alike) {
-    for (int i = 0; i <= kRivals; ++i) {
-      candidate_effects.push_back(suspect_of_columns("law " + std::to_string(i), 1));
+    for (int i = 0; i <= kAlternatives; ++i) {
+      candidate_effects.push_back(candidate_of_columns("law " + std::to_string(i), 1));
       columns.push_back(Eigen::VectorXd::Zero(kRows));
       columns.back()[0] = i == 0 ? 1 : alike;
       if (i > 0) columns.back()[i] = std::sqrt(1 - alike * alike);
@@ -62,7 +62,7 @@ Counts ask(const Laws& laws, double d, int runs) {
   return out;
 }
 
-TEST(Rivals, AmongManyTheTrueNameIsLostOnceInTwoHundred) {
+TEST(Alternatives, AmongManyTheTrueNameIsLostOnceInTwoHundred) {
   constexpr int kRuns = 1500;
   const Counts seen = ask(Laws(0.85), 7, kRuns);
   // The limit and three standard deviations of the count: 7.5 + 3 sqrt(7.5).
@@ -71,21 +71,21 @@ TEST(Rivals, AmongManyTheTrueNameIsLostOnceInTwoHundred) {
   EXPECT_LT(seen.first, kRuns - 30);
 }
 
-TEST(Rivals, AtASizeThatTellsThemApartOneNameIsLeft) {
+TEST(Alternatives, AtASizeThatTellsThemApartOneNameIsLeft) {
   constexpr int kRuns = 200;
   const Counts seen = ask(Laws(0.85), 15, kRuns);
   EXPECT_EQ(seen.first, kRuns);
   EXPECT_GE(seen.alone, kRuns * 9 / 10);
 }
 
-TEST(Rivals, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
+TEST(Alternatives, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
   constexpr int kRuns = 20;
   const Counts seen = ask(Laws(0.99), 200, kRuns);
   EXPECT_EQ(seen.alone, 0);
   EXPECT_EQ(seen.in_set, kRuns);
 }
 
-TEST(Rivals, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
+TEST(Alternatives, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
   constexpr int kRuns = 20;
   Laws laws(0.99);
   for (std::size_t i = 1; i < laws.candidate_effects.size(); ++i) laws.candidate_effects[i]->reads = "t_s";
@@ -94,7 +94,7 @@ TEST(Rivals, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
   EXPECT_EQ(seen.alone, kRuns);
 }
 
-TEST(Rivals, FormAloneTellsNothingApart) {
+TEST(Alternatives, FormAloneTellsNothingApart) {
   EXPECT_EQ(beyond_form(40, 1600), 0);
   EXPECT_DOUBLE_EQ(beyond_form(400, 1600), 320);
   EXPECT_DOUBLE_EQ(probability_right(0), 0.5);

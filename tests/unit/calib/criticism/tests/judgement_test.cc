@@ -11,13 +11,13 @@
 namespace mgtd::calib {
 namespace {
 
-using testing::few_suspects;
+using testing::few_candidates;
 using testing::hidden_run;
 using testing::HiddenRun;
 using testing::wandering_offsets;
 
 ExplainReport must_explain(const PoseTable& table) {
-  auto report = explain(table, {.fit = {}, .candidate_effects = few_suspects()});
+  auto report = explain(table, {.fit = {}, .candidate_effects = few_candidates()});
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }

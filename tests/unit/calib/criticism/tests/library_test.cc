@@ -31,7 +31,7 @@ Hidden on(int sensor, int axis, std::function<double(const Pose&, const Eigen::V
   };
 }
 
-TEST(LibrarySuspects, CleanRunPassesAndSaysWhatItCouldHaveSeen) {
+TEST(LibraryCandidates, CleanRunPassesAndSaysWhatItCouldHaveSeen) {
   const ExplainReport r = must_explain(hidden_run({}, 7));
   EXPECT_EQ(r.finding, Finding::pass) << sentence(r);
   EXPECT_GT(r.detectable.size(), 15U);
@@ -42,7 +42,7 @@ TEST(LibrarySuspects, CleanRunPassesAndSaysWhatItCouldHaveSeen) {
   EXPECT_EQ(absorbed, 3);
 }
 
-TEST(LibrarySuspects, ALawOfOneAxisIsNamedWithItsPlace) {
+TEST(LibraryCandidates, ALawOfOneAxisIsNamedWithItsPlace) {
   const std::vector<std::pair<std::string, Hidden>> cases{
       {"axis.cubic",
        on(1, 0, [](const Pose&, const Eigen::Vector3d& v) { return 8 * std::pow(v[0] / 5e4, 3); })},
@@ -58,7 +58,7 @@ TEST(LibrarySuspects, ALawOfOneAxisIsNamedWithItsPlace) {
   }
 }
 
-TEST(LibrarySuspects, OwnSquareAgainstTransverseSquaresIsNeverDecided) {
+TEST(LibraryCandidates, OwnSquareAgainstTransverseSquaresIsNeverDecided) {
   // In one field strength v_b^2 + v_c^2 is F^2 less v_a^2.
   const Hidden quadratic =
       on(2, 1, [](const Pose&, const Eigen::Vector3d& v) { return 4 * std::pow(v[1] / 5e4, 2); });
@@ -73,7 +73,7 @@ TEST(LibrarySuspects, OwnSquareAgainstTransverseSquaresIsNeverDecided) {
   }
 }
 
-TEST(LibrarySuspects, WhatIsInNoLibraryIsNotNamed) {
+TEST(LibraryCandidates, WhatIsInNoLibraryIsNotNamed) {
   // A lamp that nobody wrote down, on for a part of the run: it reaches two axes of one sensor.
   const Hidden lamp = [](const Pose& p, int i, int a, const Eigen::Vector3d& v) {
     return i == 3 && a != 1 ? 1.2 * std::sin(7 * std::atan2(v[1], v[0])) * (p.number % 3 == 0 ? 2.0 : 1.0)
@@ -83,7 +83,7 @@ TEST(LibrarySuspects, WhatIsInNoLibraryIsNotNamed) {
   EXPECT_TRUE(r.finding == Finding::unknown || r.finding == Finding::partial) << sentence(r);
 }
 
-TEST(LibrarySuspects, TheJsonHasItsKeys) {
+TEST(LibraryCandidates, TheJsonHasItsKeys) {
   const nlohmann::json j = to_json(must_explain(hidden_run({}, 8)));
   for (const char* key : {"schema", "verdict", "candidates", "named", "maps", "lack_of_fit",
                           "detectable_above", "untestable", "next", "text"})
@@ -94,7 +94,7 @@ TEST(LibrarySuspects, TheJsonHasItsKeys) {
     EXPECT_TRUE(j["candidates"][0].contains(key)) << key;
 }
 
-TEST(LibrarySuspects, ImproveAddsWhatIsMissingAndUnseenPosesAgree) {
+TEST(LibraryCandidates, ImproveAddsWhatIsMissingAndUnseenPosesAgree) {
   const Hidden hidden = [](const Pose& p, int i, int a, const Eigen::Vector3d& v) {
     if (i == 0 && a == 2) return 1.5 * (*p.T_degC[0] - 20);
     return i == 3 && a == 1 ? 12 * std::pow(v[1] / 5e4, 3) : 0.0;

@@ -30,11 +30,11 @@ TEST(Null, TheSearchOverANumberIsCounted) {
   std::vector<std::shared_ptr<CandidateEffect>> candidate_effects;
   std::vector<Eigen::MatrixXd> columns;
   for (int i = 0; i < 5; ++i) {
-    candidate_effects.push_back(suspect_of_columns("law", 1));
+    candidate_effects.push_back(candidate_of_columns("law", 1));
     columns.emplace_back(normal(kRows, random));
   }
   columns.push_back(steps());
-  candidate_effects.push_back(suspect_of_columns("step", static_cast<std::size_t>(columns.back().cols())));
+  candidate_effects.push_back(candidate_of_columns("step", static_cast<std::size_t>(columns.back().cols())));
   const auto ask = [&] {
     const Eigen::VectorXd residual = normal(kRows, random);
     std::vector<ScoredFamily> out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/criticism/search/stand_ins.h"
+#include "calib/criticism/search/surrogates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace mgtd::calib {
 namespace {
 
-constexpr int kAlways = 3, kWithRest = 2;
+constexpr int kAlways = 3, kWithRemainder = 2;
 /// Of the excess of chi-square before it: an effect that leaves more is not what is there.
 constexpr double kMost = 0.5;
 /// Of all that is beyond the noise: an axis with less is not where the unknown law acts.
@@ -27,7 +27,7 @@ constexpr double kPart = 0.01;
 
 /// Of the misfit before the first round: what several effects on one sensor leave at least, if they are not
 /// what is there.
-constexpr double kSensorRest = 0.1;
+constexpr double kSensorRemainder = 0.1;
 
 /// Of its standard deviations: a coefficient that says where an effect of all axes acts.
 constexpr double kSeen = 5;
@@ -99,8 +99,8 @@ bool took_little(const ExplainReport& report, const Round& round) {
   return beyond_noise(report, round.rms_after_nT) > kMost * beyond_noise(report, round.rms_before_nT);
 }
 
-/// The stand-ins on an axis: `there`, and before them a law of the whole sensor that took little away.
-StandIns on_axis(const ExplainReport& report, const std::string& axis, const Rounds& there) {
+/// The surrogates on an axis: `there`, and before them a law of the whole sensor that took little away.
+Surrogates on_axis(const ExplainReport& report, const std::string& axis, const Rounds& there) {
   const std::string sensor = axis.substr(0, axis.find('.'));
   for (std::size_t i = 0; i < there.front(); ++i)
     if (took_little(report, report.rounds[i]) && sensors_of(report.rounds[i]).contains(sensor))
@@ -110,8 +110,9 @@ StandIns on_axis(const ExplainReport& report, const std::string& axis, const Rou
 
 /// Whether all names together leave more than a tenth of the misfit.
 bool much_is_left(const ExplainReport& report) {
-  return report.noise.known && beyond_noise(report, report.rounds.back().rms_after_nT) >
-                                   kSensorRest * beyond_noise(report, report.rounds.front().rms_before_nT);
+  return report.noise.known &&
+         beyond_noise(report, report.rounds.back().rms_after_nT) >
+             kSensorRemainder * beyond_noise(report, report.rounds.front().rms_before_nT);
 }
 
 /// The first round after which most of what is beyond the noise is still there.
@@ -152,14 +153,15 @@ std::string axis_left(const Criticism& last) {
   return where && where->scale == Where::Scale::axis ? where->text() : std::string{};
 }
 
-/// Stand-ins on a whole sensor, the one with most of what is left; with `spread` only where no one axis of it
-/// holds most of that.
-StandIns on_sensor(const ExplainReport& report, const Criticism& last, bool spread) {
+/// Surrogates on a whole sensor, the one with most of what is left; with `spread` only where no one axis of
+/// it holds most of that.
+Surrogates on_sensor(const ExplainReport& report, const Criticism& last, bool spread) {
   if (!much_is_left(report)) return {};
-  StandIns found;
+  Surrogates found;
   double most = 0;
   for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
-    if (parts(report, there) < kWithRest || !left_here(last, sensor) || (spread && on_one_axis(last, sensor)))
+    if (parts(report, there) < kWithRemainder || !left_here(last, sensor) ||
+        (spread && on_one_axis(last, sensor)))
       continue;
     const double share = share_on(last, sensor);
     if (share > most) {
@@ -172,24 +174,25 @@ StandIns on_sensor(const ExplainReport& report, const Criticism& last, bool spre
 
 }  // namespace
 
-StandIns stand_ins(const ExplainReport& report, const Criticism& last, const std::set<std::string>& closed) {
+Surrogates find_surrogates(const ExplainReport& report, const Criticism& last,
+                           const std::set<std::string>& closed) {
   if (report.rounds.empty()) return {};
   if (auto found = on_sensor(report, last, true); found.any()) return found;
   for (const auto& [axis, there] : rounds_by_place(report, axes_of)) {
     const int effects = parts(report, there);
-    if (effects >= kAlways || (effects >= kWithRest && left_here(last, axis)))
+    if (effects >= kAlways || (effects >= kWithRemainder && left_here(last, axis)))
       return on_axis(report, axis, there);
   }
   for (const auto& [axis, there] : rounds_by_place(report, axes_seen_in)) {
     const bool little = std::all_of(there.begin(), there.end(),
                                     [&](std::size_t i) { return took_little(report, report.rounds[i]); });
-    if (little && !closed.contains(axis) && parts(report, there) >= kWithRest && left_here(last, axis))
+    if (little && !closed.contains(axis) && parts(report, there) >= kWithRemainder && left_here(last, axis))
       return on_axis(report, axis, there);
   }
   if (auto found = on_sensor(report, last, false); found.any()) return found;
   const std::string axis = axis_left(last);
   const auto first = axis.empty() || closed.contains(axis) ? std::nullopt : lesser_part(report);
-  return first ? StandIns{axis, *first} : StandIns{};
+  return first ? Surrogates{axis, *first} : Surrogates{};
 }
 
 }  // namespace mgtd::calib

@@ -7,9 +7,9 @@
 #include "calib/criticism/search/explain_report.h"
 #include "calib/criticism/tests/criticism.h"
 
-/// Effects that describe a law of no library without being its cause. Laws enough follow any curve, so a
-/// search that goes on adds one after the other to the axis on which the unknown law acts, and each looks
-/// significant. The signs of it:
+/// Surrogates are effects that describe a law of no library without being its cause. Enough laws follow any
+/// curve, so a search that goes on adds one after the other to the axis on which the unknown law acts, and
+/// each looks significant. The signs of it:
 ///
 ///   - three effects or more on one axis;
 ///   - two on one axis that leave most of what is left there; or of all axes, seen on this one, if each of
@@ -19,7 +19,7 @@
 ///   - effects, wherever they act, after which most of the misfit is still there, on one axis.
 namespace mgtd::calib {
 
-struct StandIns {
+struct Surrogates {
   std::string where{};   ///< "s3.z" or "s3"; empty where there are none
   std::size_t first{0};  ///< the first round that is one of them
   [[nodiscard]] bool any() const { return !where.empty(); }
@@ -28,7 +28,7 @@ struct StandIns {
 
 /// In the rounds of `report`, after which `last` was found. What is left on an axis that is `closed` to names
 /// already is no sign against the other rounds.
-[[nodiscard]] StandIns stand_ins(const ExplainReport& report, const Criticism& last,
-                                 const std::set<std::string>& closed);
+[[nodiscard]] Surrogates find_surrogates(const ExplainReport& report, const Criticism& last,
+                                         const std::set<std::string>& closed);
 
 }  // namespace mgtd::calib
