@@ -9,6 +9,7 @@
 #include "calib/fit/checks/check_limits.h"
 #include "calib/fit/checks/mirrored_text.h"
 #include "calib/report/fit_reasons.h"
+#include "calib/report/rearrangement_text.h"
 #include "calib/report/size_text.h"
 #include "calib/stats/probability.h"
 #include "proto/units.h"
@@ -46,7 +47,7 @@ std::string text(const ResidualWithoutLaw& n) {
       n.noise_inflation, n.residual_nT, n.typical_nT, 100 * n.contradicting);
 }
 
-std::string text(const SensorsExchanged& n) { return in_words(n.exchange); }
+std::string text(const SensorsExchanged& n) { return exchange_text(n.exchange); }
 
 std::string text(const TablePathUnknown&) {
   return "the way of the table between its poses is not in these data: a memory of the cores is followed "

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "calib/criticism/tests/exchange_in_run.h"
+#include "calib/report/rearrangement_text.h"
 #include "daemon/acquire/instrument_watch.h"
 
 namespace mgtd::daemon {
@@ -47,7 +48,7 @@ void hold_against(const calib::Calibration& active, calib::FitReport& report) {
   const Check check{"exchange", false,
                     fmt::format("{}: each has the scales, angles and offsets that calibration {} has for the "
                                 "other",
-                                calib::in_words(*exchanged), active.id),
+                                calib::rearrangement_text(*exchanged), active.id),
                     "each sensor where it was calibrated",
                     "swap the plugs back and measure again; when they are meant to stay so, accept it with "
                     "--force"};

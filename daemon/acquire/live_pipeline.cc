@@ -75,10 +75,10 @@ calib::LiveConditions LivePipeline::conditions(Instant at) const {
   return out;
 }
 
-TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
+TensorSample LivePipeline::tensor(const Epoch& epoch, bool& finding_changed) {
   inputs_.advance(epoch.t.mono);
   TensorSample sample;
-  if (!instruments_.another()) sample = judged(epoch, verdict_changed);
+  if (!instruments_.another()) sample = judged(epoch, finding_changed);
   if (instruments_.another() || rearranged_.finding()) {
     sample = raw_.apply(epoch);
     sample.flags |= Flag::identity;
@@ -90,12 +90,12 @@ TensorSample LivePipeline::tensor(const Epoch& epoch, bool& verdict_changed) {
 }
 
 /// With the calibration, and what that says of the calibration.
-TensorSample LivePipeline::judged(const Epoch& epoch, bool& verdict_changed) {
+TensorSample LivePipeline::judged(const Epoch& epoch, bool& finding_changed) {
   TensorSample sample = live_.apply(epoch, conditions(epoch.t.mono));
   const bool before = rearranged_.finding().has_value();
-  verdict_changed = criticism_.add(sample, epoch.T_degC);
+  finding_changed = criticism_.add(sample, epoch.T_degC);
   rearranged_.add(epoch, criticism_.beyond());
-  verdict_changed = verdict_changed || before != rearranged_.finding().has_value();
+  finding_changed = finding_changed || before != rearranged_.finding().has_value();
   const calib::LiveState state = criticism_.finding().state;
   if (state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
   if (state == calib::LiveState::suspect ||

@@ -9,6 +9,7 @@
 #include "calib/calibration/live_tensor.h"
 #include "calib/criticism/live/live_criticism.h"
 #include "calib/criticism/tests/rearrangement.h"
+#include "calib/report/live_report.h"
 #include "daemon/acquire/instrument_watch.h"
 #include "daemon/acquire/latest_inputs.h"
 #include "daemon/acquire/sampler.h"
@@ -47,7 +48,7 @@ class LivePipeline {
   void reopened(int slot) { sampler_.reopened(slot); }
   void advance(Instant now) { sampler_.advance(now, ready_); }
 
-  /// Shows what became complete: on_epoch(epoch, sample, verdict_changed), on_gap(gap).
+  /// Shows what became complete: on_epoch(epoch, sample, finding_changed), on_gap(gap).
   template <class OnEpoch, class OnGap>
   void deliver(OnEpoch on_epoch, OnGap on_gap) {
     for (const EpochOrGap& item : ready_) {
@@ -65,15 +66,15 @@ class LivePipeline {
   [[nodiscard]] const Sampler& sampler() const { return sampler_; }
   [[nodiscard]] const LatestInputs& inputs() const { return inputs_; }
   [[nodiscard]] const calib::LiveTensor& live() const { return live_; }
-  /// A sensor in another place before all that follows from it.
-  [[nodiscard]] const calib::LiveFinding& verdict() const {
-    return rearranged_.finding() ? *rearranged_.finding() : criticism_.finding();
+  /// What the samples show of the calibration; a sensor in another place before all that follows from it.
+  [[nodiscard]] calib::LiveReport finding() const {
+    return calib::live_report(criticism_.finding(), rearranged_.finding());
   }
   [[nodiscard]] const InstrumentWatch& instruments() const { return instruments_; }
 
  private:
-  [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& verdict_changed);
-  [[nodiscard]] TensorSample judged(const Epoch& epoch, bool& verdict_changed);
+  [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& finding_changed);
+  [[nodiscard]] TensorSample judged(const Epoch& epoch, bool& finding_changed);
   [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
 
   double baseline_m_;

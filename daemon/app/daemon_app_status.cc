@@ -46,9 +46,8 @@ StatusReport DaemonApp::report() const {
     for (const auto& [effect, lacks] : pipeline.live().left_out())
       out.calibration_use.left_out.push_back({effect, lacks});
   }
-  const calib::LiveFinding& verdict = pipeline.verdict();
-  out.criticism = {std::string(calib::to_string(verdict.state)), verdict.measured, verdict.limit,
-                   verdict.remedy};
+  const calib::LiveReport found = pipeline.finding();
+  out.criticism = {std::string(calib::to_string(found.state)), found.measured, found.limit, found.remedy};
   if (const InstrumentWatch& instruments = pipeline.instruments(); instruments.another())
     out.criticism = {"identity", instruments.measured(),
                      "the calibration holds for the sensors that it was made with", instruments.remedy()};

@@ -115,8 +115,8 @@ void DaemonCore::settle_calibrating(Stamp at) {
 
 void DaemonCore::deliver(Stamp now) {
   pipeline_.deliver(
-      [&](const Epoch& epoch, const TensorSample& sample, bool verdict_changed) {
-        if (verdict_changed) tell_criticism(now);
+      [&](const Epoch& epoch, const TensorSample& sample, bool finding_changed) {
+        if (finding_changed) tell_criticism(now);
         follow_probe(epoch.t.mono, &epoch);
         actions_.publish(epoch, sample, pipeline_.inputs().values());
         run_.feed(epoch, now);
@@ -146,7 +146,7 @@ void DaemonCore::every_second(Stamp now) {
 void DaemonCore::show_links(Stamp now) {
   if (!run_.active()) return;
   for (const auto& [slot, health] : instruments_.links()) run_.feed(LinkSeen{slot, health}, now);
-  if (!readings_say_.empty()) run_.feed(ReadingsSay{readings_say_, pipeline_.verdict().remedy}, now);
+  if (!readings_say_.empty()) run_.feed(ReadingsSay{readings_say_, pipeline_.finding().remedy}, now);
 }
 
 void DaemonCore::order(const TableOrder& order, Stamp now) {
@@ -200,24 +200,23 @@ void DaemonCore::follow_probe(Instant now, const Epoch* epoch) {
 
 /// On a change of state only.
 void DaemonCore::tell_criticism(Stamp now) {
-  const calib::LiveFinding& verdict = pipeline_.verdict();
-  const bool rearranged = is_rearranged(verdict.state);
+  const calib::LiveReport found = pipeline_.finding();
+  const bool rearranged = is_rearranged(found.state);
   if (rearranged || !readings_say_.empty()) {
-    readings_say_ = rearranged ? verdict.measured : std::string();
-    run_.feed(ReadingsSay{readings_say_, verdict.remedy}, now);
+    readings_say_ = rearranged ? found.measured : std::string();
+    run_.feed(ReadingsSay{readings_say_, found.remedy}, now);
   }
-  if (verdict.state == calib::LiveState::suspect) {
+  if (found.state == calib::LiveState::suspect) {
     warn("",
-         fmt::format("the calibration is suspect: {}; limit {}; {}", verdict.measured, verdict.limit,
-                     verdict.remedy),
+         fmt::format("the calibration is suspect: {}; limit {}; {}", found.measured, found.limit,
+                     found.remedy),
          now.mono);
-  } else if (verdict.state == calib::LiveState::near_source) {
-    warn("", fmt::format("something magnetic is near: {}; {}", verdict.measured, verdict.remedy), now.mono);
+  } else if (found.state == calib::LiveState::near_source) {
+    warn("", fmt::format("something magnetic is near: {}; {}", found.measured, found.remedy), now.mono);
   } else if (rearranged) {
-    warn("", fmt::format("the samples are raw from here on: {}; {}", verdict.measured, verdict.remedy),
-         now.mono);
+    warn("", fmt::format("the samples are raw from here on: {}; {}", found.measured, found.remedy), now.mono);
   } else {
-    inform("", fmt::format("the stream's closure: {}", calib::to_string(verdict.state)), now.mono);
+    inform("", fmt::format("the stream's closure: {}", calib::to_string(found.state)), now.mono);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "calib/criticism/tests/exchange_in_run.h"
 #include "calib/effects/library/library.h"
+#include "calib/report/rearrangement_text.h"
 #include "daemon/acquire/calibrated_with.h"
 
 namespace mgtd::daemon {
@@ -40,7 +41,7 @@ Result<calib::FitReport> solve_run(const std::filesystem::path& run_file, std::s
   if (report->calibration.accepted_by_checks) return report;
   // The cause, before what it led to.
   if (const auto exchange = calib::exchange_in_run(source->table, options->field_nT))
-    report->found_beside.insert(report->found_beside.begin(), calib::in_words(*exchange));
+    report->found_beside.insert(report->found_beside.begin(), calib::exchange_text(*exchange));
   return report;
 }
 

@@ -22,7 +22,7 @@ CALIB = {
     "calib/fit/checks": ["calib/fit/joint", "calib/fit", "calib/calibration"],
     "calib/fit/method_choice": ["calib/fit/checks", "calib/fit/joint", "calib/fit/two_step", "calib/fit"],
     "calib/criticism/live": ["calib/calibration", "calib/effects", "calib/stats"],
-    "calib/criticism/tests": ["calib/criticism/live", "calib/fit/method_choice", "calib/fit/joint", "calib/fit",
+    "calib/criticism/tests": ["calib/fit/method_choice", "calib/fit/joint", "calib/fit",
                               "calib/calibration", "calib/effects/library", "calib/effects/formula",
                               "calib/effects/laws", "calib/effects", "calib/poses", "calib/stats"],
     "calib/design": ["calib/criticism/tests", "calib/fit/joint", "calib/fit/two_step",
@@ -33,8 +33,8 @@ CALIB = {
                                "calib/stats"],
     "calib/validity": ["calib/fit/method_choice", "calib/fit/joint", "calib/fit", "calib/calibration",
                        "calib/effects/library", "calib/poses", "calib/sensor", "calib/stats"],
-    "calib/report": ["calib/criticism/search", "calib/validity", "calib/design", "calib/criticism/tests",
-                     "calib/fit/checks", "calib/fit/joint", "calib/fit", "calib/calibration",
+    "calib/report": ["calib/criticism/search", "calib/criticism/live", "calib/validity", "calib/design",
+                     "calib/criticism/tests", "calib/fit/checks", "calib/fit/joint", "calib/fit", "calib/calibration",
                      "calib/effects/library", "calib/effects", "calib/sensor", "calib/stats"],
 }
 

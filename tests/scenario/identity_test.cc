@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/tests/exchange_in_run.h"
+#include "calib/report/rearrangement_text.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "tests/scenario/virtual_daemon.h"
 #include "tests/scenario/virtual_stream.h"
@@ -98,8 +99,8 @@ TEST_F(Calibrated, WithoutSerialNumbersTheReadingsTellAnExchange) {
   EXPECT_GT(samples.front().at("closure").at("chi2"), 1e3);
   for (std::size_t i = 0; i < samples.size(); ++i)
     ASSERT_EQ(flags(samples[i]), i < 9 ? "suspect" : "uncalibrated identity") << i;
-  ASSERT_EQ(stream->pipeline().verdict().state, calib::LiveState::exchanged);
-  EXPECT_THAT(stream->pipeline().verdict().measured, HasSubstr("s2 and s4 are exchanged"));
+  ASSERT_EQ(stream->pipeline().finding().state, calib::LiveState::exchanged);
+  EXPECT_THAT(stream->pipeline().finding().measured, HasSubstr("s2 and s4 are exchanged"));
   stream->fault("exchange fluxgate2 fluxgate4");
   stream->run(10);
   EXPECT_EQ(flags(samples.back()), "");
@@ -113,8 +114,8 @@ TEST_F(Calibrated, ATurnedSensorIsNamedBeforeASourceNearby) {
   stream->run(5);
   EXPECT_NE(flags(samples.front()), "");
   EXPECT_EQ(flags(samples.back()), "uncalibrated identity");
-  ASSERT_EQ(stream->pipeline().verdict().state, calib::LiveState::turned);
-  EXPECT_THAT(stream->pipeline().verdict().measured, HasSubstr("s3 is turned by 90 deg about Z"));
+  ASSERT_EQ(stream->pipeline().finding().state, calib::LiveState::turned);
+  EXPECT_THAT(stream->pipeline().finding().measured, HasSubstr("s3 is turned by 90 deg about Z"));
 }
 
 class ARun : public testing::Test {
@@ -187,7 +188,7 @@ TEST_F(ARunThatIsNotTold, NamesTheExchangeFromItsPoses) {
   const auto found = calib::exchange_in_run(daemon.poses, std::nullopt);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->from_pose, daemon.poses.poses.at(14).number);
-  EXPECT_THAT(calib::in_words(*found), HasSubstr("s2 and s4 are exchanged from pose 15 on"));
+  EXPECT_THAT(calib::exchange_text(*found), HasSubstr("s2 and s4 are exchanged from pose 15 on"));
   EXPECT_LT(found->residual_nT, 2);
   EXPECT_GT(found->without_nT, 50);
 }
@@ -200,7 +201,7 @@ TEST(ExchangedSince, IsToldByEachOthersParameters) {
   std::swap(now.sensors[1], now.sensors[3]);
   const auto found = calib::exchanged_since(*before, now);
   ASSERT_TRUE(found);
-  EXPECT_EQ(calib::in_words(*found), "s2 and s4 are exchanged");
+  EXPECT_EQ(calib::rearrangement_text(*found), "s2 and s4 are exchanged");
   now.sensors[1].offset_nT += Eigen::Vector3d(0, 60, 0);
   EXPECT_FALSE(calib::exchanged_since(*before, now)) << "that is another sensor";
 }

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/live/live_criticism.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "calib/stats/probability.h"
 
 namespace mgtd::calib {
 namespace {
@@ -24,12 +20,6 @@ constexpr double kAmbiguousShare = 0.1, kEventMargin = 0.02;
 constexpr double kHourBlock_s = 10, kDayBlock_s = 600;
 constexpr std::size_t kHourBlocks = 360, kDayBlocks = 144, kLearned = 6;
 
-constexpr std::array<const char*, 4> kQuantity{"the curl", "the centre's x", "the centre's y",
-                                               "the centre's z"};
-constexpr std::array<const char*, 2> kPer{"degC", "h"};
-
-const char* unit_of(int component) { return component == 0 ? "nT/m" : "nT"; }
-
 /// A turn is an event too, so that the attitude may explain as much as one.
 bool is_followed(const Following& f, Follows what) {
   const double least = f.event_share - (what == Follows::attitude ? kEventMargin : -kEventMargin);
@@ -37,29 +27,27 @@ bool is_followed(const Following& f, Follows what) {
          f.swing > kLeastSwing * f.stated_sd;
 }
 
-std::string described(const Following& f, Follows what, double minutes) {
-  const auto at = static_cast<std::size_t>(f.component);
-  const char* const unit = unit_of(f.component);
-  const std::string name(kFollowsNames.at(static_cast<std::size_t>(what)));
-  const std::string evidence = fmt::format("{:.0f} % of what the closure does beyond its noise, {}",
-                                           100 * f.share, p_phrase(f.log10_p));
-  if (what == Follows::attitude) {
-    return fmt::format(
-        "{} follows the attitude: it moves by {:.3g} {} over the turns of the last {:.0f} min ({})",
-        kQuantity.at(at), f.swing, unit, minutes, evidence);
+/// The quantity that explains most, if any does.
+std::optional<FollowedQuantity> followed_in(const WindowCriticism& found, double minutes) {
+  constexpr std::array kFollowable{Follows::temperature, Follows::time, Follows::attitude};
+  const auto of = [&](Follows what) -> const Following& {
+    return found.follows.at(static_cast<std::size_t>(what));
+  };
+  std::optional<FollowedQuantity> out;
+  for (const Follows what : kFollowable) {
+    if (is_followed(of(what), what) && (!out || of(what).share > out->evidence.share))
+      out = {what, of(what), minutes, {}};
   }
-  return fmt::format("{} follows {} with {:.3g} +- {:.1g} {}/{}: {:.3g} {} in the last {:.0f} min ({})",
-                     kQuantity.at(at), name, f.slope, f.slope_sd, unit,
-                     kPer.at(static_cast<std::size_t>(what)), f.swing, unit, minutes, evidence);
+  if (!out) return out;
+  for (const Follows what : kFollowable) {
+    if (what != out->what && is_followed(of(what), what) &&
+        of(what).share > out->evidence.share - kAmbiguousShare)
+      out->also.push_back(what);
+  }
+  return out;
 }
 
 }  // namespace
-
-std::string_view to_string(LiveState state) {
-  static constexpr std::array<std::string_view, 7> kNames{"none",        "learning",  "ok",    "suspect",
-                                                          "near source", "exchanged", "turned"};
-  return kNames.at(static_cast<std::size_t>(state));
-}
 
 LiveCriticism::Judges::Judges(const ClosurePrior& p)
     : prior(p),
@@ -118,76 +106,40 @@ bool LiveCriticism::add(const ClosureSample& sample) {
   }
   const LiveState before = finding_.state;
   finding_.state = state();
-  finding_.measured = !followed_hour_.empty()  ? followed_hour_
-                      : !followed_day_.empty() ? followed_day_
-                                               : near_;
-  finding_.limit = !followed_hour_.empty() ? limit_hour_ : limit_day_;
-  finding_.remedy.clear();
-  if (finding_.state == LiveState::suspect)
-    finding_.remedy = "measure a dozen poses and run: mgt check CAL.json RUN";
-  if (finding_.state == LiveState::near_source) {
-    finding_.limit = "a chance of 1e-5 in 10 s, twice running, in an intact calibration and a smooth field";
-    finding_.remedy =
-        "move the array, or what is magnetic, by some metres; if it stays, turn the array and run: mgt check "
-        "CAL.json RUN";
-  }
+  finding_.followed = followed_hour_ ? followed_hour_ : followed_day_;
+  finding_.large = near_;
   return finding_.state != before;
 }
 
 void LiveCriticism::judge(const LiveWindow& window) {
   const bool hour = &window == &judges_->hour;
-  std::string &followed = hour ? followed_hour_ : followed_day_, &limit = hour ? limit_hour_ : limit_day_;
   if (window.blocks().empty()) return;
   const WindowCriticism found = criticise(window.blocks(), judges_->prior);
   if (hour) {
     noise_scale_ = found.noise_scale;
     tested_.clear();
-    for (std::size_t k = 0; k < found.follows.size(); ++k) {
-      if (found.follows.at(k).tested)
-        tested_ += (tested_.empty() ? "" : " or ") + std::string(kFollowsNames.at(k));
-    }
+    for (std::size_t k = 0; k < found.follows.size(); ++k)
+      if (found.follows.at(k).tested) tested_.push_back(static_cast<Follows>(k));
   }
-  followed.clear();
-  std::size_t best = found.follows.size();
-  for (std::size_t k = 0; k < found.follows.size(); ++k) {
-    if (is_followed(found.follows.at(k), static_cast<Follows>(k)) &&
-        (best == found.follows.size() || found.follows.at(k).share > found.follows.at(best).share))
-      best = k;
-  }
-  if (best < found.follows.size()) {
-    const Following& f = found.follows.at(best);
-    const double minutes = (window.blocks().back().t_s - window.blocks().front().t_s) / 60;
-    followed = described(f, static_cast<Follows>(best), minutes);
-    limit = fmt::format("{:.3g} {}, the standard deviation that the calibration states", f.stated_sd,
-                        unit_of(f.component));
-    for (std::size_t k = 0; k < found.follows.size(); ++k) {
-      if (k != best && is_followed(found.follows.at(k), static_cast<Follows>(k)) &&
-          found.follows.at(k).share > f.share - kAmbiguousShare)
-        followed += fmt::format("; or it follows {}: they went together", kFollowsNames.at(k));
-    }
-  }
+  const double minutes = (window.blocks().back().t_s - window.blocks().front().t_s) / 60;
+  (hour ? followed_hour_ : followed_day_) = followed_in(found, minutes);
 }
 
 void LiveCriticism::judge_nearness(double log10_p) {
   const bool large = log10_p < kNear_log10;
-  if (large && (large_before_ || !near_.empty())) {
+  if (large && (large_before_ || near_)) {
     const ClosureBlock& b = judges_->hour.blocks().back();
-    near_ = fmt::format(
-        "the closure is {:.3g} nT/m (curl) and {:.3g}, {:.3g}, {:.3g} nT (centre), mean of {:.0f} samples: "
-        "{}; {}",
-        b.closure[0], b.closure[1], b.closure[2], b.closure[3], b.samples, p_phrase(log10_p),
-        tested_.empty() ? "whether it follows temperature, time or attitude is not known yet"
-                        : "it does not follow " + tested_);
+    near_ = {b.closure, b.samples, log10_p, tested_};
     calm_blocks_ = 0;
-  } else if (log10_p > kCalm_log10 && !near_.empty() && ++calm_blocks_ >= kCalmBlocks) {
-    near_.clear();
+  } else if (log10_p > kCalm_log10 && near_ && ++calm_blocks_ >= kCalmBlocks) {
+    near_.reset();
   }
   large_before_ = large;
 }
 
 LiveState LiveCriticism::state() const {
-  if (!followed_hour_.empty() || !followed_day_.empty()) return LiveState::suspect;
-  if (!near_.empty()) return LiveState::near_source;
+  if (followed_hour_ || followed_day_) return LiveState::suspect;
+  if (near_) return LiveState::near_source;
   return judges_->hour.blocks().size() >= kLearned ? LiveState::ok : LiveState::learning;
 }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <limits>
+#include <array>
 #include <optional>
-#include <string>
-#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "calib/criticism/live/live_finding.h"
 #include "calib/criticism/live/live_follow.h"
 #include "proto/epoch.h"
 #include "proto/tensor.h"
 
-/// What the stream itself says of its calibration, from the four closure quantities, which vanish in any
-/// field that is uniform but for a constant gradient.
+/// LiveCriticism judges the active calibration by the stream itself: by the four closure quantities, which
+/// vanish in any field that is uniform but for a constant gradient.
 ///
 ///     suspect       they follow temperature, time or attitude: no field outside knows of these, so the
 ///                   calibration no longer holds. In the last hour (blocks of 10 s) or the last day (of
@@ -23,20 +24,12 @@
 ///                   curvature across the array. It ends after a minute without.
 ///
 ///     beyond        of one sample: ten standard deviations from zero, by the noise and the calibration at
-///                   its field. What it is from is found by what follows; the sample is flagged at once.
+///                   its field. The cause is found from the samples after it; this one is flagged at once.
 ///
 /// Not judged: samples that are saturated or frozen, that lack an effect of the calibration, or whose field
 /// turns so fast that the skew bound lets it move by more than half the noise. An effect of the calibration
 /// whose coefficient is badly known widens what is stated for the sample but not what is stated here.
 namespace mgtd::calib {
-
-enum class LiveState { none, learning, ok, suspect, near_source, exchanged, turned };
-[[nodiscard]] std::string_view to_string(LiveState state);
-
-struct LiveFinding {
-  LiveState state{LiveState::none};
-  std::string measured, limit, remedy;  ///< of suspect, near source, exchanged and turned
-};
 
 class LiveCriticism {
  public:
@@ -69,10 +62,10 @@ class LiveCriticism {
 
   std::optional<Judges> judges_;
   std::optional<std::pair<double, Eigen::Vector3d>> last_;  ///< time and field of the sample before
-  std::string followed_hour_, followed_day_;                ///< what was measured; empty: follows nothing
-  std::string limit_hour_, limit_day_;
-  std::string near_, tested_;  ///< tested_: what the last hour could be held against
-  bool large_before_{false};   ///< the block before the last was beyond what is possible
+  std::optional<FollowedQuantity> followed_hour_, followed_day_;
+  std::optional<LargeClosure> near_;
+  std::vector<Follows> tested_;  ///< what the closure of the last hour could be compared with
+  bool large_before_{false};     ///< the block before the last was beyond what is possible
   int calm_blocks_{0}, until_look_{0};
   double noise_scale_{1};
   std::optional<bool> beyond_;

@@ -2,8 +2,8 @@
 #pragma once
 #include <array>
 #include <deque>
-#include <string_view>
 
+#include "calib/criticism/live/live_finding.h"
 #include "calib/criticism/live/live_window.h"
 
 /// Whether the closure of a window follows something of the instrument's.
@@ -17,23 +17,6 @@
 ///     attitude            slopes of c on the directions that the field took: against noise and prior,
 ///                         chi-square of 4 for each direction
 namespace mgtd::calib {
-
-enum class Follows { temperature, time, attitude };
-inline constexpr std::array<std::string_view, 3> kFollowsNames{"temperature", "time", "attitude"};
-
-struct Following {
-  bool tested{false};  ///< the window has enough blocks and x moves enough in it
-  double log10_p{0};   ///< of so much by chance
-  double share{0};     ///< of what the closure does beyond its noise
-  /// The same of the best single interval of time: something that came and stayed or went, and follows
-  /// nothing.
-  double event_share{0};
-  /// The quantity of the closure (0 curl, 1..3 centre x, y, z) in which it is largest for the standard
-  /// deviation that the calibration states there: slope per unit of x, the swing over the window, that
-  /// standard deviation.
-  int component{0};
-  double slope{0}, slope_sd{0}, swing{0}, stated_sd{0}, range{0};
-};
 
 struct WindowCriticism {
   std::array<Following, 3> follows;  ///< by Follows

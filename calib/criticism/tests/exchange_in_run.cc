@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/exchange_in_run.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -123,14 +121,6 @@ std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table, std::option
   out.residual_nT = taken_so;
   out.without_nT = as_it_stands;
   return out;
-}
-
-std::string in_words(const ExchangeInRun& found) {
-  return fmt::format(
-      "{} from pose {} on: taken so, the total field of the sensors fits to {:.2g} nT, as it stands to "
-      "{:.3g} "
-      "nT; swap the plugs back and measure again",
-      in_words(found.what), found.from_pose, found.residual_nT, found.without_nT);
 }
 
 std::optional<Rearrangement> exchanged_since(const Calibration& before, const Calibration& now) {

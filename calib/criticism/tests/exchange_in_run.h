@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
-#include <string>
 
 #include "calib/calibration/calibration.h"
 #include "calib/criticism/tests/rearrangement.h"
@@ -31,7 +30,6 @@ struct ExchangeInRun {
 /// `field_nT`: of poses that have no f_nT; where there is none either, the field is taken as constant.
 [[nodiscard]] std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table,
                                                            std::optional<double> field_nT);
-[[nodiscard]] std::string in_words(const ExchangeInRun& found);
 
 /// Sensors of `now` that have each other's scales, angles between axes and offsets of `before`: those that
 /// come within ageing (10 nT, 2e-4 of scale and angle) of another one's and are ten times that from their

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/rearrangement.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace mgtd::calib {
 namespace {
 
-constexpr double kExplained_chi2 = 30;                                 // of four: once in 2e5 intact samples
-constexpr double kHand = 0.05, kOthersAgree = 0.02, kStandsOut = 0.1;  // of the field
+constexpr double kOthersAgree = 0.02, kStandsOut = 0.1;  // of the field
 constexpr int kAgree = 10;
 
 /// The 24 turns by quarters.
@@ -34,49 +29,11 @@ const std::vector<Eigen::Matrix3d>& quarter_turns() {
   return kAll;
 }
 
-std::string in_words(const Eigen::Matrix3d& turn_P) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const int deg : {90, 180, -90}) {
-      const Eigen::AngleAxisd by(deg * std::numbers::pi / 180, Eigen::Vector3d::Unit(axis));
-      if ((turn_P - by.toRotationMatrix()).norm() < 1e-9)
-        return fmt::format("by {} deg about {}", deg, "XYZ"[axis]);
-    }
-  }
-  std::string out = "so that what pointed along X, Y, Z now points along ";
-  for (int column = 0; column < 3; ++column) {
-    Eigen::Index row = 0;
-    turn_P.col(column).cwiseAbs().maxCoeff(&row);
-    out += fmt::format("{}{}{}", column > 0 ? ", " : "", turn_P(row, column) < 0 ? "-" : "+", "XYZ"[row]);
-  }
-  return out;
-}
-
 bool same(const Rearrangement& a, const Rearrangement& b) {
   return a.sensor == b.sensor && a.turned == b.turned && a.turn_P == b.turn_P;
 }
 
-std::string in_words(const std::vector<Rearrangement>& possible) {
-  std::string out;
-  for (const Rearrangement& what : possible) out += (out.empty() ? "" : ", or ") + in_words(what);
-  return out;
-}
-
 }  // namespace
-
-std::string in_words(const Rearrangement& what) {
-  if (what.turned) return fmt::format("s{} is turned {}", *what.turned + 1, in_words(what.turn_P));
-  std::string out;
-  for (std::size_t place = 0; place < kSensors; ++place) {
-    const std::size_t whose = what.sensor.at(place);
-    if (whose == place) continue;
-    const bool pair = what.sensor.at(whose) == place;
-    if (pair && whose < place) continue;
-    out += out.empty() ? "" : ", ";
-    out += pair ? fmt::format("s{} and s{} are exchanged", place + 1, whose + 1)
-                : fmt::format("s{} reads what s{} should", place + 1, whose + 1);
-  }
-  return out;
-}
 
 std::vector<Rearrangement> exchanges_explaining(const TensorPipeline& pipeline, const Epoch& epoch) {
   std::vector<Rearrangement> out;
@@ -88,7 +45,7 @@ std::vector<Rearrangement> exchanges_explaining(const TensorPipeline& pipeline, 
       given.y_nT.at(what.sensor.at(place)) = epoch.y_nT.at(place);
       given.T_degC.at(what.sensor.at(place)) = epoch.T_degC.at(place);
     }
-    if (pipeline.apply(given).closure.chi2 < kExplained_chi2) out.push_back(what);
+    if (pipeline.apply(given).closure.chi2 < kExplainedClosure_chi2) out.push_back(what);
   }
   return out;
 }
@@ -108,7 +65,7 @@ std::vector<Rearrangement> turns_explaining(const TensorPipeline& pipeline, cons
     const double f_nT = mean.norm();
     if (apart > kOthersAgree * f_nT || (own - mean).norm() < kStandsOut * f_nT) continue;
     for (const Eigen::Matrix3d& turn : quarter_turns())
-      if ((turn * own - mean).norm() < kHand * f_nT) out.push_back({{0, 1, 2, 3}, sensor, turn});
+      if ((turn * own - mean).norm() < kTurnAgreement * f_nT) out.push_back({{0, 1, 2, 3}, sensor, turn});
   }
   return out;
 }
@@ -148,28 +105,7 @@ void RearrangementWatch::explain(const Epoch& epoch) {
 }
 
 void RearrangementWatch::conclude(const Epoch& epoch) {
-  const double chi2 = pipeline_->apply(epoch).closure.chi2;
-  LiveFinding out;
-  out.limit = "100, ten standard deviations";
-  if (possible_.front().turned) {
-    out.state = LiveState::turned;
-    out.measured = fmt::format(
-        "{}: the closure has a chi-square of {:.2g} (4 degrees of freedom), and turned so the sensor reads "
-        "the "
-        "field of the other three to {:.0f} %",
-        in_words(possible_), chi2, 100 * kHand);
-    out.remedy = "turn the sensor back, or calibrate anew as it stands";
-  } else {
-    out.state = LiveState::exchanged;
-    out.measured = fmt::format(
-        "{}: the closure has a chi-square of {:.2g} (4 degrees of freedom), and below {:.0f} when their "
-        "readings are taken so",
-        in_words(possible_), chi2, kExplained_chi2);
-    out.remedy =
-        "swap the plugs back, of the digitisers or of the sensors behind them, or exchange the ports in the "
-        "configuration";
-  }
-  finding_ = std::move(out);
+  finding_ = {possible_, pipeline_->apply(epoch).closure.chi2};
 }
 
 }  // namespace mgtd::calib

@@ -4,22 +4,20 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "calib/calibration/tensor.h"
-#include "calib/criticism/live/live_criticism.h"
 #include "proto/epoch.h"
 
 /// Sensors that are in another place or stand otherwise than when they were calibrated, found from readings.
 ///
 ///     exchanged   the readings of the four, given to each other's calibrations, have a closure within noise
-///                 and calibration (chi-square of 4 below kExplained); as they come, beyond ten standard
-///                 deviations
+///                 and calibration (chi-square of 4 below kExplainedClosure_chi2); as they come, beyond ten
+///                 standard deviations
 ///     turned      the field of one sensor, turned by quarters about the platform's axes, agrees with the
-///                 other three to 5 % of the field, as well as a hand turns; those agree to 2 %
+///                 other three to kTurnAgreement of the field; those agree to 2 %
 ///
-/// An exchange is told from another where the sensors differ, by some nT of offset for instance. A turn about
+/// Two exchanges can be told apart where the sensors differ, by some nT of offset for instance. A turn about
 /// the field itself changes nothing and is not seen; what one attitude leaves open, the next ones close.
 namespace mgtd::calib {
 
@@ -29,16 +27,22 @@ struct Rearrangement {
   Eigen::Matrix3d turn_P{Eigen::Matrix3d::Identity()};   ///< ... by so much
 };
 
-/// "s2 and s4 are exchanged", "s3 is turned by 90 deg about Z".
-[[nodiscard]] std::string in_words(const Rearrangement& what);
+inline constexpr double kExplainedClosure_chi2 = 30;  ///< of four: once in 2e5 intact samples
+inline constexpr double kTurnAgreement = 0.05;        ///< of the field, as well as a hand turns
 
 /// All exchanges (23) and turns (4 x 23) that explain the readings of one epoch.
 [[nodiscard]] std::vector<Rearrangement> exchanges_explaining(const TensorPipeline& pipeline,
                                                               const Epoch& epoch);
 [[nodiscard]] std::vector<Rearrangement> turns_explaining(const TensorPipeline& pipeline, const Epoch& epoch);
 
-/// Over the samples of a stream: concludes after ten samples running that are explained alike, and withdraws
-/// it after ten that need no explanation, or when nothing explains them any more.
+struct RearrangementFinding {
+  std::vector<Rearrangement> possible;  ///< all of them exchanges, or all of them turns
+  double chi2{0};                       ///< of the closure as it came, 4 degrees of freedom
+  [[nodiscard]] bool turned() const { return possible.front().turned.has_value(); }
+};
+
+/// Watches the samples of a stream: concludes after ten samples running that are explained alike, and
+/// withdraws it after ten that need no explanation, or when nothing explains them any more.
 class RearrangementWatch {
  public:
   RearrangementWatch() = default;
@@ -46,8 +50,8 @@ class RearrangementWatch {
 
   /// `beyond`: as LiveCriticism says of this sample; nothing where it was not judged.
   void add(const Epoch& epoch, std::optional<bool> beyond);
-  /// State exchanged or turned; empty while nothing is concluded.
-  [[nodiscard]] const std::optional<LiveFinding>& finding() const { return finding_; }
+  /// Empty while nothing is concluded.
+  [[nodiscard]] const std::optional<RearrangementFinding>& finding() const { return finding_; }
 
  private:
   void explain(const Epoch& epoch);
@@ -56,7 +60,7 @@ class RearrangementWatch {
   std::optional<TensorPipeline> pipeline_;
   std::vector<Rearrangement> possible_;  ///< explain all samples of those counted
   int explained_{0}, calm_{0};
-  std::optional<LiveFinding> finding_;
+  std::optional<RearrangementFinding> finding_;
 };
 
 }  // namespace mgtd::calib

@@ -11,6 +11,8 @@
 #include <functional>
 #include <random>
 
+#include "calib/report/live_report.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -89,7 +91,7 @@ Seen live(const Life& life, std::uint64_t seed) {
     if (now == before || (now != LiveState::suspect && now != LiveState::near_source)) continue;
     if (seen.suspect + seen.near_source == 0) seen.first_s = t_s;
     ++(now == LiveState::suspect ? seen.suspect : seen.near_source);
-    seen.measured = criticism.finding().measured;
+    seen.measured = live_report(criticism.finding()).measured;
   }
   return seen;
 }

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/live_report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "calib/report/rearrangement_text.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib {
+namespace {
+
+constexpr std::array<const char*, 4> kQuantity{"the curl", "the centre's x", "the centre's y",
+                                               "the centre's z"};
+constexpr std::array<const char*, 2> kPer{"degC", "h"};
+constexpr std::array<std::string_view, 3> kFollowsNames{"temperature", "time", "attitude"};
+
+std::string_view followed_name(Follows what) { return kFollowsNames.at(static_cast<std::size_t>(what)); }
+
+const char* unit_of(int component) { return component == 0 ? "nT/m" : "nT"; }
+
+std::string evidence_text(const FollowedQuantity& followed) {
+  const Following& f = followed.evidence;
+  const auto at = static_cast<std::size_t>(f.component);
+  const char* const unit = unit_of(f.component);
+  const std::string evidence = fmt::format("{:.0f} % of what the closure does beyond its noise, {}",
+                                           100 * f.share, p_phrase(f.log10_p));
+  if (followed.what == Follows::attitude) {
+    return fmt::format(
+        "{} follows the attitude: it moves by {:.3g} {} over the turns of the last {:.0f} min ({})",
+        kQuantity.at(at), f.swing, unit, followed.minutes, evidence);
+  }
+  return fmt::format("{} follows {} with {:.3g} +- {:.1g} {}/{}: {:.3g} {} in the last {:.0f} min ({})",
+                     kQuantity.at(at), followed_name(followed.what), f.slope, f.slope_sd, unit,
+                     kPer.at(static_cast<std::size_t>(followed.what)), f.swing, unit, followed.minutes,
+                     evidence);
+}
+
+LiveReport suspect_report(const FollowedQuantity& followed) {
+  LiveReport out{.state = LiveState::suspect, .measured = evidence_text(followed)};
+  for (const Follows other : followed.also)
+    out.measured += fmt::format("; or it follows {}: they went together", followed_name(other));
+  out.limit = fmt::format("{:.3g} {}, the standard deviation that the calibration states",
+                          followed.evidence.stated_sd, unit_of(followed.evidence.component));
+  out.remedy = "measure a dozen poses and run: mgt check CAL.json RUN";
+  return out;
+}
+
+LiveReport near_source_report(const LargeClosure& large) {
+  std::string tested;
+  for (const Follows what : large.tested)
+    tested += fmt::format("{}{}", tested.empty() ? "" : " or ", followed_name(what));
+  return {.state = LiveState::near_source,
+          .measured = fmt::format(
+              "the closure is {:.3g} nT/m (curl) and {:.3g}, {:.3g}, {:.3g} nT (centre), mean of {:.0f} "
+              "samples: {}; {}",
+              large.closure[0], large.closure[1], large.closure[2], large.closure[3], large.samples,
+              p_phrase(large.log10_p),
+              tested.empty() ? "whether it follows temperature, time or attitude is not known yet"
+                             : "it does not follow " + tested),
+          .limit = "a chance of 1e-5 in 10 s, twice running, in an intact calibration and a smooth field",
+          .remedy =
+              "move the array, or what is magnetic, by some metres; if it stays, turn the array and run: "
+              "mgt check CAL.json RUN"};
+}
+
+LiveReport rearranged_report(const RearrangementFinding& found) {
+  constexpr const char* kClosureLimit = "100, ten standard deviations";
+  const std::string what = rearrangement_text(found.possible);
+  if (found.turned()) {
+    return {.state = LiveState::turned,
+            .measured = fmt::format("{}: the closure has a chi-square of {:.2g} (4 degrees of freedom), and "
+                                    "turned so the sensor reads the field of the other three to {:.0f} %",
+                                    what, found.chi2, 100 * kTurnAgreement),
+            .limit = kClosureLimit,
+            .remedy = "turn the sensor back, or calibrate anew as it stands"};
+  }
+  return {
+      .state = LiveState::exchanged,
+      .measured = fmt::format("{}: the closure has a chi-square of {:.2g} (4 degrees of freedom), and below "
+                              "{:.0f} when their readings are taken so",
+                              what, found.chi2, kExplainedClosure_chi2),
+      .limit = kClosureLimit,
+      .remedy =
+          "swap the plugs back, of the digitisers or of the sensors behind them, or exchange the ports "
+          "in the configuration"};
+}
+
+}  // namespace
+
+LiveReport live_report(const LiveFinding& found, const std::optional<RearrangementFinding>& rearranged) {
+  if (rearranged) return rearranged_report(*rearranged);
+  if (found.state == LiveState::suspect && found.followed) return suspect_report(*found.followed);
+  if (found.state == LiveState::near_source && found.large) return near_source_report(*found.large);
+  return {.state = found.state};
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "calib/criticism/live/live_finding.h"
+#include "calib/criticism/tests/rearrangement.h"
+
+/// What the stream shows of its calibration, in words for an operator.
+namespace mgtd::calib {
+
+struct LiveReport {
+  LiveState state{LiveState::none};
+  std::string measured{}, limit{}, remedy{};  ///< empty in states none, learning and ok
+};
+
+/// `rearranged`, where there is one, comes before `found`: a sensor in another place makes the closure large
+/// by itself.
+[[nodiscard]] LiveReport live_report(const LiveFinding& found,
+                                     const std::optional<RearrangementFinding>& rearranged = {});
+
+}  // namespace mgtd::calib
