@@ -13,8 +13,9 @@
 #include "proto/check.h"
 #include "proto/error.h"
 
-/// The result of a run: an immutable value that is complete in itself. Its id is the hash of its content, so
-/// that two calibrations with one id are the same calibration; every streamed sample names the one it used.
+/// A Calibration is the result of a run: an immutable value that is complete in itself. Its id is the hash of
+/// its content, so that two calibrations with one id are the same; every streamed sample names the one it
+/// used.
 namespace mgtd::calib {
 
 inline constexpr int kArrayParameters = kSensors * kSensorParameters;  // 48

@@ -31,7 +31,7 @@ class EffectCorrection {
   /// For a stream: effects with a memory read one of those in memories(), which the caller moves on.
   [[nodiscard]] static EffectCorrection live(const Calibration& calibration);
   [[nodiscard]] const std::vector<std::shared_ptr<LiveMemory>>& memories() const { return memories_; }
-  /// Whether the time since the run of the calibration can be told.
+  /// Whether the time since the run of the calibration is known.
   [[nodiscard]] bool knows_start() const { return time_.start.has_value(); }
 
   [[nodiscard]] bool has_site_effects() const { return array_.has_site_effects(); }

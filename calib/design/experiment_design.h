@@ -15,12 +15,12 @@
 #include "proto/tensor.h"
 #include "proto/units.h"
 
-/// What a list of poses would tell, before anything is measured: how well the calibration would be known,
-/// and which missing effects would be seen and told apart (experiment_power.h).
+/// Predicts what a list of poses would yield, before anything is measured: how well the calibration would be
+/// known, and which missing effects would be seen and told apart (experiment_power.h).
 ///
-/// The rig is measured in thought at the listed table angles, and the information of the joint fit is
-/// inverted there (Cramer-Rao bound). Readings play no part, so the answer holds for every rig near the given
-/// one. The noise and the table's uncertainty are taken as known; a fit estimates them too.
+/// The information of the joint fit is computed at the listed table angles and inverted (Cramer-Rao bound).
+/// Readings play no part, so the answer holds for every rig similar to the given one. The noise and the
+/// table's uncertainty are taken as known; a fit estimates them too.
 namespace mgtd::calib {
 
 struct DesignRequest {
@@ -45,7 +45,7 @@ struct Expected {
   std::string unit;  ///< "deg", "nT", "" for scale factors
 };
 
-/// How well a coefficient of an effect can be told from everything else in the model.
+/// How well a coefficient of an effect is determined beside everything else in the model.
 struct Separation {
   std::string name;
   double inflation{1};      ///< its standard error over the one it would have were all else known

@@ -3,8 +3,8 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/where.h"
 
-/// Whether two effects would compete for the same readings: a model holds a law once on an axis, but the same
-/// law may act on several axes, each with a coefficient of its own.
+/// Decides whether two effects would be the same law on a common axis: a model holds a law once on an axis,
+/// but the same law may act on several axes, each with a coefficient of its own.
 namespace mgtd::calib {
 
 [[nodiscard]] bool share_an_axis(const Where& a, const Where& b);

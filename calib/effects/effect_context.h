@@ -7,7 +7,7 @@
 
 #include "proto/pose.h"
 
-/// What an effect may need to know of the run it is used on, beyond the pose it is evaluated at.
+/// An EffectContext holds what an effect may need to know of the run, beyond the pose it is evaluated at.
 namespace mgtd::calib {
 
 inline constexpr double kReferenceT_degC = 20;        ///< T0 of every effect of temperature

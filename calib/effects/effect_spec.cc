@@ -23,7 +23,7 @@ Result<EffectSpec> EffectSpec::parse(std::string_view text) {
   }
   while (!tail.empty()) {
     tail.remove_prefix(1);
-    // An expression has commas of its own: it takes the rest.
+    // An expression has commas of its own: it takes all text after it.
     const std::string_view part = tail.substr(0, tail.starts_with("expr=") ? tail.size() : tail.find(','));
     tail.remove_prefix(part.size());
     const auto equals = part.find('=');

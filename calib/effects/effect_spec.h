@@ -9,9 +9,9 @@
 #include "calib/effects/where.h"
 #include "proto/error.h"
 
-/// How an effect is asked for:  NAME[@WHERE][,PARAM=VALUE]...
+/// An EffectSpec is the text that names an effect:  NAME[@WHERE][,PARAM=VALUE]...
 ///     axis.offset.temperature@s3.z      axis.hysteresis@s2,w=0.1      platform.current,columns=motor_A
-/// A parameter "expr" stands last and takes the rest of the text: it is a user's formula, see formula.h.
+/// A parameter "expr" comes last and takes all text after it: it is a user's formula, see formula.h.
 /// The text of a spec that parse() gave reads back to the same spec.
 namespace mgtd::calib {
 

@@ -9,7 +9,7 @@
 #include "calib/effects/effect.h"
 #include "proto/units.h"
 
-/// What a fit is asked for, and what it is told beside the poses.
+/// Options of a fit: its method, what the operator knows beside the poses, and the effects of the model.
 namespace mgtd::calib {
 
 enum class Method { simplified, two_step, joint };

@@ -6,8 +6,8 @@
 
 namespace mgtd::calib {
 
-/// Observations that the rest of the data contradicts: still in the table, left out of the sums, listed
-/// with the shift that would reconcile them.
+/// An OutlierNode lists an observation that the other data contradict: it stays in the table, is left out of
+/// the sums, and is given with the shift that would reconcile it.
 struct OutlierNode {
   int pose{0};        ///< number in the table
   std::string where;  ///< "s3.z", "s3" for all three of it, "pose" for all twelve, "scalar" or "angles"

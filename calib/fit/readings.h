@@ -7,7 +7,7 @@
 #include "calib/calibration/calibration.h"
 #include "calib/fit/fit_report.h"
 
-/// The poses of a table as the fits want them: one column per pose.
+/// The readings of a pose table in the form that the fits use: one column per pose.
 namespace mgtd::calib {
 
 struct Readings {

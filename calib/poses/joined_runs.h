@@ -3,18 +3,19 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// Two runs of one rig as one pose table: what a second measurement was made for, it tells beside the first.
+/// Joins two runs of one rig into one pose table, so that a second measurement is judged together with the
+/// first.
 ///
-/// Times become seconds since the start of the earlier run, pose numbers of the later one go on behind those
-/// of the earlier; everything else stays. Which is earlier tells t_utc. Without it in either run the second
-/// must go on in t_s where the first ends, or neither has any time: then they stand in the order given.
+/// Times become seconds since the start of the earlier run; pose numbers of the later run continue those of
+/// the earlier; everything else stays. t_utc decides which run is earlier. Without it in either run, t_s of
+/// the second must continue that of the first, or neither has any time: then they stay in the order given.
 ///
-/// What it takes for granted and cannot see: the same array, mounted in the same way on a table that kept its
-/// zero, at the same place. Where that is not so the fit of both is worse than that of each. Between the runs
-/// the way of the table is not known: a memory of the cores is followed as if it had gone straight on.
+/// Assumed, and not checked: the same array, mounted in the same way on a table that kept its zero, at the
+/// same place. Where that is not so, the fit of both has a larger residual than that of each. The path of the
+/// table between the runs is not known: hysteresis is followed as if the table had gone straight on.
 namespace mgtd::calib {
 
-/// Refuses runs that overlap in time, and those of which only one tells it.
+/// Refuses runs that overlap in time, and a pair of which only one records time.
 [[nodiscard]] Result<PoseTable> joined(const PoseTable& a, const PoseTable& b);
 
 }  // namespace mgtd::calib

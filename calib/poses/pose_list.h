@@ -7,7 +7,8 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// Poses that are still to be measured, and where each stands in its file: for complaints that come later.
+/// A PoseList holds poses that are still to be measured, with the line of each in its file for error
+/// messages.
 namespace mgtd::calib {
 
 struct PoseList {

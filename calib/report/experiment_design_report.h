@@ -5,7 +5,7 @@
 
 #include "calib/design/experiment_design.h"
 
-/// A plan's report as an object, schema "mgt.plan/1", and for a person.
+/// The report of an experiment design, as a JSON object (schema "mgt.plan/1") and as text.
 namespace mgtd::calib {
 
 [[nodiscard]] nlohmann::json to_json(const DesignReport& report);

@@ -5,7 +5,7 @@
 
 #include "calib/design/experiment_power.h"
 
-/// The part of a plan's report that is about missing effects: keys "detectable_above", "inseparable",
+/// The part of a design's report that is about missing effects: keys "detectable_above", "inseparable",
 /// "pairs" and "untestable" of "mgt.plan/1", and their tables for a person.
 namespace mgtd::calib {
 

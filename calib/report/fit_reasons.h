@@ -20,7 +20,7 @@ namespace mgtd::calib {
 /// fit.
 [[nodiscard]] std::vector<std::string> weak_texts(const FitReport& report);
 
-/// What to say of table angles that are several times worse than was stated (table_is_rough).
+/// The sentence on table angles that are several times less accurate than was stated (table_is_rough).
 [[nodiscard]] std::string rough_table_text(double estimated_rad, double stated_rad);
 
 }  // namespace mgtd::calib

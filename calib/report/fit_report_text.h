@@ -6,7 +6,7 @@
 
 namespace mgtd::calib {
 
-/// The report for a person: verdict and gauge, errors before and after each step, the twelve parameters of
+/// The report for a person: result and gauge, errors before and after each step, the twelve parameters of
 /// every sensor with their standard deviations, the odd and even halves, every check with its remedy when it
 /// failed. Fixed-width text, lines under 110 columns except for remedies.
 [[nodiscard]] std::string to_text(const FitReport& report);

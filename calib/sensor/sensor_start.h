@@ -4,9 +4,9 @@
 
 namespace mgtd::calib {
 
-/// A first guess of one sensor by itself that exists for every rig that can exist: step 1 where it holds,
-/// else (condition, a quadric that is no ellipsoid, disturbed poses) the best sphere, which is linear, needs
-/// no sign and knows no limit on the offset. A start, not an estimate. Refuses too few readings and readings
+/// Makes a first guess of the parameters of one sensor alone, whatever the rig: step 1 where it holds, else
+/// (condition, a quadric that is no ellipsoid, disturbed poses) the best sphere, which is linear, needs no
+/// sign and has no limit on the offset. It is a start, not an estimate. Refuses too few readings and readings
 /// on a plane.
 [[nodiscard]] Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT,
                                                      const Eigen::VectorXd& f_nT);

@@ -18,7 +18,7 @@ namespace {
 
 /// Correlation eigenvalues below this are a direction both sides fixed by convention.
 constexpr double kSingular = 1e-9;
-/// Share of a parameter's evidence that must be its own before it can be told from those already named.
+/// Share of a parameter's evidence that must be its own before it is distinct from those already named.
 constexpr double kOwnEvidence = 1e-4;
 constexpr std::size_t kMaxNamed = 8;
 constexpr double kPower80 = 0.8416212;  ///< upper 20 % point of the normal distribution
@@ -45,7 +45,7 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& W, const Eigen::MatrixXd& X) {
   return W - WX * inverse_of(X.transpose() * WX).W * WX.transpose();
 }
 
-/// Chi-square of the change of one parameter alone; 0 when it cannot be told from what was taken out of W.
+/// Chi-square of the change of one parameter alone; 0 when it is collinear with what was taken out of W.
 Eigen::VectorXd single_chi2(const Evidence& e, const Eigen::MatrixXd& W, const Eigen::MatrixXd& M) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(e.gain.cols());
   const Eigen::VectorXd pull = e.gain.transpose() * (M * e.difference);

@@ -5,7 +5,8 @@
 
 #include "calib/validity/change.h"
 
-/// Has the calibration changed between two runs, which parameter, by how many standard errors?
+/// Says whether the calibration changed between two runs, in which parameter, and by how many standard
+/// errors.
 namespace mgtd::calib {
 
 /// Turn of the whole array on its table from A to B, which is no change of the array: rotation vector in the

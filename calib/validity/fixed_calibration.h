@@ -8,8 +8,8 @@
 
 namespace mgtd::calib {
 
-/// A calibration as poses that it was not fitted to see it: which slots of the joint fit's fixed block are
-/// under test, which are free because they belong to the site.
+/// A FixedCalibration is a calibration that is held while other poses are compared with it. It says which
+/// slots of the joint fit's fixed block are under test, and which are free because they belong to the site.
 struct FixedCalibration {
   std::vector<EffectPtr> effects;  ///< its own, then those of the site that the operator adds
   Eigen::VectorXd coefficients;

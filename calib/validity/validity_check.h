@@ -3,10 +3,10 @@
 #include "calib/fit/method_choice/fit.h"
 #include "calib/validity/change.h"
 
-/// Is an earlier calibration still valid? From a dozen poses, which need not determine a calibration of their
-/// own.
+/// Checks whether an earlier calibration is still valid, from a dozen poses, which need not determine a
+/// calibration of their own.
 ///
-/// The calibration is frozen and each pose fits its own field. What remains is compared with what the noise
+/// The calibration is held and each pose fits its own field. What remains is compared with what the noise
 /// of these poses *and* the covariance of the calibration allow: score test of all its parameters together,
 /// and of each alone. The attitude of the whole array on its table is free (it may have been mounted again),
 /// and so is the site: its field, and the coefficients of effects of the site.
@@ -17,8 +17,8 @@ struct ValidityReport {
   int poses{0};
   bool valid{false};              ///< no change (kChanged), and the poses follow the model
   Change change;                  ///< new less old, as far as these poses tell it
-  ErrorSummary errors;            ///< of the frozen calibration on these poses
-  double residual_nT{0};          ///< as PoseResiduals tells it, calibration frozen
+  ErrorSummary errors;            ///< of the fixed calibration on these poses
+  double residual_nT{0};          ///< PoseResiduals::residual_nT, with the calibration fixed
   double noise_nT{0};             ///< of a pose mean, as weighted
   double excess{1};               ///< scatter that no change of the calibration explains, over the noise
   bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run

@@ -3,7 +3,7 @@
 #include "daemon/acquire/clock_model.h"
 #include "proto/status_report.h"
 
-/// What an operator is told of a digitiser's clock. A rate that is off by more than any oscillator
+/// Reports a digitiser's clock to the operator. A rate that is off by more than any oscillator
 /// (kMostRateError, beyond what the estimate leaves open) is trouble: something is wrong with the trigger or
 /// the oscillator. Its samples keep their true times all the same. Pure.
 namespace mgtd::daemon {

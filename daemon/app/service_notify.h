@@ -5,7 +5,7 @@
 
 #include "proto/time.h"
 
-/// What the service manager is told (sd_notify). Outside systemd every call does nothing.
+/// Reports readiness and state to the service manager (sd_notify). Outside systemd every call does nothing.
 namespace mgtd::daemon {
 
 void notify_ready();

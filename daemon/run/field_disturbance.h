@@ -6,7 +6,7 @@
 
 #include "daemon/run/field_blocks.h"
 
-/// Does the field change while the table stands: has something magnetic passed by?
+/// Tests whether the field changes while the table stands, because something magnetic passes by.
 ///
 ///   array    S = sum over 12 axes and B blocks of (block - mean)^2 / w,  w = expected variance of a block
 ///            F = S / (12 (B - 1)) / kappa,  kappa the same quotient at rest: preflight and good dwells

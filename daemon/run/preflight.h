@@ -15,8 +15,8 @@
 #include "proto/time.h"
 #include "proto/units.h"
 
-/// Before a run: a short look at everything it needs. Each check says what was measured, the limit, and what
-/// to do when it fails.
+/// The preflight looks for a few seconds at everything that a run needs. Each check says what was measured,
+/// the limit, and what to do when it fails.
 ///
 /// Noise of one sample, per axis, from first differences: sd = sqrt(mean (y[k+1] - y[k])^2 / 2), which no
 /// drift and no slow disturbance enters; the total scatter against it shows those. Sensors that are turned or

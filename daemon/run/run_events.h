@@ -28,7 +28,8 @@ struct ScaleEntered {
 
 struct Tick {};  ///< time passes; every 20-50 ms
 
-/// The link was live and is no more. To be told before the faults the device reports on losing its port.
+/// The link was live and is no more. This event must come before the faults that the device reports on losing
+/// its port.
 struct DeviceLost {
   Slot slot;
   std::string why;

@@ -21,7 +21,7 @@ struct Preflighting {
 };
 struct Homing {};
 struct Asking {};     ///< the operator, for what is set by hand
-struct Approaching {  ///< a point before the target, so that the azimuth arrives in its planned sense
+struct Approaching {  ///< an attitude before the target, so that the azimuth arrives in its planned sense
   TableAngles goal;
 };
 struct Moving {  ///< and settling

@@ -33,12 +33,12 @@ void Settle::add(const EpochOrGap& item) {
   const auto* epoch = std::get_if<Epoch>(&item);
   if (epoch == nullptr || !stopped_ || epoch->t.mono < *stopped_) return;
   if (epoch->flags.has(Flag::frozen)) return;  // stands still, but not because the field does
-  Point point{epoch->t.mono, {}};
+  WindowEntry entry{epoch->t.mono, {}};
   for (int slot = 0; slot < kSensors; ++slot) {
-    point.y_nT.segment<3>(3 * slot) = epoch->y_nT[static_cast<std::size_t>(slot)];
+    entry.y_nT.segment<3>(3 * slot) = epoch->y_nT[static_cast<std::size_t>(slot)];
   }
-  window_.push_back(point);
-  while (point.t - window_.front().t > from_seconds(config_.window_s)) window_.pop_front();
+  window_.push_back(entry);
+  while (entry.t - window_.front().t > from_seconds(config_.window_s)) window_.pop_front();
 }
 
 bool Settle::window_full() const {
@@ -53,17 +53,17 @@ Settle::Worst Settle::measure() const {
   const auto n = static_cast<double>(window_.size());
   Sample mean = Sample::Zero(), slope = Sample::Zero(), square = Sample::Zero();
   double t_mean_s = 0, t_square = 0;
-  for (const Point& p : window_) {
+  for (const WindowEntry& p : window_) {
     mean += p.y_nT / n;
     t_mean_s += to_seconds(p.t - window_.front().t) / n;
   }
-  for (const Point& p : window_) {
+  for (const WindowEntry& p : window_) {
     const double t_s = to_seconds(p.t - window_.front().t) - t_mean_s;
     slope += t_s * (p.y_nT - mean);
     t_square += t_s * t_s;
   }
   slope /= t_square;
-  for (const Point& p : window_) {
+  for (const WindowEntry& p : window_) {
     const double t_s = to_seconds(p.t - window_.front().t) - t_mean_s;
     square += (p.y_nT - mean - slope * t_s).cwiseAbs2();
   }

@@ -8,7 +8,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// Has the field come to rest after a move? Judged from the data, not from a timer.
+/// Settle decides from the readings, not from a timer, when the field is steady after a move.
 ///
 /// Over a sliding window of the epochs since the table stopped, per axis: least-squares slope s and scatter
 /// sd about it. Settled when the table is on target and, on every axis, |s| x window is within slope_sigmas
@@ -52,7 +52,7 @@ class Settle {
 
  private:
   using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
-  struct Point {
+  struct WindowEntry {
     Instant t;
     Sample y_nT;
   };
@@ -70,7 +70,7 @@ class Settle {
   SettleConfig config_;
   Instant commanded_;
   std::optional<Instant> stopped_;
-  std::deque<Point> window_;
+  std::deque<WindowEntry> window_;
   std::optional<SettleOutcome> final_;
 };
 

@@ -65,7 +65,7 @@ class WiringProbe {
   std::array<std::optional<std::size_t>, kSensors> found_{};  ///< sensor by arm
 
   Readings at_rest_{};          ///< mean
-  std::optional<Epoch> first_;  ///< of the rest that is being looked at
+  std::optional<Epoch> first_;  ///< of the time without a magnet that is under way
   Readings sum_{};
   double count_{0};
   std::optional<Instant> since_;  ///< the same sensor has moved most

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kLeastBlocks = 18;
 constexpr double kLeastSpread = 0.02;      // of b/F0, rms: one degree
 constexpr double kLeastRange_degC = 0.3;   // below it the thermometer's own steps count
-constexpr double kLeastSpan = 60;          // blocks, for a drift to be told from noise
+constexpr double kLeastSpan = 60;          // blocks, to distinguish a drift from noise
 constexpr double kMedianChi2of4 = 3.3567;  // of a chi-square with four degrees of freedom
 constexpr double kMostCorrelation = 0.95;
 
@@ -216,7 +216,7 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
   out.log10_p = chi_square_log10_p(slopes.dot(cov.llt().solve(slopes)), static_cast<double>(m));
   out.share = share_of(x, y, noise.median);
   out.event_share = event_share_of(y, noise.median);
-  // Told in the quantity that swings most, over the turn that was made.
+  // Reported for the quantity that swings most, over the turn that was made.
   const Eigen::MatrixXd made =
       (r.u.rowwise() - r.u.colwise().mean()) * V * (r.unwhiten * B).transpose();  // n x 4
   const Eigen::Vector4d swing = (made.colwise().maxCoeff() - made.colwise().minCoeff()).transpose();

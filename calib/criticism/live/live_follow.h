@@ -6,7 +6,7 @@
 #include "calib/criticism/live/live_finding.h"
 #include "calib/criticism/live/live_window.h"
 
-/// Whether the closure of a window follows something of the instrument's.
+/// Tests whether the closure of a window follows a quantity of the instrument: temperature, time or attitude.
 ///
 /// Blocks are whitened by the noise of that many samples, times what correlation makes of it: the larger of
 /// the median excess within blocks and the median scatter of the blocks about a regression on everything that

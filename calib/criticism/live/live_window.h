@@ -6,7 +6,7 @@
 
 #include "calib/calibration/calibration.h"
 
-/// The closure of a stream, in blocks: what live criticism looks at.
+/// A LiveWindow holds the latest closure of a stream as block means, which live criticism tests.
 ///
 ///     c = W q + noise      c = curl, centre x, y, z of the corrected fields      q = (1, b_P/F0)
 ///

@@ -6,9 +6,9 @@
 
 #include "calib/criticism/search/explain_report.h"
 
-/// What the poses said of an effect when it was put into a model: which others could have stood in its place,
-/// and whether it was the whole of what stood out. A fit with the effect in it shows neither any more, so it
-/// is kept with the effect until other data settle it.
+/// A Choice records what the poses said of an effect when it was added to a model: which others could have
+/// stood in its place, and whether it was all that stood out. A fit with the effect in it no longer shows
+/// either, so the record is kept with the effect until other data settle it.
 ///
 ///     an alternative is dropped   when on other data the model with it in the place of the effect leaves
 ///                                 more, by more than chance: dof ln(ratio of chi-square per dof) above

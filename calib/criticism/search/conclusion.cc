@@ -19,7 +19,7 @@ namespace {
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
 /// run of a hundred, and below 0.8 in one of seven.
 constexpr double kEnoughShare = 0.5;
-constexpr double kTooLittleScatter = 0.6;  ///< of the noise that is told; heavy tails alone may leave 0.65
+constexpr double kTooLittleScatter = 0.6;  ///< of the stated noise; heavy tails alone may leave 0.65
 constexpr double kTooSmall = 0.0005;       ///< chance of a residual so small
 constexpr double kRefit = 0.2;             ///< predicted and realised fall may differ by this
 

@@ -5,7 +5,7 @@
 #include "calib/criticism/search/explain_report.h"
 #include "calib/criticism/tests/criticism.h"
 
-/// From what a search found to one of the verdicts of explain.h.
+/// Draws one of the verdicts of explain.h from what a search found.
 namespace mgtd::calib {
 
 /// The residual that was asked about, and its noise.
@@ -17,8 +17,9 @@ struct Asked {
 [[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
                                std::vector<ExplainNote>& notes);
 
-/// Data that no effect stands for: wiring, poses that contradict the rest, noise that is told wrongly. Says
-/// which in `notes`, and there too when the table is worse than `table_sd_rad`, what was told of it.
+/// Whether the data have a fault that no effect explains: wiring, poses that contradict all others, or noise
+/// that is stated wrongly. `notes` says which, and also whether the table is less accurate than the stated
+/// `table_sd_rad`.
 [[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, double table_sd_rad,
                             std::vector<ExplainNote>& notes);
 

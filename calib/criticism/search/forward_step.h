@@ -4,7 +4,7 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// A model with the winner of a round in it.
+/// A forward step adds the winner of a round to the model.
 namespace mgtd::calib {
 
 struct ForwardStep {

@@ -12,7 +12,7 @@
 namespace mgtd::calib {
 namespace {
 
-/// The model tidied up, where the error on poses left out does not rise; where that cannot be told, the
+/// The simplified model, where the error on held-out poses does not rise; where that cannot be judged, the
 /// residual.
 void prune_unless_worse(const PoseTable& table, const FitOptions& options, const JointOptions& joint,
                         const JointFit& last, FitOptions& best) {

@@ -7,8 +7,8 @@
 #include "calib/criticism/search/explain.h"
 #include "calib/criticism/search/model_stage.h"
 
-/// explain -> add -> fit, round by round and unattended, until nothing more is justified. What is added is
-/// decided by calibrated p-values; the error on poses that were left out is a veto, never a reason.
+/// improve() repeats explain, add and fit, unattended, until nothing more is justified. Calibrated p-values
+/// decide what is added; the error on held-out poses is a veto, never a reason.
 namespace mgtd::calib {
 
 struct ImproveRound {

@@ -6,7 +6,7 @@
 
 #include "calib/criticism/search/model_stage.h"
 
-/// What it does to put one effect into a model, or to take it out: everything is fitted again.
+/// A model change adds one effect to a model, or drops one, fits everything again, and says what that did.
 ///
 ///     predicted   of chi-square, from the narrower model alone (score test) when added; from the wider one
 ///                 alone (Wald test) when dropped
@@ -18,7 +18,7 @@ namespace mgtd::calib {
 
 /// The tests that a change failed: not to be made unattended.
 enum class Veto {
-  held_out,   ///< the error on poses left out rises
+  held_out,   ///< the error on held-out poses rises
   not_shown,  ///< chance alone brings such a fall in more than one run of twenty; adding only
   price,      ///< a standard deviation of the calibration grows more than a hundredfold; adding only
 };

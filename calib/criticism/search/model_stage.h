@@ -7,7 +7,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/method_choice/fit.h"
 
-/// One model of a run, fitted and judged, so that two of them can be weighed against each other.
+/// A ModelStage is one model of a run with its fit and its tests, so that two models can be compared.
 namespace mgtd::calib {
 
 struct ModelStage {
@@ -33,7 +33,7 @@ struct VariancePrice {
 /// the effect. The ratio is 1 where one of them has no covariance.
 [[nodiscard]] VariancePrice variance_price(const JointFit& narrow, const JointFit& wide);
 
-/// Rise of the error on poses left out that is not chance any more: beyond it an effect is not added.
+/// Largest rise of the error on held-out poses that may be chance: beyond it an effect is not added.
 inline constexpr double kHeldOutVeto = 1.01;
 
 /// One number for the tensor: rms over its six components.

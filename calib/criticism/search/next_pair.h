@@ -7,8 +7,8 @@
 
 #include "calib/criticism/search/explain.h"
 
-/// Which further measurement would tell two effects apart, for a pair that is asked about or for what explain
-/// leaves open.
+/// Finds which further measurement would tell two effects apart: a given pair, or the one that explain() left
+/// open.
 namespace mgtd::calib {
 
 struct NextStep {
@@ -20,7 +20,7 @@ struct NextStep {
 /// Why no further measurement is asked for.
 struct NothingToSettle {
   std::string winner{};   ///< of explain(); empty: nothing stands out on this run
-  std::string nearest{};  ///< the effect that comes nearest to it and is told from it; empty: none comes near
+  std::string nearest{};  ///< the most similar effect, which these poses tell apart from it; empty: none
 };
 
 struct NextReport {

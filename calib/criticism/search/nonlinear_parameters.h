@@ -11,9 +11,9 @@
 /// further.
 namespace mgtd::calib {
 
-/// Steps until the numbers stand; `options` and `fit` go along. The first `given` effects keep theirs, and
-/// numbers in which the model is not smooth (a threshold, a moment) stay. Stops where a fit fails or gets no
-/// better.
+/// Steps until the numbers settle, and updates `options` and `fit`. The first `given` effects keep theirs,
+/// and so do numbers in which the model is not smooth (a threshold, an instant). Stops where a fit fails or
+/// does not improve.
 void refine_nonlinear_parameters(const PoseTable& table, std::size_t given, JointOptions& options,
                                  JointFit& fit);
 

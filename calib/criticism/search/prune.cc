@@ -14,7 +14,7 @@ namespace {
 constexpr double kSignificant = 3.5;  ///< standard deviations from zero: one of 2000 that are zero
 constexpr std::size_t kFew = 4;       ///< axes that are listed one by one
 
-/// Axes of an effect whose coefficients are told from zero. `first`: its slot in the fit.
+/// Axes of an effect whose coefficients differ significantly from zero. `first`: its slot in the fit.
 std::set<std::string> significant_axes(const JointFit& fit, const Effect& effect, Eigen::Index first) {
   std::set<std::string> out;
   for (std::size_t j = 0; j < effect.coefficients().size(); ++j) {

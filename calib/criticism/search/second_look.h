@@ -12,11 +12,11 @@
 /// While much is missing, everything is judged in units of the misfit, and laws look alike that the noise of
 /// the readings tells apart. The fit with the winner says where calibration, attitudes and field really are
 /// and how large the noise is. There the winner is taken out again, without a new fit, and the residual,
-/// which now is the winner's signature and noise, is asked which of the laws makes it.
+/// which now is the winner's signature and noise, is tested for which of the laws makes it.
 namespace mgtd::calib {
 
 struct SecondLook {
-  std::vector<Alternative> alternatives{};  ///< of the winner, as alternatives.h tells them
+  std::vector<Alternative> alternatives{};  ///< of the winner, see alternatives.h
   std::optional<std::string> better{};      ///< the effect that has the smallest p, when it is not the winner
 };
 

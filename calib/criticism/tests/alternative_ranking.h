@@ -6,8 +6,8 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// Every question that comes near the winner, side by side on one scale, and how they would rank in other
-/// runs. The scale L is told in alternatives.h.
+/// Ranks on one scale all hypotheses that fit almost as well as the winner, and says how they would rank in
+/// other runs. alternatives.h defines the scale L.
 namespace mgtd::calib {
 
 struct RankedAlternative {
@@ -23,7 +23,7 @@ class AlternativeRanking {
   AlternativeRanking(const std::vector<ScoredFamily>& families, std::size_t a);
 
   [[nodiscard]] const std::vector<RankedAlternative>& all() const { return all_; }
-  /// Orthonormal within each contender.
+  /// Orthonormal within each hypothesis.
   [[nodiscard]] Eigen::MatrixXd space(const RankedAlternative& c) const {
     return U_.middleCols(c.first, c.count);
   }
@@ -34,8 +34,8 @@ class AlternativeRanking {
 
   /// Draws of the noise, from which behind() takes all its runs.
   void draw(std::uint64_t seed, int draws);
-  /// Chance that the family of `truth` falls as far behind all others as it did, were `truth` there as it is
-  /// fitted.
+  /// Chance that the family of `truth` falls as far behind all others as it did, if `truth` acts with the
+  /// size that was fitted.
   [[nodiscard]] double behind(const RankedAlternative& truth) const;
 
  private:

@@ -6,12 +6,12 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// Which other names could stand behind the same residual.
+/// Which other effects could have made the same residual.
 ///
 /// The families are ranked by their p, in units of chi-square by
 ///     L = S - price,   price = S0 + 2 ln(p(S0) n),   S0 the winner's fall, n the questions that were asked.
-/// Were b the true one with its fitted signature v_b, the residual would be v_b plus noise; drawn so often,
-/// the best of all other questions then beats the best of b's own by D. What was seen is D_0. With
+/// If b were true with its fitted signature v_b, the residual would be v_b plus noise. In draws of that
+/// residual the best of all other questions beats the best of b's own by D; in the data, by D_0. With
 ///     p_behind = P(D >= D_0)
 /// b stays possible while p_behind is at least 1/200: the true name is lost in one run of 200 at the most,
 /// however many alternatives there are and however close they lie.
@@ -31,10 +31,10 @@ namespace mgtd::calib {
 
 /// Share of a signature, in squares, inside that of another effect from which the two count as one.
 inline constexpr double kAlike = 0.95;
-/// True names that are declared impossible.
+/// Share of true names that are declared impossible.
 inline constexpr double kLost = 0.005;
 
-/// The right one of two effects wins with this probability.
+/// Probability that the right one of two effects wins.
 [[nodiscard]] double probability_right(double lambda);
 
 /// lambda of two idealised laws less what their form alone may make, of a signature of `length2` in squares.

@@ -10,8 +10,8 @@
 #include "calib/criticism/tests/residual_maps.h"
 #include "calib/fit/method_choice/fit.h"
 
-/// Model against measurement: how large the noise is, whether the model fits to it, and where it fails. Names
-/// no cause; explain.h does.
+/// Compares model and measurement: how large the noise is, whether the model fits within it, and where it
+/// fails. It names no cause; explain.h does.
 namespace mgtd::calib {
 
 /// Means of a residual over equally filled bins of a covariate, against what chance makes of them.
@@ -42,11 +42,11 @@ struct Comparison {
   AxisNoise axis_noise_nT{AxisNoise::Zero()};     ///< of a pose mean as it was weighted
   AxisNoise axis_residual_nT{AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
   double chi2{0}, dof{0};                         ///< of readings, scalar reference and table angles together
-  /// That the noise makes so large a residual; empty where no noise is told.
+  /// Probability that the noise alone makes so large a residual; empty where the noise is not known.
   std::optional<double> log10_p{};
   double table_sd_deg{0};
   std::vector<ResidualChannel> channels{};
-  /// Covariates that order the poses as another one does, by name, with that one: shown once.
+  /// Covariates that order the poses as another one does, by name, with that one; only that one is shown.
   std::vector<std::pair<std::string, std::string>> alike{};
   std::vector<MapScore> maps{};
   std::vector<OutlierNode> outliers{};

@@ -11,7 +11,7 @@
 #include "calib/criticism/tests/residual_maps.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// One look at one fit: every test of every tier on the same residual.
+/// Criticism holds the results of all tests of all tiers on the residual of one fit.
 namespace mgtd::calib {
 
 /// Shares of the chance of a false alarm, 1 % in all.
@@ -40,7 +40,7 @@ struct Criticism {
 };
 
 /// `candidate_effects` must outlive the result. `before`: rates of a narrower model of the same run, which
-/// serve where no p-value is near to its alarm.
+/// serve where no p-value is close to its alarm.
 [[nodiscard]] Criticism criticise(const JointFit& fit, const CandidateEffects& candidate_effects,
                                   std::uint64_t seed, const Rates* before = nullptr);
 /// Against offsets that wander at these rates, in nT per root hour where the white noise is that of the
@@ -48,11 +48,11 @@ struct Criticism {
 [[nodiscard]] Criticism criticise_against_walk(const JointFit& fit, const WanderingRates& nT_per_sqrt_h,
                                                const CandidateEffects& candidate_effects, std::uint64_t seed,
                                                const Rates* before);
-/// Chi-square of readings, scalar reference and table angles: readings in units of the noise that the table
-/// tells, its angles in units of `table_sd_rad`. Every fit estimates that anew, and what an effect of the
-/// table explains would be gone with it.
+/// Chi-square of readings, scalar reference and table angles: readings in units of the noise that the pose
+/// table states, angles in units of `table_sd_rad`, which is held: each fit estimates it anew, and that would
+/// hide what an effect of the table explains.
 [[nodiscard]] double chi2_at_stated_noise(const JointFit& fit, const Criticism& c, double table_sd_rad);
-/// The generic maps, which cost as much as everything else: asked where nothing with a name stands out.
+/// The generic maps, which cost as much as everything else: computed only where no named effect stands out.
 void look_at_maps(Criticism& criticism);
 
 }  // namespace mgtd::calib

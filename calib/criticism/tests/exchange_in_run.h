@@ -14,8 +14,8 @@
 ///     y' Q y + u' y = (f/F)^2        nine numbers a sensor, linear least squares
 ///
 /// For every pose to begin with and every exchange, sensor i before it and sensor j from it on are fitted as
-/// one sensor. That is concluded which fits the four at least kBetter times closer than no exchange, and
-/// twice closer than any other, when no exchange is off by more than kLeast_nT.
+/// one sensor. An exchange is concluded when it fits the four at least kBetter times closer than no exchange
+/// and twice closer than any other one, and the fit without exchange is off by more than kLeast_nT.
 ///
 /// Does not see an exchange of all poses (the second question does), of sensors that are alike to some nT,
 /// nor one that was undone within the run.

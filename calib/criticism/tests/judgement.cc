@@ -103,7 +103,7 @@ WanderingRates beside_white(const JointFit& fit, const WanderingRates& rates) {
   });
 }
 
-/// At the noise that is told, whatever the readings were taken for: what made them worse is the walk.
+/// At the stated noise, whatever noise_inflation the fit used: what inflated it is the walk.
 JointFit as_stated(const JointFit& fit) {
   JointFit out = fit;
   if (!(fit.noise_inflation > 1)) return out;

@@ -4,8 +4,8 @@
 
 /// A fit judged under the noise that its residual asks for.
 ///
-/// Where nothing stands out against the noise that is assumed, nothing is asked. Where something does, the
-/// offsets may wander (wandering_estimate.h). Each law that stood out is then asked against the walk
+/// Where nothing stands out against the assumed noise, nothing more is tested. Where something does, the
+/// offsets may wander (wandering_estimate.h). Each law that stood out is then tested against the walk
 /// (wandering_alternative.h), and only one that beats it can be named. The noise in force is what still
 /// wanders beside the best such law, or everything that wanders where there is none.
 namespace mgtd::calib {

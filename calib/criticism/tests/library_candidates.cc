@@ -11,7 +11,7 @@ namespace mgtd::calib {
 namespace {
 
 /// Of a searched number no more values are tried at first: neighbours are alike, and what comes near the
-/// winner is refined. An instant is told more sharply than a smooth number.
+/// winner is refined. An instant is determined more sharply than a smooth number.
 constexpr std::size_t kVariants = 10, kInstants = 20;
 
 /// Values of the searched number; an empty one is the form without it.

@@ -4,13 +4,13 @@
 
 #include "calib/criticism/tests/criticism.h"
 
-/// What a law leaves on its own axes. Once a name is given, the question is no longer whether anything is
-/// wrong anywhere but whether this law is all there is where it acts: a wrong one that looks alike leaves its
-/// difference from the right one just there. Few questions are asked, so that difference shows when it is too
-/// small for an alarm.
+/// Tests the residual that a named law leaves on its own axes. Once a law is named, the question is no longer
+/// whether anything is wrong anywhere but whether this law is all there is where it acts: a wrong law that is
+/// similar leaves its difference from the right one just there. Few questions are asked, so that the
+/// difference shows even when it is too small for an alarm.
 namespace mgtd::calib {
 
-/// Right names that are called incomplete.
+/// Probability that a correctly named effect is still reported as incomplete.
 inline constexpr double kLackOfFitAlarm = 0.01;
 
 /// log10 of the probability that noise alone leaves so much on `where` ("s3.z" or "s3"), named effects and

@@ -15,7 +15,7 @@ namespace {
 using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
 constexpr double kMaxRho = 0.95;
 /// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
-/// too large costs a little power. The median is so much worse than the mean.
+/// too large costs a little power. And the standard error of a median over that of a mean.
 constexpr double kCautious = 1.5, kMedianOfMean = 1.25;
 /// Angles that are the same pose again, as a table reads them back. What a model misses does not change over
 /// so little, and each pose has its own attitude.
@@ -176,7 +176,7 @@ double pose_correlation(const JointProblem& problem, const JointState& state) {
 std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
   const auto pairs = revisits(fit.problem);
   if (pairs.empty()) return std::nullopt;
-  // At the noise that is told, whatever the readings were taken for: else the angles of the table, each with
+  // At the stated noise, whatever noise_inflation the fit used: else the angles of the table, each with
   // its own error, pull at the attitudes.
   JointProblem problem = fit.problem;
   JointState state = fit.state;

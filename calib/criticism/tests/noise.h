@@ -26,7 +26,7 @@ struct PureError {
   int pairs{0};
   double nu{0};             ///< degrees of freedom
   double ratio{1};          ///< variance between visits over the variance that a pose mean is said to have
-  double F{1}, log10_p{0};  ///< lack of fit: the rest of the residual against it
+  double F{1}, log10_p{0};  ///< lack of fit: the remaining residual against it
   double model_nT{0};       ///< rms that the model misses, beyond the noise
 };
 

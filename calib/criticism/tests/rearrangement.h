@@ -9,7 +9,8 @@
 #include "calib/calibration/tensor.h"
 #include "proto/epoch.h"
 
-/// Sensors that are in another place or stand otherwise than when they were calibrated, found from readings.
+/// Finds from the readings which sensors are in another place, or are mounted otherwise, than when they were
+/// calibrated.
 ///
 ///     exchanged   the readings of the four, given to each other's calibrations, have a closure within noise
 ///                 and calibration (chi-square of 4 below kExplainedClosure_chi2); as they come, beyond ten

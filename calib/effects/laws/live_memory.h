@@ -2,9 +2,9 @@
 #pragma once
 #include "calib/effects/laws/run_memory.h"
 
-/// What the sensors saw before now, for effects with a memory that are removed from a stream: sample after
-/// sample, where run_memory.h has pose after pose. Until a memory has seen enough it does not know, and the
-/// effect says so (Effect::missing).
+/// A LiveMemory follows what the sensors saw so far, for effects with a memory that are removed from a
+/// stream: sample after sample, where run_memory.h has pose after pose. Until it has seen enough its state is
+/// unknown, and the effect says so (Effect::missing).
 namespace mgtd::calib {
 
 class LiveMemory {

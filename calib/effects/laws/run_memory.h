@@ -8,7 +8,7 @@
 #include "calib/effects/effect_context.h"
 #include "proto/error.h"
 
-/// What the sensors saw before each pose of a run, for effects with a memory.
+/// Reconstructs what the sensors saw before each pose of a run, for effects with a memory.
 ///
 ///     at a dwell        v = reading - offset
 ///     on the way        v = L(R) with L the linear map from the nine elements of the table's rotation to the

@@ -16,8 +16,8 @@
 /// does to first order, the second a magnet put down beside it, whose gradient changes over the cross.
 ///
 /// Every pose has a field strength of its own where a scalar reference follows it, so the part of dB along
-/// the field is absorbed there and only the turn of the field is told; a prior of 1000 nT holds what is
-/// absorbed. A source that leaves again before the run ends is no step.
+/// the field is absorbed there and only the change of direction is determined; a prior of 1000 nT holds what
+/// is absorbed. A source that leaves again before the run ends is no step.
 namespace mgtd::calib {
 
 class SiteStep final : public SiteEffect<SiteStep> {

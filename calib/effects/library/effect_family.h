@@ -70,10 +70,10 @@ struct EffectFamily {
 /// The numbers a score test tries; empty for a family without a scan. `run` ranges need the context's table.
 [[nodiscard]] std::vector<double> scan_values(const EffectFamily& family, const EffectContext& context);
 
-/// Poses that a step must leave on either side: fewer that differ from the rest are bad poses.
+/// Poses that a step must leave on either side: fewer that differ from all others are bad poses.
 inline constexpr std::size_t kStepPoses = 3;
 
-/// Hours half-way between successive poses, ascending; where a step can be told.
+/// Hours half-way between successive poses, ascending: the times that a step may have.
 [[nodiscard]] std::vector<double> run_gaps_h(const EffectContext& context);
 
 /// An effect of a family on a run. `where` defaults to the family's own (each-axis for sensors and axes).

@@ -53,7 +53,7 @@ inline constexpr double kMaxMoved = 1;
 /// angles are, so only a wrong sense or order has to be refused.
 [[nodiscard]] double table_limit_rad(double stated_table_sd_rad);
 
-/// Whether the table angles are so much worse than the operator stated that it has to be said.
+/// Whether the table angles are so much less accurate than the operator stated that the report says so.
 [[nodiscard]] bool table_is_rough(double estimated_rad, double stated_rad);
 
 }  // namespace mgtd::calib

@@ -3,7 +3,7 @@
 #include "calib/fit/fit_report.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// During a run: what a calibration from the poses measured so far would be worth.
+/// Says during a run how accurate a calibration from the poses measured so far would be.
 namespace mgtd::calib {
 
 struct AccuracySoFar {

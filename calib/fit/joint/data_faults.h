@@ -7,8 +7,8 @@
 #include "calib/sensor/channels.h"
 #include "proto/error.h"
 
-/// Faults of the data that no fit mends and that a fit would only meet as something else: asked for before
-/// one is tried. All errors are `bad_input`. Medians over the poses decide, so that single gross readings do
+/// Finds faults of the data that a fit could only mistake for something else; they are looked for before a
+/// fit is tried. All errors are `bad_input`. Medians over the poses decide, so that single gross readings do
 /// not.
 namespace mgtd::calib {
 

@@ -13,10 +13,10 @@ struct JointErrors {
   /// |b| against each pose's own F, and the tensor; effects of the site taken out of both. A sensor one of
   /// whose readings the fit left out does not count in that pose, nor does the tensor of it.
   ErrorSummary summary;
-  double residual_nT{0};  ///< as PoseResiduals tells it
+  double residual_nT{0};  ///< PoseResiduals::residual_nT
 };
 
-/// Fitted to these very poses, or frozen before they were looked at.
+/// Whether the fixed block was fitted to these very poses, or to others and is held.
 enum class FixedBlock { fitted, frozen };
 
 /// By what the fit left out.

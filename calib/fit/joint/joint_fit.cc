@@ -10,12 +10,12 @@
 namespace mgtd::calib {
 namespace {
 
-/// Residual over noise from which the readings are taken as worse, below which they are not any more, and
-/// where to begin when nothing is known.
+/// Residual over noise: above the first the noise is inflated, below the second no longer; the third is where
+/// to begin when nothing is known.
 constexpr double kFarOff = 10, kNearAgain = 3, kVeryFarOff = 100;
 constexpr double kSizeSettled = 0.1;
 
-/// Of few poses only single ones can be told from the others.
+/// Among few poses only single ones can be told apart from the others.
 double most_left_out(const JointProblem& problem, const JointOptions& options) {
   constexpr std::size_t kFewPoses = 20;
   constexpr double kOfFew = 0.1;
@@ -111,7 +111,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   return fit;
 }
 
-/// Again until the readings are as much worse as the residual says; as the table says where that is little.
+/// Fits again until noise_inflation is what the residual says; it is one where that is little.
 Result<JointFit> sized(const PoseTable& table, JointOptions options, const JointState* warm_start,
                        JointFit fit) {
   constexpr int kMost = 10;  // where a law accounts for nearly all, the size falls by orders of magnitude

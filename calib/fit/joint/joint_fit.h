@@ -13,9 +13,9 @@
 /// Joint maximum likelihood over all poses and sensors (method, section 5).
 ///
 /// Noise: from the spreads within the dwells where every pose has them, else from the residuals, iterated;
-/// pooled per axis either way. The standard deviation of the table angles is estimated. Observations that the
-/// rest contradicts become outlier nodes (outliers.h); where some do, the fit starts anew from the poses that
-/// agree with each other (consensus.h), so that up to a third of gross poses of any size hide nothing.
+/// pooled per axis either way. The standard deviation of the table angles is estimated. Observations that all
+/// others contradict become outlier nodes (outliers.h); where some do, the fit starts anew from the poses
+/// that agree with each other (consensus.h), so that up to a third of gross poses of any size hide nothing.
 /// Trivial solutions cannot win: residuals are those of raw readings, in nT, and a sensor whose gain
 /// collapses or explodes is refused by its determinant. Does not decide whether a calibration is acceptable.
 namespace mgtd::calib {
@@ -50,8 +50,7 @@ struct JointFit {
 inline constexpr std::size_t kFewestPoses = 12;
 
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options);
-/// The same from a state that is already near (another fold, the run before the last pose). Nuisances are
-/// refitted.
+/// The same with a warm start (another fold, the run before the last pose). Nuisances are refitted.
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options,
                                          const JointState& warm_start);
 

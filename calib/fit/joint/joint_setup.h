@@ -22,11 +22,11 @@ struct JointOptions {
   std::optional<double> field_sd_nT;
   std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
   double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
-  /// Variance of a pose mean beside what the dwells tell, by channel: of an axis that follows a law which the
-  /// model lacks, so that its misfit is not pressed into what other axes know.
+  /// Variance of a pose mean beside that of the dwells, by channel: for an axis that follows a law which the
+  /// model lacks, so that its misfit does not bend the parameters of other axes.
   Channels more_nT2{Channels::Zero()};
-  /// Readings and scalar reference are taken as so much worse than the table says: for a model that is known
-  /// to be far off, whose misfit would else be pressed into what is weakly known.
+  /// Factor on the stated noise of readings and scalar reference, for a model that is known to be far off:
+  /// its misfit would otherwise bend the parameters that are weakly determined.
   double noise_inflation{1};
   /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
   /// is.

@@ -91,7 +91,7 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
 }
 
 void refit_nuisances(const JointProblem& problem, JointState& state) {
-  // The field enters almost linearly: two steps settle it, the rest costs nothing when settled.
+  // The field enters almost linearly: two steps settle it, further ones cost nothing once it is settled.
   constexpr int kSteps = 8;
   const PoseModel model(problem, state);
   PoseBlocks b;

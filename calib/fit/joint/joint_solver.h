@@ -60,8 +60,8 @@ struct JointSolution {
   bool slow_progress{false};  ///< Termination::slow_progress
 };
 
-/// Stops at `enough`. Refuses when it does not get there, when it is told to stop (ErrorCode::state), or when
-/// the information is not positive definite (which parameters that is about says identifiability.h).
+/// Stops at `enough`. Refuses when it does not get there, when a stop is requested (ErrorCode::state), or
+/// when the information is not positive definite (which parameters that is about says identifiability.h).
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
                                           double enough = kConverged);
 

@@ -6,7 +6,7 @@
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/fit/outlier_node.h"
 
-/// Observations that the rest of the data contradicts. Each stays in the table, is left out of the sums, and
+/// Finds observations that the other data contradict. Each stays in the table, is left out of the sums, and
 /// is listed with the shift that would reconcile it (mean-shift outlier model). Nothing is ever dropped
 /// silently, and what fits after all comes back.
 ///

@@ -7,8 +7,8 @@
 #include "calib/fit/joint/pose_model.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-/// Which observations of one pose a calibration contradicts: the fewest without which the rest of the pose
-/// agrees with it.
+/// Finds which observations of one pose a calibration contradicts: the fewest without which the others of the
+/// pose agree with it.
 namespace mgtd::calib {
 
 using Rows = std::bitset<kObservations>;  ///< readings, scalar, attitude
@@ -23,7 +23,7 @@ struct BlameLimits {
   double pose{0};
 
   /// Limits from the misfits of all poses; those of observations that are left out count as beyond any limit,
-  /// so that leaving out does not narrow what is allowed to the rest.
+  /// so that leaving out does not narrow the limits of the others.
   [[nodiscard]] static BlameLimits of(const PoseResiduals& residuals, std::span<const Rows> left_out);
   /// The largest misfit over its limit; above one something of the pose is to be left out. `t` as in
   /// PoseResiduals, one pose.

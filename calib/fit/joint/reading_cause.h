@@ -5,8 +5,8 @@
 
 #include "calib/fit/joint/joint_problem.h"
 
-/// What the digits alone say about a reading that the others contradict: a mean over a dwell never repeats by
-/// chance.
+/// Finds from the digits alone why a reading contradicts the others (saturated, stuck): a mean over a dwell
+/// never repeats by chance.
 namespace mgtd::calib {
 
 /// Poses in which this channel reads its largest, or its smallest, value, where three or more share it to the

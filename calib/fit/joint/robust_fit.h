@@ -4,10 +4,11 @@
 #include "calib/fit/joint/fit_noise.h"
 #include "calib/fit/joint/outliers.h"
 
-/// Solution, weights and what is left out, in turn until nothing moves.
+/// The robust fit solves, estimates the weights and leaves readings out, in turn, until nothing changes.
 ///
-/// From all poses; where that, or the readings alone, show that some poses are far from the others, also from
-/// the poses that agree with each other (consensus.h); of the two the more likely.
+/// It starts from all poses; where that, or the readings alone, show that some poses are far from the others,
+/// it starts once more from the poses that agree with each other (consensus.h), and keeps the more likely
+/// result.
 namespace mgtd::calib {
 
 struct RobustFit {

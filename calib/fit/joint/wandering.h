@@ -7,7 +7,7 @@
 /// Offsets that wander: the slow noise of a fluxgate, which lasts from one pose to the next.
 ///
 /// The offset of channel c is a random walk with rate a_c: var[o(t) - o(s)] = a_c^2 |t - s|. Its mean over a
-/// run of length T is the offset of the model. The rest has the Karhunen-Loeve expansion
+/// run of length T is the offset of the model. What remains has the Karhunen-Loeve expansion
 ///
 ///     o(t) = sum_j z_j sqrt(2) cos(j pi (t - t0) / T),   z_j independent, normal, sd a_c sqrt(T) / (j pi).
 ///
