@@ -11,25 +11,6 @@
 
 namespace mgtd::calib {
 
-std::string_view name(Method method) {
-  switch (method) {
-    case Method::simplified:
-      return "simplified";
-    case Method::two_step:
-      return "two-step";
-    case Method::joint:
-      return "joint";
-  }
-  return "";
-}
-
-std::optional<Method> method_from(std::string_view text) {
-  for (const Method method : {Method::simplified, Method::two_step, Method::joint}) {
-    if (name(method) == text) return method;
-  }
-  return std::nullopt;
-}
-
 Result<FitReport> fit(const PoseTable& table, const FitOptions& options) {
   const bool joint = options.method == Method::joint;
   auto report = joint ? joint_report(table, options) : two_step_report(table, options);
