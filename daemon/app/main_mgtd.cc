@@ -27,7 +27,7 @@ int report(const Error& error) {
   return error.code == ErrorCode::io ? kExitIo : kExitUnavailable;
 }
 
-int serve(Config config) {
+int run_service(Config config) {
   start_log(config.log_level);
   std::signal(SIGPIPE, SIG_IGN);
   const auto lock = StoreLock::take(config.store_dir);
@@ -82,5 +82,5 @@ int main(int argc, char** argv) {
     fmt::print("{}: good\n", config_file);
     return 0;
   }
-  return serve(*std::move(config));
+  return run_service(*std::move(config));
 }
