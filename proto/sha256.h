@@ -4,9 +4,10 @@
 #include <string_view>
 
 /// This computes the SHA-256 (FIPS 180-4) of a text, as 64 lower-case hex digits. It names data and
-/// calibrations; it guards no secret.
+/// calibrations; it guards no secret. OpenSSL computes it.
 namespace mgtd {
 
+/// Throws std::runtime_error where the OpenSSL of the system has its default provider turned off.
 [[nodiscard]] std::string sha256_hex(std::string_view data);
 
 }  // namespace mgtd
