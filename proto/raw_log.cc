@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <boost/crc.hpp>
 #include <utility>
 
 #include "proto/byte_order.h"
@@ -19,17 +19,6 @@ constexpr std::size_t kShortTickBytes = 1 + 1 + 4 + 2;
 constexpr std::size_t kRecordHead = 1 + 1 + 1 + 8 + 8 + 4;
 constexpr std::size_t kCrc = 4;
 
-constexpr std::array<std::uint32_t, 256> crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t c = i;
-    for (int bit = 0; bit < 8; ++bit) c = (c & 1U) != 0 ? 0xEDB88320U ^ (c >> 1U) : c >> 1U;
-    table[i] = c;
-  }
-  return table;
-}
-constexpr auto kCrcTable = crc_table();
-
 // A damaged file may hold any time: unsigned, so that sums may wrap.
 
 std::uint64_t elapsed_ns(Instant from, Instant to) {
@@ -43,18 +32,18 @@ std::int64_t later(std::int64_t ns, std::uint64_t by_ns) {
 
 }  // namespace
 
-std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
-  std::uint32_t c = ~before;
-  for (const char byte : bytes) c = kCrcTable[(c ^ static_cast<unsigned char>(byte)) & 0xFFU] ^ (c >> 8U);
-  return ~c;
+std::uint32_t crc32(std::string_view bytes) {
+  boost::crc_32_type crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
 }
 
 std::string encode_header(const RawLogHeader& header) {
   std::string text = header.rig.substr(0, 0x7000) + '\0' + header.run_id.substr(0, 0x7000);
   std::string out(kMagic);
-  put_little(out, text.size(), 2);
+  put_little<2>(out, text.size());
   out += text;
-  put_little(out, crc32(out), kCrc);
+  put_little<kCrc>(out, crc32(out));
   return out;
 }
 
@@ -75,18 +64,18 @@ void RawLogEncoder::encode(const RawRecord& record, std::string& out) {
     rest.remove_prefix(part.size());
     const std::size_t start = out.size();
     out += tick ? kShortTick : kMark;
-    put_little(out, record.device, 1);
+    put_little<1>(out, record.device);
     if (tick) {
-      put_little(out, since, 4);
-      put_little(out, crc32(std::string_view(out).substr(start)) & 0xFFFFU, 2);
+      put_little<4>(out, since);
+      put_little<2>(out, crc32(std::string_view(out).substr(start)));
       return;
     }
-    put_little(out, static_cast<std::uint64_t>(record.direction), 1);
-    put_little(out, static_cast<std::uint64_t>(record.at.mono.time_since_epoch().count()), 8);
-    put_little(out, static_cast<std::uint64_t>(record.at.wall.ns), 8);
-    put_little(out, part.size(), 4);
+    put_little<1>(out, static_cast<std::uint64_t>(record.direction));
+    put_little<8>(out, static_cast<std::uint64_t>(record.at.mono.time_since_epoch().count()));
+    put_little<8>(out, static_cast<std::uint64_t>(record.at.wall.ns));
+    put_little<4>(out, part.size());
     out += part;
-    put_little(out, crc32(std::string_view(out).substr(start)), kCrc);
+    put_little<kCrc>(out, crc32(std::string_view(out).substr(start)));
   } while (!rest.empty());
 }
 
@@ -113,9 +102,9 @@ bool RawLogDecoder::take_header() {
     return false;
   }
   if (all.size() < kMagic.size() + 2) return false;
-  const std::size_t body = kMagic.size() + 2 + get_little(all, kMagic.size(), 2);
+  const std::size_t body = kMagic.size() + 2 + get_little<2>(all, kMagic.size());
   if (all.size() < body + kCrc) return false;
-  if (crc32(all.substr(0, body)) != get_little(all, body, kCrc)) {
+  if (crc32(all.substr(0, body)) != get_little<kCrc>(all, body)) {
     damage("the header's checksum is wrong");
     return false;
   }
@@ -139,13 +128,13 @@ std::optional<RawRecord> RawLogDecoder::next() {
 
 std::optional<RawRecord> RawLogDecoder::take_tick(std::string_view rest) {
   if (rest.size() < kShortTickBytes) return std::nullopt;
-  if ((crc32(rest.substr(0, kShortTickBytes - 2)) & 0xFFFFU) != get_little(rest, kShortTickBytes - 2, 2)) {
+  if ((crc32(rest.substr(0, kShortTickBytes - 2)) & 0xFFFFU) != get_little<2>(rest, kShortTickBytes - 2)) {
     return damage("a tick's checksum is wrong");
   }
   if (!last_) return damage("a short tick has no record before it");
-  const std::uint64_t since = get_little(rest, 2, 4);
+  const std::uint64_t since = get_little<4>(rest, 2);
   RawRecord tick;
-  tick.device = static_cast<std::uint8_t>(get_little(rest, 1, 1));
+  tick.device = static_cast<std::uint8_t>(get_little<1>(rest, 1));
   tick.direction = RawDirection::tick;
   tick.at = {Instant{Duration{later(last_->mono.time_since_epoch().count(), since)}},
              WallTime{later(last_->wall.ns, since)}};
@@ -157,20 +146,20 @@ std::optional<RawRecord> RawLogDecoder::take_tick(std::string_view rest) {
 
 std::optional<RawRecord> RawLogDecoder::take_record(std::string_view rest) {
   if (rest.size() < kRecordHead) return std::nullopt;
-  const std::size_t length = get_little(rest, kRecordHead - 4, 4);
-  const std::uint64_t direction = get_little(rest, 2, 1);
+  const std::size_t length = get_little<4>(rest, kRecordHead - 4);
+  const std::uint64_t direction = get_little<1>(rest, 2);
   if (length > kRawRecordMax || direction > static_cast<std::uint64_t>(RawDirection::ended)) {
     return damage("a record's head makes no sense");
   }
   if (rest.size() < kRecordHead + length + kCrc) return std::nullopt;
-  if (crc32(rest.substr(0, kRecordHead + length)) != get_little(rest, kRecordHead + length, kCrc)) {
+  if (crc32(rest.substr(0, kRecordHead + length)) != get_little<kCrc>(rest, kRecordHead + length)) {
     return damage("a record's checksum is wrong");
   }
   RawRecord record;
-  record.device = static_cast<std::uint8_t>(get_little(rest, 1, 1));
+  record.device = static_cast<std::uint8_t>(get_little<1>(rest, 1));
   record.direction = static_cast<RawDirection>(direction);
-  record.at.mono = Instant{Duration{static_cast<std::int64_t>(get_little(rest, 3, 8))}};
-  record.at.wall.ns = static_cast<std::int64_t>(get_little(rest, 11, 8));
+  record.at.mono = Instant{Duration{static_cast<std::int64_t>(get_little<8>(rest, 3))}};
+  record.at.wall.ns = static_cast<std::int64_t>(get_little<8>(rest, 11));
   record.bytes = rest.substr(kRecordHead, length);
   last_ = record.at;
   at_ += kRecordHead + length + kCrc;

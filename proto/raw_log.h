@@ -52,7 +52,7 @@ struct RawLogHeader {
 
 inline constexpr std::size_t kRawRecordMax = 1U << 20U;  ///< bytes of payload; longer is refused as damage
 
-[[nodiscard]] std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
+[[nodiscard]] std::uint32_t crc32(std::string_view bytes);
 [[nodiscard]] std::string encode_header(const RawLogHeader& header);
 
 /// Writes the records of one file, in their order.

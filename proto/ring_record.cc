@@ -14,8 +14,8 @@ constexpr double kLongest_s = 1e9;  // 30 years: a clock that was set meanwhile
 }  // namespace
 
 void encode_ring_bytes(const RingRecord& record, std::string& out) {
-  put_little(out, record.from_seq, 8);
-  put_little(out, record.to_seq, 8);
+  put_little<8>(out, record.from_seq);
+  put_little<8>(out, record.to_seq);
   out += record.line;
 }
 
@@ -28,8 +28,8 @@ std::optional<RingRecord> ring_record(const RawRecord& record) {
       record.device > static_cast<std::uint8_t>(RingRecord::Kind::closed)) {
     return std::nullopt;
   }
-  RingRecord out{static_cast<RingRecord::Kind>(record.device), get_little(record.bytes, 0, 8),
-                 get_little(record.bytes, 8, 8), record.at, record.bytes.substr(kHead)};
+  RingRecord out{static_cast<RingRecord::Kind>(record.device), get_little<8>(record.bytes, 0),
+                 get_little<8>(record.bytes, 8), record.at, record.bytes.substr(kHead)};
   if (out.from_seq > out.to_seq || out.to_seq == UINT64_MAX) return std::nullopt;
   return out;
 }
