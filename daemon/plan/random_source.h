@@ -6,7 +6,10 @@
 #include <utility>
 #include <vector>
 
-/// A RandomSource makes the same choices with every standard library (whose distributions differ).
+/// A RandomSource makes the same choices from the same seed with every standard library. The engine is the
+/// standard's; its distributions are not, for each library may draw them in its own way. Boost.Random draws
+/// the same everywhere, but rounds 64 bits to a double where uniform() drops the low 11: with it, the seed in
+/// a run file would no longer give that run's plan.
 namespace mgtd::daemon {
 
 class RandomSource {
