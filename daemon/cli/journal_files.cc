@@ -44,6 +44,8 @@ Result<std::optional<JournalFile>> header_of(const std::string& path) {
   if (!in) return fail(ErrorCode::bad_input, path + ": cannot be read", "check path and permissions");
   std::string piece(kHeaderMost, '\0');
   in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+  if (in.bad())
+    return fail(ErrorCode::io, path + ": cannot be read", "check that it is a file, and the disk");
   RawLogDecoder decoder;
   decoder.feed(
       std::string_view(piece).substr(0, static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount()))));

@@ -77,6 +77,9 @@ Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay, Play
     }
     progress.played(static_cast<std::uint64_t>(in.gcount()));
   }
+  if (in.bad())
+    return fail(ErrorCode::io, fmt::format("{}: cannot be read beyond byte {}", path, bytes),
+                "check the disk; what stands before was played");
   if (const auto whole = decoder.finish(); !whole) fmt::print(stderr, "{}: {}\n", path, whole.error().text());
   const std::uint64_t unread = bytes - std::min(bytes, decoder.good_bytes());
   return decoder.state() == RawLogDecoder::State::damaged || unread > kRawRecordMax ? unread : 0;

@@ -76,5 +76,14 @@ TEST_F(JournalFiles, WhatIsNoJournalIsRefused) {
   EXPECT_THAT(found.error().message, HasSubstr("no journal of mgtd"));
 }
 
+TEST_F(JournalFiles, WhatCannotBeReadIsNotTakenForAnEmptyJournal) {
+  const std::filesystem::path folder = scratch_ / "folder";
+  std::filesystem::create_directory(folder);
+  const auto found = journals_of({folder.string()});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::io);
+  EXPECT_THAT(found.error().message, HasSubstr("folder: cannot be read"));
+}
+
 }  // namespace
 }  // namespace mgtd::cli
