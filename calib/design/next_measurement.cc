@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/design/next_measurement.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "calib/criticism/tests/residual.h"
 #include "calib/design/actions.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/library.h"
+#include "calib/linear/qr.h"
 
 namespace mgtd::calib {
 namespace {
@@ -87,9 +87,7 @@ Longer as_it_is(const PoseTable& table) {
 
 /// What of `v` is not in the space of B, in squares.
 double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& B) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B);
-  qr.setThreshold(1e-6);
-  return (v - B * qr.solve(v)).squaredNorm();
+  return (v - B * least_squares(B, v)).squaredNorm();
 }
 
 /// Two shapes of one dependence: both on the axis' own reading alone, or of one quantity (axis.offset, site)

@@ -2,12 +2,14 @@
 #include "calib/fit/consensus.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
+
+#include "calib/linear/ldlt.h"
+#include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib {
 namespace {
@@ -42,11 +44,10 @@ struct Plane {
     const ReadingTable chosen = y(Eigen::all, which);
     mean = chosen.rowwise().mean();
     const ReadingTable z = chosen.colwise() - mean;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kChannels, kChannels>> eigen(
-        z * z.transpose() / static_cast<double>(which.size()));
-    along = eigen.eigenvectors().rightCols<3>();
-    across = eigen.eigenvectors().leftCols<kChannels - 3>();
-    variance = eigen.eigenvalues().cwiseMax(0);
+    const SymmetricEigen eigen = symmetric_eigen(z * z.transpose() / static_cast<double>(which.size()));
+    along = eigen.vectors.rightCols<3>();
+    across = eigen.vectors.leftCols<kChannels - 3>();
+    variance = eigen.values.cwiseMax(0);
   }
   [[nodiscard]] double thickness() const {
     return std::sqrt(variance[kChannels - 3] / variance[kChannels - 1]);
@@ -74,8 +75,7 @@ struct Quadric {
   }
   Quadric(const Eigen::Matrix3Xd& x, const Which& which) {
     const auto d = columns(x(Eigen::all, which));
-    const Eigen::Matrix<double, kUnknowns, kUnknowns> normal = d * d.transpose();
-    w = normal.ldlt().solve(d.rowwise().sum());
+    w = solve_by_ldlt(d * d.transpose(), Eigen::VectorXd(d.rowwise().sum()));
   }
   [[nodiscard]] Eigen::VectorXd squares(const Eigen::Matrix3Xd& x) const {
     return (columns(x).transpose() * w - Eigen::VectorXd::Ones(x.cols())).array().square();

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <cmath>
+
+#include "calib/linear/qr.h"
+#include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib {
 namespace {
@@ -20,9 +21,9 @@ constexpr double kMaxScale = 3;
 
 /// |z|^2 = 2 c' z + d.
 ScalarCalibration sphere(const Eigen::Matrix3Xd& z, double f_nT) {
-  Eigen::Matrix<double, Eigen::Dynamic, 4> d(z.cols(), 4);
+  Eigen::MatrixXd d(z.cols(), 4);
   d << 2 * z.transpose(), Eigen::VectorXd::Ones(z.cols());
-  const Eigen::Vector4d p = d.colPivHouseholderQr().solve(z.colwise().squaredNorm().transpose());
+  const Eigen::Vector4d p = least_squares(d, Eigen::VectorXd(z.colwise().squaredNorm().transpose()));
   const Eigen::Vector3d centre = p.head<3>();
   ScalarCalibration out;
   out.K *= f_nT / std::sqrt(p[3] + centre.squaredNorm());
@@ -42,8 +43,7 @@ Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT, const Eigen
   const Eigen::Vector3d mean = y_nT.rowwise().mean();
   const Eigen::Matrix3Xd z = y_nT.colwise() - mean;
   const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(z.cols());
-  const Eigen::Vector3d spread =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues().cwiseMax(0).cwiseSqrt();
+  const Eigen::Vector3d spread = principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
   for (int a = 0; a < 3; ++a) {
     if (z.row(a).cwiseAbs().maxCoeff() > kDead_nT) continue;
     return fail(

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
+
+#include "calib/linear/ldlt.h"
+#include "calib/linear/qr.h"
+#include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib {
 namespace {
@@ -51,7 +53,7 @@ void accumulate(const Eigen::Matrix3Xd& z, Normal& normal, Unknowns& right) {
 /// Condition of the columns once each has unit length: square root of that of the normal matrix.
 double condition_of(const Normal& normal, const Unknowns& lengths) {
   const Normal unit = lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal();
-  const Unknowns e = Eigen::SelfAdjointEigenSolver<Normal>(unit, Eigen::EigenvaluesOnly).eigenvalues();
+  const Unknowns e = symmetric_eigenvalues(unit);
   return e[0] > 0 ? std::sqrt(e[kUnknowns - 1] / e[0]) : std::numeric_limits<double>::infinity();
 }
 
@@ -76,11 +78,7 @@ Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f
   const Eigen::Vector3d mean = y.rowwise().mean();
   Eigen::Matrix3Xd z = y.colwise() - mean;
   const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(y.cols());
-  const Eigen::Vector3d spread =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter, Eigen::EigenvaluesOnly)
-          .eigenvalues()
-          .cwiseMax(0)
-          .cwiseSqrt();
+  const Eigen::Vector3d spread = principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
   if (!(spread[0] > kMinFlatness * spread[2])) {
     return fail(ErrorCode::refused,
                 fmt::format("the readings lie on a plane: they spread {:.4g} nT across it and {:.4g} nT "
@@ -101,8 +99,8 @@ Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f
                 fmt::format("the attitudes are too much alike: {}", kTurnMore));
   }
   const Unknowns scaled =
-      Eigen::LDLT<Normal>(lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal())
-          .solve(Unknowns(right.cwiseQuotient(lengths)));
+      solve_by_ldlt(lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal(),
+                    Eigen::VectorXd(right.cwiseQuotient(lengths)));
   auto out = ellipsoid_of(scaled.cwiseQuotient(lengths));
   if (!out) return out;
   out->K *= f_nT / spread[2];
@@ -148,12 +146,12 @@ Result<ScalarCalibration> simplified_calibration(const Eigen::Matrix3Xd& y_nT, c
   d.rightCols<3>() = z.transpose();
   const Eigen::VectorXd right =
       0.5 * (z.colwise().squaredNorm().transpose() - (f_nT / f).array().square().matrix());
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(d);
-  if (qr.rank() < kUnknowns) {
-    return fail(ErrorCode::refused, fmt::format("the poses decide {} of nine unknowns", qr.rank()),
+  const auto solution = unique_least_squares(d, right);
+  if (!solution) {
+    return fail(ErrorCode::refused, fmt::format("the poses decide {} of nine unknowns", rank_of(d)),
                 kTurnMore);
   }
-  const Unknowns p = qr.solve(right);
+  const Unknowns p = *solution;
   Eigen::Matrix3d D;
   D << p[0], p[1], p[2], 0, p[3], p[4], 0, 0, p[5];
   ScalarCalibration out;

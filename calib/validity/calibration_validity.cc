@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "calib/calibration/array_model.h"
 #include "calib/fit/fit_report.h"
+#include "calib/linear/symmetric_eigen.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -50,8 +50,7 @@ Result<void> validate_covariance(const Calibration& c) {
   }
   const Eigen::VectorXd scale = variance.unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 0.0; });
   const Eigen::MatrixXd correlation = scale.asDiagonal() * full * scale.asDiagonal();
-  const double least =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double least = symmetric_eigenvalues(correlation)[0];
   if (least >= kLeastEigenvalue) return {};
   return invalid(fmt::format("its covariance is none: an eigenvalue of {:.3g}, down to {:g} is rounding",
                              least, kLeastEigenvalue));

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/fit/orientation.h"
+#include "calib/linear/qr.h"
+#include "calib/linear/symmetric_eigen.h"
 #include "calib/sensor/sensor_equations.h"
 #include "calib/sensor/shown_parameters.h"
 #include "calib/stats/chi_square.h"
@@ -25,14 +25,11 @@ constexpr double kPower80 = 0.8416212;  ///< upper 20 % point of the normal dist
 
 /// Weight of a difference with the common freedoms projected out: N (N' C N)^-1 N', N orthogonal to them.
 Inverse weight_of(const Evidence& e) {
-  const Eigen::Index n = e.difference.size();
   const Eigen::VectorXd sd = e.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 1.0);
   Eigen::MatrixXd N = scale.asDiagonal();
   if (e.common.cols() > 0) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scale.asDiagonal() * e.common);
-    const Eigen::MatrixXd Q = qr.householderQ();
-    N *= Q.rightCols(n - qr.rank());
+    N *= complement_of(scale.asDiagonal() * e.common);
   }
   const Inverse inner = inverse_of(N.transpose() * e.covariance * N);
   return {N * inner.W * N.transpose(), inner.rank};
@@ -115,15 +112,15 @@ double others_log10_p(const Evidence& e, const Eigen::MatrixXd& W, Eigen::Index 
 Inverse inverse_of(const Eigen::MatrixXd& C) {
   const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * C * scale.asDiagonal());
+  const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * C * scale.asDiagonal());
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(C.rows());
   Inverse out;
   for (Eigen::Index j = 0; j < C.rows(); ++j) {
-    if (eigen.eigenvalues()[j] < kSingular) continue;
-    inverse[j] = 1 / eigen.eigenvalues()[j];
+    if (eigen.values[j] < kSingular) continue;
+    inverse[j] = 1 / eigen.values[j];
     ++out.rank;
   }
-  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
+  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors;
   out.W = V * inverse.asDiagonal() * V.transpose();
   return out;
 }

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/outliers.h"
+#include "calib/linear/symmetric_eigen.h"
 #include "calib/poses/run_time.h"
 #include "calib/validity/fixed_calibration.h"
 
@@ -100,12 +100,11 @@ Seen seen_of(const Score& score) {
   constexpr double kUnseen = 1e-10;  // of the largest eigenvalue; rounding leaves 1e-13
   const Eigen::VectorXd d = score.S.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd inverse = (d.array() > 0).select(d.cwiseInverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * score.S *
-                                                             inverse.asDiagonal());
-  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * score.S * inverse.asDiagonal());
+  const Eigen::VectorXd& values = eigen.values;
   const auto unseen = (values.array() < kUnseen * values.maxCoeff()).count();
   const Eigen::Index seen = values.size() - unseen;
-  const Eigen::MatrixXd V = eigen.eigenvectors().rightCols(seen);
+  const Eigen::MatrixXd V = eigen.vectors.rightCols(seen);
   const Eigen::VectorXd root = values.tail(seen).cwiseSqrt();
   return {root.asDiagonal() * V.transpose() * d.asDiagonal(),
           root.cwiseInverse().asDiagonal() * (V.transpose() * inverse.cwiseProduct(score.g))};

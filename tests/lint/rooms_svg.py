@@ -12,6 +12,7 @@ from rooms import CALIB, DAEMON
 # What stands in a box, below the name of the room.
 SAYS = {
     "calib/stats": "tails of distributions",
+    "calib/linear": "Cholesky, QR, errors",
     "calib/sensor": "one sensor, step 1",
     "calib/poses": "the pose table",
     "calib/effects": "what an effect is",
@@ -48,7 +49,7 @@ GRID = {
               "validity": (1, 2), "criticism/tests": (0, 3), "fit/method_choice": (0, 4), "criticism/live": (1, 5),
               "fit/checks": (0, 5), "fit/joint": (0, 6), "fit/two_step": (0, 7), "fit": (0, 8), "calibration": (0, 9),
               "effects/library": (0, 10), "effects/formula": (0, 11), "effects/laws": (0, 12), "effects": (0, 13),
-              "stats": (1, 13), "sensor": (0, 14), "poses": (1, 14)},
+              "stats": (1, 13), "sensor": (0, 14), "poses": (1, 14), "linear": (0, 15)},
 }
 LEFT = {"daemon": 149, "calib": 722}
 COLUMN = {"daemon": 250, "calib": 246}

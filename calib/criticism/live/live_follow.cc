@@ -2,13 +2,15 @@
 #include "calib/criticism/live/live_follow.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "calib/linear/cholesky.h"
+#include "calib/linear/inverse.h"
+#include "calib/linear/qr.h"
+#include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib {
@@ -63,13 +65,12 @@ Eigen::VectorXd centred(const Eigen::VectorXd& x) { return x.array() - x.mean();
 /// Directions in which the field moved, as columns of u centred and turned; none when it stood.
 Eigen::MatrixXd moved_directions(const Rows& r) {
   const Eigen::MatrixXd u = r.u.rowwise() - r.u.colwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(
-      Eigen::Matrix3d(u.transpose() * u / static_cast<double>(r.n())));
+  const PrincipalAxes axes = principal_axes(u.transpose() * u / static_cast<double>(r.n()));
   std::vector<Eigen::Index> kept;
   for (Eigen::Index a = 0; a < 3; ++a) {
-    if (axes.eigenvalues()[a] > kLeastSpread * kLeastSpread) kept.push_back(a);
+    if (axes.values[a] > kLeastSpread * kLeastSpread) kept.push_back(a);
   }
-  return axes.eigenvectors()(Eigen::all, kept);
+  return axes.vectors(Eigen::all, kept);
 }
 
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -80,7 +81,7 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 
 /// y less its regression on the columns.
 Eigen::MatrixXd residual(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& y) {
-  return y - columns * columns.colPivHouseholderQr().solve(y);
+  return y - columns * least_squares(columns, y);
 }
 
 struct Noise {
@@ -160,14 +161,14 @@ Following against(const Rows& r, const ClosurePrior& prior, const Eigen::VectorX
   Eigen::MatrixXd z(r.n(), 5);
   z << Eigen::VectorXd::Ones(r.n()), r.u, centred(x);
   const Eigen::MatrixXd zw = r.weighted(z), S = zw.transpose() * zw / variance;
-  Eigen::Matrix<double, 20, 20> M = Eigen::Matrix<double, 20, 20>::Zero();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(20, 20);
   for (Eigen::Index i = 0; i < 5; ++i) {
     for (Eigen::Index j = 0; j < 5; ++j) M.block<4, 4>(4 * i, 4 * j).diagonal().setConstant(S(i, j));
   }
-  M.topLeftCorner<16, 16>() += P.inverse();
+  M.topLeftCorner<16, 16>() += inverse_by_lu(P);
   const Eigen::MatrixXd g = r.c.transpose() * zw / variance;  // 4 x 5
-  const Eigen::Matrix<double, 20, 20> V = M.inverse();
-  const Eigen::Matrix<double, 20, 1> solution = V * g.reshaped();
+  const Eigen::MatrixXd V = inverse_by_lu(M);
+  const Eigen::VectorXd solution = V * Eigen::VectorXd(g.reshaped());
   const Eigen::Vector4d beta = solution.tail<4>();
   const Eigen::Matrix4d cov = V.bottomRightCorner<4, 4>();
   out.log10_p = chi_square_log10_p(beta.dot(cov.llt().solve(beta)), 4);
@@ -198,7 +199,7 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
   Following out{.tested = true};
   const Eigen::MatrixXd constant = r.weighted(Eigen::VectorXd::Ones(r.n()));
   const Eigen::MatrixXd x = residual(constant, r.weighted(r.u * V)), y = residual(constant, r.c);
-  const Eigen::MatrixXd inverse = (x.transpose() * x).inverse();
+  const Eigen::MatrixXd inverse = inverse_by_lu(x.transpose() * x);
   const Eigen::MatrixXd B = (inverse * x.transpose() * y).transpose();  // 4 x directions
   const Eigen::Index m = B.size();
   const ClosureErrors P = whitened(prior);
@@ -212,8 +213,9 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
       }
     }
   }
-  const Eigen::VectorXd slopes = B.reshaped();
-  out.log10_p = chi_square_log10_p(slopes.dot(cov.llt().solve(slopes)), static_cast<double>(m));
+  const auto by_noise = Cholesky::of_unscaled(cov);
+  if (!by_noise) return {};
+  out.log10_p = chi_square_log10_p(by_noise->squared_length(B.reshaped()), static_cast<double>(m));
   out.share = share_of(x, y, noise.median);
   out.event_share = event_share_of(y, noise.median);
   // Reported for the quantity that swings most, over the turn that was made.

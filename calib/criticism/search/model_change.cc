@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/model_change.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +8,7 @@
 #include "calib/criticism/tests/residual.h"
 #include "calib/criticism/tests/score.h"
 #include "calib/effects/common_axis.h"
+#include "calib/linear/ldlt.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib {
@@ -34,7 +34,7 @@ double wald_rise(const JointFit& fit, Eigen::Index first, Eigen::Index count) {
   const Eigen::VectorXd c = fit.state.coefficients.segment(first, count);
   const Eigen::MatrixXd C = fit.covariance.block(kEffectSlot + first, kEffectSlot + first, count, count) /
                             std::pow(fit.birge_ratio, 2);
-  return c.dot(C.ldlt().solve(c));
+  return c.dot(solve_by_ldlt(C, c));
 }
 
 std::vector<EffectCoefficient> coefficients_of(const JointFit& fit, std::size_t which, Eigen::Index& first) {

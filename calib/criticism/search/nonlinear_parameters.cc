@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/nonlinear_parameters.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "calib/criticism/tests/residual.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/library.h"
+#include "calib/linear/qr.h"
 
 namespace mgtd::calib {
 namespace {
@@ -72,9 +72,9 @@ std::optional<Eigen::VectorXd> steps(const JointFit& fit, const std::vector<Numb
   }
   const Residual residual(fit.problem, fit.state, 0);
   const Eigen::MatrixXd z = residual.project(rows).projected;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(z);
-  if (qr.rank() < z.cols()) return std::nullopt;
-  return Eigen::VectorXd(qr.solve(residual.value()).cwiseMax(-kLongest).cwiseMin(kLongest));
+  const auto step = unique_least_squares(z, residual.value());
+  if (!step) return std::nullopt;
+  return Eigen::VectorXd(step->cwiseMax(-kLongest).cwiseMin(kLongest));
 }
 
 /// What the fit makes small, comparable where the weights are estimated.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/alternative_ranking.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 
+#include "calib/linear/normal_draws.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib {
@@ -79,11 +78,7 @@ AlternativeRanking::AlternativeRanking(const std::vector<ScoredFamily>& families
 void AlternativeRanking::draw(std::uint64_t seed, int draws) {
   Eigen::MatrixXd gram = U_.transpose() * U_;
   gram.diagonal().array() += kRankingJitter;
-  const Eigen::LLT<Eigen::MatrixXd> llt(gram);
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> gauss;
-  const Eigen::MatrixXd n = Eigen::MatrixXd::NullaryExpr(gram.rows(), draws, [&] { return gauss(random); });
-  noise_ = llt.matrixL() * n;
+  noise_ = normal_draws(gram, draws, seed);
 }
 
 double AlternativeRanking::deficit(const Eigen::VectorXd& best, std::size_t family) const {

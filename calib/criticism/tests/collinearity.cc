@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/collinearity.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +10,7 @@
 #include "calib/effects/derivative_check.h"
 #include "calib/effects/formula/formula.h"
 #include "calib/fit/joint/joint_report.h"
+#include "calib/linear/qr.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib {
@@ -21,12 +21,8 @@ constexpr std::size_t kNamedAtMost = 5;
 
 /// Share of the length of `Z` that lies in the space of `B`, as a correlation; columns of Z counted alike.
 double correlation(const Eigen::MatrixXd& Z, const Eigen::MatrixXd& B) {
-  Eigen::VectorXd scale = B.colwise().norm();
-  scale = (scale.array() > 0).select(scale.cwiseInverse(), 0.0);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(B * scale.asDiagonal());
-  qr.setThreshold(kAbsorbed);
-  if (qr.rank() == 0) return 0;
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(B.rows(), qr.rank());
+  const Eigen::MatrixXd Q = column_space(B, B.colwise().norm(), kAbsorbed);
+  if (Q.cols() == 0) return 0;
   return std::sqrt((Q.transpose() * Z).squaredNorm() / Z.squaredNorm());
 }
 

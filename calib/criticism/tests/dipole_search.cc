@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/linear/ldlt.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -97,8 +99,9 @@ class DipoleSearch {
     Eigen::VectorXd g = s.by_residual;
     g -= s.gram.leftCols<3>() * from.moment;
     const Eigen::VectorXd d = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::LDLT<Eigen::MatrixXd> ldlt(d.asDiagonal() * M * d.asDiagonal());
-    Eigen::Vector3d step = d.cwiseProduct(ldlt.solve(d.cwiseProduct(g))).tail<3>();
+    const Eigen::VectorXd scaled =
+        solve_by_ldlt(d.asDiagonal() * M * d.asDiagonal(), Eigen::VectorXd(d.cwiseProduct(g)));
+    Eigen::Vector3d step = d.cwiseProduct(scaled).tail<3>();
     if (!step.allFinite()) step.setZero();
     const double distance_m = from.at_S_m.norm(), longest_m = kLongest * distance_m;
     if (step.norm() > longest_m) step *= longest_m / step.norm();

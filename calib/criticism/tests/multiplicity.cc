@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/multiplicity.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 #include <span>
 
+#include "calib/linear/normal_draws.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib {
@@ -54,12 +53,6 @@ struct Draws {
   Eigen::MatrixXd sums;  ///< columns x draws
 };
 
-Eigen::MatrixXd normal(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> gauss;
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return gauss(random); });
-}
-
 Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64_t seed) {
   Draws out;
   Eigen::Index m = 0, rows = 0;
@@ -85,8 +78,7 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
   gram.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
   gram.diagonal().array() += kJitter;
   gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(gram.selfadjointView<Eigen::Lower>());
-  out.sums = llt.matrixL() * normal(m, kDraws, seed);
+  out.sums = normal_draws(gram, kDraws, seed);
   return out;
 }
 

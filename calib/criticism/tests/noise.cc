@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "calib/linear/cholesky.h"
 #include "calib/stats/chi_square.h"
 #include "calib/stats/f_distribution.h"
 
@@ -59,7 +60,7 @@ Eigen::MatrixXd leverages(const Fitted& f) {
   const Eigen::MatrixXd A = f.J * scale.asDiagonal();
   Eigen::MatrixXd G = A.transpose() * A;
   G.diagonal().array() += 1e-9;
-  return G.llt().matrixL().solve(A.transpose()).transpose();
+  return Cholesky::of_unscaled(G).value().whiten_rows(A);
 }
 
 bool same_attitude(const Pose& a, const Pose& b) {

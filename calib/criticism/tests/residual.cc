@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/residual.h"
 
-#include <Eigen/QR>
 #include <cmath>
+
+#include "calib/linear/qr.h"
 
 namespace mgtd::calib {
 namespace {
 
 /// Columns shorter than this against their own length before elimination are rounding.
 constexpr double kRankTolerance = 1e-9;
-
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
-  Eigen::VectorXd scale = columns.colwise().norm();
-  scale = (scale.array() > 0).select(scale.cwiseInverse(), 0.0);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns * scale.asDiagonal());
-  qr.setThreshold(kRankTolerance);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
-}
 
 }  // namespace
 
@@ -37,7 +30,7 @@ Residual::Residual(const JointProblem& problem, const JointState& state, const L
   fixed << white.leftCols(p), priors.fixed;
   value_.resize(n + q);
   value_ << white.col(p), priors.residual;
-  basis_ = orthonormal(fixed);
+  basis_ = column_space(fixed, fixed.colwise().norm(), kRankTolerance);
   value_ -= basis_ * (basis_.transpose() * value_);
   chi2_ = value_.squaredNorm();
   const auto constraints = (priors.fixed.rowwise().squaredNorm().array() > 0).count();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/score.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/f_distribution.h"
 
 namespace mgtd::calib {
@@ -38,11 +38,11 @@ OneStep one_step(const Signature& s, const Hypothesis& h) {
   const Eigen::VectorXd length = (T.cwiseAbs2().transpose() * s.norms.cwiseAbs2()).cwiseSqrt();
   const Eigen::VectorXd scale = (length.array() > 0).select(length.cwiseInverse(), 0.0);
   const Eigen::MatrixXd M = scale.asDiagonal() * (T.transpose() * s.gram * T) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M);
-  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const SymmetricEigen eigen = symmetric_eigen(M);
+  const Eigen::VectorXd& values = eigen.values;
   const auto absorbed = (values.array() < kAbsorbed * kAbsorbed).count();
   const Eigen::Index rank = values.size() - absorbed;
-  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
+  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors.rightCols(rank) *
                             values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
   const Eigen::MatrixXd basis = T * V;
   return {.value = V * (basis.transpose() * s.by_residual), .covariance = V * V.transpose(), .basis = basis};

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/wandering_alternative.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "calib/linear/qr.h"
 
 namespace mgtd::calib {
 namespace {
@@ -100,8 +101,7 @@ double WanderingAlternative::deviance_with(const SlowLikelihood& with, const Cha
 double WanderingAlternative::curve_instead(int channel) const {
   constexpr int kCurve = 8;
   const Eigen::MatrixXd columns = slow_.middleCols(channel * kWanderingTerms, kCurve);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), kCurve);
+  const Eigen::MatrixXd Q = orthonormal(columns);
   const Eigen::VectorXd r = Q.transpose() * residual_.value();
   const SlowLikelihood with(likelihood_.sums().without(Q.transpose() * slow_, r));
   Channels others = theta_;
@@ -118,11 +118,7 @@ WanderingEstimate WanderingAlternative::beside(const Eigen::MatrixXd& rows) cons
 
 Eigen::MatrixXd WanderingAlternative::basis_of(const Eigen::MatrixXd& rows) const {
   const auto columns = residual_.project(rows);
-  Eigen::VectorXd scale = columns.norms;
-  scale = (scale.array() > 0).select(scale.cwiseInverse(), 0.0);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns.projected * scale.asDiagonal());
-  qr.setThreshold(kAbsorbedShare);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.projected.rows(), qr.rank());
+  return column_space(columns.projected, columns.norms, kAbsorbedShare);
 }
 
 }  // namespace mgtd::calib

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/whitener.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "calib/linear/qr.h"
 
 namespace mgtd::calib {
 namespace {
@@ -13,13 +14,6 @@ namespace {
 constexpr double kStart_nT = 1e-4;
 /// Of a step between two poses at one time.
 constexpr double kLeastStep_nT = 1e-6;
-
-/// Q' of a QR: the first rows of Q' X, as many as it has columns, hold the triangle; the others are free of
-/// the columns.
-Eigen::MatrixXd rotation(const Eigen::MatrixXd& columns) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  return Eigen::MatrixXd(qr.householderQ()).transpose();
-}
 
 /// ln det T'T of the triangle at the top.
 double log_det_of(const Eigen::MatrixXd& triangle) {
@@ -84,13 +78,13 @@ Whitener::Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance,
       for (Eigen::Index i = 0; i < W; ++i) mine(U + i, i) = 1 / kStart_nT;
     }
     mine.bottomRows<kChannels>() = felt(order_[k], step.now);
-    step.first = rotation(last);
+    step.first = triangularising_rotation(last);
     if (k > 0) log_det_ += log_det_of(step.first * last);
     Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + kChannels + kNuisances, U);
     left.topRows(W + kChannels) = (step.first * mine).bottomRows(W + kChannels);
     left.bottomRightCorner<kNuisances, kNuisances>() =
         nuisance.middleRows<kNuisances>(order_[k] * kPoseRows + kChannels);
-    step.second = rotation(left);
+    step.second = triangularising_rotation(left);
     carried = (step.second * left).topRows(U);
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
     rank_ += static_cast<int>((pose.weight.array() > 0).count()) - (pose.f_weight > 0 ? 0 : 1);

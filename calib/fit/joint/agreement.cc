@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/agreement.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "calib/linear/cholesky.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib {
@@ -30,13 +30,10 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
     Eigen::MatrixXd others = S - own.S;
     for (Eigen::Index i = 0; i < S.rows(); ++i)
       if (S(i, i) == 1 && own.S(i, i) == 1) others(i, i) = 1;  // held slots stay held
-    const Eigen::VectorXd d = others.diagonal().cwiseSqrt().cwiseInverse();
-    if (!d.allFinite()) continue;
-    const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * others * d.asDiagonal());
-    if (llt.info() != Eigen::Success) continue;
-    const Eigen::VectorXd g = d.cwiseProduct(own.g) * (fit.noise_inflation / fit.birge_ratio);
-    const double moved = g.dot(llt.solve(g));
-    const double by_noise = llt.solve(d.asDiagonal() * own.S * d.asDiagonal()).trace();
+    const auto information = Cholesky::of(others);
+    if (!information) continue;
+    const double moved = information->squared_length(own.g * (fit.noise_inflation / fit.birge_ratio));
+    const double by_noise = information->solve(own.S).trace();
     const double size = std::sqrt(moved / static_cast<double>(S.rows()));
     if (moved > kByNoise * by_noise && size > out.moved)
       out.moved = size, out.pose = fit.problem.poses[k].pose->number;

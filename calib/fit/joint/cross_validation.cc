@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/cross_validation.h"
 
-#include <Eigen/Cholesky>
-
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/linear/cholesky.h"
 
 namespace mgtd::calib {
 namespace {
@@ -37,10 +36,9 @@ std::optional<double> left_out_nT(const JointFit& fit) {
     Eigen::MatrixXd S = all.S - fold.share.S;
     for (Eigen::Index i = 0; i < S.rows(); ++i)
       if (all.S(i, i) == 1 && fold.share.S(i, i) == 1) S(i, i) = 1;
-    const Eigen::VectorXd d = S.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * S * d.asDiagonal());
-    if (!d.allFinite() || llt.info() != Eigen::Success) return std::nullopt;
-    JointState moved = fold.state.moved(d.cwiseProduct(llt.solve(d.cwiseProduct(all.g - fold.share.g))));
+    const auto information = Cholesky::of(S);
+    if (!information) return std::nullopt;
+    JointState moved = fold.state.moved(information->solve(Eigen::VectorXd(all.g - fold.share.g)));
     refit_nuisances(fold.problem, moved);
     const PoseResiduals more = pose_residuals(fold.problem, moved);
     sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;

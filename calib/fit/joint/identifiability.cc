@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "calib/fit/joint/joint_solver.h"
+#include "calib/linear/ldlt.h"
+#include "calib/linear/qr.h"
+#include "calib/linear/symmetric_eigen.h"
 #include "calib/sensor/sensor_equations.h"
 #include "proto/units.h"
 
@@ -42,8 +42,7 @@ Eigen::MatrixXd common_rotation(const JointProblem& problem, const Eigen::Vector
     for (int j = 0; j < 3; ++j) q(kSensorParameters * i + alpha + j, j) = d[alpha];
   }
   q(kSiteSlot, 3) = q(kSiteSlot + 1, 4) = 1;
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(q).householderQ() *
-         Eigen::MatrixXd::Identity(problem.fixed(), 5);
+  return orthonormal(q);
 }
 
 /// What a slot is called: sensor by sensor for a parameter's index alone, `all` for the four together.
@@ -115,7 +114,7 @@ FieldCoverage field_coverage(const JointProblem& problem, const JointState& stat
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& b : directions) mean += b / static_cast<double>(directions.size());
   for (const Eigen::Vector3d& b : directions) scatter += (b - mean) * (b - mean).transpose();
-  Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  Eigen::Vector3d axis = principal_axes(scatter).vectors.col(0);
   if (axis.dot(mean) < 0) axis = -axis;
   FieldCoverage out{.axis_P = axis, .least_rad = std::numbers::pi, .most_rad = 0};
   for (const Eigen::Vector3d& b : directions) {
@@ -141,7 +140,8 @@ std::vector<TableAngles> best_additions(const JointProblem& problem, const Joint
   }
   std::vector<TableAngles> out;
   while (!offers.empty() && static_cast<int>(out.size()) < kMaxAdd) {
-    const Eigen::MatrixXd x = information.ldlt().solve(weak);  // C w: rate of the variances with information
+    const Eigen::MatrixXd x =
+        solve_by_ldlt(information, weak);  // C w: rate of the variances with information
     std::size_t best = 0;
     double best_gain = -1;
     for (std::size_t c = 0; c < offers.size(); ++c) {
@@ -208,25 +208,25 @@ Identifiability identifiability(const JointProblem& problem, const JointState& s
   // The common rotation is made known, so that only what matters for the tensor can be weak.
   const Eigen::MatrixXd rotation = common_rotation(problem, d);
   information += information.diagonal().maxCoeff() * rotation * rotation.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  const SymmetricEigen eigen = symmetric_eigen(information);
   Identifiability out;
-  const double rounding = 1e-14 * eigen.eigenvalues().tail<1>()[0];
-  const double least = eigen.eigenvalues()[0];
-  out.condition = least > rounding ? std::sqrt(eigen.eigenvalues().tail<1>()[0] / least)
+  const double rounding = 1e-14 * eigen.values.tail<1>()[0];
+  const double least = eigen.values[0];
+  out.condition = least > rounding ? std::sqrt(eigen.values.tail<1>()[0] / least)
                                    : std::numeric_limits<double>::infinity();
   for (int j = 0; j < kMaxWeak; ++j) {
-    const double lambda = eigen.eigenvalues()[j];
+    const double lambda = eigen.values[j];
     const double sd = lambda > rounding ? 1 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
     if (sd < kWeak_nT) break;
-    WeakDirection weak{.sd_nT = sd, .parameters = {}, .direction = eigen.eigenvectors().col(j)};
+    WeakDirection weak{.sd_nT = sd, .parameters = {}, .direction = eigen.vectors.col(j)};
     name_parameters(problem, weak);
     out.weak.push_back(std::move(weak));
   }
   out.coverage = field_coverage(problem, state);
   if (out.weak.empty()) return out;
-  out.add = best_additions(problem, state, S,
-                           eigen.eigenvectors().leftCols(static_cast<Eigen::Index>(out.weak.size())), d, f_nT,
-                           candidates);
+  out.add =
+      best_additions(problem, state, S, eigen.vectors.leftCols(static_cast<Eigen::Index>(out.weak.size())), d,
+                     f_nT, candidates);
   return out;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/joint_fit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/fit/joint/robust_fit.h"
+#include "calib/linear/cholesky.h"
 
 namespace mgtd::calib {
 namespace {
@@ -160,14 +160,12 @@ Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& o
 }
 
 Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {
-  const Eigen::VectorXd d = S.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * S * d.asDiagonal());
-  if (!d.allFinite() || llt.info() != Eigen::Success) {
+  const auto information = Cholesky::of(S);
+  if (!information) {
     return fail(ErrorCode::refused, "the poses leave at least one combination of parameters undetermined",
                 "turn the rig about a second and a third axis");
   }
-  const Eigen::MatrixXd C = llt.solve(Eigen::MatrixXd::Identity(S.rows(), S.cols()));
-  return Eigen::MatrixXd(d.asDiagonal() * C * d.asDiagonal());
+  return information->inverse();
 }
 
 }  // namespace mgtd::calib

@@ -5,17 +5,10 @@
 
 #include <Eigen/Cholesky>
 
+#include "calib/linear/cholesky.h"
+
 namespace mgtd::calib {
 namespace {
-
-/// S^-1 g with the diagonal scaled to one, which takes out the units.
-std::optional<Eigen::VectorXd> scaled_solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g) {
-  if (!(S.diagonal().minCoeff() > 0)) return std::nullopt;
-  const Eigen::VectorXd d = S.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * S * d.asDiagonal());
-  if (llt.info() != Eigen::Success) return std::nullopt;
-  return d.cwiseProduct(llt.solve(d.cwiseProduct(g)));
-}
 
 /// Each pose's own step, given the step of the fixed block: its residuals move by J_f step first.
 void move_nuisances(const JointProblem& problem, const JointState& from, const Eigen::VectorXd& step,
@@ -47,17 +40,17 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
   for (; best.iterations < kMaxIterations; ++best.iterations) {
     if (problem.stop.stop_requested()) return fail(ErrorCode::state, "the fit was stopped");
     if (best.iterations == kMaxIterations - kSlowIterations) before = best.reduced.cost.total();
-    const auto step = scaled_solve(best.reduced.S, best.reduced.g);
-    if (step) {
-      const double decrease = best.reduced.predicted_decrease + step->dot(best.reduced.g);
+    if (const auto information = Cholesky::of(best.reduced.S)) {
+      const Eigen::VectorXd step = information->solve(best.reduced.g);
+      const double decrease = best.reduced.predicted_decrease + step.dot(best.reduced.g);
       if (decrease < enough + kRelativeDecrease * best.reduced.cost.total()) {
         if (damping == 0) return best;
         damping = 0;  // a damped step is short by nature: ask again without
         best.reduced = reduce(problem, best.state, damping);
         continue;
       }
-      JointState next = best.state.moved(*step);
-      move_nuisances(problem, best.state, *step, damping, next);
+      JointState next = best.state.moved(step);
+      move_nuisances(problem, best.state, step, damping, next);
       const double softer = damping < kFirstDamping ? 0 : damping / 10;
       const double limit = best.reduced.cost.total() * (1 + kRelativeDecrease);
       Reduced reduced = reduce(problem, next, softer);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <numbers>
@@ -11,6 +13,7 @@
 #include "calib/fit/joint/data_faults.h"
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/orientation.h"
+#include "calib/linear/symmetric_eigen.h"
 #include "calib/sensor/sensor_equations.h"
 #include "calib/sensor/sensor_start.h"
 #include "proto/units.h"
@@ -141,7 +144,7 @@ TurnAxis turn_axis(const JointProblem& problem) {
     turns.push_back(q.vec());
     scatter += q.vec() * q.vec().transpose();
   }
-  out.axis_P = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  out.axis_P = principal_axes(scatter).vectors.col(2);
   for (const Eigen::Vector3d& t : turns)
     out.off_axis = std::max(out.off_axis, (t - t.dot(out.axis_P) * out.axis_P).norm());
   return out;

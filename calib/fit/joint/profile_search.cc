@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/profile_search.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/library.h"
 #include "calib/fit/joint/joint_fit.h"
+#include "calib/linear/ldlt.h"
 
 namespace mgtd::calib {
 namespace {
@@ -137,7 +137,7 @@ class Search {
     const Reduced reduced = reduce(problem_, state_, 0);
     const Eigen::VectorXd d = reduced.S.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd g = d.cwiseProduct(reduced.g);
-    return g.dot((d.asDiagonal() * reduced.S * d.asDiagonal()).ldlt().solve(g));
+    return g.dot(solve_by_ldlt(d.asDiagonal() * reduced.S * d.asDiagonal(), g));
   }
 
   double cost_of(double value) {

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/linear/cholesky.h"
+#include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib {
 namespace {
@@ -31,27 +32,36 @@ std::vector<Eigen::Index> active(const Channels& theta) {
   return out;
 }
 
+Eigen::VectorXd roots_of(const Channels& theta, const std::vector<Eigen::Index>& columns) {
+  Eigen::VectorXd out(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    out[static_cast<Eigen::Index>(i)] = std::sqrt(theta[columns[i] / kJ]);
+  return out;
+}
+
+/// I + D G D; it is positive definite, because G has no negative eigenvalue but for rounding.
+Cholesky decomposed(const SlowSums& s, const std::vector<Eigen::Index>& columns,
+                    const Eigen::VectorXd& root) {
+  Eigen::MatrixXd M = root.asDiagonal() * s.gram(columns, columns) * root.asDiagonal();
+  M.diagonal().array() += 1;
+  return Cholesky::of_unscaled(M).value();
+}
+
 /// Everything about one theta: B = I + D G D with D = sqrt(theta), over the active columns.
 struct At {
   std::vector<Eigen::Index> columns;
   Eigen::VectorXd root;
-  Eigen::LLT<Eigen::MatrixXd> B;
+  Cholesky B;
   double Q;             ///< r' V^-1 r
   Eigen::VectorXd sol;  ///< B^-1 D h
 
-  At(const SlowSums& s, const Channels& theta) : columns(active(theta)), root(columns.size()) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      root[static_cast<Eigen::Index>(i)] = std::sqrt(theta[columns[i] / kJ]);
-    Eigen::MatrixXd M = root.asDiagonal() * s.gram(columns, columns) * root.asDiagonal();
-    M.diagonal().array() += 1;
-    B.compute(M);
+  At(const SlowSums& s, const Channels& theta)
+      : columns(active(theta)), root(roots_of(theta, columns)), B(decomposed(s, columns, root)) {
     const Eigen::VectorXd h = root.cwiseProduct(s.by_residual(columns));
     sol = B.solve(h);
     Q = s.chi2 - h.dot(sol);
   }
-  [[nodiscard]] double log_det() const {
-    return 2 * Eigen::MatrixXd(B.matrixL()).diagonal().array().log().sum();
-  }
+  [[nodiscard]] double log_det() const { return B.log_determinant(); }
 };
 
 /// The sums as they are once some channels wander.
@@ -60,7 +70,7 @@ SlowSums given(const SlowSums& s, const Channels& theta) {
   if (at.columns.empty()) return s;
   const Eigen::MatrixXd GD = s.gram(Eigen::all, at.columns) * at.root.asDiagonal();
   SlowSums out = s;
-  out.gram -= GD * at.B.solve(GD.transpose());
+  out.gram -= GD * at.B.solve(Eigen::MatrixXd(GD.transpose()));
   out.by_residual -= GD * at.sol;
   out.chi2 = at.Q;
   return out;
@@ -90,9 +100,9 @@ Asked ask(const SlowSums& s, const Place& place) {
   std::vector<Eigen::Index> columns;
   for (const int c : place.channels)
     for (int j = 0; j < kJ; ++j) columns.push_back(c * kJ + j);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(s.gram(columns, columns));
-  const Eigen::ArrayXd mu = eigen.eigenvalues().array().max(0);
-  const Eigen::ArrayXd b2 = (eigen.eigenvectors().transpose() * s.by_residual(columns)).array().square();
+  const SymmetricEigen eigen = symmetric_eigen(s.gram(columns, columns));
+  const Eigen::ArrayXd mu = eigen.values.array().max(0);
+  const Eigen::ArrayXd b2 = (eigen.vectors.transpose() * s.by_residual(columns)).array().square();
   if (!(mu.maxCoeff() > 0)) return {};
   std::vector<double> log_likelihood;
   Asked out;
@@ -203,10 +213,10 @@ SlowSums slow_sums(const JointFit& fit) {
   if (!terms.any()) return {};
   const Reduced all = reduce(fit.problem, fit.state, 0);
   const SlowEquations slow = slow_equations(fit.problem, fit.state, terms);
-  const Eigen::VectorXd d = all.S.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> llt(d.asDiagonal() * all.S * d.asDiagonal());
-  const Eigen::MatrixXd X = llt.matrixL().solve(d.asDiagonal() * slow.by_fixed);
-  const Eigen::VectorXd y = llt.matrixL().solve(d.cwiseProduct(all.g));
+  const auto information = Cholesky::of(all.S);
+  if (!information) return {};
+  const Eigen::MatrixXd X = information->whiten(slow.by_fixed);
+  const Eigen::VectorXd y = information->whiten(all.g);
   return {.gram = slow.gram - X.transpose() * X,
           .by_residual = slow.by_residual - X.transpose() * y,
           .chi2 = all.cost.total() - y.squaredNorm(),
@@ -228,8 +238,7 @@ void SlowLikelihood::climb(Channels& theta, int steps) const {
     if (at.columns.empty()) return;
     const double sigma2 = at.Q / sums_.dof;
     // V^-1 seen by the columns: U'V^-1 U = D^-1 (I - B^-1) D^-1, U'V^-1 r = D^-1 B^-1 D h.
-    const Eigen::VectorXd inverse =
-        at.B.solve(Eigen::MatrixXd::Identity(at.root.size(), at.root.size())).diagonal();
+    const Eigen::VectorXd inverse = at.B.inverse().diagonal();
     Channels squares = Channels::Zero(), trace = Channels::Zero();
     for (std::size_t i = 0; i < at.columns.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/calibration/field_derivative.h"
+#include "calib/linear/inverse.h"
 
 namespace mgtd::calib {
 namespace {
@@ -121,7 +122,7 @@ void Propagation::prepare_sensor(std::size_t i) {
   const Eigen::Matrix<double, kScalar, 1> size = J.rowwise().norm().cwiseInverse();
   J = size.asDiagonal() * J;
   const Eigen::Matrix<double, kScalar, kScalar> normal = J * J.transpose();
-  weight_[i] = -(size.asDiagonal() * (normal.inverse() * J));
+  weight_[i] = -(size.asDiagonal() * (inverse_by_lu(normal) * J));
   m_[i] = scatter.inverse() * m_[i];
 }
 

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "calib/linear/symmetric_eigen.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -72,8 +72,7 @@ struct Rows {
 
 Rows rows_of(const Eigen::Matrix3Xd& P, const Eigen::VectorXd& azimuth_rad) {
   const Eigen::Matrix3d normal = P * P.transpose();
-  const Eigen::Vector3d e =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector3d e = principal_axes(normal).values;
   const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
   const Eigen::Vector3d u = solver.solve(P.rowwise().sum());
   Rows rows;

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/linear/qr.h"
+
+#include <Eigen/QR>
+
+namespace mgtd::calib {
+namespace {
+
+using Pivoted = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+using Plain = Eigen::HouseholderQR<Eigen::MatrixXd>;
+
+}  // namespace
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& X, const Eigen::VectorXd& y) {
+  return Pivoted(X).solve(y);
+}
+
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& X, const Eigen::MatrixXd& Y) {
+  return Pivoted(X).solve(Y);
+}
+
+std::optional<Eigen::VectorXd> unique_least_squares(const Eigen::MatrixXd& X, const Eigen::VectorXd& y) {
+  const Pivoted qr(X);
+  if (qr.rank() < X.cols()) return std::nullopt;
+  return Eigen::VectorXd(qr.solve(y));
+}
+
+Eigen::Index rank_of(const Eigen::MatrixXd& X) { return Pivoted(X).rank(); }
+
+Eigen::MatrixXd column_space(const Eigen::MatrixXd& X, const Eigen::VectorXd& lengths, double tolerance) {
+  const Eigen::VectorXd scale = (lengths.array() > 0).select(lengths.cwiseInverse(), 0.0);
+  Pivoted qr(X * scale.asDiagonal());
+  qr.setThreshold(tolerance);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), qr.rank());
+}
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& X) {
+  return Plain(X).householderQ() * Eigen::MatrixXd::Identity(X.rows(), X.cols());
+}
+
+Eigen::MatrixXd complement_of(const Eigen::MatrixXd& X) {
+  const Pivoted qr(X);
+  const Eigen::MatrixXd Q = qr.householderQ();
+  return Q.rightCols(X.rows() - qr.rank());
+}
+
+Eigen::MatrixXd triangularising_rotation(const Eigen::MatrixXd& X) {
+  return Eigen::MatrixXd(Plain(X).householderQ()).transpose();
+}
+
+}  // namespace mgtd::calib

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+/// Least squares and orthonormal bases of columns, by Householder QR.
+namespace mgtd::calib {
+
+/// The b of least |y - X b|, columns pivoted. Of a column that depends on the others b is zero.
+[[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& X, const Eigen::VectorXd& y);
+[[nodiscard]] Eigen::MatrixXd least_squares(const Eigen::MatrixXd& X, const Eigen::MatrixXd& Y);
+/// The same where the columns are independent, else nothing.
+[[nodiscard]] std::optional<Eigen::VectorXd> unique_least_squares(const Eigen::MatrixXd& X,
+                                                                  const Eigen::VectorXd& y);
+/// Number of independent columns.
+[[nodiscard]] Eigen::Index rank_of(const Eigen::MatrixXd& X);
+
+/// Orthonormal basis of the space of the columns, each divided by its length in `lengths` first (a length of
+/// zero leaves the column out): what then is shorter than `tolerance` times the longest counts as dependent.
+[[nodiscard]] Eigen::MatrixXd column_space(const Eigen::MatrixXd& X, const Eigen::VectorXd& lengths,
+                                           double tolerance);
+/// Orthonormal basis of columns that are known to be independent, one for each and in their order.
+[[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& X);
+/// Orthonormal basis of what is perpendicular to all columns.
+[[nodiscard]] Eigen::MatrixXd complement_of(const Eigen::MatrixXd& X);
+/// Q' of X = Q R, square: the first rows of Q' X, as many as X has columns, hold the triangle R, the others
+/// are zero.
+[[nodiscard]] Eigen::MatrixXd triangularising_rotation(const Eigen::MatrixXd& X);
+
+}  // namespace mgtd::calib
