@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/stats/chi_square.h"
 
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
 
 namespace mgtd::calib {
@@ -50,12 +51,11 @@ double chi_square_p(double x, double dof) { return std::exp(log_p(x, dof)); }
 double chi_square_log10_p(double x, double dof) { return log_p(x, dof) / std::log(10.0); }
 
 double chi_square_limit(double p, double dof) {
-  double low = 0, high = dof + 1;
-  while (log_p(high, dof) > std::log(p)) high *= 2;
-  while (high - low > 1e-11 * high) {
-    const double middle = 0.5 * (low + high);
-    (log_p(middle, dof) > std::log(p) ? low : high) = middle;
-  }
+  const auto excess = [&](double x) { return log_p(x, dof) - std::log(p); };
+  const auto near = [](double low, double high) { return high - low <= 1e-11 * high; };
+  double beyond = dof + 1;
+  while (excess(beyond) > 0) beyond *= 2;
+  const auto [low, high] = boost::math::tools::bisect(excess, 0.0, beyond, near);
   return 0.5 * (low + high);
 }
 

@@ -148,6 +148,8 @@ class Search {
     return solution ? solution->reduced.cost.total() : std::numeric_limits<double>::infinity();
   }
 
+  /// By golden section: Boost.Math's brent_find_minima lays a parabola through three costs, and the cost of a
+  /// value at which the fit fails is infinite.
   double refine(double low, double high, double value) {
     constexpr double kGolden = 0.6180339887498949;
     constexpr int kSteps = 12;  // to 0.3 % of the interval

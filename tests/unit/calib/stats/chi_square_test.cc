@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
 namespace mgtd::calib {
@@ -26,6 +27,22 @@ TEST(ChiSquare, LimitIsTheInverse) {
   EXPECT_NEAR(chi_square_limit(0.05, 10), 18.307038, 1e-6);
   for (const double p : {1e-12, 1e-3, 0.5, 0.999})
     EXPECT_NEAR(chi_square_p(chi_square_limit(p, 7), 7) / p, 1, 1e-8);
+}
+
+TEST(ChiSquare, AgreesWithBoostAsFarAsADoubleHolds) {
+  for (const double dof : {1.0, 3.0, 12.0, 150.0, 4000.0}) {
+    for (const double ratio : {0.3, 0.9, 1.0, 1.1, 2.0, 30.0}) {
+      const double x = ratio * dof, p = boost::math::gamma_q(dof / 2, x / 2);
+      if (p < 1e-290) continue;
+      EXPECT_NEAR(chi_square_log10_p(x, dof), std::log10(p), 1e-11 * (1 + x)) << x << ' ' << dof;
+    }
+  }
+}
+
+/// Why the logarithm is written by hand.
+TEST(ChiSquare, LogarithmGoesOnWhereBoostsProbabilityIsZero) {
+  EXPECT_EQ(boost::math::gamma_q(6.0, 2000.0), 0);
+  EXPECT_NEAR(chi_square_log10_p(4000, 12), -854.1619085236, 1e-8);
 }
 
 TEST(ChiSquare, LogarithmDoesNotUnderflow) {

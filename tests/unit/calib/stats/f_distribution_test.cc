@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,20 @@ TEST(FDistribution, IsTheClosedFormForTwoDegreesOfFreedom) {
 TEST(FDistribution, AgreesWithTables) {
   EXPECT_NEAR(std::pow(10, f_log10_p(4.9646, 1, 10)), 0.05, 1e-5);
   EXPECT_NEAR(std::pow(10, f_log10_p(4.1027, 5, 20)), 0.01, 1e-6);
+}
+
+TEST(FDistribution, AgreesWithBoostAsFarAsADoubleHoldsAndGoesOnBeyond) {
+  const auto boosts = [](double f, double k, double nu) {
+    return boost::math::ibeta(nu / 2, k / 2, nu / (nu + k * f));
+  };
+  for (const double k : {1.0, 4.0, 12.0}) {
+    for (const double nu : {3.0, 40.0, 900.0}) {
+      for (const double f : {0.2, 1.0, 3.0, 20.0})
+        EXPECT_NEAR(f_log10_p(f, k, nu), std::log10(boosts(f, k, nu)), 1e-10) << f << ' ' << k << ' ' << nu;
+    }
+  }
+  EXPECT_EQ(boosts(1e4, 12, 900), 0);
+  EXPECT_NEAR(f_log10_p(1e4, 12, 900), -946.4975961197, 1e-6);
 }
 
 TEST(FDistribution, WithoutALimitToTheNoiseIsTheChiSquare) {
