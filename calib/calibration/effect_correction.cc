@@ -2,6 +2,7 @@
 #include "calib/calibration/effect_correction.h"
 
 #include "calib/effects/library/library.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 namespace {
@@ -71,7 +72,7 @@ ChannelCovariance EffectCorrection::covariance(const Conditions& at, const Field
                                                const std::optional<Eigen::Matrix3d>& R,
                                                bool remove_site) const {
   const Eigen::MatrixXd d = array_.derivative(at, b_P_nT, R, remove_site);
-  ChannelCovariance out = d * covariance_ * d.transpose();
+  ChannelCovariance out = propagated_covariance(d, covariance_);
   for (std::size_t e = 0; e < effects_.size(); ++e) {
     if (acts(*effects_[e], remove_site) && !effects_[e]->missing(at.pose).empty())
       out.diagonal() += size2_nT2_[e];

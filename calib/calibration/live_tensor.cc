@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/linear/propagation.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -47,7 +49,7 @@ void LiveTensor::refresh(const FieldVector& b_P_nT) {
   const ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
   g_sd_nT_per_m_ = pipeline_.gradient_sd(covariance, 1);
   const auto C = closure_rows(calibration()->geometry);
-  closure_weight_ = (C * (covariance + pipeline_.sample_noise()) * C.transpose()).eval().inverse();
+  closure_weight_ = propagated_covariance(C, covariance + pipeline_.sample_noise()).inverse();
   at_P_nT_ = b_P_nT.head<3>();
   fresh_ = kRefresh;
 }

@@ -8,6 +8,7 @@
 
 #include "calib/calibration/effect_correction.h"
 #include "calib/calibration/field_derivative.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 namespace {
@@ -141,7 +142,7 @@ void TensorPipeline::prepare_uncertainty() {
   const auto G = gradient_rows(geometry_);
   for (Eigen::Index i = 0; i < 6; ++i) {
     gradient_variance_[static_cast<std::size_t>(i)] = covariance(G.row(i), G.row(i));
-    unmodelled_[static_cast<std::size_t>(i)] = G.row(i).dot(scatter * G.row(i).transpose());
+    unmodelled_[static_cast<std::size_t>(i)] = propagated_variance(G.row(i).transpose(), scatter);
   }
   const auto C = closure_rows(geometry_);
   std::size_t pair = 0;
@@ -190,7 +191,7 @@ Gradient TensorPipeline::gradient_sd(const ChannelCovariance& covariance, double
   std::array<double, 6> sd{};
   for (std::size_t i = 0; i < sd.size(); ++i) {
     const auto row = G.row(static_cast<Eigen::Index>(i));
-    sd[i] = std::sqrt(row.dot(covariance * row.transpose()) + gradient_noise(i, samples));
+    sd[i] = std::sqrt(propagated_variance(row.transpose(), covariance) + gradient_noise(i, samples));
   }
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
 }
@@ -199,7 +200,7 @@ void TensorPipeline::add_uncertainty(const ChannelCovariance& covariance, double
                                      TensorSample& out) const {
   out.g_sd_nT_per_m = gradient_sd(covariance, samples);
   const auto C = closure_rows(geometry_);
-  out.closure.chi2 = closure_chi2(out.closure, C * (covariance + noise_ / samples) * C.transpose());
+  out.closure.chi2 = closure_chi2(out.closure, propagated_covariance(C, covariance + noise_ / samples));
 }
 
 TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,

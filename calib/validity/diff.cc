@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/calibration/scale_gauge.h"
+#include "calib/linear/propagation.h"
 #include "proto/units.h"
 
 namespace mgtd::calib {
@@ -122,7 +123,7 @@ DiffReport diff(const Calibration& a, const Calibration& b) {
   J.topLeftCorner<kArrayParameters, kArrayParameters>() = placed.jacobian;
   out.scale_taken_out = scale_is_free(a) || scale_is_free(b);
   const Eigen::MatrixXd C =
-      small_sample_factor(a.poses) * from.C + small_sample_factor(b.poses) * (J * to.C * J.transpose());
+      small_sample_factor(a.poses) * from.C + small_sample_factor(b.poses) * propagated_covariance(J, to.C);
   out.change = judge({.difference = to.x - from.x,
                       .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),

@@ -9,6 +9,7 @@
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/outliers.h"
+#include "calib/linear/propagation.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/poses/run_time.h"
 #include "calib/validity/fixed_calibration.h"
@@ -141,7 +142,7 @@ Evidence evidence_of(const FixedCalibration& frozen, const std::array<SensorMode
     if ((seen.A * freedoms.col(j)).squaredNorm() > 1e-8 * whole) visible.push_back(j);
   }
   return {.difference = seen.z / noise,
-          .covariance = Eigen::MatrixXd::Identity(n, n) + A * frozen.covariance * A.transpose(),
+          .covariance = Eigen::MatrixXd::Identity(n, n) + propagated_covariance(A, frozen.covariance),
           .gain = A,
           .common = A * freedoms(Eigen::all, visible),
           .slots = shown_slots(frozen.instrument)};

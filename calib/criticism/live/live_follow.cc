@@ -9,6 +9,7 @@
 
 #include "calib/linear/cholesky.h"
 #include "calib/linear/inverse.h"
+#include "calib/linear/propagation.h"
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/chi_square.h"
@@ -173,7 +174,7 @@ Following against(const Rows& r, const ClosurePrior& prior, const Eigen::VectorX
   const Eigen::Matrix4d cov = V.bottomRightCorner<4, 4>();
   out.log10_p = chi_square_log10_p(beta.dot(cov.llt().solve(beta)), 4);
   const Eigen::Vector4d slope = r.unwhiten * beta;
-  const Eigen::Matrix4d slope_cov = r.unwhiten * cov * r.unwhiten.transpose();
+  const Eigen::Matrix4d slope_cov = propagated_covariance(r.unwhiten, cov);
   const Eigen::Vector4d stated_sd =
       stated(prior.parameters, r.u.colwise().mean().transpose()).diagonal().cwiseSqrt();
   out.range = x.maxCoeff() - x.minCoeff();

@@ -9,6 +9,7 @@
 #include "calib/calibration/field_derivative.h"
 #include "calib/calibration/tensor.h"
 #include "calib/effects/effect_context.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 namespace {
@@ -41,8 +42,8 @@ ParameterRows closure_by_parameters(const Calibration& c) {
 ClosurePrior closure_prior(const Calibration& c) {
   const auto W = closure_by_parameters(c);
   const auto rows = closure_rows(c.geometry);
-  return {rows * TensorPipeline(std::make_shared<const Calibration>(c)).sample_noise() * rows.transpose(),
-          W * c.covariance * W.transpose()};
+  return {propagated_covariance(rows, TensorPipeline(std::make_shared<const Calibration>(c)).sample_noise()),
+          propagated_covariance(W, c.covariance)};
 }
 
 LiveWindow::LiveWindow(double block_s, std::size_t blocks, const ClosurePrior& prior)

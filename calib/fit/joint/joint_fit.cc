@@ -6,6 +6,7 @@
 
 #include "calib/fit/joint/robust_fit.h"
 #include "calib/linear/cholesky.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 namespace {
@@ -60,7 +61,7 @@ std::array<double, 3> common_rotation_sd(const Eigen::MatrixXd& covariance) {
   const auto sd = [&](int parameter) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(covariance.rows());
     for (int i = 0; i < kSensors; ++i) row[kSensorParameters * i + parameter] = 1.0 / kSensors;
-    return std::sqrt(row.dot(covariance * row));
+    return std::sqrt(propagated_variance(row, covariance));
   };
   return {sd(alpha), sd(beta), sd(gamma)};
 }

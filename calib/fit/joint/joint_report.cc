@@ -14,6 +14,7 @@
 #include "calib/fit/joint/profile_search.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
 #include "calib/fit/two_step/two_step.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 namespace {
@@ -35,7 +36,7 @@ SiteField site_of(const JointFit& fit) {
                 .declination_sd_rad = kUnknown};
   if (!fit.problem.has_angles) return out;
   const Eigen::Matrix2d rows = inclination_declination_rows(fit.state.direction);
-  const Eigen::Matrix2d C = rows * fit.covariance.block<2, 2>(kSiteSlot, kSiteSlot) * rows.transpose();
+  const Eigen::Matrix2d C = propagated_covariance(rows, fit.covariance.block<2, 2>(kSiteSlot, kSiteSlot));
   out.inclination_rad = inclination_of(fit.state.direction);
   out.declination_rad = declination_of(fit.state.direction);
   out.inclination_sd_rad = std::sqrt(C(0, 0));

@@ -5,6 +5,7 @@
 
 #include "calib/calibration/tensor.h"
 #include "calib/fit/joint/pose_model.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 
@@ -30,7 +31,7 @@ Gradient calibration_tensor_sd(const std::array<SensorModel, kSensors>& sensors,
       J.middleCols<kSensorParameters>(kSensorParameters * i) =
           rows.middleCols<3>(3 * i) * gain * linear.d_sensor.middleRows<3>(3 * i);
     }
-    variance += (J * covariance.topLeftCorner<kSensorBlock, kSensorBlock>() * J.transpose()).diagonal() / 6;
+    variance += propagated_variances(J, covariance.topLeftCorner<kSensorBlock, kSensorBlock>()) / 6;
   }
   const Eigen::Matrix<double, 6, 1> sd = variance.cwiseMax(0).cwiseSqrt();
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};

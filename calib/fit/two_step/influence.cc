@@ -7,6 +7,7 @@
 
 #include "calib/calibration/field_derivative.h"
 #include "calib/linear/inverse.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib {
 namespace {
@@ -231,7 +232,7 @@ Influence Propagation::result() {
   for (Eigen::Index k = 0; k < readings_.poses(); ++k) add_pose(k);
   direct_ += options_.field_sd_nT * options_.field_sd_nT * common_field_ * common_field_.transpose();
   const Mixing all = angles_from_turns() * origin_from_all() * through_step1_;
-  const Mixing covariance = all * direct_ * all.transpose();
+  const Mixing covariance = propagated_covariance(all, direct_);
   Influence out;
   out.covariance = covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
   out.covariance = 0.5 * (out.covariance + out.covariance.transpose()).eval();

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+/// Propagation of errors to first order: what y = f(x) inherits from an x of covariance C, with the Jacobian
+/// J = df/dx. Templates, so that small matrices keep their fixed size in the loop over the samples.
+namespace mgtd::calib {
+
+/// J C J': the covariance of y.
+template <typename Jacobian, typename Covariance>
+[[nodiscard]] auto propagated_covariance(const Eigen::MatrixBase<Jacobian>& J,
+                                         const Eigen::MatrixBase<Covariance>& C) {
+  constexpr int kRows = Jacobian::RowsAtCompileTime;
+  return Eigen::Matrix<double, kRows, kRows>(J * C * J.transpose());
+}
+
+/// The diagonal of J C J' alone: the variances of y.
+template <typename Jacobian, typename Covariance>
+[[nodiscard]] auto propagated_variances(const Eigen::MatrixBase<Jacobian>& J,
+                                        const Eigen::MatrixBase<Covariance>& C) {
+  return Eigen::Matrix<double, Jacobian::RowsAtCompileTime, 1>((J * C * J.transpose()).diagonal());
+}
+
+/// g' C g: the variance of a single y with the gradient g, a column.
+template <typename Gradient, typename Covariance>
+[[nodiscard]] double propagated_variance(const Eigen::MatrixBase<Gradient>& g,
+                                         const Eigen::MatrixBase<Covariance>& C) {
+  return g.dot(C * g);
+}
+
+}  // namespace mgtd::calib
