@@ -10,7 +10,7 @@
 
 #include "calib/calibration/effect_correction.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 constexpr std::array<std::string_view, 6> kComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
@@ -42,10 +42,10 @@ Result<void> usable(const TensorPipeline& pipeline, const Pose& pose, const Appl
                 "fit with one (mgt fit --with site.gradient), or leave --remove-site out");
   }
   if (options.remove_site && !pose.angles()) {
-    return fail(
-        ErrorCode::refused,
-        fmt::format("pose {} has no {}, and the site turns with the table", pose.number, missing_angle(pose)),
-        "give azimuth_deg, pitch_deg and roll_deg of every pose, or leave --remove-site out");
+    return fail(ErrorCode::refused,
+                fmt::format("pose {} has no {}, and the site turns with the table", pose.number,
+                            effects::missing_angle(pose)),
+                "give azimuth_deg, pitch_deg and roll_deg of every pose, or leave --remove-site out");
   }
   if (effects == nullptr || options.missing_ok) return {};
   const auto left_out = effects->left_out(pose, options.remove_site);
@@ -109,4 +109,4 @@ std::string format_applied(const std::vector<AppliedPose>& rows) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

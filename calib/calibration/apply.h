@@ -10,7 +10,7 @@
 
 /// A calibration applied to a pose table, row by row: calibrated field of every sensor, field and tensor at
 /// the centre, closure. Instrument errors are removed; what the site does is real field and stays in.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 struct ApplyOptions {
   /// Effects of the site that are in the calibration (gradient, dipole, drift) are taken out too: what is
@@ -23,7 +23,7 @@ struct ApplyOptions {
 struct AppliedPose {
   int number{0};
   std::optional<double> t_s;
-  FieldVector b_P_nT;   ///< of the four sensors
+  sensor::FieldVector b_P_nT;  ///< of the four sensors
   TensorSample sample;  ///< at the centre; the noise is that of the pose's n_eff (else n, else one) samples
   /// Effects that were not removed, by name; the sd is wider by their size.
   std::vector<std::string> left_out;
@@ -40,4 +40,4 @@ struct AppliedPose {
 /// between) when any effect was. Six decimals.
 [[nodiscard]] std::string format_applied(const std::vector<AppliedPose>& rows);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

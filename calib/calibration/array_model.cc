@@ -9,7 +9,7 @@
 #include "calib/effects/library/library.h"
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 constexpr int kMaxSteps = 60;
@@ -39,15 +39,16 @@ PlatformInput platform_input(const Eigen::Vector3d& b_P_nT, const std::optional<
 
 }  // namespace
 
-ArrayModel::ArrayModel(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
-                       const std::vector<EffectPtr>& effects, Eigen::VectorXd coefficients)
+ArrayModel::ArrayModel(const std::array<sensor::SensorModel, kSensors>& sensors,
+                       const sensor::Geometry& geometry, const std::vector<effects::EffectPtr>& effects,
+                       Eigen::VectorXd coefficients)
     : effects_(effects),
       sensors_(sensors),
       positions_P_m_(geometry.positions_P_m()),
-      table_(effects_, Level::table),
-      site_(effects_, Level::site),
-      platform_(effects_, Level::platform),
-      axis_(effects_, Level::axis),
+      table_(effects_, effects::Level::table),
+      site_(effects_, effects::Level::site),
+      platform_(effects_, effects::Level::platform),
+      axis_(effects_, effects::Level::axis),
       coefficients_(std::move(coefficients)) {
   for (std::size_t i = 0; i < kSensors; ++i) {
     gain_[i] = sensors[i].R_PS() * sensors[i].response().inverse();
@@ -56,10 +57,10 @@ ArrayModel::ArrayModel(const std::array<SensorModel, kSensors>& sensors, const G
 }
 
 Result<ArrayModel> ArrayModel::of(const Calibration& calibration) {
-  std::vector<EffectPtr> effects;
+  std::vector<effects::EffectPtr> effects;
   std::vector<double> values;
   for (const CalibratedEffect& fitted : calibration.effects) {
-    auto effect = make_effect(fitted.effect);
+    auto effect = effects::library::make_effect(fitted.effect);
     if (!effect) return tl::unexpected(effect.error());
     if ((*effect)->coefficients().size() != fitted.coefficients.size()) {
       return fail(ErrorCode::bad_input,
@@ -75,9 +76,9 @@ Result<ArrayModel> ArrayModel::of(const Calibration& calibration) {
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
 }
 
-FieldVector ArrayModel::correct(const Conditions& at, const FieldVector& y_nT,
-                                const std::optional<Eigen::Matrix3d>& R) const {
-  FieldVector out;
+sensor::FieldVector ArrayModel::correct(const effects::Conditions& at, const sensor::FieldVector& y_nT,
+                                        const std::optional<Eigen::Matrix3d>& R) const {
+  sensor::FieldVector out;
   for (int i = 0; i < kSensors; ++i) {
     const auto s = static_cast<std::size_t>(i);
     Eigen::Vector3d v = y_nT.segment<3>(3 * i) - offset_nT_[s];
@@ -98,8 +99,8 @@ FieldVector ArrayModel::correct(const Conditions& at, const FieldVector& y_nT,
   return out;
 }
 
-FieldVector ArrayModel::site_field(const Conditions& at, const Eigen::Matrix3d& R) const {
-  FieldVector out = FieldVector::Zero();
+sensor::FieldVector ArrayModel::site_field(const effects::Conditions& at, const Eigen::Matrix3d& R) const {
+  sensor::FieldVector out = sensor::FieldVector::Zero();
   for (int i = 0; i < kSensors && !site_.empty(); ++i) {
     const Eigen::Vector3d x_S_m = R.transpose() * positions_P_m_[static_cast<std::size_t>(i)];
     out.segment<3>(3 * i) = R * Eigen::Vector3d(site_.value(at, i, {x_S_m.data(), 3}, coefficients_));
@@ -107,14 +108,15 @@ FieldVector ArrayModel::site_field(const Conditions& at, const Eigen::Matrix3d& 
   return out;
 }
 
-Eigen::MatrixXd ArrayModel::derivative(const Conditions& at, const FieldVector& b_P_nT,
+Eigen::MatrixXd ArrayModel::derivative(const effects::Conditions& at, const sensor::FieldVector& b_P_nT,
                                        const std::optional<Eigen::Matrix3d>& R, bool site_removed) const {
   const Eigen::Index m = coefficients_.size();
-  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(kChannels, kArrayParameters + m);
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(sensor::kChannels, kArrayParameters + m);
   for (int i = 0; i < kSensors; ++i) {
     const auto s = static_cast<std::size_t>(i);
     const Eigen::Vector3d b = b_P_nT.segment<3>(3 * i);
-    d.block<3, kSensorParameters>(3 * i, kSensorParameters * i) = field_derivative(sensors_[s], b);
+    d.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
+        field_derivative(sensors_[s], b);
     auto columns = d.block(3 * i, kArrayParameters, 3, m);
     if (!axis_.empty()) {
       const Eigen::Vector3d v = sensors_[s].response() * sensors_[s].R_PS().transpose() * b;
@@ -132,14 +134,14 @@ Eigen::MatrixXd ArrayModel::derivative(const Conditions& at, const FieldVector& 
   return d;
 }
 
-Eigen::Matrix3d ArrayModel::attitude(const Conditions& at) const {
+Eigen::Matrix3d ArrayModel::attitude(const effects::Conditions& at) const {
   const TableAngles a = at.pose.angles().value_or(TableAngles{});
   std::array<double, 5> s{a.azimuth_rad, a.pitch_rad, a.roll_rad, 0, 0};
   if (!table_.empty()) {
-    const TermValue terms = table_.value(at, 0, s, coefficients_);
+    const effects::TermValue terms = table_.value(at, 0, s, coefficients_);
     for (std::size_t j = 0; j < s.size(); ++j) s[j] += terms[static_cast<Eigen::Index>(j)];
   }
-  return table_rotation(s[0], s[1], s[2], s[3], s[4]);
+  return sensor::table_rotation(s[0], s[1], s[2], s[3], s[4]);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -13,13 +13,13 @@
 
 /// Four sensors and the effects of a model, from readings back to fields: the inverse of what the fit
 /// predicts. An effect whose inputs were not measured at a pose (Effect::missing) is not removed there.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 class ArrayModel {
  public:
   /// `coefficients` of all effects one after the other.
-  ArrayModel(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
-             const std::vector<EffectPtr>& effects, Eigen::VectorXd coefficients);
+  ArrayModel(const std::array<sensor::SensorModel, kSensors>& sensors, const sensor::Geometry& geometry,
+             const std::vector<effects::EffectPtr>& effects, Eigen::VectorXd coefficients);
 
   /// Refuses an effect that is not in the library or has other coefficients there.
   [[nodiscard]] static Result<ArrayModel> of(const Calibration& calibration);
@@ -28,27 +28,27 @@ class ArrayModel {
   /// real field and stay in. `R` (site to platform) is used by effects that know where down is; without it
   /// they see no gravity. The inverse is a fixed point: exact to 1e-9 nT for effects that change a reading by
   /// less than a tenth of itself.
-  [[nodiscard]] FieldVector correct(const Conditions& at, const FieldVector& y_nT,
-                                    const std::optional<Eigen::Matrix3d>& R) const;
+  [[nodiscard]] sensor::FieldVector correct(const effects::Conditions& at, const sensor::FieldVector& y_nT,
+                                            const std::optional<Eigen::Matrix3d>& R) const;
   /// What the site's effects add to a uniform field at each sensor, platform frame.
-  [[nodiscard]] FieldVector site_field(const Conditions& at, const Eigen::Matrix3d& R) const;
+  [[nodiscard]] sensor::FieldVector site_field(const effects::Conditions& at, const Eigen::Matrix3d& R) const;
   [[nodiscard]] bool has_site_effects() const { return !site_.empty(); }
   [[nodiscard]] bool has_instrument_effects() const { return !axis_.empty() || !platform_.empty(); }
   /// Site to platform as the table truly stood, for recorded angles.
-  [[nodiscard]] Eigen::Matrix3d attitude(const Conditions& at) const;
+  [[nodiscard]] Eigen::Matrix3d attitude(const effects::Conditions& at) const;
   /// Derivative of the corrected field by the 48 parameters and then by all coefficients, readings held, to
   /// first order in the effects. `site_removed`: of the corrected field less site_field.
-  [[nodiscard]] Eigen::MatrixXd derivative(const Conditions& at, const FieldVector& b_P_nT,
+  [[nodiscard]] Eigen::MatrixXd derivative(const effects::Conditions& at, const sensor::FieldVector& b_P_nT,
                                            const std::optional<Eigen::Matrix3d>& R, bool site_removed) const;
 
  private:
-  std::vector<EffectPtr> effects_;  ///< kept alive for the terms
-  std::array<SensorModel, kSensors> sensors_;
+  std::vector<effects::EffectPtr> effects_;  ///< kept alive for the terms
+  std::array<sensor::SensorModel, kSensors> sensors_;
   std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R (CA)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
   std::array<Eigen::Vector3d, kSensors> positions_P_m_;
-  LevelTerms table_, site_, platform_, axis_;
+  effects::LevelTerms table_, site_, platform_, axis_;
   Eigen::VectorXd coefficients_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -3,7 +3,7 @@
 
 #include "calib/calibration/calibration_json.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 void Calibration::seal() { id = content_id(to_json(*this)); }
 
@@ -17,4 +17,4 @@ Eigen::MatrixXd full_covariance(const Calibration& c) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

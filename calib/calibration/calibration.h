@@ -16,9 +16,9 @@
 /// A Calibration is the result of a run: an immutable value that is complete in itself. Its id is the hash of
 /// its content, so that two calibrations with one id are the same; every streamed sample names the one it
 /// used.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
-inline constexpr int kArrayParameters = kSensors * kSensorParameters;  // 48
+inline constexpr int kArrayParameters = kSensors * sensor::kSensorParameters;  // 48
 using ArrayCovariance = Eigen::Matrix<double, kArrayParameters, kArrayParameters>;
 /// One number per sensor (row) and axis (column), nT.
 using AxisNoise = Eigen::Matrix<double, kSensors, 3, Eigen::RowMajor>;
@@ -50,14 +50,14 @@ struct CalibratedEffect {
 struct Calibration {
   std::string id;      ///< "c" and 12 hex digits; set by seal()
   std::string method;  ///< "simplified", "two-step", "joint"
-  std::array<SensorModel, kSensors> sensors;
+  std::array<sensor::SensorModel, kSensors> sensors;
   /// Of the parameters in kParameterNames order, sensor by sensor.
   ArrayCovariance covariance{ArrayCovariance::Zero()};
   std::vector<CalibratedEffect> effects;
   /// Of all coefficients (rows) with the 48 parameters and then with all coefficients (columns); empty
   /// without effects.
   Eigen::MatrixXd effect_covariance;
-  Geometry geometry;
+  sensor::Geometry geometry;
   /// Of one sample, for the stream's standard deviations; 0: unknown.
   AxisNoise sample_noise_nT{AxisNoise::Zero()};
   AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< scatter of a pose mean about the model
@@ -81,4 +81,4 @@ struct Calibration {
 /// Refuses a file whose id is not the hash of its content, an unknown schema, or a missing key, by name.
 [[nodiscard]] Result<Calibration> calibration_from_json_text(std::string_view text);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

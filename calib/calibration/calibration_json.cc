@@ -7,7 +7,7 @@
 #include "proto/json_text.h"
 #include "proto/sha256.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 using nlohmann::json;
@@ -28,13 +28,13 @@ AxisNoise noise_from(const json& object) {
   return noise;
 }
 
-json sensor_json(const SensorModel& s) {
-  const ParameterVector p = s.parameters();
+json sensor_json(const sensor::SensorModel& s) {
+  const sensor::ParameterVector p = s.parameters();
   json out;
-  for (int k = 0; k < kSensorParameters; ++k) {
-    const std::string name(kParameterNames[static_cast<std::size_t>(k)]);
-    const bool is_scale = k >= cx && k <= cz;
-    const bool is_offset = k >= ix && k <= iz;
+  for (int k = 0; k < sensor::kSensorParameters; ++k) {
+    const std::string name(sensor::kParameterNames[static_cast<std::size_t>(k)]);
+    const bool is_scale = k >= sensor::cx && k <= sensor::cz;
+    const bool is_offset = k >= sensor::ix && k <= sensor::iz;
     out[name + (is_scale ? "" : is_offset ? "_nT" : "_rad")] = p[k];
   }
   json mounting = json::array();
@@ -43,12 +43,12 @@ json sensor_json(const SensorModel& s) {
   return out;
 }
 
-SensorModel sensor_from_json(const json& object) {
-  ParameterVector p;
-  for (int k = 0; k < kSensorParameters; ++k) {
-    const std::string name(kParameterNames[static_cast<std::size_t>(k)]);
-    const bool is_scale = k >= cx && k <= cz;
-    const bool is_offset = k >= ix && k <= iz;
+sensor::SensorModel sensor_from_json(const json& object) {
+  sensor::ParameterVector p;
+  for (int k = 0; k < sensor::kSensorParameters; ++k) {
+    const std::string name(sensor::kParameterNames[static_cast<std::size_t>(k)]);
+    const bool is_scale = k >= sensor::cx && k <= sensor::cz;
+    const bool is_offset = k >= sensor::ix && k <= sensor::iz;
     p[k] = object.at(name + (is_scale ? "" : is_offset ? "_nT" : "_rad"));
   }
   Eigen::Matrix3d mounting;
@@ -58,7 +58,7 @@ SensorModel sensor_from_json(const json& object) {
           object.at("mounting").at(i).at(j);
     }
   }
-  return SensorModel::from_parameters(p, mounting);
+  return sensor::SensorModel::from_parameters(p, mounting);
 }
 
 json triangle(const ArrayCovariance& c) {
@@ -207,7 +207,7 @@ Result<Calibration> checked(const json& object, std::optional<std::string_view> 
   auto c = read(object, text);
   if (!c) return c;
   for (const CalibratedEffect& e : c->effects) {
-    if (make_effect(e.effect)) continue;
+    if (effects::library::make_effect(e.effect)) continue;
     return fail(ErrorCode::bad_input,
                 fmt::format("it holds an effect that this version cannot remove: {}", e.effect),
                 "use the version of mgt that wrote it");
@@ -248,7 +248,7 @@ json to_json(const std::vector<Check>& checks) {
 
 json to_json(const Calibration& c) {
   json sensors = json::array();
-  for (const SensorModel& s : c.sensors) sensors.push_back(sensor_json(s));
+  for (const sensor::SensorModel& s : c.sensors) sensors.push_back(sensor_json(s));
   return {{"schema", kSchema},
           {"id", c.id},
           {"method", c.method},
@@ -285,4 +285,4 @@ Result<Calibration> calibration_from_json_text(std::string_view text) {
   return object ? checked(*object, text) : tl::unexpected(object.error());
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

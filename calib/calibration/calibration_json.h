@@ -6,7 +6,7 @@
 
 /// CAL.json, schema "mgt.cal/1". Every key names its unit; angles are radians here, since degrees would
 /// cost the last bit. Covariance in the same units, upper triangle by rows. Reading gives the same bits back.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 [[nodiscard]] nlohmann::json to_json(const Calibration& calibration);
 [[nodiscard]] nlohmann::json to_json(const std::vector<Check>& checks);
@@ -14,4 +14,4 @@ namespace mgtd::calib {
 [[nodiscard]] std::string content_id(nlohmann::json object);
 [[nodiscard]] Result<Calibration> calibration_from_json(const nlohmann::json& object);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

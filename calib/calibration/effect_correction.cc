@@ -4,16 +4,16 @@
 #include "calib/effects/library/library.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
-std::vector<EffectPtr> effects_of(const Calibration& c, const PoseTable* run) {
-  std::vector<EffectPtr> out;
-  for (const CalibratedEffect& e : c.effects) out.push_back(*make_effect(e.effect));
+std::vector<effects::EffectPtr> effects_of(const Calibration& c, const PoseTable* run) {
+  std::vector<effects::EffectPtr> out;
+  for (const CalibratedEffect& e : c.effects) out.push_back(*effects::library::make_effect(e.effect));
   if (run == nullptr) return out;
-  EffectContext context{.table = run, .offset_nT = std::array<Eigen::Vector3d, kSensors>{}};
+  effects::EffectContext context{.table = run, .offset_nT = std::array<Eigen::Vector3d, kSensors>{}};
   for (std::size_t i = 0; i < kSensors; ++i) (*context.offset_nT)[i] = c.sensors[i].offset_nT;
-  auto bound = bound_to_run(out, context);
+  auto bound = effects::library::bound_to_run(out, context);
   return bound ? std::move(*bound) : out;
 }
 
@@ -30,20 +30,20 @@ Eigen::VectorXd coefficients_of(const Calibration& c) {
 EffectCorrection::EffectCorrection(const Calibration& c, const PoseTable* run)
     : EffectCorrection(c, effects_of(c, run)) {}
 
-EffectCorrection::EffectCorrection(const Calibration& c, std::vector<EffectPtr> effects)
+EffectCorrection::EffectCorrection(const Calibration& c, std::vector<effects::EffectPtr> effects)
     : effects_(std::move(effects)),
       array_(c.sensors, c.geometry, effects_, coefficients_of(c)),
       covariance_(full_covariance(c)),
       means_(c.reference.currents_A) {
   for (const CalibratedEffect& e : c.effects)
-    size2_nT2_.push_back(Eigen::Map<const FieldVector>(e.size_nT.data()).cwiseAbs2());
+    size2_nT2_.push_back(Eigen::Map<const sensor::FieldVector>(e.size_nT.data()).cwiseAbs2());
   if (const auto start = parse_utc(c.reference.t_utc)) time_.start = *start;
 }
 
 EffectCorrection EffectCorrection::live(const Calibration& c) {
-  std::vector<EffectPtr> effects = effects_of(c, nullptr);
-  std::vector<std::shared_ptr<LiveMemory>> memories;
-  for (EffectPtr& effect : effects) {
+  std::vector<effects::EffectPtr> effects = effects_of(c, nullptr);
+  std::vector<std::shared_ptr<effects::laws::LiveMemory>> memories;
+  for (effects::EffectPtr& effect : effects) {
     auto [remembering, memory] = effect->live();
     if (!memory) continue;
     effect = std::move(remembering);
@@ -54,25 +54,26 @@ EffectCorrection EffectCorrection::live(const Calibration& c) {
   return out;
 }
 
-bool EffectCorrection::acts(const Effect& effect, bool remove_site) const {
-  return effect.level() == Level::axis || effect.level() == Level::platform ||
-         (remove_site && effect.level() == Level::site);
+bool EffectCorrection::acts(const effects::Effect& effect, bool remove_site) const {
+  return effect.level() == effects::Level::axis || effect.level() == effects::Level::platform ||
+         (remove_site && effect.level() == effects::Level::site);
 }
 
 std::vector<EffectCorrection::LeftOut> EffectCorrection::left_out(const Pose& pose, bool remove_site) const {
   std::vector<LeftOut> out;
-  for (const EffectPtr& effect : effects_) {
+  for (const effects::EffectPtr& effect : effects_) {
     const std::string_view column = effect->missing(pose);
     if (!column.empty() && acts(*effect, remove_site)) out.push_back({effect->name(), column});
   }
   return out;
 }
 
-ChannelCovariance EffectCorrection::covariance(const Conditions& at, const FieldVector& b_P_nT,
-                                               const std::optional<Eigen::Matrix3d>& R,
-                                               bool remove_site) const {
+sensor::ChannelCovariance EffectCorrection::covariance(const effects::Conditions& at,
+                                                       const sensor::FieldVector& b_P_nT,
+                                                       const std::optional<Eigen::Matrix3d>& R,
+                                                       bool remove_site) const {
   const Eigen::MatrixXd d = array_.derivative(at, b_P_nT, R, remove_site);
-  ChannelCovariance out = propagated_covariance(d, covariance_);
+  sensor::ChannelCovariance out = linear::propagated_covariance(d, covariance_);
   for (std::size_t e = 0; e < effects_.size(); ++e) {
     if (acts(*effects_[e], remove_site) && !effects_[e]->missing(at.pose).empty())
       out.diagonal() += size2_nT2_[e];
@@ -80,29 +81,30 @@ ChannelCovariance EffectCorrection::covariance(const Conditions& at, const Field
   return out;
 }
 
-FieldVector EffectCorrection::fields(const Pose& pose, const FieldVector& y_nT) const {
-  const Conditions at{pose, time_.hours(pose), nullptr, &means_};
+sensor::FieldVector EffectCorrection::fields(const Pose& pose, const sensor::FieldVector& y_nT) const {
+  const effects::Conditions at{pose, time_.hours(pose), nullptr, &means_};
   std::optional<Eigen::Matrix3d> R;
   if (pose.angles()) R = array_.attitude(at);
   return array_.correct(at, y_nT, R);
 }
 
-ChannelCovariance EffectCorrection::covariance(const Pose& pose, const FieldVector& b_P_nT) const {
-  const Conditions at{pose, time_.hours(pose), nullptr, &means_};
+sensor::ChannelCovariance EffectCorrection::covariance(const Pose& pose,
+                                                       const sensor::FieldVector& b_P_nT) const {
+  const effects::Conditions at{pose, time_.hours(pose), nullptr, &means_};
   std::optional<Eigen::Matrix3d> R;
   if (pose.angles()) R = array_.attitude(at);
   return covariance(at, b_P_nT, R, false);
 }
 
-Corrected EffectCorrection::correct(const Pose& pose, const FieldVector& y_nT, bool remove_site,
+Corrected EffectCorrection::correct(const Pose& pose, const sensor::FieldVector& y_nT, bool remove_site,
                                     const Pose* previous) const {
-  const Conditions at{pose, time_.hours(pose), previous, &means_};
+  const effects::Conditions at{pose, time_.hours(pose), previous, &means_};
   std::optional<Eigen::Matrix3d> R;
   if (pose.angles()) R = array_.attitude(at);
-  Corrected out{.b_P_nT = array_.correct(at, y_nT, R), .covariance = ChannelCovariance::Zero()};
+  Corrected out{.b_P_nT = array_.correct(at, y_nT, R), .covariance = sensor::ChannelCovariance::Zero()};
   out.covariance = covariance(at, out.b_P_nT, R, remove_site);
   if (remove_site && R) out.b_P_nT -= array_.site_field(at, *R);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -12,14 +12,14 @@
 /// Readings to fields by a calibration that carries effects, with what the calibration leaves uncertain.
 /// Costs some ten microseconds a pose; without effects TensorPipeline has a cheaper way, and LiveTensor has
 /// one for a stream.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 struct Corrected {
-  FieldVector b_P_nT;  ///< instrument effects removed; the site's too where asked
+  sensor::FieldVector b_P_nT;  ///< instrument effects removed; the site's too where asked
   /// By the 48 parameters and the coefficients, to first order in the effects, and by the effects that were
   /// left out (their size in the calibration's own run, squared, channel by channel). Sample noise is not in
   /// it.
-  ChannelCovariance covariance;
+  sensor::ChannelCovariance covariance;
 };
 
 class EffectCorrection {
@@ -30,7 +30,9 @@ class EffectCorrection {
 
   /// For a stream: effects with a memory read one of those in memories(), which the caller moves on.
   [[nodiscard]] static EffectCorrection live(const Calibration& calibration);
-  [[nodiscard]] const std::vector<std::shared_ptr<LiveMemory>>& memories() const { return memories_; }
+  [[nodiscard]] const std::vector<std::shared_ptr<effects::laws::LiveMemory>>& memories() const {
+    return memories_;
+  }
   /// Whether the time since the run of the calibration is known.
   [[nodiscard]] bool knows_start() const { return time_.start.has_value(); }
 
@@ -44,27 +46,30 @@ class EffectCorrection {
   /// Effects that should be removed at this pose and cannot be.
   [[nodiscard]] std::vector<LeftOut> left_out(const Pose& pose, bool remove_site) const;
   /// The corrected fields alone.
-  [[nodiscard]] FieldVector fields(const Pose& pose, const FieldVector& y_nT) const;
+  [[nodiscard]] sensor::FieldVector fields(const Pose& pose, const sensor::FieldVector& y_nT) const;
   /// What Corrected::covariance holds, at corrected fields, site effects left in.
-  [[nodiscard]] ChannelCovariance covariance(const Pose& pose, const FieldVector& b_P_nT) const;
+  [[nodiscard]] sensor::ChannelCovariance covariance(const Pose& pose,
+                                                     const sensor::FieldVector& b_P_nT) const;
   /// `remove_site` needs the pose's table angles. `previous`: the pose before, for effects with a memory.
-  [[nodiscard]] Corrected correct(const Pose& pose, const FieldVector& y_nT, bool remove_site,
+  [[nodiscard]] Corrected correct(const Pose& pose, const sensor::FieldVector& y_nT, bool remove_site,
                                   const Pose* previous = nullptr) const;
 
  private:
-  EffectCorrection(const Calibration& calibration, std::vector<EffectPtr> effects);
-  [[nodiscard]] bool acts(const Effect& effect, bool remove_site) const;
+  EffectCorrection(const Calibration& calibration, std::vector<effects::EffectPtr> effects);
+  [[nodiscard]] bool acts(const effects::Effect& effect, bool remove_site) const;
 
-  [[nodiscard]] ChannelCovariance covariance(const Conditions& at, const FieldVector& b_P_nT,
-                                             const std::optional<Eigen::Matrix3d>& R, bool remove_site) const;
+  [[nodiscard]] sensor::ChannelCovariance covariance(const effects::Conditions& at,
+                                                     const sensor::FieldVector& b_P_nT,
+                                                     const std::optional<Eigen::Matrix3d>& R,
+                                                     bool remove_site) const;
 
-  std::vector<EffectPtr> effects_;
-  std::vector<std::shared_ptr<LiveMemory>> memories_;
-  std::vector<FieldVector> size2_nT2_;  ///< of each effect
+  std::vector<effects::EffectPtr> effects_;
+  std::vector<std::shared_ptr<effects::laws::LiveMemory>> memories_;
+  std::vector<sensor::FieldVector> size2_nT2_;  ///< of each effect
   ArrayModel array_;
   Eigen::MatrixXd covariance_;  ///< of parameters and coefficients
-  CovariateMeans means_;
-  RunTime time_;
+  effects::CovariateMeans means_;
+  poses::RunTime time_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -7,14 +7,14 @@
 
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 constexpr double kTurned = 2e-3;  // of the field, relative
 
 }  // namespace
 
-LiveTensor::LiveTensor(Geometry geometry) : pipeline_(geometry) {}
+LiveTensor::LiveTensor(sensor::Geometry geometry) : pipeline_(geometry) {}
 
 LiveTensor::LiveTensor(const std::shared_ptr<const Calibration>& calibration) : pipeline_(calibration) {
   if (pipeline_.effects() == nullptr || !pipeline_.effects()->has_instrument_effects()) return;
@@ -39,17 +39,17 @@ void LiveTensor::look_around(const Epoch& epoch, const LiveConditions& condition
   }
   if (conditions.covariates != nullptr) now_.covariates = *conditions.covariates;
   if (effects_->memories().empty()) return;
-  SensorReadings v_nT;
+  effects::laws::SensorReadings v_nT;
   for (std::size_t i = 0; i < kSensors; ++i) v_nT[i] = epoch.y_nT[i] - calibration()->sensors[i].offset_nT;
   for (const auto& memory : effects_->memories())
     memory->follow(to_seconds(epoch.t.mono.time_since_epoch()), v_nT);
 }
 
-void LiveTensor::refresh(const FieldVector& b_P_nT) {
-  const ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
+void LiveTensor::refresh(const sensor::FieldVector& b_P_nT) {
+  const sensor::ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
   g_sd_nT_per_m_ = pipeline_.gradient_sd(covariance, 1);
   const auto C = closure_rows(calibration()->geometry);
-  closure_weight_ = propagated_covariance(C, covariance + pipeline_.sample_noise()).inverse();
+  closure_weight_ = linear::propagated_covariance(C, covariance + pipeline_.sample_noise()).inverse();
   at_P_nT_ = b_P_nT.head<3>();
   fresh_ = kRefresh;
 }
@@ -57,7 +57,7 @@ void LiveTensor::refresh(const FieldVector& b_P_nT) {
 TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditions) {
   if (!effects_) return pipeline_.apply(epoch);
   look_around(epoch, conditions);
-  const FieldVector b_P_nT = effects_->fields(now_, stacked(epoch.y_nT));
+  const sensor::FieldVector b_P_nT = effects_->fields(now_, stacked(epoch.y_nT));
   TensorSample out = pipeline_.sample(b_P_nT);
 
   const auto lacking = effects_->left_out(now_, false);
@@ -87,4 +87,4 @@ TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditi
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -16,7 +16,7 @@
 /// own run, and the sample is flagged `incomplete`; left_out() says which and what it lacks. The part of g_sd
 /// that the calibration contributes changes slowly and is computed again after kRefresh samples, when the
 /// field has turned or changed by 0.2 %, or when another effect is left out.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 /// What is known beside the epoch.
 struct LiveConditions {
@@ -33,7 +33,7 @@ struct LeftOutEffect {
 class LiveTensor {
  public:
   /// No calibration: as TensorPipeline.
-  explicit LiveTensor(Geometry geometry);
+  explicit LiveTensor(sensor::Geometry geometry);
   explicit LiveTensor(const std::shared_ptr<const Calibration>& calibration);
 
   /// Epochs in order of time.
@@ -49,7 +49,7 @@ class LiveTensor {
   static constexpr int kRefresh = 50;
 
   void look_around(const Epoch& epoch, const LiveConditions& conditions);
-  void refresh(const FieldVector& b_P_nT);
+  void refresh(const sensor::FieldVector& b_P_nT);
 
   TensorPipeline pipeline_;
   std::unique_ptr<const EffectCorrection> effects_;  ///< null without effects of the instrument
@@ -62,4 +62,4 @@ class LiveTensor {
   Eigen::Matrix4d closure_weight_{Eigen::Matrix4d::Zero()};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -4,7 +4,7 @@
 
 #include "calib/calibration/calibration.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 /// Stands in the text `gauge` of a calibration that was fitted without a known field.
 inline constexpr std::string_view kScaleIsFree = "the overall scale is free";
@@ -14,4 +14,4 @@ inline constexpr std::string_view kScaleIsFree = "the overall scale is free";
   return calibration.gauge.find(kScaleIsFree) != std::string::npos;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

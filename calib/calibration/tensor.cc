@@ -10,7 +10,7 @@
 #include "calib/calibration/field_derivative.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -34,15 +34,15 @@ Pose pose_of(const Epoch& epoch) {
 
 }  // namespace
 
-FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
-  FieldVector out;
+sensor::FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
+  sensor::FieldVector out;
   for (std::size_t i = 0; i < kSensorCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
   return out;
 }
 
-Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry) {
+Eigen::Matrix<double, 6, sensor::kChannels> gradient_rows(const sensor::Geometry& geometry) {
   const double g = 1 / geometry.baseline_m;
-  Eigen::Matrix<double, 6, kChannels> m = Eigen::Matrix<double, 6, kChannels>::Zero();
+  Eigen::Matrix<double, 6, sensor::kChannels> m = Eigen::Matrix<double, 6, sensor::kChannels>::Zero();
   const auto difference = [&](int row, int axis, int plus, int minus, double weight) {
     m(row, 3 * plus + axis) += weight;
     m(row, 3 * minus + axis) -= weight;
@@ -57,9 +57,9 @@ Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry) {
   return m;
 }
 
-Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry) {
+Eigen::Matrix<double, 4, sensor::kChannels> closure_rows(const sensor::Geometry& geometry) {
   const double g = 1 / geometry.baseline_m;
-  Eigen::Matrix<double, 4, kChannels> m = Eigen::Matrix<double, 4, kChannels>::Zero();
+  Eigen::Matrix<double, 4, sensor::kChannels> m = Eigen::Matrix<double, 4, sensor::kChannels>::Zero();
   m(0, 3 * 1) = g, m(0, 3 * 3) = -g;  // Bxy
   m(0, 1) = -g, m(0, 3 * 2 + 1) = g;  // -Byx
   for (int axis = 0; axis < 3; ++axis) {
@@ -68,7 +68,7 @@ Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry) {
   return m;
 }
 
-FieldAndGradient field_and_gradient(const FieldVector& b, const Geometry& geometry) {
+FieldAndGradient field_and_gradient(const sensor::FieldVector& b, const sensor::Geometry& geometry) {
   const auto b1 = b.segment<3>(0), b2 = b.segment<3>(3), b3 = b.segment<3>(6), b4 = b.segment<3>(9);
   const double d = geometry.baseline_m;
   const Eigen::Vector3d along_x = (b1 - b3) / d, along_y = (b2 - b4) / d;
@@ -86,7 +86,7 @@ FieldAndGradient field_and_gradient(const FieldVector& b, const Geometry& geomet
   return out;
 }
 
-TensorPipeline::TensorPipeline(Geometry geometry) : geometry_(geometry) {
+TensorPipeline::TensorPipeline(sensor::Geometry geometry) : geometry_(geometry) {
   gain_.fill(Eigen::Matrix3d::Identity());
   offset_nT_.fill(Eigen::Vector3d::Zero());
 }
@@ -96,7 +96,7 @@ TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, c
       id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
       geometry_(calibration_->geometry) {
   for (std::size_t i = 0; i < kSensorCount; ++i) {
-    const SensorModel& sensor = calibration_->sensors[i];
+    const sensor::SensorModel& sensor = calibration_->sensors[i];
     gain_[i] = sensor.R_PS() * sensor.response().inverse();
     offset_nT_[i] = sensor.offset_nT;
   }
@@ -108,23 +108,23 @@ TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, c
 void TensorPipeline::prepare_uncertainty() {
   // The derivative of the corrected fields is linear in q = (1, b): evaluate it at the four unit values of q.
   using ParameterRows = Eigen::Matrix<double, 4, kArrayParameters>;  // rows: q components
-  const auto rows_of = [&](const Eigen::Matrix<double, 1, kChannels>& w) {
+  const auto rows_of = [&](const Eigen::Matrix<double, 1, sensor::kChannels>& w) {
     ParameterRows rows;
     for (std::size_t i = 0; i < kSensorCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const auto weight = w.segment<3>(3 * at);
       const auto constant =
           (weight * field_derivative(calibration_->sensors[i], Eigen::Vector3d::Zero())).eval();
-      rows.block<1, kSensorParameters>(0, at * kSensorParameters) = constant;
+      rows.block<1, sensor::kSensorParameters>(0, at * sensor::kSensorParameters) = constant;
       for (int a = 0; a < 3; ++a) {
-        rows.block<1, kSensorParameters>(1 + a, at * kSensorParameters) =
+        rows.block<1, sensor::kSensorParameters>(1 + a, at * sensor::kSensorParameters) =
             weight * field_derivative(calibration_->sensors[i], Eigen::Vector3d::Unit(a)) - constant;
       }
     }
     return rows;
   };
   const auto corrected = [&](const AxisNoise& of_reading_nT) {
-    ChannelCovariance out = ChannelCovariance::Zero();
+    sensor::ChannelCovariance out = sensor::ChannelCovariance::Zero();
     for (std::size_t i = 0; i < kSensorCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       out.block<3, 3>(3 * at, 3 * at) =
@@ -133,16 +133,16 @@ void TensorPipeline::prepare_uncertainty() {
     return out;
   };
   noise_ = corrected(calibration_->sample_noise_nT);
-  const ChannelCovariance scatter = corrected(calibration_->pose_noise_nT);
-  const auto covariance = [&](const Eigen::Matrix<double, 1, kChannels>& u,
-                              const Eigen::Matrix<double, 1, kChannels>& v) {
+  const sensor::ChannelCovariance scatter = corrected(calibration_->pose_noise_nT);
+  const auto covariance = [&](const Eigen::Matrix<double, 1, sensor::kChannels>& u,
+                              const Eigen::Matrix<double, 1, sensor::kChannels>& v) {
     const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
     return Variance{u.dot(noise_ * v.transpose()), 0.5 * (Q + Q.transpose())};
   };
   const auto G = gradient_rows(geometry_);
   for (Eigen::Index i = 0; i < 6; ++i) {
     gradient_variance_[static_cast<std::size_t>(i)] = covariance(G.row(i), G.row(i));
-    unmodelled_[static_cast<std::size_t>(i)] = propagated_variance(G.row(i).transpose(), scatter);
+    unmodelled_[static_cast<std::size_t>(i)] = linear::propagated_variance(G.row(i).transpose(), scatter);
   }
   const auto C = closure_rows(geometry_);
   std::size_t pair = 0;
@@ -151,13 +151,13 @@ void TensorPipeline::prepare_uncertainty() {
   }
 }
 
-FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const {
+sensor::FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const {
   std::array<Eigen::Vector3d, kSensors> b;
   for (std::size_t i = 0; i < kSensorCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
   return stacked(b);
 }
 
-TensorSample TensorPipeline::sample(const FieldVector& b_P_nT) const {
+TensorSample TensorPipeline::sample(const sensor::FieldVector& b_P_nT) const {
   const FieldAndGradient computed = field_and_gradient(b_P_nT, geometry_);
   TensorSample out;
   out.calibration_id = id_;
@@ -186,25 +186,26 @@ void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   out.closure.chi2 = closure_chi2(out.closure, S);
 }
 
-Gradient TensorPipeline::gradient_sd(const ChannelCovariance& covariance, double samples) const {
+Gradient TensorPipeline::gradient_sd(const sensor::ChannelCovariance& covariance, double samples) const {
   const auto G = gradient_rows(geometry_);
   std::array<double, 6> sd{};
   for (std::size_t i = 0; i < sd.size(); ++i) {
     const auto row = G.row(static_cast<Eigen::Index>(i));
-    sd[i] = std::sqrt(propagated_variance(row.transpose(), covariance) + gradient_noise(i, samples));
+    sd[i] = std::sqrt(linear::propagated_variance(row.transpose(), covariance) + gradient_noise(i, samples));
   }
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
 }
 
-void TensorPipeline::add_uncertainty(const ChannelCovariance& covariance, double samples,
+void TensorPipeline::add_uncertainty(const sensor::ChannelCovariance& covariance, double samples,
                                      TensorSample& out) const {
   out.g_sd_nT_per_m = gradient_sd(covariance, samples);
   const auto C = closure_rows(geometry_);
-  out.closure.chi2 = closure_chi2(out.closure, propagated_covariance(C, covariance + noise_ / samples));
+  out.closure.chi2 =
+      closure_chi2(out.closure, linear::propagated_covariance(C, covariance + noise_ / samples));
 }
 
 TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,
-                                   FieldVector* fields_P_nT) const {
+                                   sensor::FieldVector* fields_P_nT) const {
   const bool with_effects = effects_ && (remove_site || effects_->has_instrument_effects());
   Corrected corrected;
   if (with_effects) {
@@ -239,4 +240,4 @@ TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -19,7 +19,7 @@
 ///     Bxx=(Bx1-Bx3)/d  Byx=(By1-By3)/d  Bzx=(Bz1-Bz3)/d  Bxy=(Bx2-Bx4)/d  Byy=(By2-By4)/d  Bzy=(Bz2-Bz4)/d
 ///     Gxx = Bxx, Gyy = Byy, Gzz = -(Bxx+Byy), Gxy = (Bxy+Byx)/2, Gxz = Bzx, Gyz = Bzy.
 /// Does not remove site effects: a gradient of the site is real field.
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 
 class EffectCorrection;
 
@@ -30,14 +30,15 @@ struct FieldAndGradient {
 };
 
 /// The four vectors one below the other.
-[[nodiscard]] FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b);
+[[nodiscard]] sensor::FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b);
 
-[[nodiscard]] FieldAndGradient field_and_gradient(const FieldVector& b_P_nT, const Geometry& geometry);
+[[nodiscard]] FieldAndGradient field_and_gradient(const sensor::FieldVector& b_P_nT,
+                                                  const sensor::Geometry& geometry);
 
 /// The six gradient components (xx, yy, zz, xy, xz, yz) and the four closure quantities (curl, centre x, y,
 /// z) as linear functions of the corrected components.
-[[nodiscard]] Eigen::Matrix<double, 6, kChannels> gradient_rows(const Geometry& geometry);
-[[nodiscard]] Eigen::Matrix<double, 4, kChannels> closure_rows(const Geometry& geometry);
+[[nodiscard]] Eigen::Matrix<double, 6, sensor::kChannels> gradient_rows(const sensor::Geometry& geometry);
+[[nodiscard]] Eigen::Matrix<double, 4, sensor::kChannels> closure_rows(const sensor::Geometry& geometry);
 
 /// The stream's arithmetic for one calibration. Everything that does not depend on the sample is computed
 /// once; a sample allocates nothing.
@@ -51,7 +52,7 @@ class TensorPipeline {
  public:
   /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
   /// are NaN.
-  explicit TensorPipeline(Geometry geometry);
+  explicit TensorPipeline(sensor::Geometry geometry);
   /// `run`: poses that will be applied, for effects with a memory (EffectCorrection).
   explicit TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run = nullptr);
 
@@ -64,15 +65,16 @@ class TensorPipeline {
   /// The same for a pose of a table, with everything it knows and the pose before it. `remove_site` takes the
   /// effects of the site out, for which the pose needs its table angles. seq and time stay empty.
   [[nodiscard]] TensorSample apply(const Pose& pose, double samples, bool remove_site = false,
-                                   const Pose* previous = nullptr, FieldVector* fields_P_nT = nullptr) const;
+                                   const Pose* previous = nullptr,
+                                   sensor::FieldVector* fields_P_nT = nullptr) const;
   /// The corrected field at each sensor, platform frame, by the 48 parameters alone.
-  [[nodiscard]] FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
+  [[nodiscard]] sensor::FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
   /// Field, gradient and closure of corrected fields, without their uncertainty.
-  [[nodiscard]] TensorSample sample(const FieldVector& b_P_nT) const;
+  [[nodiscard]] TensorSample sample(const sensor::FieldVector& b_P_nT) const;
   /// Of the gradient: `covariance` of the corrected components by calibration and effects, and the noise.
-  [[nodiscard]] Gradient gradient_sd(const ChannelCovariance& covariance, double samples) const;
+  [[nodiscard]] Gradient gradient_sd(const sensor::ChannelCovariance& covariance, double samples) const;
   /// Of one sample, in the corrected components; zero where noise_known() is false.
-  [[nodiscard]] const ChannelCovariance& sample_noise() const { return noise_; }
+  [[nodiscard]] const sensor::ChannelCovariance& sample_noise() const { return noise_; }
   [[nodiscard]] bool noise_known() const { return noise_known_; }
   /// Null without a calibration or without effects in it.
   [[nodiscard]] const EffectCorrection* effects() const { return effects_.get(); }
@@ -91,18 +93,19 @@ class TensorPipeline {
 
   void prepare_uncertainty();
   void add_uncertainty(double samples, TensorSample& out) const;
-  void add_uncertainty(const ChannelCovariance& covariance, double samples, TensorSample& out) const;
+  void add_uncertainty(const sensor::ChannelCovariance& covariance, double samples, TensorSample& out) const;
   [[nodiscard]] double gradient_noise(std::size_t component, double samples) const {
     return std::max(gradient_variance_[component].noise / samples, unmodelled_[component]);
   }
 
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
-  Geometry geometry_;
+  sensor::Geometry geometry_;
   std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R_PS (C A)^-1
   std::array<Eigen::Vector3d, kSensors> offset_nT_;
   std::shared_ptr<const EffectCorrection> effects_;
-  ChannelCovariance noise_{ChannelCovariance::Zero()};  ///< of one sample, in the corrected components
+  sensor::ChannelCovariance noise_{
+      sensor::ChannelCovariance::Zero()};  ///< of one sample, in the corrected components
   bool noise_known_{false};
   std::array<Variance, 6> gradient_variance_;
   std::array<double, 6> unmodelled_{};  ///< variance of a gradient by what scatters about the model
@@ -110,4 +113,4 @@ class TensorPipeline {
   std::array<Variance, 10> closure_covariance_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -8,7 +8,7 @@
 #include "calib/fit/two_step/azimuth_origin.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 namespace {
 
 constexpr double kPose_min = 0.5;  ///< where the table tells no times
@@ -54,11 +54,12 @@ auto drifted(const PoseTable& table, double t_s) {
 }
 
 /// The same field at another pitch.
-void tilt(Pose& pose, double by_rad, const std::array<SensorModel, kSensors>& sensors) {
+void tilt(Pose& pose, double by_rad, const std::array<sensor::SensorModel, kSensors>& sensors) {
   const auto before = pose.angles();
   if (!before) return;
   *pose.pitch_rad += by_rad;
-  const Eigen::Matrix3d turn = table_rotation(*pose.angles()) * table_rotation(*before).transpose();
+  const Eigen::Matrix3d turn =
+      fit::two_step::table_rotation(*pose.angles()) * fit::two_step::table_rotation(*before).transpose();
   for (std::size_t i = 0; i < sensors.size(); ++i)
     pose.y_nT[i] = sensors[i].predict(turn * sensors[i].correct(pose.y_nT[i]));
 }
@@ -91,7 +92,7 @@ double minutes_per_pose(const PoseTable& table) {
 }
 
 PoseTable extended(const PoseTable& table, const Action& action,
-                   const std::array<SensorModel, kSensors>& sensors) {
+                   const std::array<sensor::SensorModel, kSensors>& sensors) {
   PoseTable out = table;
   const Pose& last = table.poses.back();
   const std::size_t n = table.poses.size();
@@ -110,4 +111,4 @@ PoseTable extended(const PoseTable& table, const Action& action,
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

@@ -10,7 +10,7 @@
 
 /// What could be measured on top of a run to tell two effects apart: some of its own attitudes again, under
 /// other conditions.
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 
 inline constexpr std::size_t kActionPoses = 24;  ///< that an action adds
 
@@ -30,8 +30,8 @@ struct Action {
 /// The run with the poses of an action behind it; readings stand for the attitude only, those of a new tilt
 /// as `sensors` would make them.
 [[nodiscard]] PoseTable extended(const PoseTable& table, const Action& action,
-                                 const std::array<SensorModel, kSensors>& sensors);
+                                 const std::array<sensor::SensorModel, kSensors>& sensors);
 
 [[nodiscard]] double minutes_per_pose(const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

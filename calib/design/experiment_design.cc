@@ -15,7 +15,7 @@
 #include "calib/calibration/tensor.h"
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 namespace {
 
 constexpr std::size_t kHelpful = 6;
@@ -40,18 +40,18 @@ void assume_warming(PoseTable& table, double warming_degC) {
     if (!pose.t_s) continue;
     const double elapsed = (*pose.t_s - *begin) / (*end - *begin);
     const double rise = (1 - std::exp(-kTimeConstants * elapsed)) / (1 - std::exp(-kTimeConstants));
-    pose.T_degC.fill(kReferenceT_degC + warming_degC * rise);
+    pose.T_degC.fill(effects::kReferenceT_degC + warming_degC * rise);
   }
 }
 
 PoseTable measured_in_thought(const DesignRequest& request) {
-  const Eigen::Vector3d n = direction_of(request.inclination_rad, request.declination_rad);
+  const Eigen::Vector3d n = fit::joint::direction_of(request.inclination_rad, request.declination_rad);
   PoseTable table = request.poses;
   for (Pose& pose : table.poses) {
     pose.set.clear();
     const TableAngles a = pose.angles().value_or(TableAngles{});
     const Eigen::Vector3d b =
-        request.f_nT * table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0) * n;
+        request.f_nT * sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0) * n;
     for (std::size_t i = 0; i < kSensors; ++i) pose.y_nT[i] = request.sensors[i].predict(b);
     pose.f_nT = request.scalar_sd_nT ? std::optional(request.f_nT) : std::nullopt;
     pose.f_sd_nT = request.scalar_sd_nT;
@@ -66,34 +66,37 @@ struct Named {
 };
 
 /// The fixed block but for the site's own slots, by slot.
-std::vector<std::pair<int, Named>> named_slots(const JointProblem& problem) {
+std::vector<std::pair<int, Named>> named_slots(const fit::joint::JointProblem& problem) {
   std::vector<std::pair<int, Named>> out;
-  for (int slot = 0; slot < kSensorBlock; ++slot) {
-    const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(slot % kSensorParameters)];
-    out.push_back(
-        {slot, {fmt::format("s{} {}", slot / kSensorParameters + 1, shown.name), shown.unit, shown.factor}});
+  for (int slot = 0; slot < fit::joint::kSensorBlock; ++slot) {
+    const sensor::ShownParameter& shown =
+        sensor::shown_parameters()[static_cast<std::size_t>(slot % sensor::kSensorParameters)];
+    out.push_back({slot,
+                   {fmt::format("s{} {}", slot / sensor::kSensorParameters + 1, shown.name), shown.unit,
+                    shown.factor}});
   }
-  int slot = kEffectSlot;
-  for (const EffectPtr& effect : problem.effects) {
-    for (const Coefficient& c : effect->coefficients())
+  int slot = fit::joint::kEffectSlot;
+  for (const effects::EffectPtr& effect : problem.effects) {
+    for (const effects::Coefficient& c : effect->coefficients())
       out.push_back({slot++, {fmt::format("{} {}", effect->name(), c.name), c.unit, 1}});
   }
   return out;
 }
 
-std::vector<Expected> standard_errors(const JointProblem& problem, const Eigen::MatrixXd& covariance) {
+std::vector<Expected> standard_errors(const fit::joint::JointProblem& problem,
+                                      const Eigen::MatrixXd& covariance) {
   std::vector<Expected> out;
   for (const auto& [slot, named] : named_slots(problem))
     out.push_back({named.name, std::sqrt(covariance(slot, slot)) * named.factor, named.unit});
   return out;
 }
 
-std::vector<Separation> separations(const JointProblem& problem, const Eigen::MatrixXd& S,
+std::vector<Separation> separations(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& S,
                                     const Eigen::MatrixXd& covariance) {
   std::vector<Separation> out;
   const auto named = named_slots(problem);
   for (const auto& [slot, own] : named) {
-    if (slot < kEffectSlot) continue;
+    if (slot < fit::joint::kEffectSlot) continue;
     Separation s{
         .name = own.name, .inflation = std::sqrt(covariance(slot, slot) * S(slot, slot)), .alternative = {}};
     for (const auto& [other, theirs] : named) {
@@ -108,25 +111,25 @@ std::vector<Separation> separations(const JointProblem& problem, const Eigen::Ma
 }
 
 /// Tried one by one: the tensor variance with each candidate added.
-std::vector<DesignReport::Helpful> most_helpful(const JointProblem& problem, const JointState& state,
-                                                const Eigen::MatrixXd& S, double f_nT,
-                                                const std::vector<TableAngles>& candidates) {
+std::vector<DesignReport::Helpful> most_helpful(const fit::joint::JointProblem& problem,
+                                                const fit::joint::JointState& state, const Eigen::MatrixXd& S,
+                                                double f_nT, const std::vector<TableAngles>& candidates) {
   const auto variance = [&](const Eigen::MatrixXd& information) {
-    const auto covariance = covariance_of(information);
+    const auto covariance = fit::joint::covariance_of(information);
     if (!covariance) return std::numeric_limits<double>::infinity();
-    return mean_square(calibration_tensor_sd(state.sensors, problem.geometry, *covariance, f_nT));
+    return mean_square(fit::joint::calibration_tensor_sd(state.sensors, problem.geometry, *covariance, f_nT));
   };
   const double now = variance(S);
   std::vector<DesignReport::Helpful> out;
   for (const TableAngles& angles : candidates)
-    out.push_back({angles, 1 - variance(S + information_of(problem, state, angles, f_nT)) / now});
+    out.push_back({angles, 1 - variance(S + fit::joint::information_of(problem, state, angles, f_nT)) / now});
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
   out.resize(std::min(out.size(), kHelpful));
   return out;
 }
 
 Gradient noise_of_tensor(const DesignRequest& request) {
-  const auto rows = gradient_rows(request.geometry);
+  const auto rows = calibration::gradient_rows(request.geometry);
   const Eigen::Matrix<double, 6, 1> sd = request.pose_noise_nT * rows.rowwise().norm();
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
 }
@@ -138,7 +141,7 @@ Result<DesignReport> evaluate_design(const DesignRequest& request) {
   const auto design = design_problem(request, table);
   if (!design) return tl::unexpected(design.error());
   const auto& [problem, state, gauge] = *design;
-  const Eigen::MatrixXd S = reduce(problem, state, 0).S;
+  const Eigen::MatrixXd S = fit::joint::reduce(problem, state, 0).S;
 
   DesignReport report;
   if (request.power) {
@@ -158,16 +161,16 @@ Result<DesignReport> evaluate_design(const DesignRequest& request) {
                     .table_sd_rad = request.table_sd_rad,
                     .warming_degC = request.warming_degC};
   report.gauge = gauge;
-  report.known = identifiability(problem, state, S, request.f_nT, request.candidates);
-  const auto covariance = covariance_of(S);
-  report.determined = covariance && report.known.worst_nT() < kUnusable * request.f_nT;
+  report.known = fit::joint::identifiability(problem, state, S, request.f_nT, request.candidates);
+  const auto covariance = fit::joint::covariance_of(S);
+  report.determined = covariance && report.known.worst_nT() < fit::joint::kUnusable * request.f_nT;
   if (!report.determined) return report;
   report.parameters = standard_errors(problem, *covariance);
   report.separations = separations(problem, S, *covariance);
   report.tensor_sd_nT_per_m =
-      calibration_tensor_sd(request.sensors, request.geometry, *covariance, request.f_nT);
+      fit::joint::calibration_tensor_sd(request.sensors, request.geometry, *covariance, request.f_nT);
   report.helpful = most_helpful(problem, state, S, request.f_nT, request.candidates);
   return report;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

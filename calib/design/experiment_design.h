@@ -21,7 +21,7 @@
 /// The information of the joint fit is computed at the listed table angles and inverted (Cramer-Rao bound).
 /// Readings play no part, so the answer holds for every rig similar to the given one. The noise and the
 /// table's uncertainty are taken as known; a fit estimates them too.
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 
 struct DesignRequest {
   PoseTable poses;  ///< their angles, and what effects need to know of them; readings are not looked at
@@ -31,12 +31,12 @@ struct DesignRequest {
   bool field_known{false};  ///< without a scalar reference: the operator knows the field,
   double field_sd_nT{0};    ///< so well
   double table_sd_rad{to_rad(0.1)};
-  Geometry geometry;
-  std::array<SensorModel, kSensors> sensors{};  ///< an earlier calibration, or nominal sensors
-  std::vector<EffectPtr> effects;
+  sensor::Geometry geometry;
+  std::array<sensor::SensorModel, kSensors> sensors{};  ///< an earlier calibration, or nominal sensors
+  std::vector<effects::EffectPtr> effects;
   double warming_degC{2};  ///< of the heads in the run, where the poses tell no temperature
   bool power{true};        ///< also say which effects would be seen and told apart
-  std::vector<TableAngles> candidates{candidate_attitudes()};  ///< attitudes that may be proposed
+  std::vector<TableAngles> candidates{fit::joint::candidate_attitudes()};  ///< attitudes that may be proposed
 };
 
 struct Expected {
@@ -73,8 +73,8 @@ struct DesignReport {
   Gradient tensor_sd_nT_per_m;  ///< by the calibration alone, rms over attitudes; NaN unless determined
   Gradient noise_sd_nT_per_m;   ///< of a tensor from pose means, for comparison
   DesignAssumptions assumed;
-  Gauge gauge;            ///< what holds the common rotation and the scale
-  Identifiability known;  ///< weak directions, coverage, poses that would help
+  fit::joint::Gauge gauge;            ///< what holds the common rotation and the scale
+  fit::joint::Identifiability known;  ///< weak directions, coverage, poses that would help
   /// The attitudes that lower the mean tensor variance most, each with the share of the variance it takes
   /// away.
   struct Helpful {
@@ -88,4 +88,4 @@ struct DesignReport {
 /// Refuses fewer poses than the fit would accept, and an effect that cannot act on them.
 [[nodiscard]] Result<DesignReport> evaluate_design(const DesignRequest& request);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

@@ -13,49 +13,54 @@
 #include "calib/design/experiment_design.h"
 #include "calib/effects/library/effect_family.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 namespace {
 
 constexpr double kWorthTelling = 0.02;  ///< gain of a probability that is worth telling
 
-bool one_place(const CandidateEffect& candidate_effect, const Hypothesis& h) {
-  return candidate_effect.level == Level::axis ? h.axes == 1 : &h == &candidate_effect.hypotheses.front();
+bool one_place(const criticism::tests::CandidateEffect& candidate_effect,
+               const criticism::tests::Hypothesis& h) {
+  return candidate_effect.level == effects::Level::axis ? h.axes == 1
+                                                        : &h == &candidate_effect.hypotheses.front();
 }
 
-bool of_array(const Hypothesis& h) { return h.axes == kChannels; }
+bool of_array(const criticism::tests::Hypothesis& h) { return h.axes == sensor::kChannels; }
 
 /// `b` acts where `a` does, and is no mere sum of effects of many places.
-bool reaches(const Hypothesis& b, const Hypothesis& a, Level level_b) {
+bool reaches(const criticism::tests::Hypothesis& b, const criticism::tests::Hypothesis& a,
+             effects::Level level_b) {
   if (b.where == a.where) return true;
   if (of_array(a)) return of_array(b);
-  if (of_array(b)) return level_b != Level::axis;
+  if (of_array(b)) return level_b != effects::Level::axis;
   return b.where == a.where.substr(0, 2);
 }
 
 /// Everything an effect could be on these poses.
 struct Shape {
-  const CandidateEffect* candidate_effect{nullptr};
-  std::vector<Signature> signatures;                ///< by variant
-  std::vector<std::vector<Eigen::MatrixXd>> basis;  ///< by hypothesis, by variant
+  const criticism::tests::CandidateEffect* candidate_effect{nullptr};
+  std::vector<criticism::tests::Signature> signatures;  ///< by variant
+  std::vector<std::vector<Eigen::MatrixXd>> basis;      ///< by hypothesis, by variant
 };
 
-Shape shape_of(const DesignProblem& design, const Residual& residual,
-               const CandidateEffect& candidate_effect) {
+Shape shape_of(const DesignProblem& design, const criticism::tests::Residual& residual,
+               const criticism::tests::CandidateEffect& candidate_effect) {
   Shape out{.candidate_effect = &candidate_effect, .signatures = {}, .basis = {}};
-  for (const EffectPtr& variant : candidate_effect.variants)
-    out.signatures.push_back(signature_of(residual, effect_rows(design.problem, design.state, variant)));
-  for (const Hypothesis& h : candidate_effect.hypotheses) {
+  for (const effects::EffectPtr& variant : candidate_effect.variants)
+    out.signatures.push_back(criticism::tests::signature_of(
+        residual, criticism::tests::effect_rows(design.problem, design.state, variant)));
+  for (const criticism::tests::Hypothesis& h : candidate_effect.hypotheses) {
     std::vector<Eigen::MatrixXd>& bases = out.basis.emplace_back();
-    for (const Signature& s : out.signatures) bases.emplace_back(s.columns * one_step(s, h).basis);
+    for (const criticism::tests::Signature& s : out.signatures)
+      bases.emplace_back(s.columns * criticism::tests::one_step(s, h).basis);
   }
   return out;
 }
 
 std::vector<Shape> shapes_of(const DesignProblem& design,
-                             const std::vector<const CandidateEffect*>& candidate_effects) {
-  const Residual residual(design.problem, design.state, 0);
+                             const std::vector<const criticism::tests::CandidateEffect*>& candidate_effects) {
+  const criticism::tests::Residual residual(design.problem, design.state, 0);
   std::vector<Shape> out;
-  for (const CandidateEffect* const candidate_effect : candidate_effects)
+  for (const criticism::tests::CandidateEffect* const candidate_effect : candidate_effects)
     if (!candidate_effect->variants.empty()) out.push_back(shape_of(design, residual, *candidate_effect));
   return out;
 }
@@ -69,7 +74,7 @@ Eigen::MatrixXd truth(const Shape& a, std::size_t hypothesis) {
 }
 
 /// Largest share of `a` within `b`, in squares.
-double alike(const Eigen::MatrixXd& a, const Hypothesis& where, const Shape& b) {
+double alike(const Eigen::MatrixXd& a, const criticism::tests::Hypothesis& where, const Shape& b) {
   double most = 0;
   for (std::size_t h = 0; h < b.basis.size(); ++h) {
     if (!reaches(b.candidate_effect->hypotheses[h], where, b.candidate_effect->level)) continue;
@@ -80,7 +85,7 @@ double alike(const Eigen::MatrixXd& a, const Hypothesis& where, const Shape& b) 
 }
 
 double named_right(double alike_share) {
-  return probability_right(kComparedAt_d * kComparedAt_d * (1 - alike_share));
+  return criticism::tests::probability_right(kComparedAt_d * kComparedAt_d * (1 - alike_share));
 }
 
 struct Hardest {
@@ -91,7 +96,7 @@ struct Hardest {
 Hardest hardest(const Shape& a, const Shape& b) {
   Hardest out;
   for (std::size_t h = 0; h < a.basis.size(); ++h) {
-    const Hypothesis& where = a.candidate_effect->hypotheses[h];
+    const criticism::tests::Hypothesis& where = a.candidate_effect->hypotheses[h];
     if (!one_place(*a.candidate_effect, where)) continue;
     const Eigen::MatrixXd signature = truth(a, h);
     if (signature.size() == 0) continue;
@@ -103,9 +108,9 @@ Hardest hardest(const Shape& a, const Shape& b) {
 
 std::string advice(const std::string& effect, const std::string& alternative) {
   for (const auto& [of, with] : {std::pair{effect, alternative}, std::pair{alternative, effect}}) {
-    const EffectFamily* const family = find_family(of);
+    const effects::library::EffectFamily* const family = effects::library::find_family(of);
     if (family == nullptr) continue;
-    for (const Confusion& c : family->confusions)
+    for (const effects::library::Confusion& c : family->confusions)
       if (c.with == with) return std::string(c.broken_by);
   }
   return {};
@@ -144,11 +149,12 @@ void find_remedies(const DesignRequest& request, const PoseTable& table, const A
   const PoseTable longer = extended(table, action, request.sensors);
   const auto design = design_problem(request, longer);
   if (!design) return;
-  const CandidateEffects library = library_candidates(longer, request.effects);
+  const criticism::tests::CandidateEffects library =
+      criticism::tests::library_candidates(longer, request.effects);
   std::set<std::string> wanted;
   for (const LookAlike& pair : pairs) wanted.insert({pair.effect, pair.alternative});
-  std::vector<const CandidateEffect*> candidate_effects;
-  for (const CandidateEffect& s : library.testable)
+  std::vector<const criticism::tests::CandidateEffect*> candidate_effects;
+  for (const criticism::tests::CandidateEffect& s : library.testable)
     if (wanted.contains(s.name)) candidate_effects.push_back(&s);
   const std::vector<Shape> shapes = shapes_of(*design, candidate_effects);
   std::map<std::string, const Shape*> by_name;
@@ -164,7 +170,8 @@ void find_remedies(const DesignRequest& request, const PoseTable& table, const A
 }
 
 /// What would have to be larger than it ever is will not be seen.
-Detectable plausible(Detectable found, const CandidateEffect& candidate_effect) {
+criticism::tests::Detectable plausible(criticism::tests::Detectable found,
+                                       const criticism::tests::CandidateEffect& candidate_effect) {
   if (candidate_effect.bound > 0 && found.value > candidate_effect.bound) found.value = 0;
   return found;
 }
@@ -172,39 +179,42 @@ Detectable plausible(Detectable found, const CandidateEffect& candidate_effect) 
 }  // namespace
 
 Result<DesignProblem> design_problem(const DesignRequest& request, const PoseTable& table) {
-  JointOptions options;
+  fit::joint::JointOptions options;
   options.geometry = request.geometry;
   options.effects = request.effects;
   options.table_sd_rad = request.table_sd_rad;
   if (request.field_known) options.field_nT = request.f_nT;
   if (request.field_sd_nT > 0) options.field_sd_nT = request.field_sd_nT;
-  auto problem = joint_problem(table, options);
+  auto problem = fit::joint::joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
   DesignProblem out{.problem = std::move(*problem), .state = {}, .gauge = {}};
-  out.gauge = fix_gauge(out.problem, options);
-  weight_by_pose(out.problem, AxisNoise::Constant(request.pose_noise_nT));
-  out.state = joint_state(out.problem, request.sensors,
-                          direction_of(request.inclination_rad, request.declination_rad), request.f_nT);
-  refit_nuisances(out.problem, out.state);
+  out.gauge = fit::joint::fix_gauge(out.problem, options);
+  fit::joint::weight_by_pose(out.problem, calibration::AxisNoise::Constant(request.pose_noise_nT));
+  out.state = fit::joint::joint_state(
+      out.problem, request.sensors,
+      fit::joint::direction_of(request.inclination_rad, request.declination_rad), request.f_nT);
+  fit::joint::refit_nuisances(out.problem, out.state);
   return out;
 }
 
 Result<DesignPower> design_power(const DesignRequest& request, const PoseTable& table) {
   const auto design = design_problem(request, table);
   if (!design) return tl::unexpected(design.error());
-  const CandidateEffects library = library_candidates(table, request.effects);
+  const criticism::tests::CandidateEffects library =
+      criticism::tests::library_candidates(table, request.effects);
   DesignPower out;
   out.untestable = library.untestable;
-  std::vector<const CandidateEffect*> candidate_effects;
-  for (const CandidateEffect& s : library.testable) candidate_effects.push_back(&s);
+  std::vector<const criticism::tests::CandidateEffect*> candidate_effects;
+  for (const criticism::tests::CandidateEffect& s : library.testable) candidate_effects.push_back(&s);
   const std::vector<Shape> shapes = shapes_of(*design, candidate_effects);
   for (const Shape& shape : shapes)
     out.detectable.push_back(
-        plausible(detectable_of(*shape.candidate_effect, shape.signatures.front()), *shape.candidate_effect));
+        plausible(criticism::tests::detectable_of(*shape.candidate_effect, shape.signatures.front()),
+                  *shape.candidate_effect));
   out.inseparable = compare_all(shapes, out.pairs);
   for (const Action& action : actions())
     if (!action.moved) find_remedies(request, table, action, out.inseparable);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

@@ -19,7 +19,7 @@
 ///     Phi(d sqrt(1 - alike) / 2).
 /// b is taken at every scale that reaches where a is, and at every value of its searched number; a at the
 /// place where it is hardest to tell. Readings play no part.
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 
 /// Of the size at which two effects are compared, in standard errors.
 inline constexpr double kComparedAt_d = 10;
@@ -43,17 +43,18 @@ struct LookAlike {
 };
 
 struct DesignPower {
-  std::vector<Detectable> detectable;  ///< in the order of the library; value 0: at no size that occurs
-  std::vector<Untestable> untestable;
+  std::vector<criticism::tests::Detectable>
+      detectable;  ///< in the order of the library; value 0: at no size that occurs
+  std::vector<criticism::tests::Untestable> untestable;
   std::vector<LookAlike> inseparable;  ///< worst first; each pair once
   int pairs{0};                        ///< compared
 };
 
 /// A rig at its planned poses: what the fit would work on.
 struct DesignProblem {
-  JointProblem problem;
-  JointState state;
-  Gauge gauge;
+  fit::joint::JointProblem problem;
+  fit::joint::JointState state;
+  fit::joint::Gauge gauge;
 };
 struct DesignRequest;
 
@@ -62,4 +63,4 @@ struct DesignRequest;
 
 [[nodiscard]] Result<DesignPower> design_power(const DesignRequest& request, const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

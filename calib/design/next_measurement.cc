@@ -9,7 +9,7 @@
 #include "calib/effects/library/library.h"
 #include "calib/linear/qr.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 namespace {
 
 constexpr double kWorthMeasuring = 0.01;  ///< gain of the probability that is worth telling
@@ -17,22 +17,23 @@ constexpr double kBetter = 0.005;         ///< than more of the same, for what t
 
 /// The fit's model on other poses, ready to project signatures.
 struct Design {
-  JointProblem problem;
-  JointState state;
+  fit::joint::JointProblem problem;
+  fit::joint::JointState state;
 };
 
-Result<Design> design_of(const PoseTable& table, const JointFit& fit, const JointOptions& options) {
-  auto problem = joint_problem(table, options);
+Result<Design> design_of(const PoseTable& table, const fit::joint::JointFit& fit,
+                         const fit::joint::JointOptions& options) {
+  auto problem = fit::joint::joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
   Design out{.problem = std::move(*problem), .state = {}};
-  fix_gauge(out.problem, options);
-  weight_by_pose(out.problem, fit.pose_noise_nT);
-  for (JointPose& pose : out.problem.poses)
+  fit::joint::fix_gauge(out.problem, options);
+  fit::joint::weight_by_pose(out.problem, fit.pose_noise_nT);
+  for (fit::joint::JointPose& pose : out.problem.poses)
     if (pose.has_angles && fit.table_sd_rad > 0) pose.attitude_weight = 1 / fit.table_sd_rad;
-  out.state = joint_state(out.problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  out.state = fit::joint::joint_state(out.problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
   if (out.state.coefficients.size() == fit.state.coefficients.size())
     out.state.coefficients = fit.state.coefficients;
-  refit_nuisances(out.problem, out.state);
+  fit::joint::refit_nuisances(out.problem, out.state);
   return out;
 }
 
@@ -42,9 +43,10 @@ struct Longer {
   Eigen::Index rows_here{0};  ///< of the poses at the place of the run
 };
 
-Longer longer(const PoseTable& table, const Action& action, const JointFit& fit) {
+Longer longer(const PoseTable& table, const Action& action, const fit::joint::JointFit& fit) {
   Longer out{.table = extended(table, action, fit.state.sensors)};
-  out.rows_here = kPoseRows * static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
+  out.rows_here = criticism::tests::kPoseRows *
+                  static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
   return out;
 }
 
@@ -57,59 +59,62 @@ Eigen::MatrixXd at_two_places(const Eigen::MatrixXd& rows, Eigen::Index here) {
 }
 
 /// Projected columns of an effect; empty when these poses cannot feed it.
-Eigen::MatrixXd columns_of(const Design& design, const Residual& residual, const std::string& spec,
-                           const Longer& run, std::vector<std::string>* names) {
+Eigen::MatrixXd columns_of(const Design& design, const criticism::tests::Residual& residual,
+                           const std::string& spec, const Longer& run, std::vector<std::string>* names) {
   const PoseTable& table = run.table;
-  const auto parsed = EffectSpec::parse(spec);
+  const auto parsed = effects::EffectSpec::parse(spec);
   if (!parsed) return {};
-  const auto effect = make_effect(*parsed, EffectContext{.table = &table, .offset_nT = {}});
+  const auto effect =
+      effects::library::make_effect(*parsed, effects::EffectContext{.table = &table, .offset_nT = {}});
   if (!effect || !(*effect)->check(table)) return {};
   if (names != nullptr)
-    for (const Coefficient& c : (*effect)->coefficients()) names->push_back(c.name);
-  const Eigen::MatrixXd rows = effect_rows(design.problem, design.state, *effect);
-  if ((*effect)->level() != Level::site || run.rows_here >= rows.rows())
+    for (const effects::Coefficient& c : (*effect)->coefficients()) names->push_back(c.name);
+  const Eigen::MatrixXd rows = criticism::tests::effect_rows(design.problem, design.state, *effect);
+  if ((*effect)->level() != effects::Level::site || run.rows_here >= rows.rows())
     return residual.project(rows).projected;
   return residual.project(at_two_places(rows, run.rows_here)).projected;
 }
 
-Eigen::VectorXd sizes_of(const Candidate& winner, const std::vector<std::string>& names) {
+Eigen::VectorXd sizes_of(const criticism::tests::Candidate& winner, const std::vector<std::string>& names) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.size()));
   for (std::size_t i = 0; i < names.size(); ++i) {
-    for (const EffectCoefficient& c : winner.coefficients)
+    for (const calibration::EffectCoefficient& c : winner.coefficients)
       if (c.name == names[i]) out[static_cast<Eigen::Index>(i)] = c.value;
   }
   return out;
 }
 
 Longer as_it_is(const PoseTable& table) {
-  return {table, kPoseRows * static_cast<Eigen::Index>(table.poses.size())};
+  return {table, criticism::tests::kPoseRows * static_cast<Eigen::Index>(table.poses.size())};
 }
 
 /// What of `v` is not in the space of B, in squares.
 double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& B) {
-  return (v - B * least_squares(B, v)).squaredNorm();
+  return (v - B * linear::least_squares(B, v)).squaredNorm();
 }
 
 /// Two shapes of one dependence: both on the axis' own reading alone, or of one quantity (axis.offset, site)
 /// on the same columns. An offset and a scale factor that drift differ by the reading, which is measured.
 bool differ_in_form(const std::string& a, const std::string& b) {
   const auto reads = [](const std::string& spec) {
-    const EffectFamily* const family = find_family(family_name(spec));
+    const effects::library::EffectFamily* const family =
+        effects::library::find_family(effects::family_name(spec));
     return family == nullptr ? std::string_view() : family->needs;
   };
   const auto quantity = [](const std::string& spec) {
-    const std::string_view name = family_name(spec);
+    const std::string_view name = effects::family_name(spec);
     return name.substr(0, name.rfind('.'));
   };
   return reads(a) == reads(b) && (reads(a).empty() || quantity(a) == quantity(b));
 }
 
 /// Smallest probability, over the alternatives, that the winner's name comes out right if it is true.
-double p_right(const Longer& run, const JointFit& fit, const JointOptions& options, const Candidate& winner,
-               const std::vector<Alternative>& alternatives) {
+double p_right(const Longer& run, const fit::joint::JointFit& fit, const fit::joint::JointOptions& options,
+               const criticism::tests::Candidate& winner,
+               const std::vector<criticism::tests::Alternative>& alternatives) {
   const auto design = design_of(run.table, fit, options);
   if (!design) return 0;
-  const Residual residual(design->problem, design->state, 0);
+  const criticism::tests::Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;
   const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
   if (Z.cols() == 0) return 0;
@@ -117,49 +122,54 @@ double p_right(const Longer& run, const JointFit& fit, const JointOptions& optio
   const Eigen::VectorXd v =
       Z.leftCols(sizes.size()) * sizes;  // what the site made here is not at another place
   double lambda = v.squaredNorm();
-  for (const Alternative& alternative : alternatives) {
+  for (const criticism::tests::Alternative& alternative : alternatives) {
     const Eigen::MatrixXd B = columns_of(*design, residual, alternative.spec, run, nullptr);
     if (B.cols() == 0) continue;
     const double distance = outside(v, B);
-    lambda = std::min(lambda, alternative.form_only ? beyond_form(distance, v.squaredNorm()) : distance);
+    lambda = std::min(
+        lambda, alternative.form_only ? criticism::tests::beyond_form(distance, v.squaredNorm()) : distance);
   }
-  return probability_right(lambda);
+  return criticism::tests::probability_right(lambda);
 }
 
-std::vector<Alternative> hardest(const Candidate& winner) {
-  std::vector<Alternative> out;
-  for (const Alternative& alternative : winner.alternatives)
+std::vector<criticism::tests::Alternative> hardest(const criticism::tests::Candidate& winner) {
+  std::vector<criticism::tests::Alternative> out;
+  for (const criticism::tests::Alternative& alternative : winner.alternatives)
     if (alternative.possible) out.push_back(alternative);
   if (out.empty() && !winner.alternatives.empty()) {
     out.push_back(
         *std::min_element(winner.alternatives.begin(), winner.alternatives.end(),
-                          [](const Alternative& a, const Alternative& b) { return a.p_right < b.p_right; }));
+                          [](const criticism::tests::Alternative& a, const criticism::tests::Alternative& b) {
+                            return a.p_right < b.p_right;
+                          }));
   }
   return out;
 }
 
 /// For alternatives that were not compared with the winner yet.
-void find_form_only(const PoseTable& table, const JointFit& fit, const JointOptions& options,
-                    const Candidate& winner, std::vector<Alternative>& alternatives) {
+void find_form_only(const PoseTable& table, const fit::joint::JointFit& fit,
+                    const fit::joint::JointOptions& options, const criticism::tests::Candidate& winner,
+                    std::vector<criticism::tests::Alternative>& alternatives) {
   const Longer run = as_it_is(table);
   const auto design = design_of(table, fit, options);
   if (!design) return;
-  const Residual residual(design->problem, design->state, 0);
+  const criticism::tests::Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;
   const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
   if (Z.cols() == 0) return;
   const Eigen::VectorXd v = Z * sizes_of(winner, names);
-  for (Alternative& alternative : alternatives) {
+  for (criticism::tests::Alternative& alternative : alternatives) {
     if (alternative.form_only || !differ_in_form(alternative.spec, winner.spec)) continue;
     const Eigen::MatrixXd B = columns_of(*design, residual, alternative.spec, run, nullptr);
-    alternative.form_only = B.cols() > 0 && outside(v, B) < (1 - kAlike) * v.squaredNorm();
+    alternative.form_only = B.cols() > 0 && outside(v, B) < (1 - criticism::tests::kAlike) * v.squaredNorm();
   }
 }
 
 }  // namespace
 
-NextMenu next_measurements(const PoseTable& table, const JointFit& fit, const JointOptions& options,
-                           const Candidate& winner) {
+NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& fit,
+                           const fit::joint::JointOptions& options,
+                           const criticism::tests::Candidate& winner) {
   NextMenu out;
   auto alternatives = hardest(winner);
   if (alternatives.empty()) return out;
@@ -182,4 +192,4 @@ NextMenu next_measurements(const PoseTable& table, const JointFit& fit, const Jo
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

@@ -12,7 +12,7 @@
 ///     lambda_ab = |(I - P_b) z_a gamma_a|^2
 /// of the two effects with these poses, at the size that was found, is known before anything is measured, and
 /// with it the probability Phi(sqrt(lambda_ab)/2) that the right one of the two wins.
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 
 /// A further measurement that would settle between two effects.
 struct NextMeasurement {
@@ -29,7 +29,8 @@ struct NextMenu {
 /// For the winner of a round against its possible alternatives (or its nearest one), best first; actions that
 /// gain nothing, or no more than more of the same, are left out. `model`: the effects of the fit that the
 /// round started from.
-[[nodiscard]] NextMenu next_measurements(const PoseTable& table, const JointFit& fit,
-                                         const JointOptions& options, const Candidate& winner);
+[[nodiscard]] NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& fit,
+                                         const fit::joint::JointOptions& options,
+                                         const criticism::tests::Candidate& winner);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

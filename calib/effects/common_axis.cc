@@ -3,7 +3,7 @@
 
 #include "calib/effects/effect_spec.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 bool share_an_axis(const Where& a, const Where& b) {
   for (int s = 0; s < kSensors; ++s) {
@@ -20,4 +20,4 @@ bool same_law_on_a_common_axis(const Effect& a, const Effect& b) {
   return share_an_axis(*spec_a->where, *spec_b->where);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -8,7 +8,7 @@
 
 #include "calib/sensor/geometry.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 namespace {
 
 constexpr double kTolerance = 0.05;  ///< of the largest derivative
@@ -28,7 +28,7 @@ std::array<double, 6> inputs_at(const Effect& effect, const Pose& pose, int sens
   const auto s = static_cast<std::size_t>(sensor);
   std::array<double, 6> out{0, 0, 0, 0.2, -0.3, 0.9};
   const Eigen::Vector3d from =
-      effect.level() == Level::site ? Eigen::Vector3d(Geometry{}.positions_P_m()[s]) : pose.y_nT[s];
+      effect.level() == Level::site ? Eigen::Vector3d(sensor::Geometry{}.positions_P_m()[s]) : pose.y_nT[s];
   for (std::size_t i = 0; i < 3; ++i) out[i] = from[static_cast<Eigen::Index>(i)];
   return out;
 }
@@ -93,4 +93,4 @@ Result<void> check_derivatives(const Effect& effect, const PoseTable& table) {
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -2,7 +2,7 @@
 #pragma once
 #include "calib/effects/effect.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 /// Compares an effect's derivatives by the field (or the place) and by its coefficients with differences of
 /// its value over a wide step, at every pose and sensor, with readings in place of the field. Refuses, with
@@ -10,4 +10,4 @@ namespace mgtd::calib {
 /// that input: the derivative is wrong, or the law jumps or kinks, which a fit cannot follow.
 [[nodiscard]] Result<void> check_derivatives(const Effect& effect, const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 std::string_view to_string(Level level) {
   switch (level) {
@@ -65,4 +65,4 @@ CovariateMeans covariate_means(const PoseTable& table) {
   return sum;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -25,7 +25,11 @@
 /// Terms of one level see the same input and add up. Derivatives come from dual numbers: an effect writes its
 /// equation once, templated on the scalar, and derives from EffectOf. With all coefficients zero a term must
 /// vanish.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
+class LiveMemory;
+}  // namespace mgtd::calib::effects::laws
+
+namespace mgtd::calib::effects {
 
 enum class Level { site, table, platform, axis, reference };
 [[nodiscard]] std::string_view to_string(Level level);
@@ -61,13 +65,12 @@ struct Conditions {
 
 /// Slots: inputs of a level (at most 6), then the coefficients that act at one sensor (at most 10).
 inline constexpr int kMaxActive = 10, kJetSlots = 6 + kMaxActive;
-using Jet = Dual<kJetSlots>;
+using Jet = sensor::Dual<kJetSlots>;
 
 /// The first table angle that a pose lacks, as a column name; empty when it has all three.
 [[nodiscard]] std::string_view missing_angle(const Pose& pose);
 
 class Effect;
-class LiveMemory;
 
 /// What poses of a table lack for a term to be evaluated.
 struct Lack {
@@ -81,7 +84,7 @@ struct Lack {
 /// An effect that reads the memory beside it, which the samples of a stream move on (live_memory.h).
 struct LiveEffect {
   std::shared_ptr<const Effect> effect;
-  std::shared_ptr<LiveMemory> memory;
+  std::shared_ptr<laws::LiveMemory> memory;
 };
 
 class Effect {
@@ -138,4 +141,4 @@ class EffectOf : public Effect {
 
 using EffectPtr = std::shared_ptr<const Effect>;
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -8,7 +8,7 @@
 #include "proto/pose.h"
 
 /// An EffectContext holds what an effect may need to know of the run, beyond the pose it is evaluated at.
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 inline constexpr double kReferenceT_degC = 20;        ///< T0 of every effect of temperature
 inline constexpr double kReferenceField_nT = 50'000;  ///< F0: x = v/F0
@@ -19,4 +19,4 @@ struct EffectContext {
   std::optional<std::array<Eigen::Vector3d, kSensors>> offset_nT;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

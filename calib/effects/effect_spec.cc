@@ -8,7 +8,7 @@
 
 #include "proto/number.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 Result<EffectSpec> EffectSpec::parse(std::string_view text) {
   EffectSpec spec;
@@ -88,4 +88,4 @@ Result<void> EffectSpec::only(std::initializer_list<std::string_view> known) con
 
 std::string_view family_name(std::string_view spec) { return spec.substr(0, spec.find_first_of("@,")); }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -13,7 +13,7 @@
 ///     axis.offset.temperature@s3.z      axis.hysteresis@s2,w=0.1      platform.current,columns=motor_A
 /// A parameter "expr" comes last and takes all text after it: it is a user's formula, see formula.h.
 /// The text of a spec that parse() gave reads back to the same spec.
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 struct EffectSpec {
   std::string name;            ///< of the family
@@ -37,4 +37,4 @@ struct EffectSpec {
 /// The part before '@' and ','.
 [[nodiscard]] std::string_view family_name(std::string_view spec);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

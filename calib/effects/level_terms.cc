@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 namespace {
 
 /// unit()[i] has derivative one in slot i; copied, because setting a jet to zero costs more than the
@@ -82,4 +82,4 @@ TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const do
   return total;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -6,7 +6,7 @@
 #include "calib/effects/effect.h"
 
 /// The terms of all effects of one level, summed, with their derivatives.
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 inline constexpr int kMaxTermInputs = 6, kMaxTermOutputs = 5;
 using TermValue = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxTermOutputs, 1>;
@@ -39,4 +39,4 @@ class LevelTerms {
   std::vector<Entry> entries_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

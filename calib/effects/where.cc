@@ -5,7 +5,7 @@
 
 #include "proto/reading.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 std::string sensor_name(int sensor) { return fmt::format("s{}", sensor + 1); }
 std::string axis_name(int sensor, int axis) { return fmt::format("s{}.{}", sensor + 1, "xyz"[axis]); }
@@ -48,4 +48,4 @@ bool Where::covers(int s, int a) const {
          (s == sensor && (scale == Scale::sensor || a == axis));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

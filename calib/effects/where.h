@@ -6,7 +6,7 @@
 #include "proto/error.h"
 
 /// Which sensors and axes an effect is laid over, and how many coefficients that takes.
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 
 struct Where {
   enum class Scale {
@@ -32,4 +32,4 @@ struct Where {
 [[nodiscard]] std::string sensor_name(int sensor);
 [[nodiscard]] std::string axis_name(int sensor, int axis);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

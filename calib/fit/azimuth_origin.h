@@ -2,7 +2,7 @@
 #pragma once
 
 /// Where the azimuth of the platform frame comes from in a two-step calibration, as a value.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 enum class AzimuthGauge { declination_given, table_frame, mean_gamma_zero };
 
@@ -14,4 +14,4 @@ struct AzimuthOrigin {
   double misfit_rad{0};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -4,10 +4,10 @@
 #include "calib/poses/pose_table.h"
 #include "calib/poses/run_time.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
-Reference reference_of(const PoseTable& table, const Readings& readings) {
-  Reference out;
+calibration::Reference reference_of(const PoseTable& table, const Readings& readings) {
+  calibration::Reference out;
   out.f_nT = readings.mean_f_nT();
   for (std::size_t i = 0; i < kSensors; ++i) {
     double sum = 0, count = 0;
@@ -16,23 +16,24 @@ Reference reference_of(const PoseTable& table, const Readings& readings) {
     }
     if (count > 0) out.T_degC[i] = sum / count;
   }
-  if (const RunTime time = RunTime::of(table); time.start) out.t_utc = format_utc(*time.start);
-  for (const auto& [name, mean] : covariate_means(table)) {
+  if (const poses::RunTime time = poses::RunTime::of(table); time.start) out.t_utc = format_utc(*time.start);
+  for (const auto& [name, mean] : effects::covariate_means(table)) {
     if (name.ends_with("_A")) out.currents_A[name] = mean;
   }
   return out;
 }
 
-Calibration calibration_frame(const PoseTable& table, const Readings& readings, const FitOptions& options) {
-  Calibration c;
+calibration::Calibration calibration_frame(const PoseTable& table, const Readings& readings,
+                                           const FitOptions& options) {
+  calibration::Calibration c;
   c.method = name(options.method);
   c.geometry.baseline_m = options.baseline_m;
   c.sample_noise_nT = pooled_sample_noise(table);
   c.reference = reference_of(table, readings);
-  c.data_hash = data_hash(table);
+  c.data_hash = poses::data_hash(table);
   c.poses = static_cast<int>(readings.poses());
   c.software = "mgtd " MGTD_VERSION;
   return c;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -4,11 +4,11 @@
 #include "calib/fit/readings.h"
 
 /// The part of a calibration that does not depend on the method of the fit.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
-[[nodiscard]] Reference reference_of(const PoseTable& table, const Readings& readings);
+[[nodiscard]] calibration::Reference reference_of(const PoseTable& table, const Readings& readings);
 /// Method, geometry, reference, hashes and versions.
-[[nodiscard]] Calibration calibration_frame(const PoseTable& table, const Readings& readings,
-                                            const FitOptions& options);
+[[nodiscard]] calibration::Calibration calibration_frame(const PoseTable& table, const Readings& readings,
+                                                         const FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

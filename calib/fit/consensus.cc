@@ -11,7 +11,7 @@
 #include "calib/linear/ldlt.h"
 #include "calib/linear/symmetric_eigen.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 using Which = std::vector<Eigen::Index>;
@@ -35,28 +35,29 @@ double median(Eigen::VectorXd values) {
 
 /// The plane of some poses: its mean, the directions in it and across it.
 struct Plane {
-  Eigen::Matrix<double, kChannels, 1> mean;
-  Eigen::Matrix<double, kChannels, 3> along;
-  Eigen::Matrix<double, kChannels, kChannels - 3> across;
-  Eigen::Matrix<double, kChannels, 1> variance;  ///< ascending; the last three lie in the plane
+  Eigen::Matrix<double, sensor::kChannels, 1> mean;
+  Eigen::Matrix<double, sensor::kChannels, 3> along;
+  Eigen::Matrix<double, sensor::kChannels, sensor::kChannels - 3> across;
+  Eigen::Matrix<double, sensor::kChannels, 1> variance;  ///< ascending; the last three lie in the plane
 
   Plane(const ReadingTable& y, const Which& which) {
     const ReadingTable chosen = y(Eigen::all, which);
     mean = chosen.rowwise().mean();
     const ReadingTable z = chosen.colwise() - mean;
-    const SymmetricEigen eigen = symmetric_eigen(z * z.transpose() / static_cast<double>(which.size()));
+    const linear::SymmetricEigen eigen =
+        linear::symmetric_eigen(z * z.transpose() / static_cast<double>(which.size()));
     along = eigen.vectors.rightCols<3>();
-    across = eigen.vectors.leftCols<kChannels - 3>();
+    across = eigen.vectors.leftCols<sensor::kChannels - 3>();
     variance = eigen.values.cwiseMax(0);
   }
   [[nodiscard]] double thickness() const {
-    return std::sqrt(variance[kChannels - 3] / variance[kChannels - 1]);
+    return std::sqrt(variance[sensor::kChannels - 3] / variance[sensor::kChannels - 1]);
   }
   [[nodiscard]] Eigen::VectorXd squares(const ReadingTable& y) const {
     return (across.transpose() * (y.colwise() - mean)).colwise().squaredNorm();
   }
   [[nodiscard]] Eigen::Matrix3Xd places(const ReadingTable& y) const {
-    return along.transpose() * (y.colwise() - mean) / std::sqrt(variance[kChannels - 1]);
+    return along.transpose() * (y.colwise() - mean) / std::sqrt(variance[sensor::kChannels - 1]);
   }
 };
 
@@ -75,7 +76,7 @@ struct Quadric {
   }
   Quadric(const Eigen::Matrix3Xd& x, const Which& which) {
     const auto d = columns(x(Eigen::all, which));
-    w = solve_by_ldlt(d * d.transpose(), Eigen::VectorXd(d.rowwise().sum()));
+    w = linear::solve_by_ldlt(d * d.transpose(), Eigen::VectorXd(d.rowwise().sum()));
   }
   [[nodiscard]] Eigen::VectorXd squares(const Eigen::Matrix3Xd& x) const {
     return (columns(x).transpose() * w - Eigen::VectorXd::Ones(x.cols())).array().square();
@@ -196,8 +197,8 @@ bool looks_spoilt(const ReadingTable& y_nT) {
   const Plane plane(y_nT, all);
   const Eigen::VectorXd squares = plane.squares(y_nT);
   if (squares.maxCoeff() > kNearPlane * kNearPlane * median(squares)) return true;
-  const auto across = plane.variance.head<kChannels - 3>();
-  return across[kChannels - 4] > kUneven * across[(kChannels - 3) / 2];
+  const auto across = plane.variance.head<sensor::kChannels - 3>();
+  return across[sensor::kChannels - 4] > kUneven * across[(sensor::kChannels - 3) / 2];
 }
 
 std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT,
@@ -223,4 +224,4 @@ std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

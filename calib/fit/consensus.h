@@ -16,9 +16,9 @@
 /// FAST-LTS). A random subset of five is clean once in six where three poses in ten are wrong; seventy are
 /// drawn, always the same ones. What the model adds beyond this (gradients, effects) only blurs the
 /// distances: the result is a start, never an estimate.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
-using ReadingTable = Eigen::Matrix<double, kChannels, Eigen::Dynamic>;
+using ReadingTable = Eigen::Matrix<double, sensor::kChannels, Eigen::Dynamic>;
 
 /// Whether some poses are much farther from the plane that fits all of them best than most are, or one
 /// direction of the misfit is much larger than the others. Cheap; says yes to gross readings, and often where
@@ -30,4 +30,4 @@ using ReadingTable = Eigen::Matrix<double, kChannels, Eigen::Dynamic>;
 [[nodiscard]] std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT,
                                                                       const Eigen::VectorXd& f_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

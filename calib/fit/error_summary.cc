@@ -7,7 +7,7 @@
 
 #include "calib/calibration/tensor.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {}  // namespace
 
 FieldTable raw_fields(const Readings& readings) {
@@ -17,7 +17,8 @@ FieldTable raw_fields(const Readings& readings) {
   return b;
 }
 
-FieldTable corrected_fields(const Readings& readings, const std::array<SensorModel, kSensors>& sensors) {
+FieldTable corrected_fields(const Readings& readings,
+                            const std::array<sensor::SensorModel, kSensors>& sensors) {
   FieldTable b(3 * kSensors, readings.poses());
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
@@ -27,7 +28,7 @@ FieldTable corrected_fields(const Readings& readings, const std::array<SensorMod
   return b;
 }
 
-ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, const Geometry& geometry,
+ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, const sensor::Geometry& geometry,
                        const Counted& counted) {
   ErrorSummary out;
   const Eigen::Index n = b_nT.cols();
@@ -44,14 +45,15 @@ ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, cons
   }
   const Eigen::ArrayXd weight =
       all ? Eigen::ArrayXd::Ones(n) : Eigen::ArrayXd(counted.tensor.transpose().cast<double>());
-  const Eigen::MatrixXd tensor = gradient_rows(geometry) * b_nT;
+  const Eigen::MatrixXd tensor = calibration::gradient_rows(geometry) * b_nT;
   const auto rms = [&](Eigen::Index c) { return mean(tensor.row(c).transpose().array().square(), weight); };
   out.tensor_rmse_nT_per_m = {rms(0), rms(1), rms(2), rms(3), rms(4), rms(5)};
   return out;
 }
 
 double field_chi2(const FieldTable& b_nT, const Readings& readings,
-                  const std::array<SensorModel, kSensors>& sensors, const AxisNoise& pose_noise_nT) {
+                  const std::array<sensor::SensorModel, kSensors>& sensors,
+                  const calibration::AxisNoise& pose_noise_nT) {
   double chi2 = 0;
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
@@ -68,4 +70,4 @@ double field_chi2(const FieldTable& b_nT, const Readings& readings,
   return chi2;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -5,14 +5,14 @@
 
 /// How far corrected readings are from what they should be: |b| from F at each sensor, and the tensor of a
 /// uniform field from zero.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 /// Corrected fields, one column per pose; platform frame for the tensor to mean anything.
 using FieldTable = Eigen::Matrix<double, 3 * kSensors, Eigen::Dynamic>;
 
 [[nodiscard]] FieldTable raw_fields(const Readings& readings);
 [[nodiscard]] FieldTable corrected_fields(const Readings& readings,
-                                          const std::array<SensorModel, kSensors>& sensors);
+                                          const std::array<sensor::SensorModel, kSensors>& sensors);
 
 /// What counts, pose by pose: the field of each sensor, and the tensor. Empty: everything.
 struct Counted {
@@ -21,12 +21,12 @@ struct Counted {
 };
 
 [[nodiscard]] ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT,
-                                     const Geometry& geometry, const Counted& counted = {});
+                                     const sensor::Geometry& geometry, const Counted& counted = {});
 
 /// (|b| - F)/sd squared, summed over sensors and poses. sd: the pose-mean noise along the field, and that of
 /// F.
 [[nodiscard]] double field_chi2(const FieldTable& b_nT, const Readings& readings,
-                                const std::array<SensorModel, kSensors>& sensors,
-                                const AxisNoise& pose_noise_nT);
+                                const std::array<sensor::SensorModel, kSensors>& sensors,
+                                const calibration::AxisNoise& pose_noise_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

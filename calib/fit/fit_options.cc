@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/fit_options.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 std::string_view name(Method method) {
   switch (method) {
@@ -22,4 +22,4 @@ std::optional<Method> method_from(std::string_view text) {
   return std::nullopt;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

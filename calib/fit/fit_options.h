@@ -10,7 +10,7 @@
 #include "proto/units.h"
 
 /// Options of a fit: its method, what the operator knows beside the poses, and the effects of the model.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 enum class Method { simplified, two_step, joint };
 [[nodiscard]] std::string_view name(Method method);
@@ -26,11 +26,11 @@ struct FitOptions {
   /// towards +Z, declination from X towards Y. Not given: both are estimated (gauge: see Calibration::gauge).
   std::optional<double> inclination_rad, declination_rad;
   double baseline_m{0.4};
-  double table_sd_rad{to_rad(0.1)};  ///< of each table angle of each pose
-  std::uint64_t seed{1};             ///< of the draws that judge a fit (criticism); no method draws
-  std::vector<EffectPtr> effects;    ///< beside the twelve parameters a sensor; joint only
+  double table_sd_rad{to_rad(0.1)};         ///< of each table angle of each pose
+  std::uint64_t seed{1};                    ///< of the draws that judge a fit (criticism); no method draws
+  std::vector<effects::EffectPtr> effects;  ///< beside the twelve parameters a sensor; joint only
   /// Asked before every step of a solver: a fit that is stopped is refused within that time.
   std::stop_token stop{};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -17,9 +17,11 @@
 
 /// What a fit found, as values: the calibration, how the fit ended, how far its result can be trusted. The
 /// words for a person are made in calib/report, the checks in calib/fit/checks.
-namespace mgtd::calib {
-
+namespace mgtd::calib::fit::joint {
 struct JointFindings;
+}  // namespace mgtd::calib::fit::joint
+
+namespace mgtd::calib::fit {
 
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a
 /// uniform field is zero, so its rms is the error.
@@ -31,7 +33,7 @@ struct ErrorSummary {
 /// Step 2 from the odd and from the even poses of the standard set, counted by azimuth.
 struct HalvesComparison {
   ErrorSummary odd, even;
-  std::array<SensorModel, kSensors> odd_sensors, even_sensors;
+  std::array<sensor::SensorModel, kSensors> odd_sensors, even_sensors;
   /// Largest difference between the halves of alpha, beta and gamma over the sensors, gamma less its common
   /// part.
   double angle_difference_rad{0};
@@ -45,7 +47,7 @@ struct SiteField {
 };
 
 struct FitReport {
-  Calibration calibration;
+  calibration::Calibration calibration;
   double chi2{0};  ///< two-step: of |b| against F; joint: of all readings and the scalar reference
   double dof{0};
   FitSummary summary;
@@ -72,8 +74,8 @@ struct FitReport {
   std::vector<OutlierNode> outliers;
   /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
   double contradicting{0};
-  std::shared_ptr<const JointFindings> joint;  ///< joint/joint_findings.h; null for the other methods
+  std::shared_ptr<const joint::JointFindings> joint;  ///< joint/joint_findings.h; null for the other methods
   Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, rms over all attitudes
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

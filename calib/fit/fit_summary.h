@@ -3,7 +3,7 @@
 
 /// How a fit ended: by which criterion its iterations stopped, how many there were, and how far chi-square
 /// fell.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 enum class Termination {
   /// Linear equations, solved in one pass: nothing iterates (the two-step and the simplified method).
@@ -34,4 +34,4 @@ struct FitSummary {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 Eigen::Vector3d angles_of(const Eigen::Matrix3d& A) {
   return {std::atan2(-A(2, 1), A(2, 2)), std::asin(std::clamp(A(2, 0), -1.0, 1.0)),
@@ -33,10 +33,10 @@ Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R) {
   return best;
 }
 
-SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,
-                        const Eigen::Matrix3d& R) {
+sensor::SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,
+                                const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d M = K.inverse();  // C A, upper triangular
-  SensorModel s;
+  sensor::SensorModel s;
   s.scale = {M.row(0).norm(), M.row(1).norm(), M(2, 2)};
   s.theta_rad = std::atan2(M(0, 1), M(0, 0));
   s.phi_rad = std::atan2(M(0, 2), std::hypot(M(0, 0), M(0, 1)));
@@ -50,8 +50,8 @@ SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_
   return s;
 }
 
-SensorModel turned(const SensorModel& sensor, const Eigen::Matrix3d& Q) {
+sensor::SensorModel turned(const sensor::SensorModel& sensor, const Eigen::Matrix3d& Q) {
   return sensor_from(sensor.response().inverse(), sensor.offset_nT, Q * sensor.R_PS());
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

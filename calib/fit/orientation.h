@@ -5,7 +5,7 @@
 #include "calib/sensor/sensor_model.h"
 
 /// From matrices to the parameters of a sensor.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 /// alpha, beta, gamma of A_gamma A_beta A_alpha (eqs. 13-14); beta within 90 degrees.
 [[nodiscard]] Eigen::Vector3d angles_of(const Eigen::Matrix3d& A);
@@ -15,10 +15,10 @@ namespace mgtd::calib {
 
 /// The sensor with b_P = R K (y - offset): K upper triangular with positive diagonal, R orthogonal (det -1:
 /// mirrored).
-[[nodiscard]] SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,
-                                      const Eigen::Matrix3d& R);
+[[nodiscard]] sensor::SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,
+                                              const Eigen::Matrix3d& R);
 
 /// The same sensor with the platform frame turned by Q: R becomes Q R, the mounting is found anew.
-[[nodiscard]] SensorModel turned(const SensorModel& sensor, const Eigen::Matrix3d& Q);
+[[nodiscard]] sensor::SensorModel turned(const sensor::SensorModel& sensor, const Eigen::Matrix3d& Q);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

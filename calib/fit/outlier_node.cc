@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 bool covers(const OutlierNode& node, int sensor, int axis) {
   if (node.where == "pose") return true;
@@ -11,4 +11,4 @@ bool covers(const OutlierNode& node, int sensor, int axis) {
   return node.where == name || node.where == fmt::format("{}.{}", name, "xyz"[axis]);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

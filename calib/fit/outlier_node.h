@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 /// An OutlierNode lists an observation that the other data contradict: it stays in the table, is left out of
 /// the sums, and is given with the shift that would reconcile it.
@@ -22,4 +22,4 @@ struct OutlierNode {
 /// Whether the node speaks of this reading.
 [[nodiscard]] bool covers(const OutlierNode& node, int sensor, int axis);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

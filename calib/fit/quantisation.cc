@@ -7,7 +7,7 @@
 
 #include "calib/fit/readings.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 constexpr std::size_t kFewestStuck = 12;  ///< different stuck readings of all axes together: a rail is one
@@ -78,7 +78,7 @@ Quantisation quantisation_of(const PoseTable& table) {
     return out;
   }
   std::vector<double> values;
-  AxisNoise count = AxisNoise::Zero();
+  calibration::AxisNoise count = calibration::AxisNoise::Zero();
   for (const Pose& pose : table.poses) {
     for (std::size_t i = 0; i < kSensors; ++i) {
       for (std::size_t a = 0; a < 3; ++a) {
@@ -94,4 +94,4 @@ Quantisation quantisation_of(const PoseTable& table) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -13,15 +13,15 @@
 ///
 /// Means can stand on a grid as well, when they were rounded before they were written down. Then every
 /// reading is off by up to q/2, whatever its spread; a step below half the noise of a mean is not looked for.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 struct Quantisation {
-  double step_nT{0};                          ///< 0: no grid is seen
-  AxisNoise variance_nT2{AxisNoise::Zero()};  ///< of a pose mean, by axis
+  double step_nT{0};                                                    ///< 0: no grid is seen
+  calibration::AxisNoise variance_nT2{calibration::AxisNoise::Zero()};  ///< of a pose mean, by axis
   [[nodiscard]] bool seen() const { return step_nT > 0; }
 };
 
 /// Poses of set "check" take part. Nothing is seen where spreads are not recorded.
 [[nodiscard]] Quantisation quantisation_of(const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <vector>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 /// Times the median spread of the axis. A dwell that is above it was disturbed and tells nothing of the
 /// noise.
 constexpr double kDisturbed = 5;
 
-AxisNoise median_spread(const PoseTable& table) {
-  AxisNoise out = AxisNoise::Zero();
+calibration::AxisNoise median_spread(const PoseTable& table) {
+  calibration::AxisNoise out = calibration::AxisNoise::Zero();
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
       std::vector<double> values;
@@ -31,9 +31,9 @@ AxisNoise median_spread(const PoseTable& table) {
 
 /// Mean square over quiet poses of sd^2 / weight(pose), per axis; zero where nothing is known.
 template <class Weight>
-AxisNoise pooled(const PoseTable& table, Weight weight) {
-  AxisNoise sum = AxisNoise::Zero(), count = AxisNoise::Zero();
-  const AxisNoise usual = median_spread(table);
+calibration::AxisNoise pooled(const PoseTable& table, Weight weight) {
+  calibration::AxisNoise sum = calibration::AxisNoise::Zero(), count = calibration::AxisNoise::Zero();
+  const calibration::AxisNoise usual = median_spread(table);
   for (const Pose& pose : table.poses) {
     for (std::size_t i = 0; i < kSensorCount; ++i) {
       for (std::size_t a = 0; a < 3; ++a) {
@@ -51,7 +51,7 @@ AxisNoise pooled(const PoseTable& table, Weight weight) {
 
 }  // namespace
 
-AxisNoise pooled_sample_noise(const PoseTable& table) {
+calibration::AxisNoise pooled_sample_noise(const PoseTable& table) {
   return pooled(table, [](const Pose&) { return 1.0; });
 }
 
@@ -111,4 +111,4 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

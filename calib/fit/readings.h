@@ -8,7 +8,7 @@
 #include "calib/fit/fit_report.h"
 
 /// The readings of a pose table in the form that the fits use: one column per pose.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 
 struct Readings {
   std::array<Eigen::Matrix3Xd, kSensors> y_nT;
@@ -16,8 +16,9 @@ struct Readings {
   Eigen::VectorXd f_sd_nT;
   std::vector<std::optional<TableAngles>> angles;
   std::vector<bool> standard;
-  std::vector<int> number;                     ///< of the pose in the table
-  AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< of a pose mean; zero when the table has no spreads
+  std::vector<int> number;  ///< of the pose in the table
+  calibration::AxisNoise pose_noise_nT{
+      calibration::AxisNoise::Zero()};  ///< of a pose mean; zero when the table has no spreads
 
   [[nodiscard]] Eigen::Index poses() const { return f_nT.size(); }
   /// The pose belongs to the turn of the standard set and its azimuth is known.
@@ -39,6 +40,6 @@ enum class PoseUse { fit, check };
 
 /// Noise of one sample per axis, pooled over the poses (root mean square of their spreads, without those
 /// above five times the median: something moved there); zero where no pose tells.
-[[nodiscard]] AxisNoise pooled_sample_noise(const PoseTable& table);
+[[nodiscard]] calibration::AxisNoise pooled_sample_noise(const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

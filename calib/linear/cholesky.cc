@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 /// x becomes (L L')^-1 x.
@@ -95,4 +95,4 @@ double Cholesky::log_determinant() const {
   return 2 * (lower_.diagonal().array().log().sum() - scale_.array().log().sum());
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

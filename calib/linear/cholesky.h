@@ -4,7 +4,7 @@
 
 #include "proto/error.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 /// The Cholesky decomposition of a symmetric positive definite matrix A, made after its diagonal is scaled to
 /// one: D A D = L L' with D = diag(A)^-1/2. The scaling takes the units out, so that nanotesla beside radians
@@ -40,4 +40,4 @@ class Cholesky {
   Eigen::VectorXd scale_;  ///< diagonal of D
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,8 +3,8 @@
 
 #include <Eigen/LU>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 Eigen::MatrixXd inverse_by_lu(const Eigen::MatrixXd& A) { return A.inverse(); }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

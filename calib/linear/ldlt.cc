@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 Eigen::VectorXd solve_by_ldlt(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   return A.ldlt().solve(b);
@@ -13,4 +13,4 @@ Eigen::MatrixXd solve_by_ldlt(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B
   return A.ldlt().solve(B);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

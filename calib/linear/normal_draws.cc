@@ -5,7 +5,7 @@
 
 #include "calib/linear/cholesky.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 Eigen::MatrixXd normal_draws(const Eigen::MatrixXd& covariance, Eigen::Index draws, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -15,4 +15,4 @@ Eigen::MatrixXd normal_draws(const Eigen::MatrixXd& covariance, Eigen::Index dra
   return Cholesky::of_unscaled(covariance).value().colour(independent);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

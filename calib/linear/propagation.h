@@ -4,7 +4,7 @@
 
 /// Propagation of errors to first order: what y = f(x) inherits from an x of covariance C, with the Jacobian
 /// J = df/dx. Templates, so that small matrices keep their fixed size in the loop over the samples.
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 /// J C J': the covariance of y.
 template <typename Jacobian, typename Covariance>
@@ -28,4 +28,4 @@ template <typename Gradient, typename Covariance>
   return g.dot(C * g);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,7 +3,7 @@
 
 #include <Eigen/QR>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 using Pivoted = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
@@ -48,4 +48,4 @@ Eigen::MatrixXd triangularising_rotation(const Eigen::MatrixXd& X) {
   return Eigen::MatrixXd(Plain(X).householderQ()).transpose();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

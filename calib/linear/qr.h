@@ -4,7 +4,7 @@
 #include <optional>
 
 /// Least squares and orthonormal bases of columns, by Householder QR.
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 /// The b of least |y - X b|, columns pivoted. Of a column that depends on the others b is zero.
 [[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& X, const Eigen::VectorXd& y);
@@ -27,4 +27,4 @@ namespace mgtd::calib {
 /// are zero.
 [[nodiscard]] Eigen::MatrixXd triangularising_rotation(const Eigen::MatrixXd& X);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,7 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
@@ -19,4 +19,4 @@ PrincipalAxes principal_axes(const Eigen::Matrix3d& A) {
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

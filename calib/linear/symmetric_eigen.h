@@ -4,7 +4,7 @@
 
 /// Eigenvalues of a real symmetric matrix, ascending, and its eigenvectors, orthonormal, as columns in the
 /// same order: A = V diag(values) V'. Only the lower triangle of A is read.
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 
 struct SymmetricEigen {
   Eigen::VectorXd values;
@@ -20,4 +20,4 @@ struct PrincipalAxes {
 };
 [[nodiscard]] PrincipalAxes principal_axes(const Eigen::Matrix3d& A);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

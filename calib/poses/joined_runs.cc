@@ -7,7 +7,7 @@
 
 #include "calib/poses/run_time.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 namespace {
 
 bool tells_time(const PoseTable& table) {
@@ -75,4 +75,4 @@ Result<PoseTable> joined(const PoseTable& a, const PoseTable& b) {
   return tl::unexpected(overlap(a, b));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

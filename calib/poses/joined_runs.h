@@ -13,9 +13,9 @@
 /// Assumed, and not checked: the same array, mounted in the same way on a table that kept its zero, at the
 /// same place. Where that is not so, the fit of both has a larger residual than that of each. The path of the
 /// table between the runs is not known: hysteresis is followed as if the table had gone straight on.
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 
 /// Refuses runs that overlap in time, and a pair of which only one records time.
 [[nodiscard]] Result<PoseTable> joined(const PoseTable& a, const PoseTable& b);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -8,7 +8,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 namespace {
 
 using Member = std::optional<double> Pose::*;
@@ -112,4 +112,4 @@ const std::vector<PoseColumn>& pose_columns() {
   return kColumns;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

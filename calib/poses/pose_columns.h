@@ -10,7 +10,7 @@
 
 /// The numeric columns of a pose table that have a meaning of their own, each with its way into a Pose and
 /// out of it.
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 
 struct PoseColumn {
   std::string name;
@@ -32,4 +32,4 @@ struct PoseColumn {
 /// them.
 [[nodiscard]] const std::vector<PoseColumn>& pose_columns();
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -9,7 +9,7 @@
 
 /// A PoseList holds poses that are still to be measured, with the line of each in its file for error
 /// messages.
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 
 struct PoseList {
   PoseTable table;
@@ -20,4 +20,4 @@ struct PoseList {
 /// As parse_pose_list (pose_table.h).
 [[nodiscard]] Result<PoseList> read_pose_list(std::string_view text, std::string_view file);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -14,7 +14,7 @@
 #include "proto/number.h"
 #include "proto/sha256.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 namespace {
 
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
@@ -290,4 +290,4 @@ std::string format_pose_table(const PoseTable& table) {
 
 std::string data_hash(const PoseTable& table) { return sha256_hex(format_pose_table(table)); }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

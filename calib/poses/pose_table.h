@@ -9,7 +9,7 @@
 /// The pose table as text (CSV, '.' decimal point, header row, empty cell = not measured). Columns are
 /// described in docs/pose-table.md. Readings of all four sensors are required; every other column is
 /// optional; a numeric column with a name of its own is a covariate.
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 
 /// Tolerates CRLF, a byte order mark, blank lines, '#' comments and spaces around cells. Refuses, with
 /// file:line:column and what to do: a missing column, a column named twice, a row of another length, text
@@ -27,4 +27,4 @@ namespace mgtd::calib {
 /// SHA-256 of the canonical text: what a calibration was fitted to.
 [[nodiscard]] std::string data_hash(const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 
 RunTime RunTime::of(const PoseTable& table) {
   const auto first =
@@ -17,4 +17,4 @@ double RunTime::hours(const Pose& pose) const {
   return pose.t_s.value_or(0) / 3600;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -6,7 +6,7 @@
 
 /// Time since the start of the run that a calibration was fitted to. Where both the run and a pose tell
 /// absolute time (t_utc) that counts; else t_s, and the origins of different tables are taken as the same.
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 
 struct RunTime {
   std::optional<WallTime> start;
@@ -22,4 +22,4 @@ struct RunTime {
   return pose.t_s || pose.t_utc ? "" : "t_s";
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -9,12 +9,12 @@
 #include "calib/report/json_number.h"
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
 
-json parameter_json(const ParameterChange& p) {
+json parameter_json(const validity::ParameterChange& p) {
   json out{{"name", p.name},
            {"change", number_or_null(p.change)},
            {"sd", number_or_null(p.sd)},
@@ -33,12 +33,12 @@ std::string amount(double value, const std::string& unit, bool sign) {
 
 }  // namespace
 
-json to_json(const Change& c) {
+json to_json(const validity::Change& c) {
   json sensors = json::array(), named = json::array(), parameters = json::array();
   for (std::size_t i = 0; i < kSensors; ++i)
     sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"others_log10_p", c.others_log10_p[i]}});
-  for (const ParameterChange& p : c.named) named.push_back(parameter_json(p));
-  for (const ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
+  for (const validity::ParameterChange& p : c.named) named.push_back(parameter_json(p));
+  for (const validity::ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
   return {{"chi2", c.chi2},
           {"dof", c.dof},
           {"log10_p", c.log10_p},
@@ -49,28 +49,28 @@ json to_json(const Change& c) {
           {"parameters", std::move(parameters)}};
 }
 
-std::string figures_text(const Change& c) {
-  return fmt::format("{}; chi-square {:.1f} for {:.0f} directions", p_phrase(std::log10(c.p())), c.chi2,
-                     c.dof);
+std::string figures_text(const validity::Change& c) {
+  return fmt::format("{}; chi-square {:.1f} for {:.0f} directions", stats::p_phrase(std::log10(c.p())),
+                     c.chi2, c.dof);
 }
 
-std::string named_text(const Change& change) {
+std::string named_text(const validity::Change& change) {
   std::string out;
-  for (const ParameterChange& n : change.named) {
+  for (const validity::ParameterChange& n : change.named) {
     out += fmt::format("{}{} by {} ({:.1f} sigma)", out.empty() ? "" : ", ", n.name,
                        amount(n.change, n.unit, true), std::abs(n.sigmas));
   }
   return out;
 }
 
-std::string change_table(const Change& change, std::size_t rows) {
+std::string change_table(const validity::Change& change, std::size_t rows) {
   std::string out = "were it one sensor that changed, would the others be as they were?";
   for (std::size_t i = 0; i < kSensors; ++i)
-    out += fmt::format("   s{} {}", i + 1, p_phrase(change.others_log10_p[i]));
+    out += fmt::format("   s{} {}", i + 1, stats::p_phrase(change.others_log10_p[i]));
   out += fmt::format("\n\n{:<24} {:>20} {:>18} {:>8} {:>20}\n", "as if it alone changed", "by", "sd",
                      "sigmas", "smallest to be seen");
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
-    const ParameterChange& p = change.parameters[j];
+    const validity::ParameterChange& p = change.parameters[j];
     out += fmt::format("{:<24} {:>20} {:>18} {:>8.1f} {:>20}\n", p.name, amount(p.change, p.unit, true),
                        amount(p.sd, p.unit, false), p.sigmas,
                        std::isfinite(p.seen) ? amount(p.seen, p.unit, false) : "none");
@@ -78,7 +78,7 @@ std::string change_table(const Change& change, std::size_t rows) {
   return out;
 }
 
-std::string seen_text(const Change& change) {
+std::string seen_text(const validity::Change& change) {
   struct Kind {
     const char* what;
     const char* keys;
@@ -89,7 +89,7 @@ std::string seen_text(const Change& change) {
                              {"scale factor", " cx cy cz ", ""},
                              {"angle between axes", " theta phi psi ", "deg"},
                              {"turn of a sensor", " alpha beta gamma ", "deg"}}};
-  for (const ParameterChange& p : change.parameters) {
+  for (const validity::ParameterChange& p : change.parameters) {
     if (p.name.size() < 4 || p.name[0] != 's' || p.name[2] != ' ') continue;
     for (Kind& kind : kinds) {
       if (std::string_view(kind.keys).find(p.name.substr(2) + " ") != std::string_view::npos)
@@ -104,4 +104,4 @@ std::string seen_text(const Change& change) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

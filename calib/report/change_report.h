@@ -6,19 +6,19 @@
 #include "calib/validity/change.h"
 
 /// A change as an object and for a person.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// {"chi2","dof","log10_p","log10_p_single","p","sensors":[...],"named":[...],"parameters":[...]}; angles in
 /// degrees, each parameter with its unit.
-[[nodiscard]] nlohmann::json to_json(const Change& change);
+[[nodiscard]] nlohmann::json to_json(const validity::Change& change);
 
 /// "s3 iz +7.9 nT (8.1 sigma), s1 cx ..."
-[[nodiscard]] std::string named_text(const Change& change);
+[[nodiscard]] std::string named_text(const validity::Change& change);
 /// "p = 0.32; chi-square 41.0 for 45 directions"
-[[nodiscard]] std::string figures_text(const Change& change);
+[[nodiscard]] std::string figures_text(const validity::Change& change);
 /// By sensor whether its change alone would do, then the `rows` parameters that differ most.
-[[nodiscard]] std::string change_table(const Change& change, std::size_t rows);
+[[nodiscard]] std::string change_table(const validity::Change& change, std::size_t rows);
 /// Smallest change that would be found in 80 of 100 cases, worst over the sensors, by kind of parameter.
-[[nodiscard]] std::string seen_text(const Change& change);
+[[nodiscard]] std::string seen_text(const validity::Change& change);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

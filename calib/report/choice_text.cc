@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-std::string to_text(const Choice& choice) {
+std::string to_text(const criticism::search::Choice& choice) {
   std::string out;
   if (!choice.alternatives.empty())
     out += fmt::format("{} was chosen where {} could stand in its place, and no poses since tell them apart",
@@ -19,4 +19,4 @@ std::string to_text(const Choice& choice) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -4,9 +4,9 @@
 
 #include "calib/criticism/search/choice.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// One or two clauses; empty when nothing is open.
-[[nodiscard]] std::string to_text(const Choice& choice);
+[[nodiscard]] std::string to_text(const criticism::search::Choice& choice);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -18,20 +18,20 @@
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
 
-json axes_json(const AxisNoise& n) {
+json axes_json(const calibration::AxisNoise& n) {
   json out = json::array();
   for (int i = 0; i < kSensors; ++i) out.push_back({n(i, 0), n(i, 1), n(i, 2)});
   return out;
 }
 
-json channel_json(const ResidualChannel& c) {
+json channel_json(const criticism::tests::ResidualChannel& c) {
   json against = json::array();
-  for (const Dependence& d : c.against) {
+  for (const criticism::tests::Dependence& d : c.against) {
     against.push_back({{"covariate", d.covariate},
                        {"component", d.component},
                        {"p", std::pow(10.0, d.log10_p)},
@@ -60,19 +60,19 @@ std::string plot(const std::vector<double>& means) {
   return out;
 }
 
-std::string noise_text(const Comparison& c) {
+std::string noise_text(const criticism::tests::Comparison& c) {
   std::string out = fmt::format("residual   {:.3g} nT: {}\n", c.residual_nT, kResidualIs);
   out += fmt::format("noise      {:.3g} nT of a pose mean, {}\n", c.noise_nT, noise_source(c.noise.known));
   if (const std::string tests = noise_of_tests(c.noise); !tests.empty())
     out += fmt::format("           {}\n", tests);
   out += fmt::format(
       "chi-square {:.4g} with {:.0f} degrees of freedom, of readings, scalar reference and table angles{}\n",
-      c.chi2, c.dof, c.log10_p ? "; " + p_phrase(*c.log10_p) : "");
+      c.chi2, c.dof, c.log10_p ? "; " + stats::p_phrase(*c.log10_p) : "");
   if (c.noise.revisits) {
-    const PureError& p = *c.noise.revisits;
+    const criticism::tests::PureError& p = *c.noise.revisits;
     out += fmt::format(
         "revisits   {} pairs of one attitude scatter {:.2f} times that noise; lack of fit F = {:.2f}, {}: ",
-        p.pairs, std::sqrt(p.ratio), p.F, p_phrase(p.log10_p));
+        p.pairs, std::sqrt(p.ratio), p.F, stats::p_phrase(p.log10_p));
     out += fmt::format("the model misses {:.2g} nT rms beyond that scatter\n", p.model_nT);
   } else {
     out +=
@@ -86,7 +86,7 @@ std::string noise_text(const Comparison& c) {
 
 }  // namespace
 
-std::vector<std::string> alike_text(const Comparison& c) {
+std::vector<std::string> alike_text(const criticism::tests::Comparison& c) {
   std::map<std::string, std::vector<std::string>> by_shown;
   for (const auto& [name, shown] : c.alike) by_shown[shown].push_back(name);
   std::vector<std::string> out;
@@ -97,15 +97,16 @@ std::vector<std::string> alike_text(const Comparison& c) {
   return out;
 }
 
-json to_json(const Comparison& c) {
+json to_json(const criticism::tests::Comparison& c) {
   json channels = json::array(), maps = json::array(), outliers = json::array(), lack, alike = json::array();
   for (const auto& [name, shown] : c.alike) alike.push_back({{"covariate", name}, {"as", shown}});
-  for (const ResidualChannel& channel : c.channels) channels.push_back(channel_json(channel));
-  for (const MapScore& map : c.maps) maps.push_back(to_json(map));
-  for (const OutlierNode& o : c.outliers)
+  for (const criticism::tests::ResidualChannel& channel : c.channels)
+    channels.push_back(channel_json(channel));
+  for (const criticism::tests::MapScore& map : c.maps) maps.push_back(to_json(map));
+  for (const fit::OutlierNode& o : c.outliers)
     outliers.push_back({{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}});
   if (c.noise.revisits) {
-    const PureError& p = *c.noise.revisits;
+    const criticism::tests::PureError& p = *c.noise.revisits;
     lack = {{"F", p.F}, {"p", std::pow(10.0, p.log10_p)}, {"model_nT", p.model_nT}, {"pairs", p.pairs}};
   }
   return {{"schema", "mgt.compare/1"},
@@ -127,29 +128,29 @@ json to_json(const Comparison& c) {
           {"outliers", std::move(outliers)}};
 }
 
-std::string to_text(const Comparison& c) {
+std::string to_text(const criticism::tests::Comparison& c) {
   std::string out = noise_text(c);
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "\n{:<13} {:>12}   {:<12} {:<9} {:>8}  means over it, lowest to highest\n", "channel",
                  "rms", "against", "strongest", "p");
-  for (const ResidualChannel& channel : c.channels) {
+  for (const criticism::tests::ResidualChannel& channel : c.channels) {
     std::string head = fmt::format("{:<13} {:>8.3g} {:<4}", channel.name, channel.rms, channel.unit);
-    for (const Dependence& d : channel.against) {
+    for (const criticism::tests::Dependence& d : channel.against) {
       fmt::format_to(to, "{:<26}  {:<12} {:<9} {:>8}  {}\n", head, d.covariate, d.component,
-                     p_text(d.log10_p), plot(d.means));
+                     stats::p_text(d.log10_p), plot(d.means));
       head.clear();
     }
     if (!head.empty()) fmt::format_to(to, "{:<26}  nothing recorded that it could depend on\n", head);
   }
   for (const std::string& line : alike_text(c)) fmt::format_to(to, "  {}\n", line);
-  for (const ResidualChannel& channel : c.channels)
+  for (const criticism::tests::ResidualChannel& channel : c.channels)
     fmt::format_to(to, "  {:<13} {}\n", channel.name, channel.meaning);
   fmt::format_to(to, "\n{:<26}  {:<12} {:>3} {:>8}\n", "map of the residual", "where", "k", "p");
-  for (const MapScore& m : c.maps)
-    fmt::format_to(to, "{:<26}  {:<12} {:>3} {:>8}\n", m.map, m.where, m.k, p_text(m.log10_p));
+  for (const criticism::tests::MapScore& m : c.maps)
+    fmt::format_to(to, "{:<26}  {:<12} {:>3} {:>8}\n", m.map, m.where, m.k, stats::p_text(m.log10_p));
   for (const std::string& text : outlier_texts(c.outliers)) fmt::format_to(to, "left out: {}\n", text);
   out += c.fits ? "\nthe model fits to the noise\n" : "\nthe model does not fit: mgt explain asks why\n";
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -6,13 +6,13 @@
 
 #include "calib/criticism/tests/comparison.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// "mgt.compare/1".
-[[nodiscard]] nlohmann::json to_json(const Comparison& comparison);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::Comparison& comparison);
 /// Which covariates stand for others, a sentence for each.
-[[nodiscard]] std::vector<std::string> alike_text(const Comparison& comparison);
+[[nodiscard]] std::vector<std::string> alike_text(const criticism::tests::Comparison& comparison);
 /// For the terminal: the noise, then each channel against each covariate with a small plot of its means.
-[[nodiscard]] std::string to_text(const Comparison& comparison);
+[[nodiscard]] std::string to_text(const criticism::tests::Comparison& comparison);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

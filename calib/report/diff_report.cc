@@ -6,10 +6,10 @@
 #include "calib/report/change_report.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::string turn_text(const CommonTurn& turn) {
+std::string turn_text(const validity::CommonTurn& turn) {
   std::string out = "turn of the whole array on its table, which is no change of it:";
   for (int axis = 0; axis < 3; ++axis) {
     out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.about_rad[axis]),
@@ -20,8 +20,8 @@ std::string turn_text(const CommonTurn& turn) {
 
 }  // namespace
 
-std::string conclusion_text(const DiffReport& report) {
-  const Change& c = report.change;
+std::string conclusion_text(const validity::DiffReport& report) {
+  const validity::Change& c = report.change;
   const std::string figures = figures_text(c);
   if (!report.changed) return fmt::format("nothing changed that these runs can tell ({})", figures);
   if (!report.remounted.empty()) return "changed: a sensor stands differently";
@@ -29,7 +29,7 @@ std::string conclusion_text(const DiffReport& report) {
   return fmt::format("changed: {} ({})", named_text(c), figures);
 }
 
-std::vector<std::string> remarks_of(const DiffReport& report) {
+std::vector<std::string> remarks_of(const validity::DiffReport& report) {
   constexpr const char* kAdvice = "the model of both must be the same for its parameters to be compared";
   std::vector<std::string> out;
   for (const std::string& effect : report.only_in_first)
@@ -46,4 +46,4 @@ std::vector<std::string> remarks_of(const DiffReport& report) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -6,11 +6,11 @@
 #include "calib/validity/diff.h"
 
 /// The difference of two calibrations in sentences.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// What changed, or that nothing did.
-[[nodiscard]] std::string conclusion_text(const DiffReport& report);
+[[nodiscard]] std::string conclusion_text(const validity::DiffReport& report);
 /// Effects that only one calibration has, remounted sensors, a free scale, the turn of the whole array.
-[[nodiscard]] std::vector<std::string> remarks_of(const DiffReport& report);
+[[nodiscard]] std::vector<std::string> remarks_of(const validity::DiffReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -13,7 +13,7 @@
 #include "calib/sensor/shown_parameters.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
@@ -36,22 +36,22 @@ std::string tensor_row(std::string_view what, const Gradient& g) {
 }
 
 /// Scale factors in parts per million.
-std::string amount(const Expected& e) {
+std::string amount(const design::Expected& e) {
   return e.unit.empty() ? fmt::format("{:.3g} ppm", 1e6 * e.sd) : fmt::format("{:.3g} {}", e.sd, e.unit);
 }
 
-std::string parameter_table(const DesignReport& r) {
+std::string parameter_table(const design::DesignReport& r) {
   std::string out = fmt::format("{:<20}", "standard error");
   for (int i = 1; i <= kSensors; ++i) out += fmt::format("{:>16}", fmt::format("s{}", i));
   out += "\n";
-  for (std::size_t p = 0; p < kSensorParameters; ++p) {
-    out += fmt::format("{:<20}", shown_parameters()[p].name);
+  for (std::size_t p = 0; p < sensor::kSensorParameters; ++p) {
+    out += fmt::format("{:<20}", sensor::shown_parameters()[p].name);
     for (std::size_t i = 0; i < kSensors; ++i)
-      out += fmt::format("{:>16}", amount(r.parameters[i * kSensorParameters + p]));
+      out += fmt::format("{:>16}", amount(r.parameters[i * sensor::kSensorParameters + p]));
     out += "\n";
   }
-  for (std::size_t j = kSensors * kSensorParameters; j < r.parameters.size(); ++j) {
-    const Separation& s = r.separations[j - kSensors * kSensorParameters];
+  for (std::size_t j = kSensors * sensor::kSensorParameters; j < r.parameters.size(); ++j) {
+    const design::Separation& s = r.separations[j - kSensors * sensor::kSensorParameters];
     out +=
         fmt::format("{:<28}{:>18}   {:.2f} times what it would be alone; most like {} ({:.2f})\n",
                     r.parameters[j].name, amount(r.parameters[j]), s.inflation, s.alternative, s.correlation);
@@ -59,50 +59,51 @@ std::string parameter_table(const DesignReport& r) {
   return out;
 }
 
-std::string weak_list(const DesignReport& r) {
+std::string weak_list(const design::DesignReport& r) {
   if (r.known.weak.empty()) return {};
   std::string out = "weakly known\n";
-  for (const WeakDirection& w : r.known.weak) {
-    out += fmt::format("  {}: {}\n", to_text(w), weak_sd_text(w.sd_nT));
+  for (const fit::joint::WeakDirection& w : r.known.weak) {
+    out += fmt::format("  {}: {}\n", fit::checks::to_text(w), fit::checks::weak_sd_text(w.sd_nT));
   }
-  out += fmt::format("  {}\n", to_text(r.known.coverage));
+  out += fmt::format("  {}\n", fit::checks::to_text(r.known.coverage));
   return out;
 }
 
-std::string help_list(const DesignReport& r) {
+std::string help_list(const design::DesignReport& r) {
   std::string out = "poses that would help most\n";
   if (!r.known.add.empty()) {
-    for (const TableAngles& a : r.known.add) out += fmt::format("  {}\n", to_text(a));
+    for (const TableAngles& a : r.known.add) out += fmt::format("  {}\n", fit::checks::to_text(a));
     return out;
   }
-  for (const DesignReport::Helpful& h : r.helpful) {
-    out +=
-        fmt::format("  {:<44} takes {:.1f} % off the tensor's variance\n", to_text(h.angles), 100 * h.share);
+  for (const design::DesignReport::Helpful& h : r.helpful) {
+    out += fmt::format("  {:<44} takes {:.1f} % off the tensor's variance\n", fit::checks::to_text(h.angles),
+                       100 * h.share);
   }
   return out;
 }
 
-std::string gauge_text(const Gauge& gauge) {
+std::string gauge_text(const fit::joint::Gauge& gauge) {
   std::string out;
   switch (gauge.angles) {
-    case AngleCoverage::none:
+    case fit::joint::AngleCoverage::none:
       out = "the angles do not fix the platform frame: mean alpha = beta = gamma = 0 by convention";
       break;
-    case AngleCoverage::one_axis:
+    case fit::joint::AngleCoverage::one_axis:
       out = "the angles turn about one axis: mean gamma = 0 by convention";
       break;
-    case AngleCoverage::full:
+    case fit::joint::AngleCoverage::full:
       out = "the table angles fix the platform frame";
       break;
   }
-  return gauge.scale_known ? out : fmt::format("{}; no field is known: {}", out, kScaleIsFree);
+  return gauge.scale_known ? out : fmt::format("{}; no field is known: {}", out, calibration::kScaleIsFree);
 }
 
-std::string assumed_text(const DesignAssumptions& r) {
+std::string assumed_text(const design::DesignAssumptions& r) {
   const std::string field =
-      r.scalar_sd_nT  ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
-      : r.field_known ? fmt::format("known to {} nT", std::max(r.field_sd_nT, kCommonFieldSpread_nT))
-                      : std::string("not known");
+      r.scalar_sd_nT ? fmt::format("a scalar reference to {} nT", *r.scalar_sd_nT)
+      : r.field_known
+          ? fmt::format("known to {} nT", std::max(r.field_sd_nT, fit::joint::kCommonFieldSpread_nT))
+          : std::string("not known");
   return fmt::format(
       "field {:.0f} nT, {}; inclination {:.1f} deg; noise {} nT of a pose mean; table {} deg; heads that "
       "warm "
@@ -112,21 +113,21 @@ std::string assumed_text(const DesignAssumptions& r) {
 
 }  // namespace
 
-json to_json(const DesignReport& r) {
+json to_json(const design::DesignReport& r) {
   json parameters = json::array(), separations = json::array(), weak = json::array(), add = json::array(),
        helpful = json::array();
-  for (const Expected& e : r.parameters)
+  for (const design::Expected& e : r.parameters)
     parameters.push_back({{"name", e.name}, {"sd", e.sd}, {"unit", e.unit}});
-  for (const Separation& s : r.separations) {
+  for (const design::Separation& s : r.separations) {
     separations.push_back({{"name", s.name},
                            {"inflation", s.inflation},
                            {"rival", s.alternative},
                            {"correlation", s.correlation}});
   }
-  for (const WeakDirection& w : r.known.weak)
-    weak.push_back({{"what", to_text(w)}, {"sd_nT", number_or_null(w.sd_nT)}});
+  for (const fit::joint::WeakDirection& w : r.known.weak)
+    weak.push_back({{"what", fit::checks::to_text(w)}, {"sd_nT", number_or_null(w.sd_nT)}});
   for (const TableAngles& a : r.known.add) add.push_back(angles_json(a));
-  for (const DesignReport::Helpful& h : r.helpful) {
+  for (const design::DesignReport::Helpful& h : r.helpful) {
     helpful.push_back(angles_json(h.angles));
     helpful.back()["variance_share"] = h.share;
   }
@@ -140,14 +141,14 @@ json to_json(const DesignReport& r) {
            {"tensor_sd_nT_per_m", tensor_components(r.tensor_sd_nT_per_m)},
            {"noise_sd_nT_per_m", tensor_components(r.noise_sd_nT_per_m)},
            {"weak", std::move(weak)},
-           {"coverage", to_text(r.known.coverage)},
+           {"coverage", fit::checks::to_text(r.known.coverage)},
            {"add", std::move(add)},
            {"helpful", std::move(helpful)}};
   if (r.power) add_json(*r.power, out);
   return out;
 }
 
-std::string to_text(const DesignReport& r) {
+std::string to_text(const design::DesignReport& r) {
   std::string out = fmt::format("{} poses: {}\n", r.poses,
                                 r.determined ? "every parameter would be determined"
                                              : "NOT ENOUGH, some parameters would stay unknown");
@@ -164,4 +165,4 @@ std::string to_text(const DesignReport& r) {
   return r.power ? out + "\n" + to_text(*r.power) : out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

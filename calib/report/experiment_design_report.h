@@ -6,9 +6,9 @@
 #include "calib/design/experiment_design.h"
 
 /// The report of an experiment design, as a JSON object (schema "mgt.plan/1") and as text.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-[[nodiscard]] nlohmann::json to_json(const DesignReport& report);
-[[nodiscard]] std::string to_text(const DesignReport& report);
+[[nodiscard]] nlohmann::json to_json(const design::DesignReport& report);
+[[nodiscard]] std::string to_text(const design::DesignReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

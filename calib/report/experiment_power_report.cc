@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
 
-std::string seen(const DesignPower& power) {
+std::string seen(const design::DesignPower& power) {
   std::string out = fmt::format("{:<32}{:>14} {:>12}  {:<12}{}\n", "effect that would be seen above",
                                 "smallest", "sd", "unit", "where");
-  for (const Detectable& d : power.detectable) {
+  for (const criticism::tests::Detectable& d : power.detectable) {
     if (d.value > 0)
       out +=
           fmt::format("  {:<30}{:>14.3g} {:>12.2g}  {:<12}{}\n", d.effect, d.value, d.sd(), d.unit, d.where);
@@ -21,7 +21,7 @@ std::string seen(const DesignPower& power) {
   return out;
 }
 
-std::string cure(const LookAlike& pair) {
+std::string cure(const design::LookAlike& pair) {
   std::string out;
   if (pair.remedy)
     out = fmt::format("      {} ({:.0f} min): right in {:.0f} %\n", pair.remedy->action, pair.remedy->minutes,
@@ -31,15 +31,15 @@ std::string cure(const LookAlike& pair) {
   return out;
 }
 
-std::string alike(const DesignPower& power) {
+std::string alike(const design::DesignPower& power) {
   if (power.inseparable.empty())
     return fmt::format("all {} pairs of effects can be told apart at {:.0f} standard errors\n", power.pairs,
-                       kComparedAt_d);
+                       design::kComparedAt_d);
   std::string out = fmt::format(
       "{} of {} pairs that cannot be told apart (named right in less than {:.0f} % at {:.0f} "
       "standard errors), and what would separate them\n",
-      power.inseparable.size(), power.pairs, 100 * kSeparated, kComparedAt_d);
-  for (const LookAlike& pair : power.inseparable) {
+      power.inseparable.size(), power.pairs, 100 * design::kSeparated, design::kComparedAt_d);
+  for (const design::LookAlike& pair : power.inseparable) {
     out += fmt::format("  {} ({}) - {}: correlation {:.4f}, right in {:.0f} %\n", pair.effect, pair.where,
                        pair.alternative, pair.correlation, 100 * pair.p_right);
     out += cure(pair);
@@ -49,9 +49,9 @@ std::string alike(const DesignPower& power) {
 
 }  // namespace
 
-void add_json(const DesignPower& power, json& report) {
+void add_json(const design::DesignPower& power, json& report) {
   json detectable = json::array(), inseparable = json::array(), untestable = json::array();
-  for (const Detectable& d : power.detectable) {
+  for (const criticism::tests::Detectable& d : power.detectable) {
     if (d.value > 0)
       detectable.push_back(
           {{"effect", d.effect}, {"where", d.where}, {"value", d.value}, {"sd", d.sd()}, {"unit", d.unit}});
@@ -59,7 +59,7 @@ void add_json(const DesignPower& power, json& report) {
       untestable.push_back(
           {{"effect", d.effect}, {"why", "these poses would show it at no size that occurs"}});
   }
-  for (const LookAlike& p : power.inseparable) {
+  for (const design::LookAlike& p : power.inseparable) {
     json remedy;
     if (p.remedy)
       remedy = {{"action", p.remedy->action}, {"minutes", p.remedy->minutes}, {"p_right", p.remedy->p_right}};
@@ -71,19 +71,21 @@ void add_json(const DesignPower& power, json& report) {
                            {"remedy", std::move(remedy)},
                            {"advice", p.advice}});
   }
-  for (const Untestable& u : power.untestable) untestable.push_back({{"effect", u.effect}, {"why", u.why}});
+  for (const criticism::tests::Untestable& u : power.untestable)
+    untestable.push_back({{"effect", u.effect}, {"why", u.why}});
   report["detectable_above"] = std::move(detectable);
   report["inseparable"] = std::move(inseparable);
   report["pairs"] = power.pairs;
   report["untestable"] = std::move(untestable);
 }
 
-std::string to_text(const DesignPower& power) {
+std::string to_text(const design::DesignPower& power) {
   std::string out = seen(power) + "\n" + alike(power);
   if (power.untestable.empty()) return out;
   out += "\nnot testable by this run\n";
-  for (const Untestable& u : power.untestable) out += fmt::format("  {:<32}{}\n", u.effect, u.why);
+  for (const criticism::tests::Untestable& u : power.untestable)
+    out += fmt::format("  {:<32}{}\n", u.effect, u.why);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

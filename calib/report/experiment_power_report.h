@@ -7,9 +7,9 @@
 
 /// The part of a design's report that is about missing effects: keys "detectable_above", "inseparable",
 /// "pairs" and "untestable" of "mgt.plan/1", and their tables for a person.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-void add_json(const DesignPower& power, nlohmann::json& report);
-[[nodiscard]] std::string to_text(const DesignPower& power);
+void add_json(const design::DesignPower& power, nlohmann::json& report);
+[[nodiscard]] std::string to_text(const design::DesignPower& power);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -7,19 +7,19 @@
 #include "calib/report/explain_note_text.h"
 #include "calib/report/verdict_text.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
 
-json coefficient_json(const EffectCoefficient& c) {
+json coefficient_json(const calibration::EffectCoefficient& c) {
   return {{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}};
 }
 
-json candidate_json(const Candidate& c) {
+json candidate_json(const criticism::tests::Candidate& c) {
   json coefficients = json::array(), alternatives = json::array();
-  for (const EffectCoefficient& x : c.coefficients) coefficients.push_back(coefficient_json(x));
-  for (const Alternative& r : c.alternatives) {
+  for (const calibration::EffectCoefficient& x : c.coefficients) coefficients.push_back(coefficient_json(x));
+  for (const criticism::tests::Alternative& r : c.alternatives) {
     alternatives.push_back({{"effect", r.effect},
                             {"where", r.where},
                             {"p_behind", r.p_behind},
@@ -42,7 +42,7 @@ json candidate_json(const Candidate& c) {
           {"largest_pose_share", c.largest_pose}};
 }
 
-json round_json(const Round& r) {
+json round_json(const criticism::search::Round& r) {
   return {{"added", candidate_json(r.added)}, {"possible", r.possible},
           {"chi2_before", r.chi2_before},     {"chi2_after", r.chi2_after},
           {"rms_before_nT", r.rms_before_nT}, {"rms_after_nT", r.rms_after_nT}};
@@ -57,12 +57,12 @@ json array_of(const std::vector<T>& values, F&& make) {
 
 }  // namespace
 
-json to_json(const MapScore& m) {
+json to_json(const criticism::tests::MapScore& m) {
   return {{"map", m.map},         {"where", m.where}, {"p", std::pow(10.0, m.log10_p)},
           {"log10_p", m.log10_p}, {"chi2", m.S},      {"k", m.k}};
 }
 
-json to_json(const NoiseModel& n) {
+json to_json(const criticism::tests::NoiseModel& n) {
   json out{{"from", !n.reference.known           ? "residual"
                     : std::isinf(n.reference.nu) ? "dwells"
                                                  : "revisits"},
@@ -79,10 +79,10 @@ json to_json(const NoiseModel& n) {
   return out;
 }
 
-json to_json(const ExplainReport& r) {
+json to_json(const criticism::search::ExplainReport& r) {
   json lack;
   if (r.noise.revisits) {
-    const PureError& p = *r.noise.revisits;
+    const criticism::tests::PureError& p = *r.noise.revisits;
     lack = {{"F", p.F}, {"p", std::pow(10.0, p.log10_p)}, {"model_nT", p.model_nT}, {"pairs", p.pairs}};
   }
   return {
@@ -91,8 +91,8 @@ json to_json(const ExplainReport& r) {
       {"candidates", array_of(r.candidates, candidate_json)},
       {"named", r.named},
       {"rounds", array_of(r.rounds, round_json)},
-      {"maps", array_of(r.maps, [](const MapScore& m) { return to_json(m); })},
-      {"maps_left", array_of(r.maps_left, [](const MapScore& m) { return to_json(m); })},
+      {"maps", array_of(r.maps, [](const criticism::tests::MapScore& m) { return to_json(m); })},
+      {"maps_left", array_of(r.maps_left, [](const criticism::tests::MapScore& m) { return to_json(m); })},
       {"noise", to_json(r.noise)},
       {"noise_nT", r.noise_nT},
       {"residual_nT", r.residual_nT},
@@ -103,15 +103,15 @@ json to_json(const ExplainReport& r) {
       {"lack_of_fit", std::move(lack)},
       {"detectable_above",
        array_of(r.detectable,
-                [](const Detectable& d) {
+                [](const criticism::tests::Detectable& d) {
                   return json{{"effect", d.effect}, {"where", d.where}, {"value", d.value}, {"unit", d.unit}};
                 })},
       {"untestable", array_of(r.untestable,
-                              [](const Untestable& u) {
+                              [](const criticism::tests::Untestable& u) {
                                 return json{{"effect", u.effect}, {"why", u.why}};
                               })},
       {"next", array_of(r.next,
-                        [](const NextMeasurement& n) {
+                        [](const design::NextMeasurement& n) {
                           return json{{"action", n.action},
                                       {"minutes", n.minutes},
                                       {"p_right_before", n.p_right_before},
@@ -121,4 +121,4 @@ json to_json(const ExplainReport& r) {
       {"text", sentence(r)}};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

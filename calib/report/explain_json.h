@@ -4,11 +4,11 @@
 
 #include "calib/criticism/search/explain_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// "mgt.explain/1".
-[[nodiscard]] nlohmann::json to_json(const ExplainReport& report);
-[[nodiscard]] nlohmann::json to_json(const MapScore& map);
-[[nodiscard]] nlohmann::json to_json(const NoiseModel& noise);
+[[nodiscard]] nlohmann::json to_json(const criticism::search::ExplainReport& report);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::MapScore& map);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::NoiseModel& noise);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -14,42 +14,46 @@
 #include "calib/stats/probability.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::string text(const SensorsMirrored& n) { return mirrored_text(n.sensors); }
+std::string text(const criticism::search::SensorsMirrored& n) {
+  return fit::checks::mirrored_text(n.sensors);
+}
 
-std::string text(const TableAnglesContradict& n) {
+std::string text(const criticism::search::TableAnglesContradict& n) {
   return fmt::format(
       "the table angles contradict the readings by {:.1f} degrees a pose where {:.0f} is the limit: sense "
       "or order of the angles, or a mounting written down wrongly",
       to_deg(n.sd_rad), to_deg(n.limit_rad));
 }
 
-std::string text(const TableAnglesRough& n) { return rough_table_text(n.estimated_rad, n.stated_rad); }
-
-std::string text(const PosesContradict& n) {
-  return fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",
-                     100 * n.share, 100 * kMaxBadPoses);
+std::string text(const criticism::search::TableAnglesRough& n) {
+  return rough_table_text(n.estimated_rad, n.stated_rad);
 }
 
-std::string text(const NoiseOverstated& n) {
+std::string text(const criticism::search::PosesContradict& n) {
+  return fmt::format("readings in {:.0f} % of the poses contradict the rest; the limit is {:.0f} %",
+                     100 * n.share, 100 * fit::checks::kMaxBadPoses);
+}
+
+std::string text(const criticism::search::NoiseOverstated& n) {
   return fmt::format(
       "{} scatters only {:.2f} of what its noise says: spreads or counts in the table are "
       "wrong, or poses are copies",
       n.channel, n.residual_ratio);
 }
 
-std::string text(const ResidualWithoutLaw& n) {
+std::string text(const criticism::search::ResidualWithoutLaw& n) {
   return fmt::format(
       "the residual is {:.2g} times the noise, {:.3g} nT rms where its median tells {:.3g} nT, and {:.0f} % "
       "of the poses contradict the others: look for a loose cable or a disturbance, and measure again",
       n.noise_inflation, n.residual_nT, n.typical_nT, 100 * n.contradicting);
 }
 
-std::string text(const SensorsExchanged& n) { return exchange_text(n.exchange); }
+std::string text(const criticism::search::SensorsExchanged& n) { return exchange_text(n.exchange); }
 
-std::string text(const TablePathUnknown&) {
+std::string text(const criticism::search::TablePathUnknown&) {
   return "the way of the table between its poses is not in these data: a memory of the cores is followed "
          "from "
          "dwell to dwell only, its size and its width are rough, and what is there may be one "
@@ -57,47 +61,47 @@ std::string text(const TablePathUnknown&) {
          "run file keeps the angles of the table on the way, or go to a dozen of the poses from both sides";
 }
 
-std::string text(const ExcessRemains& n) {
+std::string text(const criticism::search::ExcessRemains& n) {
   return fmt::format("{} accounts for {:.0f} % of the excess only", n.effect, 100 * n.share);
 }
 
-std::string text(const FallNotAsPredicted& n) {
+std::string text(const criticism::search::FallNotAsPredicted& n) {
   return fmt::format("chi-square fell by {:.0f} where {:.0f} was predicted", n.realised, n.predicted);
 }
 
-std::string text(const LackOfFitRemains& n) {
+std::string text(const criticism::search::LackOfFitRemains& n) {
   return fmt::format("{} is not all of it: with it {} still differs from noise, {}", n.effect, n.where,
-                     p_phrase(n.log10_p));
+                     stats::p_phrase(n.log10_p));
 }
 
-std::string text(const SizeTooSmall& n) {
+std::string text(const criticism::search::SizeTooSmall& n) {
   return fmt::format("{} is {:.1f} sigma large, too little to say that no other law is behind the sum",
                      n.effect, n.d);
 }
 
-std::string text(const StepsFollowCurve&) {
+std::string text(const criticism::search::StepsFollowCurve&) {
   return "several steps or thresholds on one axis follow a smooth curve: they are not evidence of steps";
 }
 
-std::string text(const EvidenceOfOnePose& n) {
+std::string text(const criticism::search::EvidenceOfOnePose& n) {
   return fmt::format("one pose ({}) carries the evidence for {}: measure it again", n.pose, n.effect);
 }
 
-std::string text(const FitWithEffectFailed& n) {
+std::string text(const criticism::search::FitWithEffectFailed& n) {
   return fmt::format("the fit with {} failed: {}", n.spec, n.why);
 }
 
-std::string text(const SizeUnusual& n) {
+std::string text(const criticism::search::SizeUnusual& n) {
   return fmt::format("the size of {}, {}, is larger than is usual", n.candidate.effect,
                      size_text(n.candidate));
 }
 
-std::string text(const SizeBeyondAll& n) {
+std::string text(const criticism::search::SizeBeyondAll& n) {
   return fmt::format("the size that {} would need, {}, is beyond what occurs: it is not named",
                      n.candidate.effect, size_text(n.candidate));
 }
 
-std::string text(const LawOfNoLibrary& n) {
+std::string text(const criticism::search::LawOfNoLibrary& n) {
   const bool one = n.effects.size() == 1;
   return fmt::format("{} follows something that is in no library: {} {}, so {} named or added", n.where,
                      fmt::join(n.effects, ", "),
@@ -107,17 +111,17 @@ std::string text(const LawOfNoLibrary& n) {
 
 }  // namespace
 
-std::string to_text(const ExplainNote& note) {
+std::string to_text(const criticism::search::ExplainNote& note) {
   return std::visit([](const auto& n) { return text(n); }, note);
 }
 
-std::vector<std::string> note_texts(const std::vector<ExplainNote>& notes) {
+std::vector<std::string> note_texts(const std::vector<criticism::search::ExplainNote>& notes) {
   std::vector<std::string> out;
-  for (const ExplainNote& note : notes) {
+  for (const criticism::search::ExplainNote& note : notes) {
     std::string words = to_text(note);
     if (std::find(out.begin(), out.end(), words) == out.end()) out.push_back(std::move(words));
   }
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

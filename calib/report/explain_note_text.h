@@ -5,12 +5,12 @@
 
 #include "calib/criticism/search/explain_note.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// A clause without capital letter and full stop.
-[[nodiscard]] std::string to_text(const ExplainNote& note);
+[[nodiscard]] std::string to_text(const criticism::search::ExplainNote& note);
 
 /// Of each note, none twice: a search that begins anew after it took effects back may notice the same again.
-[[nodiscard]] std::vector<std::string> note_texts(const std::vector<ExplainNote>& notes);
+[[nodiscard]] std::vector<std::string> note_texts(const std::vector<criticism::search::ExplainNote>& notes);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

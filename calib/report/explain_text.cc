@@ -14,7 +14,7 @@
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 constexpr std::size_t kShown = 12, kMapsShown = 6;
@@ -24,16 +24,16 @@ std::string marks(double d) {
   return std::string(static_cast<std::size_t>(std::min(d / kBarStep, 20.0)), '#');
 }
 
-void candidates(const ExplainReport& r, std::string& out) {
+void candidates(const criticism::search::ExplainReport& r, std::string& out) {
   if (r.candidates.empty()) return;
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "\n{:<32} {:<11} {:>2} {:>7} {:>9} {:>6}  {:<32}\n", "effect", "where", "k", "d", "p",
                  "share", "size");
   const std::size_t n = std::min(kShown, r.candidates.size());
   for (std::size_t i = 0; i < n; ++i) {
-    const Candidate& c = r.candidates[i];
+    const criticism::tests::Candidate& c = r.candidates[i];
     fmt::format_to(to, "{:<32} {:<11} {:>2} {:>7.1f} {:>9} {:>6}  {:<32} {}\n", c.effect, c.where, c.k, c.d,
-                   p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
+                   stats::p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
                    size_text(c), marks(c.d));
   }
   fmt::format_to(to,
@@ -42,34 +42,37 @@ void candidates(const ExplainReport& r, std::string& out) {
                  share_of(r));
 }
 
-void maps(const std::vector<MapScore>& all, std::string& out) {
+void maps(const std::vector<criticism::tests::MapScore>& all, std::string& out) {
   const auto to = std::back_inserter(out);
   if (all.empty()) return;
   fmt::format_to(to, "\n{:<32} {:<11} {:>3} {:>9}\n", "residual against", "where", "k", "p");
   for (std::size_t i = 0; i < std::min(kMapsShown, all.size()); ++i) {
-    const MapScore& m = all[i];
-    fmt::format_to(to, "{:<32} {:<11} {:>3} {:>9}\n", m.map, m.where, m.k, p_text(m.log10_p));
+    const criticism::tests::MapScore& m = all[i];
+    fmt::format_to(to, "{:<32} {:<11} {:>3} {:>9}\n", m.map, m.where, m.k, stats::p_text(m.log10_p));
   }
 }
 
 }  // namespace
 
-std::string to_text(const ExplainReport& r) {
+std::string to_text(const criticism::search::ExplainReport& r) {
   std::string out;
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "{}{}{}\n{}\n", to_string(r.finding), r.named.empty() ? "" : ": ",
-                 fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "), sentence(r));
+                 fmt::join(r.named, r.finding == criticism::search::Finding::ambiguous ? " or " : ", "),
+                 sentence(r));
   candidates(r, out);
   maps(r.maps, out);
   if (!r.detectable.empty())
     fmt::format_to(to, "\nsmallest size that would have been seen{} (d = 8):\n",
                    r.rounds.empty() ? "" : ", with what was added in the model");
-  for (const Detectable& d : r.detectable) fmt::format_to(to, "  {:<32} {}\n", d.effect, detectable_text(d));
+  for (const criticism::tests::Detectable& d : r.detectable)
+    fmt::format_to(to, "  {:<32} {}\n", d.effect, detectable_text(d));
   if (!r.untestable.empty()) out += "\nthese poses cannot test:\n";
-  for (const Untestable& u : r.untestable) fmt::format_to(to, "  {:<32} {}\n", u.effect, u.why);
+  for (const criticism::tests::Untestable& u : r.untestable)
+    fmt::format_to(to, "  {:<32} {}\n", u.effect, u.why);
   if (!r.next.empty())
     out += "\nwhat would settle the name (probability that the right one wins, before -> after):\n";
-  for (const NextMeasurement& n : r.next) {
+  for (const design::NextMeasurement& n : r.next) {
     fmt::format_to(to, "  {:.3f} -> {:.3f}  {:>3.0f} min  {}\n", n.p_right_before, n.p_right_after, n.minutes,
                    n.action);
   }
@@ -77,4 +80,4 @@ std::string to_text(const ExplainReport& r) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

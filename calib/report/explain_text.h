@@ -4,9 +4,9 @@
 
 #include "calib/criticism/search/explain_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// For the terminal: verdict, table of candidates, what could have been seen, what these poses cannot tell.
-[[nodiscard]] std::string to_text(const ExplainReport& report);
+[[nodiscard]] std::string to_text(const criticism::search::ExplainReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

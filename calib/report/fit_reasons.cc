@@ -15,13 +15,13 @@
 #include "calib/report/wandering_text.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::vector<std::string> remarks_on_any(const FitReport& report) {
+std::vector<std::string> remarks_on_any(const fit::FitReport& report) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < kSensorCount; ++i) {
-    const SensorModel& s = report.calibration.sensors[i];
+    const sensor::SensorModel& s = report.calibration.sensors[i];
     if (s.mounting.isIdentity()) continue;
     const bool mirrored = s.mounting.determinant() < 0;
     std::string axes;
@@ -43,8 +43,8 @@ std::vector<std::string> remarks_on_any(const FitReport& report) {
 }
 
 /// What only a joint fit recognises.
-std::vector<std::string> remarks_on_joint(const FitReport& report) {
-  const JointFindings& found = *report.joint;
+std::vector<std::string> remarks_on_joint(const fit::FitReport& report) {
+  const fit::joint::JointFindings& found = *report.joint;
   std::vector<std::string> out;
   if (found.birge_ratio > 1) {
     out.push_back(fmt::format(
@@ -52,18 +52,19 @@ std::vector<std::string> remarks_on_joint(const FitReport& report) {
         "per degree of freedom), so that they cover what the model leaves out",
         found.birge_ratio));
   }
-  if (scale_is_free(report.calibration)) {
+  if (calibration::scale_is_free(report.calibration)) {
     out.push_back(
         fmt::format("no field is known, so {}: fields and gradients are in units of the mean scale "
                     "factor; give the field of the site with --field, or measure it",
-                    kScaleIsFree));
+                    calibration::kScaleIsFree));
   }
   for (const std::string& weak : weak_texts(report)) out.push_back("weakly known: " + weak);
   if (!found.known.add.empty()) {
-    out.push_back(fmt::format("{}; the poses that would help most: {}", to_text(found.known.coverage),
-                              to_text(found.known.add)));
+    out.push_back(fmt::format("{}; the poses that would help most: {}",
+                              fit::checks::to_text(found.known.coverage),
+                              fit::checks::to_text(found.known.add)));
   }
-  if (table_is_rough(report.table_sd_rad, report.stated_table_sd_rad))
+  if (fit::checks::table_is_rough(report.table_sd_rad, report.stated_table_sd_rad))
     out.push_back(rough_table_text(report.table_sd_rad, report.stated_table_sd_rad));
   if (found.wandering.any()) {
     out.push_back(wandering_text(found.wandering) +
@@ -83,7 +84,7 @@ void append(std::vector<std::string> texts, std::vector<std::string>& out) {
 
 }  // namespace
 
-std::vector<std::string> fit_reasons(const FitReport& report) {
+std::vector<std::string> fit_reasons(const fit::FitReport& report) {
   std::vector<std::string> out = report.found_beside;
   for (const Check& check : report.calibration.checks) {
     if (check.passed) continue;
@@ -94,7 +95,7 @@ std::vector<std::string> fit_reasons(const FitReport& report) {
   return out;
 }
 
-std::string lack_of_fit_text(const FitReport& report) {
+std::string lack_of_fit_text(const fit::FitReport& report) {
   if (!(report.dof > 0)) return {};
   const double ratio = std::sqrt(report.chi2 / report.dof);
   // The square root of chi-square per degree of freedom scatters by 1/sqrt(2 dof).
@@ -107,11 +108,11 @@ std::string lack_of_fit_text(const FitReport& report) {
                      report.noise_nT);
 }
 
-std::vector<std::string> weak_texts(const FitReport& report) {
+std::vector<std::string> weak_texts(const fit::FitReport& report) {
   std::vector<std::string> out;
   if (!report.joint) return out;
-  for (const WeakDirection& weak : report.joint->known.weak)
-    out.push_back(fmt::format("{} ({})", to_text(weak), weak_sd_text(weak.sd_nT)));
+  for (const fit::joint::WeakDirection& weak : report.joint->known.weak)
+    out.push_back(fmt::format("{} ({})", fit::checks::to_text(weak), fit::checks::weak_sd_text(weak.sd_nT)));
   return out;
 }
 
@@ -122,4 +123,4 @@ std::string rough_table_text(double estimated_rad, double stated_rad) {
       to_deg(estimated_rad), to_deg(stated_rad));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -13,7 +13,7 @@
 #include "proto/json_text.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
@@ -24,7 +24,7 @@ json components(const Gradient& g) {
 
 json value_and_sd(double value, double sd) { return {{"value", value}, {"sd", sd}}; }
 
-json maybe(const std::optional<ErrorSummary>& errors) { return errors ? to_json(*errors) : json(); }
+json maybe(const std::optional<fit::ErrorSummary>& errors) { return errors ? to_json(*errors) : json(); }
 
 json mounting_json(const Eigen::Matrix3d& m) {
   json rows = json::array();
@@ -32,12 +32,12 @@ json mounting_json(const Eigen::Matrix3d& m) {
   return rows;
 }
 
-json sensor_json(const Calibration& c, std::size_t i) {
-  const ParameterVector p = c.sensors[i].parameters();
+json sensor_json(const calibration::Calibration& c, std::size_t i) {
+  const sensor::ParameterVector p = c.sensors[i].parameters();
   json out;
-  for (int k = 0; k < kSensorParameters; ++k) {
-    const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(k)];
-    const auto at = static_cast<Eigen::Index>(i) * kSensorParameters + k;
+  for (int k = 0; k < sensor::kSensorParameters; ++k) {
+    const sensor::ShownParameter& shown = sensor::shown_parameters()[static_cast<std::size_t>(k)];
+    const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters + k;
     out[shown.key] =
         value_and_sd(p[k] * shown.factor, std::sqrt(std::max(0.0, c.covariance(at, at))) * shown.factor);
   }
@@ -46,9 +46,9 @@ json sensor_json(const Calibration& c, std::size_t i) {
   return out;
 }
 
-json half_json(const ErrorSummary& errors, const std::array<SensorModel, kSensors>& sensors) {
+json half_json(const fit::ErrorSummary& errors, const std::array<sensor::SensorModel, kSensors>& sensors) {
   json out = to_json(errors);
-  for (const SensorModel& sensor : sensors) {
+  for (const sensor::SensorModel& sensor : sensors) {
     out["sensors"].push_back({{"alpha_deg", to_deg(sensor.alpha_rad)},
                               {"beta_deg", to_deg(sensor.beta_rad)},
                               {"gamma_deg", to_deg(sensor.gamma_rad)}});
@@ -56,11 +56,11 @@ json half_json(const ErrorSummary& errors, const std::array<SensorModel, kSensor
   return out;
 }
 
-json halves_json(const std::optional<HalvesComparison>& halves) {
+json halves_json(const std::optional<fit::HalvesComparison>& halves) {
   if (!halves) return {};
   json difference = json::array();
   for (std::size_t i = 0; i < kSensorCount; ++i) {
-    const SensorModel &odd = halves->odd_sensors[i], &even = halves->even_sensors[i];
+    const sensor::SensorModel &odd = halves->odd_sensors[i], &even = halves->even_sensors[i];
     difference.push_back({{"alpha_deg", to_deg(odd.alpha_rad - even.alpha_rad)},
                           {"beta_deg", to_deg(odd.beta_rad - even.beta_rad)},
                           {"gamma_deg", to_deg(odd.gamma_rad - even.gamma_rad)}});
@@ -71,22 +71,23 @@ json halves_json(const std::optional<HalvesComparison>& halves) {
           {"largest_difference_deg", to_deg(halves->angle_difference_rad)}};
 }
 
-json effects_json(const std::vector<CalibratedEffect>& effects) {
+json effects_json(const std::vector<calibration::CalibratedEffect>& effects) {
   json out = json::array();
-  for (const CalibratedEffect& e : effects) {
+  for (const calibration::CalibratedEffect& e : effects) {
     json coefficients = json::array();
-    for (const EffectCoefficient& c : e.coefficients) {
+    for (const calibration::EffectCoefficient& c : e.coefficients) {
       coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
     }
-    out.push_back(
-        {{"effect", family_name(e.effect)}, {"spec", e.effect}, {"coefficients", std::move(coefficients)}});
+    out.push_back({{"effect", effects::family_name(e.effect)},
+                   {"spec", e.effect},
+                   {"coefficients", std::move(coefficients)}});
   }
   return out;
 }
 
-json outliers_json(const std::vector<OutlierNode>& outliers) {
+json outliers_json(const std::vector<fit::OutlierNode>& outliers) {
   json out = json::array();
-  for (const OutlierNode& o : outliers) {
+  for (const fit::OutlierNode& o : outliers) {
     out.push_back(
         {{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}, {"sigmas", o.sigmas}});
     if (!o.cause.empty()) out.back()["cause"] = o.cause;
@@ -94,13 +95,13 @@ json outliers_json(const std::vector<OutlierNode>& outliers) {
   return out;
 }
 
-json site_json(const SiteField& site) {
+json site_json(const fit::SiteField& site) {
   return {{"f_nT", site.f_nT},
           {"inclination_deg", value_and_sd(to_deg(site.inclination_rad), to_deg(site.inclination_sd_rad))},
           {"declination_deg", value_and_sd(to_deg(site.declination_rad), to_deg(site.declination_sd_rad))}};
 }
 
-void add_joint(const FitReport& report, json& out) {
+void add_joint(const fit::FitReport& report, json& out) {
   out["table"] = {
       {"sd_deg", to_deg(report.table_sd_rad)}, {"chi2", report.chi2_table}, {"dof", report.dof_table}};
   out["residual_nT"] = report.residual_nT;
@@ -112,7 +113,7 @@ void add_joint(const FitReport& report, json& out) {
 
 }  // namespace
 
-json to_json(const FitSummary& summary) {
+json to_json(const fit::FitSummary& summary) {
   return {{"termination", to_string(summary.termination)},
           {"converged", summary.converged()},
           {"rounds", summary.rounds},
@@ -121,13 +122,13 @@ json to_json(const FitSummary& summary) {
           {"final_cost", summary.final_cost}};
 }
 
-json to_json(const ErrorSummary& errors) {
+json to_json(const fit::ErrorSummary& errors) {
   return {{"total_field_rmse_nT", errors.total_field_rmse_nT},
           {"tensor_rmse_nT_per_m", components(errors.tensor_rmse_nT_per_m)}};
 }
 
-json to_json(const FitReport& report) {
-  const Calibration& c = report.calibration;
+json to_json(const fit::FitReport& report) {
+  const calibration::Calibration& c = report.calibration;
   json sensors = json::array();
   for (std::size_t i = 0; i < kSensorCount; ++i) sensors.push_back(sensor_json(c, i));
   json out{{"schema", "mgt.fit/1"},
@@ -136,7 +137,7 @@ json to_json(const FitReport& report) {
            {"poses", c.poses},
            {"accepted", c.accepted_by_checks},
            {"reasons", fit_reasons(report)},
-           {"checks", to_json(c.checks)},
+           {"checks", calibration::to_json(c.checks)},
            {"summary", to_json(report.summary)},
            {"gauge", c.gauge},
            {"site", site_json(report.site)},
@@ -156,8 +157,8 @@ json to_json(const FitReport& report) {
            {"halves", halves_json(report.halves)},
            {"data_hash", c.data_hash},
            {"software", c.software}};
-  if (c.method == name(Method::joint)) add_joint(report, out);
+  if (c.method == name(fit::Method::joint)) add_joint(report, out);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

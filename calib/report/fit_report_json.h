@@ -7,10 +7,10 @@
 /// The result of `mgt fit --json`, schema "mgt.fit/1". Plain numbers in the unit named by the key's suffix,
 /// angles in degrees, standard deviations beside the values. What does not exist (no held-out error, no
 /// halves) is null.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-[[nodiscard]] nlohmann::json to_json(const FitReport& report);
-[[nodiscard]] nlohmann::json to_json(const ErrorSummary& errors);
-[[nodiscard]] nlohmann::json to_json(const FitSummary& summary);
+[[nodiscard]] nlohmann::json to_json(const fit::FitReport& report);
+[[nodiscard]] nlohmann::json to_json(const fit::ErrorSummary& errors);
+[[nodiscard]] nlohmann::json to_json(const fit::FitSummary& summary);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -16,10 +16,10 @@
 #include "calib/sensor/shown_parameters.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::string error_row(std::string_view stage, const ErrorSummary& errors) {
+std::string error_row(std::string_view stage, const fit::ErrorSummary& errors) {
   std::string row = fmt::format("{:<12}", stage);
   for (const double rmse : errors.total_field_rmse_nT) row += fmt::format(" {:>8.3f}", rmse);
   row += "  ";
@@ -42,15 +42,15 @@ std::size_t seen_width(std::string_view text) {
 }
 
 /// A number whose standard deviation is tiny is long: the columns are as wide as the longest of them.
-std::string parameter_table(const Calibration& c) {
+std::string parameter_table(const calibration::Calibration& c) {
   constexpr std::size_t kUsual = 24, kSpace = 2;
   std::vector<std::array<std::string, kSensorCount>> cells;
   std::size_t width = kUsual;
-  for (int k = 0; k < kSensorParameters; ++k) {
-    const ShownParameter& shown = shown_parameters()[static_cast<std::size_t>(k)];
+  for (int k = 0; k < sensor::kSensorParameters; ++k) {
+    const sensor::ShownParameter& shown = sensor::shown_parameters()[static_cast<std::size_t>(k)];
     std::array<std::string, kSensorCount>& row = cells.emplace_back();
     for (std::size_t i = 0; i < kSensorCount; ++i) {
-      const auto at = static_cast<Eigen::Index>(i) * kSensorParameters + k;
+      const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters + k;
       const double sd = std::sqrt(std::max(0.0, c.covariance(at, at)));
       row.at(i) = with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor);
       width = std::max(width, seen_width(row.at(i)) + kSpace);
@@ -61,7 +61,7 @@ std::string parameter_table(const Calibration& c) {
     out += fmt::format("{:>{}}", fmt::format("s{}", i + 1), width);
   out += "\n";
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const ShownParameter& shown = shown_parameters()[k];
+    const sensor::ShownParameter& shown = sensor::shown_parameters()[k];
     out += fmt::format("{:<12}", fmt::format("{} {}", shown.name, shown.unit));
     for (const std::string& cell : cells[k]) out += fmt::format("{:>{}}", cell, width);
     out += "\n";
@@ -69,10 +69,10 @@ std::string parameter_table(const Calibration& c) {
   return out;
 }
 
-std::string effect_table(const std::vector<CalibratedEffect>& effects) {
+std::string effect_table(const std::vector<calibration::CalibratedEffect>& effects) {
   std::string out;
-  for (const CalibratedEffect& e : effects) {
-    for (const EffectCoefficient& c : e.coefficients) {
+  for (const calibration::CalibratedEffect& e : effects) {
+    for (const calibration::EffectCoefficient& c : e.coefficients) {
       out += fmt::format("{:<28}{:>24} {}\n", fmt::format("{} {}", e.effect, c.name), with_sd(c.value, c.sd),
                          c.unit);
     }
@@ -80,18 +80,18 @@ std::string effect_table(const std::vector<CalibratedEffect>& effects) {
   return out;
 }
 
-std::string halves_table(const HalvesComparison& halves) {
+std::string halves_table(const fit::HalvesComparison& halves) {
   std::string out = "step 2 from each half of the standard set (odd less even, deg)\n";
-  const auto row = [&](std::string_view name, double SensorModel::*angle) {
+  const auto row = [&](std::string_view name, double sensor::SensorModel::*angle) {
     out += fmt::format("{:<12}", name);
     for (std::size_t i = 0; i < kSensorCount; ++i) {
       out += fmt::format("{:>24.5f}", to_deg(halves.odd_sensors[i].*angle - halves.even_sensors[i].*angle));
     }
     out += "\n";
   };
-  row("alpha", &SensorModel::alpha_rad);
-  row("beta", &SensorModel::beta_rad);
-  row("gamma", &SensorModel::gamma_rad);
+  row("alpha", &sensor::SensorModel::alpha_rad);
+  row("beta", &sensor::SensorModel::beta_rad);
+  row("gamma", &sensor::SensorModel::gamma_rad);
   return out;
 }
 
@@ -105,8 +105,8 @@ std::string check_list(const std::vector<Check>& checks) {
   return out;
 }
 
-std::string heading(const FitReport& report) {
-  const Calibration& c = report.calibration;
+std::string heading(const fit::FitReport& report) {
+  const calibration::Calibration& c = report.calibration;
   std::string out = fmt::format("{} calibration {} of {} poses: {}\n", c.method, c.id, c.poses,
                                 c.accepted_by_checks ? "accepted by its checks" : "NOT ACCEPTED");
   out += fmt::format("fit:   {}\n", to_text(report.summary));
@@ -137,14 +137,14 @@ std::string heading(const FitReport& report) {
 
 }  // namespace
 
-std::string rows_text(const FitReport& report) {
+std::string rows_text(const fit::FitReport& report) {
   std::string out =
       "total field: |b| of each sensor less the F of its pose; tensor: what a uniform field leaves of it, "
       "effects "
       "of the "
       "site that are in the model taken out";
   std::vector<std::string> readings;
-  for (const OutlierNode& o : report.outliers)
+  for (const fit::OutlierNode& o : report.outliers)
     if (o.where != "angles")
       readings.push_back(o.where == "pose" ? fmt::format("all of pose {}", o.pose)
                                            : fmt::format("{} of pose {}", o.where, o.pose));
@@ -156,7 +156,7 @@ std::string rows_text(const FitReport& report) {
   return out;
 }
 
-std::string error_table(const FitReport& report) {
+std::string error_table(const fit::FitReport& report) {
   std::string out = fmt::format("{:<12}{:^36}  {:^60}\n", "rms error", "total field, nT", "tensor, nT/m");
   out += fmt::format("{:<12}{:>9}{:>9}{:>9}{:>9}  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "s1", "s2",
                      "s3", "s4", "xx", "yy", "zz", "xy", "xz", "yz");
@@ -174,7 +174,7 @@ std::string error_table(const FitReport& report) {
   return out + rows_text(report) + "\n";
 }
 
-std::string to_text(const FitReport& report) {
+std::string to_text(const fit::FitReport& report) {
   std::string out = heading(report) + "\n" + error_table(report) + "\n" + parameter_table(report.calibration);
   if (!report.calibration.effects.empty()) out += "\n" + effect_table(report.calibration.effects);
   if (report.halves) out += "\n" + halves_table(*report.halves);
@@ -183,4 +183,4 @@ std::string to_text(const FitReport& report) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

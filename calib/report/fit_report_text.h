@@ -4,16 +4,16 @@
 
 #include "calib/fit/fit_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// The report for a person: result and gauge, errors before and after each step, the twelve parameters of
 /// every sensor with their standard deviations, the odd and even halves, every check with its remedy when it
 /// failed. Fixed-width text, lines under 110 columns except for remedies.
-[[nodiscard]] std::string to_text(const FitReport& report);
+[[nodiscard]] std::string to_text(const fit::FitReport& report);
 
 /// The table of errors alone: a row per stage (before, simplified, step 1, after, held out, check poses).
-[[nodiscard]] std::string error_table(const FitReport& report);
+[[nodiscard]] std::string error_table(const fit::FitReport& report);
 /// What its rows are, and what none of them counts.
-[[nodiscard]] std::string rows_text(const FitReport& report);
+[[nodiscard]] std::string rows_text(const fit::FitReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -5,44 +5,44 @@
 
 #include "calib/fit/joint/joint_limits.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::string ending(const FitSummary& s) {
+std::string ending(const fit::FitSummary& s) {
   switch (s.termination) {
-    case Termination::closed_form:
+    case fit::Termination::closed_form:
       return "solved in closed form";
-    case Termination::converged:
+    case fit::Termination::converged:
       return "converged";
-    case Termination::slow_progress:
+    case fit::Termination::slow_progress:
       return fmt::format(
           "stopped at the limit of {} steps, where chi-square only crept (less than {} in {} steps)",
-          kMaxIterations, kSlowFall, kSlowIterations);
-    case Termination::round_limit:
+          fit::joint::kMaxIterations, fit::joint::kSlowFall, fit::joint::kSlowIterations);
+    case fit::Termination::round_limit:
       return fmt::format("stopped at the limit of {} rounds, noise or left-out readings still changing",
-                         kMaxWeighingRounds);
+                         fit::joint::kMaxWeighingRounds);
   }
   return "";
 }
 
 }  // namespace
 
-std::string_view to_string(Termination termination) {
+std::string_view to_string(fit::Termination termination) {
   switch (termination) {
-    case Termination::closed_form:
+    case fit::Termination::closed_form:
       return "closed-form";
-    case Termination::converged:
+    case fit::Termination::converged:
       return "converged";
-    case Termination::slow_progress:
+    case fit::Termination::slow_progress:
       return "slow-progress";
-    case Termination::round_limit:
+    case fit::Termination::round_limit:
       return "round-limit";
   }
   return "";
 }
 
-std::string to_text(const FitSummary& s) {
-  const std::string count = s.termination == Termination::closed_form
+std::string to_text(const fit::FitSummary& s) {
+  const std::string count = s.termination == fit::Termination::closed_form
                                 ? std::string()
                                 : fmt::format(" in {} round{}, {} step{}", s.rounds, s.rounds == 1 ? "" : "s",
                                               s.iterations, s.iterations == 1 ? "" : "s");
@@ -50,4 +50,4 @@ std::string to_text(const FitSummary& s) {
                      s.final_cost);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -6,13 +6,13 @@
 #include "calib/fit/fit_summary.h"
 
 /// How a fit ended, in words.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// The value of "termination" in `mgt fit --json`: "closed-form", "converged", "slow-progress",
 /// "round-limit".
-[[nodiscard]] std::string_view to_string(Termination termination);
+[[nodiscard]] std::string_view to_string(fit::Termination termination);
 
 /// "converged in 3 rounds, 17 steps: chi-square fell from 8.2e+06 to 612"
-[[nodiscard]] std::string to_text(const FitSummary& summary);
+[[nodiscard]] std::string to_text(const fit::FitSummary& summary);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -8,13 +8,13 @@
 
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-nlohmann::json to_json(const FormulaExamination& x) {
+nlohmann::json to_json(const criticism::tests::FormulaExamination& x) {
   nlohmann::json alike = nlohmann::json::array(), coefficients = nlohmann::json::array();
-  for (const Collinearity& r : x.alike)
+  for (const criticism::tests::Collinearity& r : x.alike)
     alike.push_back({{"effect", r.effect}, {"correlation", r.correlation}});
-  for (const EffectCoefficient& c : x.coefficients)
+  for (const calibration::EffectCoefficient& c : x.coefficients)
     coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
   return {{"name", x.name},
           {"where", x.where},
@@ -29,7 +29,7 @@ nlohmann::json to_json(const FormulaExamination& x) {
           {"resembles", std::move(alike)}};
 }
 
-std::string to_text(const FormulaExamination& x) {
+std::string to_text(const criticism::tests::FormulaExamination& x) {
   std::string out = fmt::format("{} at {}: {}\n", x.name, x.where, x.expression);
   const auto to = std::back_inserter(out);
   if (x.wholly_absorbed()) {
@@ -44,15 +44,16 @@ std::string to_text(const FormulaExamination& x) {
   if (x.rank < x.k) fmt::format_to(to, "of its {} coefficients these poses can tell {}\n", x.k, x.rank);
   fmt::format_to(to, "seen in 99 of 100 runs like this from {:.3g} {}\n", x.detectable, x.unit);
   if (x.alike.empty()) out += "no effect of the library looks like it\n";
-  for (const Collinearity& r : x.alike) {
-    fmt::format_to(to, "{} {:.1f} % the same as {}{}\n",
-                   r.correlation == x.alike.front().correlation ? "it is" : "     ", 100 * r.correlation,
-                   r.effect, r.correlation > kTheSame ? ": no run like this can tell them apart" : "");
+  for (const criticism::tests::Collinearity& r : x.alike) {
+    fmt::format_to(
+        to, "{} {:.1f} % the same as {}{}\n",
+        r.correlation == x.alike.front().correlation ? "it is" : "     ", 100 * r.correlation, r.effect,
+        r.correlation > criticism::tests::kTheSame ? ": no run like this can tell them apart" : "");
   }
-  fmt::format_to(to, "on this run, by the score test: d {:.1f}, {}\n", x.d(), p_phrase(x.log10_p));
-  for (const EffectCoefficient& c : x.coefficients)
+  fmt::format_to(to, "on this run, by the score test: d {:.1f}, {}\n", x.d(), stats::p_phrase(x.log10_p));
+  for (const calibration::EffectCoefficient& c : x.coefficients)
     fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", c.name, c.value, c.sd, c.unit);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -6,9 +6,9 @@
 #include "calib/criticism/tests/collinearity.h"
 
 /// The examination of a user's formula, as an object and for a person.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-[[nodiscard]] nlohmann::json to_json(const FormulaExamination& x);
-[[nodiscard]] std::string to_text(const FormulaExamination& x);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::FormulaExamination& x);
+[[nodiscard]] std::string to_text(const criticism::tests::FormulaExamination& x);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

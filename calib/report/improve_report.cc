@@ -15,7 +15,7 @@
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
@@ -23,7 +23,7 @@ using nlohmann::json;
 constexpr double kBar_characters = 40;
 constexpr std::size_t kName_characters = 34;
 
-json round_json(const ImproveRound& r) {
+json round_json(const criticism::search::ImproveRound& r) {
   return {{"added", r.added.effect},
           {"spec", r.added.spec},
           {"where", r.added.where},
@@ -39,19 +39,19 @@ json round_json(const ImproveRound& r) {
           {"variance_price", {{"growth_of_sd", r.price.sd_ratio}, {"parameter", r.price.parameter}}}};
 }
 
-std::string stop_text(const ImproveReport& r) {
+std::string stop_text(const criticism::search::ImproveReport& r) {
   switch (r.stopped) {
-    case ImproveStop::nothing_stands_out:
+    case criticism::search::ImproveStop::nothing_stands_out:
       return "nothing stands out any more";
-    case ImproveStop::no_effect_looks_like_it:
+    case criticism::search::ImproveStop::no_effect_looks_like_it:
       return "something is left that no effect of the library looks like";
-    case ImproveStop::bad_data:
+    case criticism::search::ImproveStop::bad_data:
       return "the data contradict themselves";
-    case ImproveStop::round_limit:
+    case criticism::search::ImproveStop::round_limit:
       return "the number of rounds is reached";
-    case ImproveStop::nothing_can_be_added:
+    case criticism::search::ImproveStop::nothing_can_be_added:
       return "something stands out, and nothing that stands for it could be added";
-    case ImproveStop::held_out_error_rises:
+    case criticism::search::ImproveStop::held_out_error_rises:
       return fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
                          r.refused->spec, r.refused->held_out_before_nT, r.refused->held_out_after_nT);
   }
@@ -62,9 +62,9 @@ std::string held_out(const std::optional<double>& x) { return x ? fmt::format("{
 
 }  // namespace
 
-json to_json(const ImproveReport& r) {
+json to_json(const criticism::search::ImproveReport& r) {
   json rounds = json::array();
-  for (const ImproveRound& round : r.rounds) rounds.push_back(round_json(round));
+  for (const criticism::search::ImproveRound& round : r.rounds) rounds.push_back(round_json(round));
   const json fit = to_json(r.fit);
   return {{"schema", "mgt.improve/1"},
           {"rounds", std::move(rounds)},
@@ -75,7 +75,7 @@ json to_json(const ImproveReport& r) {
           {"fit", fit}};
 }
 
-std::string to_text(const ImproveReport& r) {
+std::string to_text(const criticism::search::ImproveReport& r) {
   std::string out;
   const auto to = std::back_inserter(out);
   const double top = r.rounds.empty() ? r.fit.residual_nT : r.rounds.front().rms_before_nT;
@@ -87,12 +87,12 @@ std::string to_text(const ImproveReport& r) {
   const auto before = r.rounds.empty() ? r.fit.held_out_residual_nT : r.rounds.front().held_out_before_nT;
   fmt::format_to(to, "{:<34} {:>8} {:>8} {:>9.3f} {:>9} {:>6}  {}\n", "(nothing)", "", "", top,
                  held_out(before), "", bar(top));
-  for (const ImproveRound& x : r.rounds) {
+  for (const criticism::search::ImproveRound& x : r.rounds) {
     std::string name = x.added.spec;
     if (name.size() > kName_characters) fmt::format_to(to, "{}\n", std::exchange(name, {}));
     fmt::format_to(to, "{:<34} {:>8.1f} {:>8} {:>9.3f} {:>9} {:>6.2f}  {}\n", name, x.added.d,
-                   p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT), x.price.sd_ratio,
-                   bar(x.rms_after_nT));
+                   stats::p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT),
+                   x.price.sd_ratio, bar(x.rms_after_nT));
     if (!x.possible.empty()) fmt::format_to(to, "    could also be {}\n", fmt::join(x.possible, ", "));
   }
   fmt::format_to(to, "residual: nT, {}\n", kResidualIs);
@@ -109,4 +109,4 @@ std::string to_text(const ImproveReport& r) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

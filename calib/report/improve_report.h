@@ -5,10 +5,10 @@
 
 #include "calib/criticism/search/improve.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// "mgt.improve/1".
-[[nodiscard]] nlohmann::json to_json(const ImproveReport& report);
-[[nodiscard]] std::string to_text(const ImproveReport& report);
+[[nodiscard]] nlohmann::json to_json(const criticism::search::ImproveReport& report);
+[[nodiscard]] std::string to_text(const criticism::search::ImproveReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

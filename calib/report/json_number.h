@@ -3,11 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// A number as JSON. JSON has no infinity and no NaN: what is not finite is null.
 [[nodiscard]] inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

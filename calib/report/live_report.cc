@@ -10,7 +10,7 @@
 #include "calib/report/rearrangement_text.h"
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 constexpr std::array<const char*, 4> kQuantity{"the curl", "the centre's x", "the centre's y",
@@ -18,17 +18,19 @@ constexpr std::array<const char*, 4> kQuantity{"the curl", "the centre's x", "th
 constexpr std::array<const char*, 2> kPer{"degC", "h"};
 constexpr std::array<std::string_view, 3> kFollowsNames{"temperature", "time", "attitude"};
 
-std::string_view followed_name(Follows what) { return kFollowsNames.at(static_cast<std::size_t>(what)); }
+std::string_view followed_name(criticism::live::Follows what) {
+  return kFollowsNames.at(static_cast<std::size_t>(what));
+}
 
 const char* unit_of(int component) { return component == 0 ? "nT/m" : "nT"; }
 
-std::string evidence_text(const FollowedQuantity& followed) {
-  const Following& f = followed.evidence;
+std::string evidence_text(const criticism::live::FollowedQuantity& followed) {
+  const criticism::live::Following& f = followed.evidence;
   const auto at = static_cast<std::size_t>(f.component);
   const char* const unit = unit_of(f.component);
   const std::string evidence = fmt::format("{:.0f} % of what the closure does beyond its noise, {}",
-                                           100 * f.share, p_phrase(f.log10_p));
-  if (followed.what == Follows::attitude) {
+                                           100 * f.share, stats::p_phrase(f.log10_p));
+  if (followed.what == criticism::live::Follows::attitude) {
     return fmt::format(
         "{} follows the attitude: it moves by {:.3g} {} over the turns of the last {:.0f} min ({})",
         kQuantity.at(at), f.swing, unit, followed.minutes, evidence);
@@ -39,9 +41,9 @@ std::string evidence_text(const FollowedQuantity& followed) {
                      evidence);
 }
 
-LiveReport suspect_report(const FollowedQuantity& followed) {
-  LiveReport out{.state = LiveState::suspect, .measured = evidence_text(followed)};
-  for (const Follows other : followed.also)
+LiveReport suspect_report(const criticism::live::FollowedQuantity& followed) {
+  LiveReport out{.state = criticism::live::LiveState::suspect, .measured = evidence_text(followed)};
+  for (const criticism::live::Follows other : followed.also)
     out.measured += fmt::format("; or it follows {}: they went together", followed_name(other));
   out.limit = fmt::format("{:.3g} {}, the standard deviation that the calibration states",
                           followed.evidence.stated_sd, unit_of(followed.evidence.component));
@@ -49,16 +51,16 @@ LiveReport suspect_report(const FollowedQuantity& followed) {
   return out;
 }
 
-LiveReport near_source_report(const LargeClosure& large) {
+LiveReport near_source_report(const criticism::live::LargeClosure& large) {
   std::string tested;
-  for (const Follows what : large.tested)
+  for (const criticism::live::Follows what : large.tested)
     tested += fmt::format("{}{}", tested.empty() ? "" : " or ", followed_name(what));
-  return {.state = LiveState::near_source,
+  return {.state = criticism::live::LiveState::near_source,
           .measured = fmt::format(
               "the closure is {:.3g} nT/m (curl) and {:.3g}, {:.3g}, {:.3g} nT (centre), mean of {:.0f} "
               "samples: {}; {}",
               large.closure[0], large.closure[1], large.closure[2], large.closure[3], large.samples,
-              p_phrase(large.log10_p),
+              stats::p_phrase(large.log10_p),
               tested.empty() ? "whether it follows temperature, time or attitude is not known yet"
                              : "it does not follow " + tested),
           .limit = "a chance of 1e-5 in 10 s, twice running, in an intact calibration and a smooth field",
@@ -67,22 +69,22 @@ LiveReport near_source_report(const LargeClosure& large) {
               "mgt check CAL.json RUN"};
 }
 
-LiveReport rearranged_report(const RearrangementFinding& found) {
+LiveReport rearranged_report(const criticism::tests::RearrangementFinding& found) {
   constexpr const char* kClosureLimit = "100, ten standard deviations";
   const std::string what = rearrangement_text(found.possible);
   if (found.turned()) {
-    return {.state = LiveState::turned,
+    return {.state = criticism::live::LiveState::turned,
             .measured = fmt::format("{}: the closure has a chi-square of {:.2g} (4 degrees of freedom), and "
                                     "turned so the sensor reads the field of the other three to {:.0f} %",
-                                    what, found.chi2, 100 * kTurnAgreement),
+                                    what, found.chi2, 100 * criticism::tests::kTurnAgreement),
             .limit = kClosureLimit,
             .remedy = "turn the sensor back, or calibrate anew as it stands"};
   }
   return {
-      .state = LiveState::exchanged,
+      .state = criticism::live::LiveState::exchanged,
       .measured = fmt::format("{}: the closure has a chi-square of {:.2g} (4 degrees of freedom), and below "
                               "{:.0f} when their readings are taken so",
-                              what, found.chi2, kExplainedClosure_chi2),
+                              what, found.chi2, criticism::tests::kExplainedClosure_chi2),
       .limit = kClosureLimit,
       .remedy =
           "swap the plugs back, of the digitisers or of the sensors behind them, or exchange the ports "
@@ -91,11 +93,14 @@ LiveReport rearranged_report(const RearrangementFinding& found) {
 
 }  // namespace
 
-LiveReport live_report(const LiveFinding& found, const std::optional<RearrangementFinding>& rearranged) {
+LiveReport live_report(const criticism::live::LiveFinding& found,
+                       const std::optional<criticism::tests::RearrangementFinding>& rearranged) {
   if (rearranged) return rearranged_report(*rearranged);
-  if (found.state == LiveState::suspect && found.followed) return suspect_report(*found.followed);
-  if (found.state == LiveState::near_source && found.large) return near_source_report(*found.large);
+  if (found.state == criticism::live::LiveState::suspect && found.followed)
+    return suspect_report(*found.followed);
+  if (found.state == criticism::live::LiveState::near_source && found.large)
+    return near_source_report(*found.large);
   return {.state = found.state};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

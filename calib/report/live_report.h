@@ -7,16 +7,17 @@
 #include "calib/criticism/tests/rearrangement.h"
 
 /// What the stream shows of its calibration, in words for an operator.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 struct LiveReport {
-  LiveState state{LiveState::none};
+  criticism::live::LiveState state{criticism::live::LiveState::none};
   std::string measured{}, limit{}, remedy{};  ///< empty in states none, learning and ok
 };
 
 /// `rearranged`, where there is one, comes before `found`: a sensor in another place makes the closure large
 /// by itself.
-[[nodiscard]] LiveReport live_report(const LiveFinding& found,
-                                     const std::optional<RearrangementFinding>& rearranged = {});
+[[nodiscard]] LiveReport live_report(
+    const criticism::live::LiveFinding& found,
+    const std::optional<criticism::tests::RearrangementFinding>& rearranged = {});
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

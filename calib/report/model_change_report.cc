@@ -13,7 +13,7 @@
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
@@ -24,13 +24,13 @@ std::string line(const char* what, double before, double after, const char* unit
                      bar(before, top), "", after, unit, bar(after, top));
 }
 
-const char* name_of(Veto veto) {
+const char* name_of(criticism::search::Veto veto) {
   switch (veto) {
-    case Veto::held_out:
+    case criticism::search::Veto::held_out:
       return "poses left out get worse";
-    case Veto::not_shown:
+    case criticism::search::Veto::not_shown:
       return "not shown to be there";
-    case Veto::price:
+    case criticism::search::Veto::price:
       return "price";
   }
   return "";
@@ -38,12 +38,12 @@ const char* name_of(Veto veto) {
 
 }  // namespace
 
-json to_json(const ModelChange& c) {
+json to_json(const criticism::search::ModelChange& c) {
   json coefficients = json::array();
-  for (const EffectCoefficient& x : c.coefficients)
+  for (const calibration::EffectCoefficient& x : c.coefficients)
     coefficients.push_back({{"name", x.name}, {"value", x.value}, {"sd", x.sd}, {"unit", x.unit}});
   json vetoes = json::array();
-  for (const Veto veto : c.vetoes()) vetoes.push_back(name_of(veto));
+  for (const criticism::search::Veto veto : c.vetoes()) vetoes.push_back(name_of(veto));
   return {{"schema", "mgt.model-change/1"},
           {"action", c.adding ? "add" : "drop"},
           {"effect", c.effect},
@@ -71,7 +71,7 @@ json to_json(const ModelChange& c) {
           {"vetoed", c.vetoed()}};
 }
 
-std::string to_text(const ModelChange& c) {
+std::string to_text(const criticism::search::ModelChange& c) {
   std::string out = fmt::format("{} {}\n", c.adding ? "with" : "without", c.spec);
   const auto to = std::back_inserter(out);
   out += line("residual", c.rms_before_nT, c.rms_after_nT, "nT");
@@ -80,7 +80,7 @@ std::string to_text(const ModelChange& c) {
   out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
   fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
   fmt::format_to(to, "chi-square {} by {:.5g} where {:.5g} was predicted; chance alone: {}{}\n",
-                 c.adding ? "fell" : "rose", c.realised, c.predicted, p_phrase(c.log10_p),
+                 c.adding ? "fell" : "rose", c.realised, c.predicted, stats::p_phrase(c.log10_p),
                  c.birge_ratio > 1
                      ? fmt::format(" (what is left {} is {:.3g} times the noise, and so is a fall by chance)",
                                    c.adding ? "with it" : "before", c.birge_ratio)
@@ -91,32 +91,32 @@ std::string to_text(const ModelChange& c) {
     fmt::format_to(to, "price: the standard deviation of {} is {:.2f} times what it is without\n",
                    c.price.parameter, c.price.sd_ratio);
   }
-  for (const EffectCoefficient& x : c.coefficients)
+  for (const calibration::EffectCoefficient& x : c.coefficients)
     fmt::format_to(to, "  {:<24} {:>+12.5g} +- {:<10.3g} {}\n", x.name, x.value, x.sd, x.unit);
   constexpr double kWeak_log10_p = -2;
-  if (c.adding && c.log10_p > std::log10(kVetoChance)) {
-    fmt::format_to(to, "it is not shown to be there: the limit is p = {}\n", kVetoChance);
+  if (c.adding && c.log10_p > std::log10(criticism::search::kVetoChance)) {
+    fmt::format_to(to, "it is not shown to be there: the limit is p = {}\n", criticism::search::kVetoChance);
   } else if (c.adding && c.log10_p > kWeak_log10_p) {
     out += "weak evidence: chance alone brings such a fall in more than one run of a hundred\n";
   }
   return out;
 }
 
-std::string to_text(const ModelChange& c, Veto veto) {
+std::string to_text(const criticism::search::ModelChange& c, criticism::search::Veto veto) {
   switch (veto) {
-    case Veto::held_out:
+    case criticism::search::Veto::held_out:
       return fmt::format("on poses left out the error rises from {:.4g} to {:.4g} nT",
                          c.held_out_before_nT.value_or(0), c.held_out_after_nT.value_or(0));
-    case Veto::not_shown:
+    case criticism::search::Veto::not_shown:
       return fmt::format("it is not shown to be there: chance alone has {}, and the limit is {}",
-                         p_phrase(c.log10_p), kVetoChance);
-    case Veto::price:
+                         stats::p_phrase(c.log10_p), criticism::search::kVetoChance);
+    case criticism::search::Veto::price:
       return fmt::format(
           "the standard deviation of {} would be {:.0f} times what it is without, and the "
           "limit is {:.0f}",
-          c.price.parameter, c.price.sd_ratio, kVetoPrice);
+          c.price.parameter, c.price.sd_ratio, criticism::search::kVetoPrice);
   }
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

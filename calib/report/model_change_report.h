@@ -6,12 +6,12 @@
 #include "calib/criticism/search/model_change.h"
 
 /// What a change of the model does, as an object and for a person.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// Schema "mgt.model-change/1".
-[[nodiscard]] nlohmann::json to_json(const ModelChange& change);
-[[nodiscard]] std::string to_text(const ModelChange& change);
+[[nodiscard]] nlohmann::json to_json(const criticism::search::ModelChange& change);
+[[nodiscard]] std::string to_text(const criticism::search::ModelChange& change);
 /// What was measured, against which limit.
-[[nodiscard]] std::string to_text(const ModelChange& change, Veto veto);
+[[nodiscard]] std::string to_text(const criticism::search::ModelChange& change, criticism::search::Veto veto);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

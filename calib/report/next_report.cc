@@ -9,13 +9,13 @@
 
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
 
 /// Why there is nothing to settle, or nothing that helps; else empty.
-std::string reason_text(const NextReport& r) {
+std::string reason_text(const criticism::search::NextReport& r) {
   if (r.nothing_to_settle) {
     const auto& [winner, nearest] = *r.nothing_to_settle;
     if (winner.empty())
@@ -34,9 +34,9 @@ std::string reason_text(const NextReport& r) {
 
 }  // namespace
 
-json to_json(const NextReport& r) {
+json to_json(const criticism::search::NextReport& r) {
   json steps = json::array();
-  for (const NextStep& s : r.steps) {
+  for (const criticism::search::NextStep& s : r.steps) {
     steps.push_back({{"action", s.measurement.action},
                      {"minutes", s.measurement.minutes},
                      {"p_right_before", s.measurement.p_right_before},
@@ -52,7 +52,7 @@ json to_json(const NextReport& r) {
       {"next", std::move(steps)},     {"text", reason_text(r)}};
 }
 
-std::string to_text(const NextReport& r) {
+std::string to_text(const criticism::search::NextReport& r) {
   std::string out;
   const auto to = std::back_inserter(out);
   if (!r.effect.empty()) {
@@ -63,7 +63,7 @@ std::string to_text(const NextReport& r) {
   }
   if (!r.steps.empty())
     fmt::format_to(to, "{:>8} {:>8}  {:<8} {}\n", "minutes", "p right", "by", "what to measure");
-  for (const NextStep& s : r.steps) {
+  for (const criticism::search::NextStep& s : r.steps) {
     fmt::format_to(to, "{:>8.0f} {:>8.3f}  {:<8} {}\n", s.measurement.minutes, s.measurement.p_right_after,
                    s.by_the_rig ? "the rig" : "hand", s.measurement.action);
   }
@@ -71,7 +71,7 @@ std::string to_text(const NextReport& r) {
   return out;
 }
 
-std::string pose_list(const NextStep& step) {
+std::string pose_list(const criticism::search::NextStep& step) {
   std::string note = step.by_the_rig ? "" : step.measurement.action;
   std::replace(note.begin(), note.end(), ',', ';');  // a comma ends a cell
   std::string out = "pose,set,azimuth_deg,pitch_deg,roll_deg,sense,dwell_s,since_stop_s";
@@ -91,4 +91,4 @@ std::string pose_list(const NextStep& step) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -6,13 +6,13 @@
 #include "calib/criticism/search/next_pair.h"
 
 /// The next measurement as an object, schema "mgt.next/1", and for a person.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-[[nodiscard]] nlohmann::json to_json(const NextReport& report);
-[[nodiscard]] std::string to_text(const NextReport& report);
+[[nodiscard]] nlohmann::json to_json(const criticism::search::NextReport& report);
+[[nodiscard]] std::string to_text(const criticism::search::NextReport& report);
 
 /// The poses of a step as CSV: attitude, approach and dwell, in the columns of a pose table, without
 /// readings. Where a hand is needed, `note` of the first says for what.
-[[nodiscard]] std::string pose_list(const NextStep& step);
+[[nodiscard]] std::string pose_list(const criticism::search::NextStep& step);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -8,7 +8,7 @@
 
 #include "calib/report/wandering_text.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 namespace {
 
@@ -22,7 +22,7 @@ int revisits_that_tell(double factor) {
                   static_cast<int>(std::ceil(2 * kSigmas * kSigmas / (share * share) / kFreedomOfPair)));
 }
 
-std::string beyond_dwells_text(const NoiseModel& noise) {
+std::string beyond_dwells_text(const criticism::tests::NoiseModel& noise) {
   const double factor = noise.beyond_dwells;
   std::string out = fmt::format(
       "the noise is {:.2g} times what the spread within the dwells says, in most channels and without a "
@@ -36,7 +36,7 @@ std::string beyond_dwells_text(const NoiseModel& noise) {
 }
 
 /// A slow law that is in no library makes an offset move as a walk does.
-std::string walk_or_law(const WanderingEstimate& wandering) {
+std::string walk_or_law(const fit::joint::WanderingEstimate& wandering) {
   if (wandering.where.front() == "all") return {};
   return ". A slow law that is in no library looks the same in one run: measure again on another day, a law "
          "of time or temperature comes back, a walk does not";
@@ -44,8 +44,8 @@ std::string walk_or_law(const WanderingEstimate& wandering) {
 
 }  // namespace
 
-std::string noise_of_tests(const NoiseModel& noise) {
-  const NoiseReference& n = noise.reference;
+std::string noise_of_tests(const criticism::tests::NoiseModel& noise) {
+  const criticism::tests::NoiseReference& n = noise.reference;
   if (noise.wandering.any()) {
     return fmt::format(
         "{}, is part of the noise{}: a law is named only where it fits better than that{}",
@@ -77,4 +77,4 @@ std::string noise_of_tests(const NoiseModel& noise) {
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

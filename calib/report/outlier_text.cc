@@ -6,24 +6,24 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 /// Nodes at one place in consecutive poses, for the same cause.
 struct Stretch {
-  const OutlierNode *first, *last;
+  const fit::OutlierNode *first, *last;
   double squares{0}, sigmas{0};
   int count{0};
 };
 
-std::string where_text(const OutlierNode& node) {
+std::string where_text(const fit::OutlierNode& node) {
   if (node.where == "pose") return "all sensors";
   if (node.where.size() == 2) return "sensor " + node.where;
   return node.where;
 }
 
 std::string text_of(const Stretch& s) {
-  const OutlierNode& node = *s.first;
+  const fit::OutlierNode& node = *s.first;
   const std::string cause = node.cause.empty() ? "" : " " + node.cause + ",";
   const double rms = std::sqrt(s.squares / s.count);
   if (s.count == 1 && node.where == "pose") {
@@ -40,9 +40,9 @@ std::string text_of(const Stretch& s) {
 
 }  // namespace
 
-std::vector<std::string> outlier_texts(const std::vector<OutlierNode>& nodes) {
+std::vector<std::string> outlier_texts(const std::vector<fit::OutlierNode>& nodes) {
   std::vector<Stretch> stretches;
-  for (const OutlierNode& node : nodes) {
+  for (const fit::OutlierNode& node : nodes) {
     const auto before = std::find_if(stretches.begin(), stretches.end(), [&](const Stretch& s) {
       return s.last->where == node.where && s.last->cause == node.cause && s.last->place + 1 == node.place;
     });
@@ -57,4 +57,4 @@ std::vector<std::string> outlier_texts(const std::vector<OutlierNode>& nodes) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

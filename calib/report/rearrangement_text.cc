@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 std::string quarter_turn_text(const Eigen::Matrix3d& turn_P) {
@@ -29,7 +29,7 @@ std::string quarter_turn_text(const Eigen::Matrix3d& turn_P) {
 
 }  // namespace
 
-std::string rearrangement_text(const Rearrangement& what) {
+std::string rearrangement_text(const criticism::tests::Rearrangement& what) {
   if (what.turned) return fmt::format("s{} is turned {}", *what.turned + 1, quarter_turn_text(what.turn_P));
   std::string out;
   for (std::size_t place = 0; place < kSensors; ++place) {
@@ -44,13 +44,14 @@ std::string rearrangement_text(const Rearrangement& what) {
   return out;
 }
 
-std::string rearrangement_text(const std::vector<Rearrangement>& possible) {
+std::string rearrangement_text(const std::vector<criticism::tests::Rearrangement>& possible) {
   std::string out;
-  for (const Rearrangement& what : possible) out += (out.empty() ? "" : ", or ") + rearrangement_text(what);
+  for (const criticism::tests::Rearrangement& what : possible)
+    out += (out.empty() ? "" : ", or ") + rearrangement_text(what);
   return out;
 }
 
-std::string exchange_text(const ExchangeInRun& found) {
+std::string exchange_text(const criticism::tests::ExchangeInRun& found) {
   return fmt::format(
       "{} from pose {} on: taken so, the total field of the sensors fits to {:.2g} nT, as it stands to "
       "{:.3g} "
@@ -58,4 +59,4 @@ std::string exchange_text(const ExchangeInRun& found) {
       rearrangement_text(found.what), found.from_pose, found.residual_nT, found.without_nT);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -7,13 +7,13 @@
 #include "calib/criticism/tests/rearrangement.h"
 
 /// Sensors that changed places or turned, in words.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// "s2 and s4 are exchanged", "s3 is turned by 90 deg about Z".
-[[nodiscard]] std::string rearrangement_text(const Rearrangement& what);
+[[nodiscard]] std::string rearrangement_text(const criticism::tests::Rearrangement& what);
 /// The same, with ", or " between those that are possible.
-[[nodiscard]] std::string rearrangement_text(const std::vector<Rearrangement>& possible);
+[[nodiscard]] std::string rearrangement_text(const std::vector<criticism::tests::Rearrangement>& possible);
 /// From which pose on, how well the total field fits with the exchange and without, and what to do.
-[[nodiscard]] std::string exchange_text(const ExchangeInRun& found);
+[[nodiscard]] std::string exchange_text(const criticism::tests::ExchangeInRun& found);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -3,7 +3,7 @@
 #include <string_view>
 
 /// Words that stand beside the same figures in every report.
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// What "residual" means: see PoseResiduals.
 inline constexpr std::string_view kResidualIs =
@@ -17,4 +17,4 @@ inline constexpr std::string_view kResidualIs =
              : "estimated from the residual itself: the poses do not tell spread and number of their samples";
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

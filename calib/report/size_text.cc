@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 /// As many decimals as show two digits of the standard deviation, without an exponent where that stays short.
@@ -19,11 +19,11 @@ std::string signed_with_sd(double value, double sd) {
 
 }  // namespace
 
-std::string size_text(const Candidate& c) {
-  const EffectCoefficient* const largest = seen_most(c);
+std::string size_text(const criticism::tests::Candidate& c) {
+  const calibration::EffectCoefficient* const largest = criticism::tests::seen_most(c);
   if (largest == nullptr) return "";
   const std::string what = c.coefficients.size() > 1 ? largest->name + " " : "";
   return fmt::format("{}{} {}", what, signed_with_sd(largest->value, largest->sd), largest->unit);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -4,10 +4,10 @@
 
 #include "calib/criticism/tests/candidate.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// Size of an effect with its standard deviation, "+0.42 +- 0.03 nT/degC"; of several coefficients the one
 /// that stands out most from its uncertainty.
-[[nodiscard]] std::string size_text(const Candidate& candidate);
+[[nodiscard]] std::string size_text(const criticism::tests::Candidate& candidate);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

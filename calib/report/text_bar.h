@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// A bar of at most `width` characters for `value` on a scale that ends at `top`.
 [[nodiscard]] inline std::string bar(double value, double top, int width = 40) {
@@ -12,4 +12,4 @@ namespace mgtd::calib {
   return std::string(static_cast<std::size_t>(std::lround(share * width)), '#');
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

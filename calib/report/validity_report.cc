@@ -11,17 +11,18 @@
 #include "calib/report/fit_report_json.h"
 #include "calib/report/outlier_text.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::string conclusion_text(const ValidityReport& r) {
-  const Change& c = r.change;
+std::string conclusion_text(const validity::ValidityReport& r) {
+  const validity::Change& c = r.change;
   const std::string figures = figures_text(c);
   if (r.changed()) {
     const auto best = std::max_element(c.others_log10_p.begin(), c.others_log10_p.end());
-    const std::string where = *best > std::log10(kChanged) ? fmt::format("sensor s{} alone would explain it",
-                                                                         best - c.others_log10_p.begin() + 1)
-                                                           : std::string("more than one sensor");
+    const std::string where =
+        *best > std::log10(validity::kChanged)
+            ? fmt::format("sensor s{} alone would explain it", best - c.others_log10_p.begin() + 1)
+            : std::string("more than one sensor");
     return fmt::format(
         "no longer valid ({}): {}{}; calibrate again", figures, where,
         c.named.empty() ? ", spread over many parameters" : ", accounted for by " + named_text(c));
@@ -38,7 +39,7 @@ std::string conclusion_text(const ValidityReport& r) {
 
 }  // namespace
 
-std::vector<std::string> validity_reasons(const ValidityReport& r) {
+std::vector<std::string> validity_reasons(const validity::ValidityReport& r) {
   std::vector<std::string> out{conclusion_text(r)};
   out.push_back("smallest change that these poses show in 80 of 100 cases: " + seen_text(r.change));
   if (r.excess > 1 && r.valid) {
@@ -51,9 +52,9 @@ std::vector<std::string> validity_reasons(const ValidityReport& r) {
   return out;
 }
 
-nlohmann::json to_json(const ValidityReport& r) {
+nlohmann::json to_json(const validity::ValidityReport& r) {
   nlohmann::json outliers = nlohmann::json::array();
-  for (const OutlierNode& o : r.outliers)
+  for (const fit::OutlierNode& o : r.outliers)
     outliers.push_back({{"pose", o.pose}, {"where", o.where}, {"shift", o.shift}, {"unit", o.unit}});
   return {{"schema", "mgt.check/1"},
           {"calibration", r.calibration},
@@ -68,4 +69,4 @@ nlohmann::json to_json(const ValidityReport& r) {
           {"outliers", std::move(outliers)}};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -6,12 +6,12 @@
 
 #include "calib/validity/validity_check.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// Whether the calibration still holds and why, then what limits the answer; one sentence each.
-[[nodiscard]] std::vector<std::string> validity_reasons(const ValidityReport& report);
+[[nodiscard]] std::vector<std::string> validity_reasons(const validity::ValidityReport& report);
 
 /// Schema "mgt.check/1".
-[[nodiscard]] nlohmann::json to_json(const ValidityReport& report);
+[[nodiscard]] nlohmann::json to_json(const validity::ValidityReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

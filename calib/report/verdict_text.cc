@@ -20,17 +20,17 @@
 #include "calib/stats/probability.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
-std::string place(const Candidate& c) {
+std::string place(const criticism::tests::Candidate& c) {
   if (c.where == "site" || c.where == "table" || c.where == "platform") return "";
   if (c.where == "all") return " with one coefficient for all axes";
   if (c.where == "each-axis" || c.where == "each-sensor") return " in several axes";
   return fmt::format(" in {}", c.where);
 }
 
-std::string noise_text(const ExplainReport& r) {
+std::string noise_text(const criticism::search::ExplainReport& r) {
   std::string out = fmt::format("The residual is {:.3g} nT", r.residual_nT);
   if (r.noise.known)
     out += fmt::format(" where the noise of a pose mean is {:.3g} nT, {}", r.noise_nT,
@@ -44,14 +44,15 @@ std::string noise_text(const ExplainReport& r) {
 
 /// The candidate with its coefficients of the fit that holds it. Before it everything that is missing counts
 /// as noise, so that no size is better known than to one part in the root of the number of poses.
-Candidate as_fitted(const Round& round) {
-  Candidate out = round.added;
+criticism::tests::Candidate as_fitted(const criticism::search::Round& round) {
+  criticism::tests::Candidate out = round.added;
   if (round.fit == nullptr) return out;
-  std::vector<EffectCoefficient> found;
+  std::vector<calibration::EffectCoefficient> found;
   Eigen::Index slot = 0;
-  for (const EffectPtr& effect : round.fit->problem.effects) {
-    for (const Coefficient& c : effect->coefficients()) {
-      const double variance = round.fit->covariance(kEffectSlot + slot, kEffectSlot + slot);
+  for (const effects::EffectPtr& effect : round.fit->problem.effects) {
+    for (const effects::Coefficient& c : effect->coefficients()) {
+      const double variance =
+          round.fit->covariance(fit::joint::kEffectSlot + slot, fit::joint::kEffectSlot + slot);
       if (effect->name() == out.effect)
         found.push_back({c.name, round.fit->state.coefficients[slot], std::sqrt(variance), c.unit});
       ++slot;
@@ -63,7 +64,7 @@ Candidate as_fitted(const Round& round) {
 
 /// What adding it did; `before`: the fit without it. Wrong angles hardly show in the readings, which tell
 /// each pose its own attitude.
-std::string fall_text(const Round& round, const JointFit* before) {
+std::string fall_text(const criticism::search::Round& round, const fit::joint::JointFit* before) {
   if (before != nullptr && round.fit && round.added.where == "table")
     return fmt::format("the angles of the table scatter by {:.3g} instead of {:.3g} deg",
                        to_deg(round.fit->table_sd_rad), to_deg(before->table_sd_rad));
@@ -75,13 +76,13 @@ std::string fall_text(const Round& round, const JointFit* before) {
 }
 
 /// Numbers that were searched for, as fitted: " (ts = 0.383 h)".
-std::string searched_text(const Round& round) {
-  const EffectFamily* const family = find_family(round.added.effect);
+std::string searched_text(const criticism::search::Round& round) {
+  const effects::library::EffectFamily* const family = effects::library::find_family(round.added.effect);
   if (family == nullptr || !family->scan) return {};
   std::set<std::string> numbers;
-  for (const EffectPtr& effect : round.model) {
+  for (const effects::EffectPtr& effect : round.model) {
     if (effect->name() != family->name) continue;
-    const auto spec = EffectSpec::parse(effect->spec());
+    const auto spec = effects::EffectSpec::parse(effect->spec());
     if (!spec) continue;
     for (const auto& [name, value] : spec->parameters)
       if (name == family->scan->parameter)
@@ -90,17 +91,17 @@ std::string searched_text(const Round& round) {
   return numbers.empty() ? "" : fmt::format(" ({})", fmt::join(numbers, ", "));
 }
 
-std::string round_text(const Round& round, const JointFit* before) {
-  const Candidate& a = round.added;
+std::string round_text(const criticism::search::Round& round, const fit::joint::JointFit* before) {
+  const criticism::tests::Candidate& a = round.added;
   return fmt::format("It behaves like {}{}: {:.1f} sigma, {}. With it in the model{} {}, and its size is {}.",
-                     a.effect, place(a), a.d, p_phrase(a.log10_p), searched_text(round),
+                     a.effect, place(a), a.d, stats::p_phrase(a.log10_p), searched_text(round),
                      fall_text(round, before), size_text(as_fitted(round)));
 }
 
 /// Where what was found is the lesser part of what is there.
-std::string lesser_part_text(const ExplainReport& r) {
+std::string lesser_part_text(const criticism::search::ExplainReport& r) {
   constexpr double kHalf = 0.5;
-  if (r.finding != Finding::partial || !r.noise.known || r.rounds.empty()) return {};
+  if (r.finding != criticism::search::Finding::partial || !r.noise.known || r.rounds.empty()) return {};
   const auto beyond = [&](double rms_nT) { return rms_nT * rms_nT - r.noise_nT * r.noise_nT; };
   const double before = beyond(r.rounds.front().rms_before_nT), after = beyond(r.rounds.back().rms_after_nT);
   if (!(before > 0) || after < kHalf * before) return {};
@@ -110,7 +111,7 @@ std::string lesser_part_text(const ExplainReport& r) {
       100 * std::max(0.0, 1 - after / before));
 }
 
-std::string alternatives_text(const Round& round) {
+std::string alternatives_text(const criticism::search::Round& round) {
   if (!round.possible.empty()) {
     return fmt::format("These poses do not tell it from {}.", fmt::join(round.possible, ", "));
   }
@@ -118,24 +119,27 @@ std::string alternatives_text(const Round& round) {
   if (alternatives.empty()) return "Nothing else in the library looks like it.";
   const auto nearest =
       std::min_element(alternatives.begin(), alternatives.end(),
-                       [](const Alternative& a, const Alternative& b) { return a.p_right < b.p_right; });
+                       [](const criticism::tests::Alternative& a, const criticism::tests::Alternative& b) {
+                         return a.p_right < b.p_right;
+                       });
   return fmt::format("Nearest rival: {}, told apart with probability {:.4g} at this size.", nearest->effect,
                      nearest->p_right);
 }
 
-std::string left_text(const std::vector<MapScore>& maps) {
+std::string left_text(const std::vector<criticism::tests::MapScore>& maps) {
   if (maps.empty()) return "";
-  const MapScore& m = maps.front();
-  return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where, p_phrase(m.log10_p));
+  const criticism::tests::MapScore& m = maps.front();
+  return fmt::format("What is left shows most against {} ({}, {}).", m.map, m.where,
+                     stats::p_phrase(m.log10_p));
 }
 
 /// What an operator can do about a residual that no effect of the library stands for.
-std::string next_step_text(const std::vector<MapScore>& maps) {
+std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps) {
   if (maps.empty() || maps.front().log10_p > -2)
     return "What to do next: measure a second run with the poses in another order and record what may switch "
            "or change between poses (supplies, motors, temperatures); nothing that was recorded orders this "
            "residual.";
-  const MapScore& m = maps.front();
+  const criticism::tests::MapScore& m = maps.front();
   static const std::map<std::string, std::string> kTry{
       {"time", "sin(2*_pi*t_h/0.5)"},       {"azimuth", "cosd(3*azimuth_deg)"},
       {"temperature", "max(0, T_degC-24)"}, {"own reading", "(u/50000)^4"},
@@ -148,10 +152,10 @@ std::string next_step_text(const std::vector<MapScore>& maps) {
       m.where, m.map, formula == kTry.end() ? m.map : formula->second, m.where);
 }
 
-std::string outliers_text(const std::vector<OutlierNode>& outliers) {
+std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
   if (outliers.empty()) return {};
   std::set<int> poses;
-  for (const OutlierNode& o : outliers) poses.insert(o.pose);
+  for (const fit::OutlierNode& o : outliers) poses.insert(o.pose);
   return fmt::format(
       "{} that the others contradict {} left out, in pose {} (listed at the end).",
       outliers.size() == 1 ? "One observation" : fmt::format("{} observations", outliers.size()),
@@ -160,7 +164,7 @@ std::string outliers_text(const std::vector<OutlierNode>& outliers) {
 
 }  // namespace
 
-std::string detectable_text(const Detectable& d) {
+std::string detectable_text(const criticism::tests::Detectable& d) {
   constexpr double kBeyondAll = 1e9;  // in any unit of the library
   if (!(d.value < kBeyondAll)) return "at no size: what is in the model takes it up";
   return fmt::format("{:.3g} {} ({})", d.value, d.unit, d.where);
@@ -174,48 +178,48 @@ std::string as_sentence(std::string clause) {
   return clause + ".";
 }
 
-std::string_view share_of(const ExplainReport& r) {
+std::string_view share_of(const criticism::search::ExplainReport& r) {
   if (r.noise.reference.from_dwells()) return "chi-square beyond the noise";
   return r.rounds.empty() ? "nothing, because the noise is not known and nothing was added"
                           : "chi-square beyond what is left after the last round";
 }
 
-std::string sentence(const ExplainReport& r) {
+std::string sentence(const criticism::search::ExplainReport& r) {
   const std::string lesser_part = lesser_part_text(r);
   std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part};
-  const JointFit* before = r.fit.get();
-  for (const Round& round : r.rounds) {
+  const fit::joint::JointFit* before = r.fit.get();
+  for (const criticism::search::Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
     if (lesser_part.empty() || !round.possible.empty()) parts.push_back(alternatives_text(round));
     before = round.fit.get();
   }
   switch (r.finding) {
-    case Finding::pass:
+    case criticism::search::Finding::pass:
       parts.emplace_back(
           "Nothing stands out beyond chance. That excludes only effects above the sizes listed, and nothing "
           "of "
           "what cannot be tested.");
       break;
-    case Finding::unknown:
+    case criticism::search::Finding::unknown:
       parts.emplace_back("Something is there, and no effect of the library looks like it.");
       parts.push_back(left_text(r.maps));
       parts.push_back(next_step_text(r.maps));
       break;
-    case Finding::partial:
-      if (r.left == Finding::pass) break;
+    case criticism::search::Finding::partial:
+      if (r.left == criticism::search::Finding::pass) break;
       parts.push_back(left_text(r.maps_left));
       parts.push_back(next_step_text(r.maps_left));
       break;
-    case Finding::ambiguous:
+    case criticism::search::Finding::ambiguous:
       if (!r.next.empty()) {
-        const NextMeasurement& n = r.next.front();
+        const design::NextMeasurement& n = r.next.front();
         parts.push_back(
             fmt::format("To settle it: {}, {:.0f} minutes; the right name then wins with probability {:.3f} "
                         "instead of {:.2f}.",
                         n.action, n.minutes, n.p_right_after, n.p_right_before));
       }
       break;
-    case Finding::explained:
+    case criticism::search::Finding::explained:
       parts.emplace_back("Nothing else stands out after that. The name is a hypothesis about the cause.");
       break;
     default:
@@ -223,12 +227,13 @@ std::string sentence(const ExplainReport& r) {
   }
   for (const std::string& note : note_texts(r.notes)) {
     // A user's formula has any name.
-    const bool named = std::any_of(r.candidates.begin(), r.candidates.end(),
-                                   [&](const Candidate& c) { return note.starts_with(c.effect + " "); });
+    const bool named =
+        std::any_of(r.candidates.begin(), r.candidates.end(),
+                    [&](const criticism::tests::Candidate& c) { return note.starts_with(c.effect + " "); });
     parts.push_back(named ? note + "." : as_sentence(note));
   }
   std::erase(parts, "");
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

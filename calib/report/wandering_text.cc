@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-std::string wandering_text(const WanderingEstimate& w) {
+std::string wandering_text(const fit::joint::WanderingEstimate& w) {
   if (!w.any()) return {};
   Eigen::Index most = 0;
   w.nT_per_sqrt_h.maxCoeff(&most);
@@ -16,4 +16,4 @@ std::string wandering_text(const WanderingEstimate& w) {
       w.nT_per_sqrt_h[most], w.sd[most], most / 3 + 1, "xyz"[most % 3]);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -4,9 +4,9 @@
 
 #include "calib/fit/joint/wandering_estimate.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
 /// "slow wandering of all offsets, up to 0.98 +- 0.06 nT per root hour (s2.x)"; empty where none wander.
-[[nodiscard]] std::string wandering_text(const WanderingEstimate& wandering);
+[[nodiscard]] std::string wandering_text(const fit::joint::WanderingEstimate& wandering);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

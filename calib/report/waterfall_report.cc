@@ -9,7 +9,7 @@
 
 #include "calib/report/text_bar.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using nlohmann::json;
@@ -18,9 +18,9 @@ constexpr int kBarWidth = 24;
 
 }  // namespace
 
-json to_json(const Waterfall& w) {
+json to_json(const criticism::search::Waterfall& w) {
   json steps = json::array();
-  for (const WaterfallStep& s : w.steps) {
+  for (const criticism::search::WaterfallStep& s : w.steps) {
     steps.push_back({{"effect", s.effect},
                      {"spec", s.spec},
                      {"added_first_nT", s.first_nT},
@@ -37,17 +37,17 @@ json to_json(const Waterfall& w) {
           {"noise_floor_nT_per_m", w.floor_nT_per_m}};
 }
 
-std::string to_text(const Waterfall& w) {
+std::string to_text(const criticism::search::Waterfall& w) {
   std::string out;
   const auto to = std::back_inserter(out);
   double top = w.without_nT;
-  for (const WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
+  for (const criticism::search::WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
   const auto total = [&](const char* what, double nT, double nT_per_m) {
     fmt::format_to(to, "{:<40} {:>9.3f} {:>9.3f}  {}\n", what, nT, nT_per_m, bar(nT, top, kBarWidth));
   };
   fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
   total("without any effect", w.without_nT, w.without_nT_per_m);
-  for (const WaterfallStep& s : w.steps) {
+  for (const criticism::search::WaterfallStep& s : w.steps) {
     fmt::format_to(to, "  {}\n", s.spec);
     total("    added first takes out", s.first_nT, s.first_nT_per_m);
     total("    dropped last brings back", s.last_nT, s.last_nT_per_m);
@@ -58,4 +58,4 @@ std::string to_text(const Waterfall& w) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -5,9 +5,9 @@
 
 #include "calib/criticism/search/waterfall.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 
-[[nodiscard]] nlohmann::json to_json(const Waterfall& w);
-[[nodiscard]] std::string to_text(const Waterfall& w);
+[[nodiscard]] nlohmann::json to_json(const criticism::search::Waterfall& w);
+[[nodiscard]] std::string to_text(const criticism::search::Waterfall& w);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

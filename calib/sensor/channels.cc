@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 std::string channel_name(int channel) { return fmt::format("s{}.{}", channel / 3 + 1, "xyz"[channel % 3]); }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

@@ -7,7 +7,7 @@
 #include "proto/reading.h"
 
 /// The twelve components of four sensors as one vector, sensor by sensor.
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 inline constexpr int kChannels = 3 * kSensors;
 /// Corrected components, nT, platform frame.
@@ -17,4 +17,4 @@ using ChannelCovariance = Eigen::Matrix<double, kChannels, kChannels>;
 /// "s2.y" of channel 4.
 [[nodiscard]] std::string channel_name(int channel);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

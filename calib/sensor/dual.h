@@ -10,7 +10,7 @@
 /// Works as an Eigen scalar, so that one templated equation gives values (double) and Jacobians (Dual<N>).
 /// Comparisons look at the value only: a branch is differentiated as if it were taken everywhere near the
 /// point.
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 template <int N>
 struct Dual {
@@ -83,12 +83,12 @@ template <int N>
   return x.v;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor
 
 namespace Eigen {
 template <int N>
-struct NumTraits<mgtd::calib::Dual<N>> : NumTraits<double> {
-  using Real = mgtd::calib::Dual<N>;
+struct NumTraits<mgtd::calib::sensor::Dual<N>> : NumTraits<double> {
+  using Real = mgtd::calib::sensor::Dual<N>;
   using NonInteger = Real;
   using Nested = Real;
   enum {
@@ -102,11 +102,11 @@ struct NumTraits<mgtd::calib::Dual<N>> : NumTraits<double> {
   };
 };
 template <int N, class Op>
-struct ScalarBinaryOpTraits<mgtd::calib::Dual<N>, double, Op> {
-  using ReturnType = mgtd::calib::Dual<N>;
+struct ScalarBinaryOpTraits<mgtd::calib::sensor::Dual<N>, double, Op> {
+  using ReturnType = mgtd::calib::sensor::Dual<N>;
 };
 template <int N, class Op>
-struct ScalarBinaryOpTraits<double, mgtd::calib::Dual<N>, Op> {
-  using ReturnType = mgtd::calib::Dual<N>;
+struct ScalarBinaryOpTraits<double, mgtd::calib::sensor::Dual<N>, Op> {
+  using ReturnType = mgtd::calib::sensor::Dual<N>;
 };
 }  // namespace Eigen

@@ -7,7 +7,7 @@
 
 /// Where the sensors sit. Platform frame O-XYZ, baseline d between opposite sensors:
 /// s1 (+d/2,0,0), s2 (0,+d/2,0), s3 (-d/2,0,0), s4 (0,-d/2,0). Metres.
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 struct Geometry {
   double baseline_m{0.4};
@@ -19,4 +19,4 @@ struct Geometry {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

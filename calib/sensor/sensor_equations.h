@@ -5,7 +5,7 @@
 
 /// The equations of sensor_model.h and of the table, written once for values (double) and for derivatives
 /// (Dual<N>).
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 template <class S>
 using Vector3 = Eigen::Matrix<S, 3, 1>;
@@ -73,4 +73,4 @@ template <class S>
   return turn_z(azimuth) * tilted * turn_x(roll);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

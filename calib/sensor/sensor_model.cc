@@ -5,7 +5,7 @@
 
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 Eigen::Matrix3d rotation_x(double alpha_rad) { return turn_x(alpha_rad); }
 Eigen::Matrix3d rotation_y(double beta_rad) { return turn_y(beta_rad); }
@@ -43,4 +43,4 @@ SensorModel SensorModel::from_parameters(const ParameterVector& p, const Eigen::
           .mounting = mounting};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

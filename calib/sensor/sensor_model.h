@@ -19,7 +19,7 @@
 ///
 /// Li Qingzhu et al., "Two-step linear calibration of planar cross magnetic gradient tensor system". Does not
 /// model temperature, hysteresis, nonlinearity or neighbours' fields.
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 inline constexpr int kSensorParameters = 12;
 /// Order of the parameters wherever they stand in a vector.
@@ -54,4 +54,4 @@ struct SensorModel {
 [[nodiscard]] Eigen::Matrix3d rotation_y(double beta_rad);
 [[nodiscard]] Eigen::Matrix3d rotation_z(double gamma_rad);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

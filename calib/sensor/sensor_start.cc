@@ -8,7 +8,7 @@
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 namespace {
 
 /// Spread across the thinnest direction over the widest: below, the readings lie on a plane. A table turning
@@ -23,7 +23,7 @@ constexpr double kMaxScale = 3;
 ScalarCalibration sphere(const Eigen::Matrix3Xd& z, double f_nT) {
   Eigen::MatrixXd d(z.cols(), 4);
   d << 2 * z.transpose(), Eigen::VectorXd::Ones(z.cols());
-  const Eigen::Vector4d p = least_squares(d, Eigen::VectorXd(z.colwise().squaredNorm().transpose()));
+  const Eigen::Vector4d p = linear::least_squares(d, Eigen::VectorXd(z.colwise().squaredNorm().transpose()));
   const Eigen::Vector3d centre = p.head<3>();
   ScalarCalibration out;
   out.K *= f_nT / std::sqrt(p[3] + centre.squaredNorm());
@@ -43,7 +43,7 @@ Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT, const Eigen
   const Eigen::Vector3d mean = y_nT.rowwise().mean();
   const Eigen::Matrix3Xd z = y_nT.colwise() - mean;
   const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(z.cols());
-  const Eigen::Vector3d spread = principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
+  const Eigen::Vector3d spread = linear::principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
   for (int a = 0; a < 3; ++a) {
     if (z.row(a).cwiseAbs().maxCoeff() > kDead_nT) continue;
     return fail(
@@ -66,4 +66,4 @@ Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT, const Eigen
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

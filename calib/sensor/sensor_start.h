@@ -2,7 +2,7 @@
 #pragma once
 #include "calib/sensor/step1.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 /// Makes a first guess of the parameters of one sensor alone, whatever the rig: step 1 where it holds, else
 /// (condition, a quadric that is no ellipsoid, disturbed poses) the best sphere, which is linear, needs no
@@ -11,4 +11,4 @@ namespace mgtd::calib {
 [[nodiscard]] Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT,
                                                      const Eigen::VectorXd& f_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

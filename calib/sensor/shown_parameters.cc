@@ -3,7 +3,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 const std::array<ShownParameter, kSensorParameters>& shown_parameters() {
   constexpr double kDegrees = 1 / kRadiansPerDegree;
@@ -23,4 +23,4 @@ const std::array<ShownParameter, kSensorParameters>& shown_parameters() {
   return kShown;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

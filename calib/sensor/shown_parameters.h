@@ -4,7 +4,7 @@
 
 #include "calib/sensor/sensor_model.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 /// Key, unit and factor from the inside unit to the one shown, of each of the twelve parameters.
 struct ShownParameter {
@@ -15,4 +15,4 @@ struct ShownParameter {
 };
 [[nodiscard]] const std::array<ShownParameter, kSensorParameters>& shown_parameters();
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

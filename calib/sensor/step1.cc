@@ -11,7 +11,7 @@
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 namespace {
 
 constexpr Eigen::Index kUnknowns = 9;
@@ -53,7 +53,7 @@ void accumulate(const Eigen::Matrix3Xd& z, Normal& normal, Unknowns& right) {
 /// Condition of the columns once each has unit length: square root of that of the normal matrix.
 double condition_of(const Normal& normal, const Unknowns& lengths) {
   const Normal unit = lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal();
-  const Unknowns e = symmetric_eigenvalues(unit);
+  const Unknowns e = linear::symmetric_eigenvalues(unit);
   return e[0] > 0 ? std::sqrt(e[kUnknowns - 1] / e[0]) : std::numeric_limits<double>::infinity();
 }
 
@@ -78,7 +78,7 @@ Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f
   const Eigen::Vector3d mean = y.rowwise().mean();
   Eigen::Matrix3Xd z = y.colwise() - mean;
   const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(y.cols());
-  const Eigen::Vector3d spread = principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
+  const Eigen::Vector3d spread = linear::principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
   if (!(spread[0] > kMinFlatness * spread[2])) {
     return fail(ErrorCode::refused,
                 fmt::format("the readings lie on a plane: they spread {:.4g} nT across it and {:.4g} nT "
@@ -98,9 +98,9 @@ Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f
                 fmt::format("condition number {:.3g}, limit {}", condition, kMaxCondition),
                 fmt::format("the attitudes are too much alike: {}", kTurnMore));
   }
-  const Unknowns scaled =
-      solve_by_ldlt(lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal(),
-                    Eigen::VectorXd(right.cwiseQuotient(lengths)));
+  const Unknowns scaled = linear::solve_by_ldlt(
+      lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal(),
+      Eigen::VectorXd(right.cwiseQuotient(lengths)));
   auto out = ellipsoid_of(scaled.cwiseQuotient(lengths));
   if (!out) return out;
   out->K *= f_nT / spread[2];
@@ -146,9 +146,9 @@ Result<ScalarCalibration> simplified_calibration(const Eigen::Matrix3Xd& y_nT, c
   d.rightCols<3>() = z.transpose();
   const Eigen::VectorXd right =
       0.5 * (z.colwise().squaredNorm().transpose() - (f_nT / f).array().square().matrix());
-  const auto solution = unique_least_squares(d, right);
+  const auto solution = linear::unique_least_squares(d, right);
   if (!solution) {
-    return fail(ErrorCode::refused, fmt::format("the poses decide {} of nine unknowns", rank_of(d)),
+    return fail(ErrorCode::refused, fmt::format("the poses decide {} of nine unknowns", linear::rank_of(d)),
                 kTurnMore);
   }
   const Unknowns p = *solution;
@@ -160,4 +160,4 @@ Result<ScalarCalibration> simplified_calibration(const Eigen::Matrix3Xd& y_nT, c
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

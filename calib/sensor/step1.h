@@ -6,7 +6,7 @@
 
 /// Step 1: one sensor by itself, from readings in fields of known magnitude (scalar calibration, nine
 /// parameters).
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 
 inline constexpr Eigen::Index kFewestScalarPoses = 9;  ///< as many as there are parameters
 
@@ -39,4 +39,4 @@ struct ScalarCalibration {
 [[nodiscard]] Result<ScalarCalibration> simplified_calibration(const Eigen::Matrix3Xd& y_nT,
                                                                const Eigen::VectorXd& f_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

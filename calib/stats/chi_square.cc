@@ -4,7 +4,7 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 namespace {
 
 constexpr int kGammaTerms = 10'000;
@@ -59,4 +59,4 @@ double chi_square_limit(double p, double dof) {
   return 0.5 * (low + high);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

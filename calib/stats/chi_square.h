@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 
 /// Probability that a chi-square with `dof` degrees of freedom exceeds x: the regularised upper incomplete
 /// gamma function Q(dof/2, x/2), by series below the mean and continued fraction above it. 1 for x <= 0.
@@ -11,4 +11,4 @@ namespace mgtd::calib {
 /// The x that is exceeded with probability p, 0 < p < 1, to 1e-10 relative.
 [[nodiscard]] double chi_square_limit(double p, double dof);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

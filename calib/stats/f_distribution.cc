@@ -5,7 +5,7 @@
 
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 namespace {
 
 constexpr int kBetaTerms = 10'000;
@@ -45,4 +45,4 @@ double f_log10_p(double f, double k, double nu) {
   return std::log1p(-lower) / std::log(10.0);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

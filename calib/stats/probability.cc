@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 namespace {
 
 constexpr double kFloor_log10 = -30;
@@ -31,4 +31,4 @@ std::string p_phrase(double log10_p) {
   return is_below(log10_p) ? fmt::format("p < 1e{:.0f}", kFloor_log10) : "p = " + figure(log10_p);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

@@ -4,7 +4,7 @@
 
 /// Probabilities for a person to read, of their decimal logarithm. Below 1e-30 no test of real data means its
 /// figure: that is what is said. Results for programs carry the logarithm itself.
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 
 /// Standard deviation of a normal distribution over its median absolute deviation.
 inline constexpr double kMadToSd = 1.4826;
@@ -14,4 +14,4 @@ inline constexpr double kMadToSd = 1.4826;
 /// "p = 0.032", "p < 1e-30": for a sentence.
 [[nodiscard]] std::string p_phrase(double log10_p);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

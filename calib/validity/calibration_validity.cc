@@ -10,7 +10,7 @@
 #include "calib/linear/symmetric_eigen.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 constexpr double kLeastScale = 0.1, kMostScale = 10, kMostSkew_rad = to_rad(60);
@@ -21,7 +21,7 @@ tl::unexpected<Error> invalid(std::string what) {
               "give a CAL.json written by mgt fit -o");
 }
 
-Result<void> validate(const SensorModel& sensor, int number) {
+Result<void> validate(const sensor::SensorModel& sensor, int number) {
   for (const double c : sensor.scale) {
     if (c >= kLeastScale && c <= kMostScale) continue;
     return invalid(
@@ -40,8 +40,8 @@ Result<void> validate(const SensorModel& sensor, int number) {
 }
 
 /// Effects that do not fit their coefficients have no covariance to look at: call after those are checked.
-Result<void> validate_covariance(const Calibration& c) {
-  const Eigen::MatrixXd full = full_covariance(c);
+Result<void> validate_covariance(const calibration::Calibration& c) {
+  const Eigen::MatrixXd full = calibration::full_covariance(c);
   const Eigen::VectorXd variance = full.diagonal();
   if ((variance.array() < 0).any()) return invalid("a variance is below zero");
   for (Eigen::Index i = 0; i < full.rows(); ++i) {
@@ -50,18 +50,18 @@ Result<void> validate_covariance(const Calibration& c) {
   }
   const Eigen::VectorXd scale = variance.unaryExpr([](double v) { return v > 0 ? 1 / std::sqrt(v) : 0.0; });
   const Eigen::MatrixXd correlation = scale.asDiagonal() * full * scale.asDiagonal();
-  const double least = symmetric_eigenvalues(correlation)[0];
+  const double least = linear::symmetric_eigenvalues(correlation)[0];
   if (least >= kLeastEigenvalue) return {};
   return invalid(fmt::format("its covariance is none: an eigenvalue of {:.3g}, down to {:g} is rounding",
                              least, kLeastEigenvalue));
 }
 
-Result<void> validate_effects(const Calibration& c) {
-  if (auto model = ArrayModel::of(c); !model) return tl::unexpected(model.error());
+Result<void> validate_effects(const calibration::Calibration& c) {
+  if (auto model = calibration::ArrayModel::of(c); !model) return tl::unexpected(model.error());
   Eigen::Index coefficients = 0;
-  for (const CalibratedEffect& e : c.effects) {
+  for (const calibration::CalibratedEffect& e : c.effects) {
     coefficients += static_cast<Eigen::Index>(e.coefficients.size());
-    for (const EffectCoefficient& coefficient : e.coefficients) {
+    for (const calibration::EffectCoefficient& coefficient : e.coefficients) {
       if (coefficient.sd < 0) return invalid(fmt::format("{} has a standard deviation below zero", e.effect));
     }
   }
@@ -74,8 +74,8 @@ Result<void> validate_effects(const Calibration& c) {
 
 }  // namespace
 
-Result<void> validate(const Calibration& c) {
-  if (!method_from(c.method)) return invalid(fmt::format("there is no method '{}'", c.method));
+Result<void> validate(const calibration::Calibration& c) {
+  if (!fit::method_from(c.method)) return invalid(fmt::format("there is no method '{}'", c.method));
   for (int i = 0; i < kSensors; ++i) {
     if (auto ok = validate(c.sensors[static_cast<std::size_t>(i)], i + 1); !ok) return ok;
   }
@@ -89,4 +89,4 @@ Result<void> validate(const Calibration& c) {
   return validate_covariance(c);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

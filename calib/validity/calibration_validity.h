@@ -4,7 +4,7 @@
 #include "proto/error.h"
 
 /// Whether a calibration that came from elsewhere can be used on readings.
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 
 /// Refuses, with what was found and the limit: a method that does not exist; a scale outside 0.1 to 10 or a
 /// non-orthogonality of 60 deg and more (the reading could not be turned into a field); a mounting that is no
@@ -12,6 +12,6 @@ namespace mgtd::calib {
 /// effects do not have; a covariance that is none (least eigenvalue of its correlation below -1e-6); a start
 /// that is no time. What the text form cannot hold (not a number, infinite) never comes here, nor does a
 /// content that differs from its id. Says nothing of how good the calibration is: its checks do.
-[[nodiscard]] Result<void> validate(const Calibration& calibration);
+[[nodiscard]] Result<void> validate(const calibration::Calibration& calibration);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

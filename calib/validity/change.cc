@@ -13,7 +13,7 @@
 #include "calib/sensor/shown_parameters.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 /// Correlation eigenvalues below this are a direction both sides fixed by convention.
@@ -29,7 +29,7 @@ Inverse weight_of(const Evidence& e) {
   const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 1.0);
   Eigen::MatrixXd N = scale.asDiagonal();
   if (e.common.cols() > 0) {
-    N *= complement_of(scale.asDiagonal() * e.common);
+    N *= linear::complement_of(scale.asDiagonal() * e.common);
   }
   const Inverse inner = inverse_of(N.transpose() * e.covariance * N);
   return {N * inner.W * N.transpose(), inner.rank};
@@ -55,7 +55,7 @@ Eigen::VectorXd single_chi2(const Evidence& e, const Eigen::MatrixXd& W, const E
 }
 
 double corrected_log10_p(double chi2, Eigen::Index choices) {
-  return std::min(0.0, chi_square_log10_p(chi2, 1) + std::log10(static_cast<double>(choices)));
+  return std::min(0.0, stats::chi_square_log10_p(chi2, 1) + std::log10(static_cast<double>(choices)));
 }
 
 /// One parameter after the other, as long as the next is beyond chance.
@@ -100,11 +100,11 @@ std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::Matri
 
 /// What is left when one sensor may have changed in any way.
 double others_log10_p(const Evidence& e, const Eigen::MatrixXd& W, Eigen::Index rank, int sensor) {
-  const Eigen::MatrixXd A = e.gain.middleCols<kSensorParameters>(kSensorParameters * sensor);
+  const Eigen::MatrixXd A = e.gain.middleCols<sensor::kSensorParameters>(sensor::kSensorParameters * sensor);
   const Inverse spread = inverse_of(A.transpose() * W * A);
   const Eigen::VectorXd pull = A.transpose() * (W * e.difference);
-  return chi_square_log10_p(e.difference.dot(W * e.difference) - pull.dot(spread.W * pull),
-                            static_cast<double>(rank - spread.rank));
+  return stats::chi_square_log10_p(e.difference.dot(W * e.difference) - pull.dot(spread.W * pull),
+                                   static_cast<double>(rank - spread.rank));
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ double others_log10_p(const Evidence& e, const Eigen::MatrixXd& W, Eigen::Index 
 Inverse inverse_of(const Eigen::MatrixXd& C) {
   const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd scale = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
-  const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * C * scale.asDiagonal());
+  const linear::SymmetricEigen eigen = linear::symmetric_eigen(scale.asDiagonal() * C * scale.asDiagonal());
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(C.rows());
   Inverse out;
   for (Eigen::Index j = 0; j < C.rows(); ++j) {
@@ -127,14 +127,14 @@ Inverse inverse_of(const Eigen::MatrixXd& C) {
 
 double Change::p() const { return std::min(1.0, 2 * std::pow(10.0, std::min(log10_p, log10_p_single))); }
 
-std::vector<ShownSlot> shown_slots(const std::vector<CalibratedEffect>& effects) {
+std::vector<ShownSlot> shown_slots(const std::vector<calibration::CalibratedEffect>& effects) {
   std::vector<ShownSlot> out;
   for (int i = 1; i <= kSensors; ++i) {
-    for (const ShownParameter& p : shown_parameters())
+    for (const sensor::ShownParameter& p : sensor::shown_parameters())
       out.push_back({fmt::format("s{} {}", i, p.name), p.unit, p.factor});
   }
-  for (const CalibratedEffect& effect : effects) {
-    for (const EffectCoefficient& c : effect.coefficients)
+  for (const calibration::CalibratedEffect& effect : effects) {
+    for (const calibration::EffectCoefficient& c : effect.coefficients)
       out.push_back({fmt::format("{} {}", effect.effect, c.name), c.unit, 1});
   }
   return out;
@@ -146,38 +146,38 @@ double small_sample_factor(int poses) {
   return freedom > 4 ? freedom / (freedom - 2) : 2;
 }
 
-TurnedArray turned(const std::array<SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q) {
+TurnedArray turned(const std::array<sensor::SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q) {
   constexpr double h = 1e-6;  // angles, in which alone the turn is not linear
-  TurnedArray out{.sensors = sensors, .jacobian = ArrayCovariance::Identity()};
+  TurnedArray out{.sensors = sensors, .jacobian = calibration::ArrayCovariance::Identity()};
   for (std::size_t i = 0; i < kSensors; ++i) {
-    out.sensors[i] = turned(sensors[i], Q);
-    const auto at = static_cast<Eigen::Index>(i) * kSensorParameters;
-    for (const int p : {alpha, beta, gamma}) {
-      ParameterVector up = sensors[i].parameters(), down = up;
+    out.sensors[i] = fit::turned(sensors[i], Q);
+    const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters;
+    for (const int p : {sensor::alpha, sensor::beta, sensor::gamma}) {
+      sensor::ParameterVector up = sensors[i].parameters(), down = up;
       up[p] += h;
       down[p] -= h;
-      const auto moved = [&](const ParameterVector& x) {
-        return turned(SensorModel::from_parameters(x, sensors[i].mounting), Q).parameters();
+      const auto moved = [&](const sensor::ParameterVector& x) {
+        return fit::turned(sensor::SensorModel::from_parameters(x, sensors[i].mounting), Q).parameters();
       };
-      out.jacobian.block<3, 1>(at + alpha, at + p) = (moved(up) - moved(down)).tail<3>() / (2 * h);
+      out.jacobian.block<3, 1>(at + sensor::alpha, at + p) = (moved(up) - moved(down)).tail<3>() / (2 * h);
     }
   }
   return out;
 }
 
-Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors, Eigen::Index slots,
+Eigen::MatrixXd common_freedoms(const std::array<sensor::SensorModel, kSensors>& sensors, Eigen::Index slots,
                                 bool free_scale) {
   constexpr double h = 1e-6;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(slots, free_scale ? 4 : 3);
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const auto at = static_cast<Eigen::Index>(i) * kSensorParameters;
+    const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters;
     for (int j = 0; j < 3; ++j) {
       const Eigen::Vector3d w = h * Eigen::Vector3d::Unit(j);
-      const ParameterVector up = turned(sensors[i], turn_by<double>(w)).parameters();
-      const ParameterVector down = turned(sensors[i], turn_by<double>(-w)).parameters();
-      out.block<3, 1>(at + alpha, j) = (up - down).tail<3>() / (2 * h);
+      const sensor::ParameterVector up = fit::turned(sensors[i], sensor::turn_by<double>(w)).parameters();
+      const sensor::ParameterVector down = fit::turned(sensors[i], sensor::turn_by<double>(-w)).parameters();
+      out.block<3, 1>(at + sensor::alpha, j) = (up - down).tail<3>() / (2 * h);
     }
-    if (free_scale) out.block<3, 1>(at + cx, 3) = sensors[i].scale;
+    if (free_scale) out.block<3, 1>(at + sensor::cx, 3) = sensors[i].scale;
   }
   return out;
 }
@@ -188,12 +188,12 @@ Change judge(const Evidence& e) {
   Change out;
   out.chi2 = e.difference.dot(W * e.difference);
   out.dof = static_cast<double>(rank);
-  out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+  out.log10_p = stats::chi_square_log10_p(out.chi2, out.dof);
   out.log10_p_single = corrected_log10_p(single_chi2(e, W, W).maxCoeff(), choices);
   out.named = named_changes(e, W);
   for (int i = 0; i < kSensors; ++i)
     out.others_log10_p[static_cast<std::size_t>(i)] = others_log10_p(e, W, rank, i);
-  const double limit = std::sqrt(chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
+  const double limit = std::sqrt(stats::chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
   for (Eigen::Index j = 0; j < choices; ++j) {
     const auto a = e.gain.col(j);
     const double information = a.dot(W * a), sd = 1 / std::sqrt(information);
@@ -206,4 +206,4 @@ Change judge(const Evidence& e) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

@@ -8,7 +8,7 @@
 #include "calib/calibration/calibration.h"
 
 /// A difference of two sets of parameters, judged against its covariance.
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 
 /// Probability below which a difference is called a change.
 inline constexpr double kChanged = 0.01;
@@ -42,7 +42,7 @@ struct ShownSlot {
   std::string name, unit;
   double factor;
 };
-[[nodiscard]] std::vector<ShownSlot> shown_slots(const std::vector<CalibratedEffect>& effects);
+[[nodiscard]] std::vector<ShownSlot> shown_slots(const std::vector<calibration::CalibratedEffect>& effects);
 
 /// Expected true over estimated variance when the noise of each axis comes from the residuals of so many
 /// poses: a covariance taken at its word would call an unchanged rig changed a little too often.
@@ -50,14 +50,15 @@ struct ShownSlot {
 
 /// Four sensors in a platform frame turned by Q, and what that does to their 48 parameters.
 struct TurnedArray {
-  std::array<SensorModel, kSensors> sensors;
-  ArrayCovariance jacobian;
+  std::array<sensor::SensorModel, kSensors> sensors;
+  calibration::ArrayCovariance jacobian;
 };
-[[nodiscard]] TurnedArray turned(const std::array<SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q);
+[[nodiscard]] TurnedArray turned(const std::array<sensor::SensorModel, kSensors>& sensors,
+                                 const Eigen::Matrix3d& Q);
 
 /// Columns: what a small common rotation of the array (and, with `free_scale`, a common scale) does to the
 /// parameters.
-[[nodiscard]] Eigen::MatrixXd common_freedoms(const std::array<SensorModel, kSensors>& sensors,
+[[nodiscard]] Eigen::MatrixXd common_freedoms(const std::array<sensor::SensorModel, kSensors>& sensors,
                                               Eigen::Index slots, bool free_scale);
 
 /// Inverse on the range of a covariance or an information, in units of its diagonal: directions whose
@@ -79,4 +80,4 @@ struct Evidence {
 /// convention both sides share) carry no evidence.
 [[nodiscard]] Change judge(const Evidence& evidence);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

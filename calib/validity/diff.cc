@@ -10,7 +10,7 @@
 #include "calib/linear/propagation.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 /// The 48 parameters and the coefficients of these effects, with their covariance.
@@ -19,18 +19,18 @@ struct Side {
   Eigen::MatrixXd C;
 };
 
-Side side_of(const Calibration& c, const std::array<SensorModel, kSensors>& sensors,
-             const std::vector<CalibratedEffect>& shared) {
+Side side_of(const calibration::Calibration& c, const std::array<sensor::SensorModel, kSensors>& sensors,
+             const std::vector<calibration::CalibratedEffect>& shared) {
   std::vector<double> x;
   std::vector<Eigen::Index> slots;
-  for (const SensorModel& sensor : sensors) {
+  for (const sensor::SensorModel& sensor : sensors) {
     for (const double value : sensor.parameters()) x.push_back(value);
   }
-  for (Eigen::Index slot = 0; slot < kArrayParameters; ++slot) slots.push_back(slot);
-  for (const CalibratedEffect& wanted : shared) {
-    Eigen::Index slot = kArrayParameters;
-    for (const CalibratedEffect& own : c.effects) {
-      for (const EffectCoefficient& coefficient : own.coefficients) {
+  for (Eigen::Index slot = 0; slot < calibration::kArrayParameters; ++slot) slots.push_back(slot);
+  for (const calibration::CalibratedEffect& wanted : shared) {
+    Eigen::Index slot = calibration::kArrayParameters;
+    for (const calibration::CalibratedEffect& own : c.effects) {
+      for (const calibration::EffectCoefficient& coefficient : own.coefficients) {
         if (own.effect == wanted.effect) {
           x.push_back(coefficient.value);
           slots.push_back(slot);
@@ -40,25 +40,27 @@ Side side_of(const Calibration& c, const std::array<SensorModel, kSensors>& sens
     }
   }
   return {Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())),
-          full_covariance(c)(slots, slots)};
+          calibration::full_covariance(c)(slots, slots)};
 }
 
 /// Effects that both have; the others are named in `report`.
-std::vector<CalibratedEffect> shared_effects(const Calibration& a, const Calibration& b, DiffReport& report) {
-  std::vector<CalibratedEffect> out;
-  const auto has = [](const Calibration& c, const CalibratedEffect& e) {
-    return std::any_of(c.effects.begin(), c.effects.end(), [&](const CalibratedEffect& o) {
+std::vector<calibration::CalibratedEffect> shared_effects(const calibration::Calibration& a,
+                                                          const calibration::Calibration& b,
+                                                          DiffReport& report) {
+  std::vector<calibration::CalibratedEffect> out;
+  const auto has = [](const calibration::Calibration& c, const calibration::CalibratedEffect& e) {
+    return std::any_of(c.effects.begin(), c.effects.end(), [&](const calibration::CalibratedEffect& o) {
       return o.effect == e.effect && o.coefficients.size() == e.coefficients.size();
     });
   };
-  for (const CalibratedEffect& e : a.effects) {
+  for (const calibration::CalibratedEffect& e : a.effects) {
     if (has(b, e)) {
       out.push_back(e);
     } else {
       report.only_in_first.push_back(e.effect);
     }
   }
-  for (const CalibratedEffect& e : b.effects) {
+  for (const calibration::CalibratedEffect& e : b.effects) {
     if (!has(a, e)) report.only_in_second.push_back(e.effect);
   }
   return out;
@@ -66,7 +68,7 @@ std::vector<CalibratedEffect> shared_effects(const Calibration& a, const Calibra
 
 /// The rotation that brings the platform frame of b onto that of a, as most of the sensors see it: one that
 /// was turned by itself or rewired does not count.
-Eigen::Matrix3d common_turn(const Calibration& a, const Calibration& b) {
+Eigen::Matrix3d common_turn(const calibration::Calibration& a, const calibration::Calibration& b) {
   constexpr double kTogether_rad = 5 * kRadiansPerDegree;
   std::array<Eigen::Matrix3d, kSensors> each;
   for (std::size_t i = 0; i < kSensors; ++i) each[i] = a.sensors[i].R_PS() * b.sensors[i].R_PS().transpose();
@@ -98,7 +100,8 @@ CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) 
     double variance = 0;
     for (int i = 0; i < kSensors; ++i) {
       for (int j = 0; j < kSensors; ++j) {
-        variance += covariance(kSensorParameters * i + alpha + axis, kSensorParameters * j + alpha + axis) /
+        variance += covariance(sensor::kSensorParameters * i + sensor::alpha + axis,
+                               sensor::kSensorParameters * j + sensor::alpha + axis) /
                     (kSensors * kSensors);
       }
     }
@@ -110,7 +113,7 @@ CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) 
 
 }  // namespace
 
-DiffReport diff(const Calibration& a, const Calibration& b) {
+DiffReport diff(const calibration::Calibration& a, const calibration::Calibration& b) {
   DiffReport out;
   const auto shared = shared_effects(a, b, out);
   const Eigen::Matrix3d Q = common_turn(a, b);
@@ -120,10 +123,10 @@ DiffReport diff(const Calibration& a, const Calibration& b) {
   const Side from = side_of(a, a.sensors, shared), to = side_of(b, placed.sensors, shared);
   const Eigen::Index n = to.x.size();
   Eigen::MatrixXd J = Eigen::MatrixXd::Identity(n, n);
-  J.topLeftCorner<kArrayParameters, kArrayParameters>() = placed.jacobian;
-  out.scale_taken_out = scale_is_free(a) || scale_is_free(b);
-  const Eigen::MatrixXd C =
-      small_sample_factor(a.poses) * from.C + small_sample_factor(b.poses) * propagated_covariance(J, to.C);
+  J.topLeftCorner<calibration::kArrayParameters, calibration::kArrayParameters>() = placed.jacobian;
+  out.scale_taken_out = calibration::scale_is_free(a) || calibration::scale_is_free(b);
+  const Eigen::MatrixXd C = small_sample_factor(a.poses) * from.C +
+                            small_sample_factor(b.poses) * linear::propagated_covariance(J, to.C);
   out.change = judge({.difference = to.x - from.x,
                       .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),
@@ -134,4 +137,4 @@ DiffReport diff(const Calibration& a, const Calibration& b) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

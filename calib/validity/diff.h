@@ -7,7 +7,7 @@
 
 /// Says whether the calibration changed between two runs, in which parameter, and by how many standard
 /// errors.
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 
 /// Turn of the whole array on its table from A to B, which is no change of the array: rotation vector in the
 /// platform frame and its standard deviation, about X, Y and Z.
@@ -26,6 +26,6 @@ struct DiffReport {
 };
 
 /// Effects that both have are compared too. A sensor whose mounting differs counts as changed.
-[[nodiscard]] DiffReport diff(const Calibration& a, const Calibration& b);
+[[nodiscard]] DiffReport diff(const calibration::Calibration& a, const calibration::Calibration& b);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

@@ -9,24 +9,24 @@
 #include "calib/effects/library/library.h"
 #include "calib/fit/joint/joint_problem.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 void freeze_sensors(FixedCalibration& out) {
-  for (int slot = 0; slot < kSensorBlock; ++slot) {
+  for (int slot = 0; slot < fit::joint::kSensorBlock; ++slot) {
     out.tested.push_back(slot);
   }
-  for (int slot = kSiteSlot; slot < kEffectSlot; ++slot) out.nuisance.push_back(slot);
+  for (int slot = fit::joint::kSiteSlot; slot < fit::joint::kEffectSlot; ++slot) out.nuisance.push_back(slot);
 }
 
-void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, Eigen::Index row,
+void freeze_effect(const calibration::CalibratedEffect& e, const effects::EffectPtr& effect, Eigen::Index row,
                    std::vector<double>& values, std::vector<Eigen::Index>& rows, FixedCalibration& out) {
-  const bool of_site = effect->level() == Level::site;
-  out.needs_angles = out.needs_angles || effect->level() != Level::axis;
+  const bool of_site = effect->level() == effects::Level::site;
+  out.needs_angles = out.needs_angles || effect->level() != effects::Level::axis;
   out.effects.push_back(effect);
   if (!of_site) out.instrument.push_back(e);
-  for (const EffectCoefficient& coefficient : e.coefficients) {
-    const Eigen::Index slot = kEffectSlot + static_cast<Eigen::Index>(values.size());
+  for (const calibration::EffectCoefficient& coefficient : e.coefficients) {
+    const Eigen::Index slot = fit::joint::kEffectSlot + static_cast<Eigen::Index>(values.size());
     (of_site ? out.nuisance : out.tested).push_back(slot);
     if (!of_site) rows.push_back(row);
     values.push_back(coefficient.value);
@@ -34,15 +34,16 @@ void freeze_effect(const CalibratedEffect& e, const EffectPtr& effect, Eigen::In
   }
 }
 
-Result<void> add_site_effect(const EffectPtr& effect, std::vector<double>& values, FixedCalibration& out) {
-  if (effect->level() != Level::site) {
+Result<void> add_site_effect(const effects::EffectPtr& effect, std::vector<double>& values,
+                             FixedCalibration& out) {
+  if (effect->level() != effects::Level::site) {
     return fail(ErrorCode::usage, fmt::format("{} is not in the calibration", effect->name()),
                 "only effects of the site can be added to a check; for others calibrate again");
   }
   out.needs_angles = true;
   out.effects.push_back(effect);
   for (std::size_t j = 0; j < effect->coefficients().size(); ++j) {
-    out.nuisance.push_back(kEffectSlot + static_cast<Eigen::Index>(values.size()));
+    out.nuisance.push_back(fit::joint::kEffectSlot + static_cast<Eigen::Index>(values.size()));
     values.push_back(0);
   }
   return {};
@@ -50,31 +51,33 @@ Result<void> add_site_effect(const EffectPtr& effect, std::vector<double>& value
 
 }  // namespace
 
-Result<FixedCalibration> freeze(const Calibration& c, const std::vector<EffectPtr>& added) {
+Result<FixedCalibration> freeze(const calibration::Calibration& c,
+                                const std::vector<effects::EffectPtr>& added) {
   FixedCalibration out;
   freeze_sensors(out);
   std::vector<double> values;
   std::vector<Eigen::Index> rows;
   Eigen::Index row = 0;
-  for (const CalibratedEffect& e : c.effects) {
-    const auto effect = make_effect(e.effect);
+  for (const calibration::CalibratedEffect& e : c.effects) {
+    const auto effect = effects::library::make_effect(e.effect);
     if (!effect) return tl::unexpected(effect.error());
     // Another table is another table: its own errors are no part of what is under test.
-    if ((*effect)->level() != Level::table) freeze_effect(e, *effect, row, values, rows, out);
+    if ((*effect)->level() != effects::Level::table) freeze_effect(e, *effect, row, values, rows, out);
     row += static_cast<Eigen::Index>(e.coefficients.size());
   }
-  for (const EffectPtr& effect : added) {
-    const auto same = [&](const CalibratedEffect& e) { return e.effect == effect->spec(); };
+  for (const effects::EffectPtr& effect : added) {
+    const auto same = [&](const calibration::CalibratedEffect& e) { return e.effect == effect->spec(); };
     if (std::any_of(c.effects.begin(), c.effects.end(), same)) continue;
     if (auto ok = add_site_effect(effect, values, out); !ok) return tl::unexpected(ok.error());
   }
   out.coefficients =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  std::vector<Eigen::Index> under_test(kArrayParameters);
+  std::vector<Eigen::Index> under_test(calibration::kArrayParameters);
   std::iota(under_test.begin(), under_test.end(), 0);
-  for (const Eigen::Index coefficient : rows) under_test.push_back(kArrayParameters + coefficient);
-  out.covariance = full_covariance(c)(under_test, under_test);
+  for (const Eigen::Index coefficient : rows)
+    under_test.push_back(calibration::kArrayParameters + coefficient);
+  out.covariance = calibration::full_covariance(c)(under_test, under_test);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

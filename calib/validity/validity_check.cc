@@ -14,7 +14,7 @@
 #include "calib/poses/run_time.h"
 #include "calib/validity/fixed_calibration.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 /// Scatter beyond the noise that a calibration may show and still be called valid: its own run set the noise,
@@ -37,42 +37,44 @@ PoseTable prepared(const PoseTable& table, bool needs_angles) {
 
 /// Each axis as noisy as its dwells say, and no less than it scattered in the calibration's own run: what
 /// that run's model left out is not news.
-bool weight(const Calibration& c, const PoseTable& poses, JointProblem& problem) {
-  const AxisNoise own = c.pose_noise_nT.cwiseMax(kLeastNoise_nT);
-  weight_by_pose(problem, own);
-  const auto sample = sample_noise(poses);
+bool weight(const calibration::Calibration& c, const PoseTable& poses, fit::joint::JointProblem& problem) {
+  const calibration::AxisNoise own = c.pose_noise_nT.cwiseMax(kLeastNoise_nT);
+  fit::joint::weight_by_pose(problem, own);
+  const auto sample = fit::joint::sample_noise(poses);
   if (!sample) return false;
-  weight_by_samples(problem, *sample);
-  for (JointPose& pose : problem.poses)
+  fit::joint::weight_by_samples(problem, *sample);
+  for (fit::joint::JointPose& pose : problem.poses)
     pose.weight = pose.weight.cwiseMin(own.reshaped<Eigen::RowMajor>().cwiseInverse());
   return true;
 }
 
 /// A gauge is no evidence; a known field and what is known of the site are.
-void keep_site_priors(const std::vector<Eigen::Index>& tested, JointProblem& problem) {
-  std::erase_if(problem.priors, [&](const LinearPrior& prior) { return !prior.row(tested).isZero(); });
+void keep_site_priors(const std::vector<Eigen::Index>& tested, fit::joint::JointProblem& problem) {
+  std::erase_if(problem.priors,
+                [&](const fit::joint::LinearPrior& prior) { return !prior.row(tested).isZero(); });
 }
 
 /// Effects of time and of currents count from where they counted in the run that was fitted.
-void as_in_its_run(const Calibration& c, JointProblem& problem) {
-  RunTime time;
+void as_in_its_run(const calibration::Calibration& c, fit::joint::JointProblem& problem) {
+  poses::RunTime time;
   if (const auto start = parse_utc(c.reference.t_utc)) time.start = *start;
-  problem.means = std::make_shared<const CovariateMeans>(c.reference.currents_A);
-  for (JointPose& pose : problem.poses) {
+  problem.means = std::make_shared<const effects::CovariateMeans>(c.reference.currents_A);
+  for (fit::joint::JointPose& pose : problem.poses) {
     pose.t_h = time.hours(*pose.pose);
     pose.means = problem.means.get();
   }
 }
 
 /// Best site and field for sensors that stay as they are.
-void refit_site(const JointProblem& problem, const std::vector<Eigen::Index>& slots, JointState& state) {
+void refit_site(const fit::joint::JointProblem& problem, const std::vector<Eigen::Index>& slots,
+                fit::joint::JointState& state) {
   constexpr int kSteps = 4;  // almost linear
   for (int i = 0; i < kSteps; ++i) {
-    const Reduced reduced = reduce(problem, state, 0);
+    const fit::joint::Reduced reduced = fit::joint::reduce(problem, state, 0);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(problem.fixed());
     step(slots) = inverse_of(reduced.S(slots, slots)).W * reduced.g(slots);
     state = state.moved(step);
-    refit_nuisances(problem, state);
+    fit::joint::refit_nuisances(problem, state);
   }
 }
 
@@ -80,10 +82,10 @@ void refit_site(const JointProblem& problem, const std::vector<Eigen::Index>& sl
 struct Score {
   Eigen::MatrixXd S;
   Eigen::VectorXd g;
-  JointCost cost;
+  fit::joint::JointCost cost;
 };
 
-Score score_of(const Reduced& reduced, const FixedCalibration& frozen) {
+Score score_of(const fit::joint::Reduced& reduced, const FixedCalibration& frozen) {
   const auto &t = frozen.tested, &n = frozen.nuisance;
   const Eigen::MatrixXd border = reduced.S(t, n);
   const Eigen::MatrixXd corner = inverse_of(reduced.S(n, n)).W;
@@ -101,7 +103,8 @@ Seen seen_of(const Score& score) {
   constexpr double kUnseen = 1e-10;  // of the largest eigenvalue; rounding leaves 1e-13
   const Eigen::VectorXd d = score.S.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd inverse = (d.array() > 0).select(d.cwiseInverse(), 0.0);
-  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * score.S * inverse.asDiagonal());
+  const linear::SymmetricEigen eigen =
+      linear::symmetric_eigen(inverse.asDiagonal() * score.S * inverse.asDiagonal());
   const Eigen::VectorXd& values = eigen.values;
   const auto unseen = (values.array() < kUnseen * values.maxCoeff()).count();
   const Eigen::Index seen = values.size() - unseen;
@@ -111,26 +114,27 @@ Seen seen_of(const Score& score) {
           root.cwiseInverse().asDiagonal() * (V.transpose() * inverse.cwiseProduct(score.g))};
 }
 
-bool field_known(const JointProblem& problem) {
-  return std::any_of(problem.priors.begin(), problem.priors.end(),
-                     [](const LinearPrior& prior) { return prior.row[kFieldSlot] != 0; });
+bool field_known(const fit::joint::JointProblem& problem) {
+  return std::any_of(problem.priors.begin(), problem.priors.end(), [](const fit::joint::LinearPrior& prior) {
+    return prior.row[fit::joint::kFieldSlot] != 0;
+  });
 }
 
 /// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance.
-double excess_of(const JointProblem& problem, const JointState& state, const FixedCalibration& frozen,
-                 const JointCost& cost, const Seen& seen) {
-  const PoseResiduals residuals = pose_residuals(problem, state);
+double excess_of(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                 const FixedCalibration& frozen, const fit::joint::JointCost& cost, const Seen& seen) {
+  const fit::joint::PoseResiduals residuals = fit::joint::pose_residuals(problem, state);
   double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
-  for (const JointPose& pose : problem.poses)
+  for (const fit::joint::JointPose& pose : problem.poses)
     observed += (pose.has_angles ? -1 : -3) + (problem.common_field ? 1 : 0);
   const double site = (problem.has_angles ? 2 : 0) + (problem.common_field && !field_known(problem) ? 1 : 0) +
-                      static_cast<double>(frozen.nuisance.size()) - kGlobals;
+                      static_cast<double>(frozen.nuisance.size()) - fit::joint::kGlobals;
   const double dof = observed - site - static_cast<double>(seen.z.size());
   const double chi2 = cost.readings + cost.scalar - seen.z.squaredNorm();
   return dof > 0 && std::abs(chi2 / dof - 1) > 3 * std::sqrt(2 / dof) ? std::sqrt(chi2 / dof) : 1;
 }
 
-Evidence evidence_of(const FixedCalibration& frozen, const std::array<SensorModel, kSensors>& sensors,
+Evidence evidence_of(const FixedCalibration& frozen, const std::array<sensor::SensorModel, kSensors>& sensors,
                      const Score& score, const Seen& seen, double noise, bool free_scale) {
   const Eigen::MatrixXd A = seen.A / noise;
   const Eigen::Index n = A.rows();
@@ -142,64 +146,66 @@ Evidence evidence_of(const FixedCalibration& frozen, const std::array<SensorMode
     if ((seen.A * freedoms.col(j)).squaredNorm() > 1e-8 * whole) visible.push_back(j);
   }
   return {.difference = seen.z / noise,
-          .covariance = Eigen::MatrixXd::Identity(n, n) + propagated_covariance(A, frozen.covariance),
+          .covariance = Eigen::MatrixXd::Identity(n, n) + linear::propagated_covariance(A, frozen.covariance),
           .gain = A,
           .common = A * freedoms(Eigen::all, visible),
           .slots = shown_slots(frozen.instrument)};
 }
 
-double rms_noise(const JointProblem& problem) {
+double rms_noise(const fit::joint::JointProblem& problem) {
   double variance = 0;
-  for (const JointPose& pose : problem.poses)
+  for (const fit::joint::JointPose& pose : problem.poses)
     variance += pose.weight.cwiseMax(1e-9).cwiseAbs2().cwiseInverse().mean();
   return std::sqrt(variance / static_cast<double>(problem.poses.size()));
 }
 
 /// The frozen calibration among the poses: problem and state, poses that contradict set aside.
 struct Settled {
-  JointProblem problem;
-  PlacedState placed;
-  Outliers outliers;
+  fit::joint::JointProblem problem;
+  fit::joint::PlacedState placed;
+  fit::joint::Outliers outliers;
 };
 
-Result<Settled> settle(const Calibration& c, const PoseTable& poses, const FixedCalibration& frozen,
-                       const FitOptions& options, ValidityReport& report) {
-  JointOptions joint = joint_options(options);
+Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses,
+                       const FixedCalibration& frozen, const fit::FitOptions& options,
+                       ValidityReport& report) {
+  fit::joint::JointOptions joint = fit::joint::joint_options(options);
   joint.inclination_rad = joint.declination_rad = std::nullopt;
   joint.geometry = c.geometry;
   joint.effects = frozen.effects;
-  auto problem = joint_problem(poses, joint, PoseUse::check);
+  auto problem = fit::joint::joint_problem(poses, joint, fit::PoseUse::check);
   if (!problem) return tl::unexpected(problem.error());
   as_in_its_run(c, *problem);
-  fix_gauge(*problem, joint);
+  fit::joint::fix_gauge(*problem, joint);
   keep_site_priors(frozen.tested, *problem);
   report.noise_from_dwells = weight(c, poses, *problem);
   report.noise_nT = rms_noise(*problem);
-  const double f_nT = options.field_nT.value_or(c.reference.f_nT.value_or(start_field_nT(*problem, joint)));
-  Settled out{.problem = std::move(*problem), .placed = {}, .outliers = Outliers(kMostLeftOut)};
-  out.placed = placed_state(out.problem, c.sensors, f_nT);
-  JointState& state = out.placed.state;
+  const double f_nT =
+      options.field_nT.value_or(c.reference.f_nT.value_or(fit::joint::start_field_nT(*problem, joint)));
+  Settled out{.problem = std::move(*problem), .placed = {}, .outliers = fit::joint::Outliers(kMostLeftOut)};
+  out.placed = fit::joint::placed_state(out.problem, c.sensors, f_nT);
+  fit::joint::JointState& state = out.placed.state;
   state.coefficients = frozen.coefficients;
-  refit_nuisances(out.problem, state);
+  fit::joint::refit_nuisances(out.problem, state);
   do {
     refit_site(out.problem, frozen.nuisance, state);
-  } while (out.outliers.judge(out.problem, state, pose_residuals(out.problem, state)));
+  } while (out.outliers.judge(out.problem, state, fit::joint::pose_residuals(out.problem, state)));
   return out;
 }
 
 /// The covariance in the platform frame in which the array stands now.
-void turn_covariance(const Calibration& c, const Eigen::Matrix3d& Q, FixedCalibration& frozen) {
-  const ArrayCovariance J = turned(c.sensors, Q).jacobian;
-  const Eigen::MatrixXd rows = J * frozen.covariance.topRows<kArrayParameters>();
-  frozen.covariance.topRows<kArrayParameters>() = rows;
-  const Eigen::MatrixXd columns = frozen.covariance.leftCols<kArrayParameters>() * J.transpose();
-  frozen.covariance.leftCols<kArrayParameters>() = columns;
+void turn_covariance(const calibration::Calibration& c, const Eigen::Matrix3d& Q, FixedCalibration& frozen) {
+  const calibration::ArrayCovariance J = turned(c.sensors, Q).jacobian;
+  const Eigen::MatrixXd rows = J * frozen.covariance.topRows<calibration::kArrayParameters>();
+  frozen.covariance.topRows<calibration::kArrayParameters>() = rows;
+  const Eigen::MatrixXd columns = frozen.covariance.leftCols<calibration::kArrayParameters>() * J.transpose();
+  frozen.covariance.leftCols<calibration::kArrayParameters>() = columns;
 }
 
 }  // namespace
 
-Result<ValidityReport> check(const Calibration& calibration, const PoseTable& table,
-                             const FitOptions& options) {
+Result<ValidityReport> check(const calibration::Calibration& calibration, const PoseTable& table,
+                             const fit::FitOptions& options) {
   if (table.poses.size() < kMinPoses) {
     return fail(ErrorCode::refused,
                 fmt::format("{} poses to check with; at least {} are needed", table.poses.size(), kMinPoses),
@@ -213,11 +219,11 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   report.poses = static_cast<int>(poses.poses.size());
   const auto settled = settle(calibration, poses, *frozen, options, report);
   if (!settled) return tl::unexpected(settled.error());
-  const JointProblem& problem = settled->problem;
-  const JointState& state = settled->placed.state;
+  const fit::joint::JointProblem& problem = settled->problem;
+  const fit::joint::JointState& state = settled->placed.state;
   report.outliers = settled->outliers.nodes(problem, state);
   turn_covariance(calibration, settled->placed.Q, *frozen);
-  const Score score = score_of(reduce(problem, state, 0), *frozen);
+  const Score score = score_of(fit::joint::reduce(problem, state, 0), *frozen);
   const Seen seen = seen_of(score);
   report.excess = excess_of(problem, state, *frozen, score.cost, seen);
   const double factor = small_sample_factor(calibration.poses);
@@ -225,11 +231,12 @@ Result<ValidityReport> check(const Calibration& calibration, const PoseTable& ta
   const double noise = report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
   report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
-  const JointErrors errors = joint_errors(problem, state, FixedBlock::frozen);
+  const fit::joint::JointErrors errors =
+      fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen);
   report.errors = errors.summary;
   report.residual_nT = errors.residual_nT;
   report.valid = !report.changed() && report.excess <= kMaxExcess;
   return report;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

@@ -10,19 +10,19 @@
 /// of these poses *and* the covariance of the calibration allow: score test of all its parameters together,
 /// and of each alone. The attitude of the whole array on its table is free (it may have been mounted again),
 /// and so is the site: its field, and the coefficients of effects of the site.
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 
 struct ValidityReport {
   std::string calibration;  ///< its id
   int poses{0};
   bool valid{false};              ///< no change (kChanged), and the poses follow the model
   Change change;                  ///< new less old, as far as these poses tell it
-  ErrorSummary errors;            ///< of the fixed calibration on these poses
+  fit::ErrorSummary errors;       ///< of the fixed calibration on these poses
   double residual_nT{0};          ///< PoseResiduals::residual_nT, with the calibration fixed
   double noise_nT{0};             ///< of a pose mean, as weighted
   double excess{1};               ///< scatter that no change of the calibration explains, over the noise
   bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run
-  std::vector<OutlierNode> outliers;
+  std::vector<fit::OutlierNode> outliers;
 
   /// Whether a parameter of the calibration changed; a calibration that did not change is still not valid
   /// where the poses scatter too much.
@@ -31,7 +31,7 @@ struct ValidityReport {
 
 /// All poses count, whatever their set. Of `options` the field, the table's uncertainty and further effects
 /// of the site are used. Refuses too few poses and effects that need what the poses do not have.
-[[nodiscard]] Result<ValidityReport> check(const Calibration& calibration, const PoseTable& table,
-                                           const FitOptions& options);
+[[nodiscard]] Result<ValidityReport> check(const calibration::Calibration& calibration,
+                                           const PoseTable& table, const fit::FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

@@ -7,7 +7,7 @@
 #include "calib/report/rearrangement_text.h"
 #include "daemon/acquire/instrument_watch.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 constexpr std::string_view kPrefix = "instrument.";
@@ -28,9 +28,9 @@ std::vector<InstrumentIdentity> instruments_among(const std::vector<Check>& chec
   return out;
 }
 
-void name_instruments(calib::Calibration& calibration, const std::filesystem::path& run) {
+void name_instruments(calib::calibration::Calibration& calibration, const std::filesystem::path& run) {
   if (run.extension() != ".mgtrun") return;
-  const auto file = RunFile::open(run, Access::read_only);
+  const auto file = store::RunFile::open(run, store::Access::read_only);
   if (!file) return;
   const auto known = file->checks(kInstrumentsStage);
   if (!known || known->empty()) return;
@@ -38,17 +38,17 @@ void name_instruments(calib::Calibration& calibration, const std::filesystem::pa
   calibration.seal();
 }
 
-void hold_against(const calib::Calibration& active, calib::FitReport& report) {
+void hold_against(const calib::calibration::Calibration& active, calib::fit::FitReport& report) {
   InstrumentWatch watch;
   watch.want(instruments_among(active.checks));
   for (const InstrumentIdentity& i : instruments_among(report.calibration.checks)) watch.answers(i);
   if (watch.another()) return;
-  const auto exchanged = calib::exchanged_since(active, report.calibration);
+  const auto exchanged = calib::criticism::tests::exchanged_since(active, report.calibration);
   if (!exchanged) return;
   const Check check{"exchange", false,
                     fmt::format("{}: each has the scales, angles and offsets that calibration {} has for the "
                                 "other",
-                                calib::rearrangement_text(*exchanged), active.id),
+                                calib::report::rearrangement_text(*exchanged), active.id),
                     "each sensor where it was calibrated",
                     "swap the plugs back and measure again; when they are meant to stay so, accept it with "
                     "--force"};
@@ -59,4 +59,4 @@ void hold_against(const calib::Calibration& active, calib::FitReport& report) {
   report.calibration.seal();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -12,7 +12,7 @@
 /// the checks, one for each: "instrument.s2", measured "obsDAQ V5.5.7, serial 1002". So they are kept in the
 /// run file (stage "instruments") and among the calibration's checks, are part of its id, and are read by
 /// every version.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 inline constexpr const char* kInstrumentsStage = "instruments";
 
@@ -22,10 +22,10 @@ inline constexpr const char* kInstrumentsStage = "instruments";
 
 /// Adds those that the run file knows to the calibration's checks and seals it again. A pose table in CSV
 /// knows none, nor does a run that was measured before they were kept: then nothing changes.
-void name_instruments(calib::Calibration& calibration, const std::filesystem::path& run);
+void name_instruments(calib::calibration::Calibration& calibration, const std::filesystem::path& run);
 
 /// Holds a new calibration against the active one: sensors that have each other's parameters fail the check
 /// `exchange`. Not where the serial numbers tell of another sensor: of that the run asked its operator.
-void hold_against(const calib::Calibration& active, calib::FitReport& report);
+void hold_against(const calib::calibration::Calibration& active, calib::fit::FitReport& report);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 constexpr double kWander = 3e-9;      // of the period, relative, in a second: 11 ppm in an hour
@@ -181,4 +181,4 @@ ClockState ClockModel::state() const {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

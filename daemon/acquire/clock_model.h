@@ -27,7 +27,7 @@
 ///
 /// The period may wander by kWander a second. What delays every sample by the same time (a filter, a
 /// conversion) cannot be told from a later clock: it is a configured constant. Seconds, any common origin.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 struct ClockState {
   double offset_s{0};  ///< arrival of the newest sample less its sample time: the delay of the last delivery
@@ -118,4 +118,4 @@ class ClockModel {
   double residual_s_{0}, last_delay_s_{0};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 ClockStatus clock_report(const ClockState& clock, double rate_hz) {
   ClockStatus out{clock.rate_error, clock.rate_error_pm, clock.bound_s, clock.step_s, clock.settled, {}};
@@ -21,4 +21,4 @@ ClockStatus clock_report(const ClockState& clock, double rate_hz) {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

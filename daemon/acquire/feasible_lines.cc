@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 void FeasibleLines::start(double k, Range t_s, Range period_s) {
   k0_ = k;
@@ -135,4 +135,4 @@ FeasibleLines::Line FeasibleLines::highest_at(double k, Range period_s) const {
   return {base_time(k) + height(*best), base_.period_s + best->period_s};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -13,7 +13,7 @@
 /// that an edge is given up, so that the set grows and stays a bound. Storage and time are bounded.
 ///
 /// Seconds; k in samples. Does not judge whether an observation is to be believed.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 class FeasibleLines {
  public:
@@ -60,4 +60,4 @@ class FeasibleLines {
   Polygon corners_, scratch_;  ///< counter-clockwise, offset to the right, period upwards
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

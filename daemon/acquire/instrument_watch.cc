@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 bool is_sensor(const InstrumentIdentity& i) {
@@ -97,4 +97,4 @@ std::string InstrumentWatch::remedy() const {
   return std::string(by_.new_one);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -13,7 +13,7 @@
 /// Two devices are the same where both tell the same serial number; one that tells none is another one where
 /// its model differs, and is not judged where it does not. Only sensors are judged: a table or a
 /// scalar reference that was replaced measures the same field.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 /// How the sentences speak of what is wanted.
 struct WantedBy {
@@ -56,4 +56,4 @@ class InstrumentWatch {
   bool another_{false};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 /// drivers::Direction as the journal calls it.
@@ -13,12 +13,12 @@ constexpr std::array<RawDirection, 6> kRecorded{RawDirection::received, RawDirec
 
 }  // namespace
 
-std::vector<const DeviceConfig*> devices_of(const Config& config) {
-  std::vector<const DeviceConfig*> out;
-  for (const DeviceConfig& sensor : config.sensors) out.push_back(&sensor);
+std::vector<const config::DeviceConfig*> devices_of(const config::Config& config) {
+  std::vector<const config::DeviceConfig*> out;
+  for (const config::DeviceConfig& sensor : config.sensors) out.push_back(&sensor);
   out.push_back(&config.table);
   out.push_back(config.scalar ? &*config.scalar : nullptr);
-  for (const DeviceConfig& auxiliary : config.auxiliary) out.push_back(&auxiliary);
+  for (const config::DeviceConfig& auxiliary : config.auxiliary) out.push_back(&auxiliary);
   return out;
 }
 
@@ -33,7 +33,8 @@ void carry_out(const TableOrder& order, drivers::Turntable& table) {
   }
 }
 
-Instruments::Instruments(const Config& config, Callbacks callbacks) : callbacks_(std::move(callbacks)) {
+Instruments::Instruments(const config::Config& config, Callbacks callbacks)
+    : callbacks_(std::move(callbacks)) {
   const auto devices = devices_of(config);
   for (std::size_t i = 0; i < devices.size(); ++i) {
     Instrument& instrument = instruments_.emplace_back();
@@ -90,4 +91,4 @@ std::vector<std::pair<Slot, LinkHealth>> Instruments::links() const {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -17,10 +17,10 @@
 /// Instruments holds the links of all instruments of the rig: four sensors, the table and, where configured,
 /// the scalar reference and auxiliary inputs. It tells its owner what they say. It knows neither what that is
 /// for, nor the ports.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 /// Every device at the number of its slot; null where there is none (a rig without scalar reference).
-[[nodiscard]] std::vector<const DeviceConfig*> devices_of(const Config& config);
+[[nodiscard]] std::vector<const config::DeviceConfig*> devices_of(const config::Config& config);
 
 void carry_out(const TableOrder& order, drivers::Turntable& table);
 
@@ -34,7 +34,7 @@ class Instruments {
     std::function<void(const RawRecord& record)> on_raw;
   };
 
-  Instruments(const Config& config, Callbacks callbacks);
+  Instruments(const config::Config& config, Callbacks callbacks);
   Instruments(const Instruments&) = delete;
   Instruments& operator=(const Instruments&) = delete;
 
@@ -70,4 +70,4 @@ class Instruments {
   std::vector<Instrument> instruments_;  ///< by the number of their slot
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 LatestInputs::LatestInputs(std::vector<std::string> columns) {
   for (std::string& column : columns) values_.push_back({.column = std::move(column)});
@@ -47,4 +47,4 @@ std::optional<Instant> LatestInputs::heard(std::string_view column) const {
   return found == heard_.end() ? std::nullopt : std::optional(found->second);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -12,7 +12,7 @@
 
 /// The last reading of every auxiliary input and of every sensor's thermometer, by column. A reading that is
 /// older than kFreshInput says nothing of now.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 inline constexpr auto kFreshInput = std::chrono::seconds(120);  ///< twice the slowest asking
 
@@ -41,4 +41,4 @@ class LatestInputs {
   std::map<std::string, Instant, std::less<>> heard_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -8,18 +8,18 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/acquire/instruments.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 constexpr auto kFreshAngles = std::chrono::seconds(10);
 
 }  // namespace
 
-SamplerConfig sampler_config(const Config& config) {
+SamplerConfig sampler_config(const config::Config& config) {
   SamplerConfig out;
   out.rate_hz = config.rate_hz;
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const DeviceConfig& sensor = config.sensors.at(i);
+    const config::DeviceConfig& sensor = config.sensors.at(i);
     out.latency_s.at(i) = sensor.latency_s;
     out.wire_s.at(i) = wire_s(sensor.device->line_bytes(), sensor.device->baud());
   }
@@ -30,9 +30,9 @@ SamplerConfig sampler_config(const Config& config) {
   return out;
 }
 
-LatestInputs inputs_of(const Config& config) {
+LatestInputs inputs_of(const config::Config& config) {
   std::vector<std::string> columns;
-  for (const DeviceConfig* device : devices_of(config)) {
+  for (const config::DeviceConfig* device : devices_of(config)) {
     if (device == nullptr) continue;
     for (const drivers::InputChannel& input : device->device->inputs()) columns.push_back(input.column);
   }
@@ -42,21 +42,21 @@ LatestInputs inputs_of(const Config& config) {
 LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs)
     : baseline_m_(baseline_m),
       sampler_(sampler),
-      live_(calib::Geometry{baseline_m}),
-      raw_(calib::Geometry{baseline_m}),
+      live_(calib::sensor::Geometry{baseline_m}),
+      raw_(calib::sensor::Geometry{baseline_m}),
       inputs_(std::move(inputs)) {}
 
-void LivePipeline::use(std::shared_ptr<const calib::Calibration> calibration) {
+void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> calibration) {
   instruments_.want(calibration ? instruments_among(calibration->checks) : std::vector<InstrumentIdentity>{});
   if (calibration == nullptr) {
     criticism_ = {};
     rearranged_ = {};
-    live_ = calib::LiveTensor(calib::Geometry{baseline_m_});
+    live_ = calib::calibration::LiveTensor(calib::sensor::Geometry{baseline_m_});
     return;
   }
-  criticism_ = calib::LiveCriticism(*calibration);
-  rearranged_ = calib::RearrangementWatch(calibration);
-  live_ = calib::LiveTensor(calibration);
+  criticism_ = calib::criticism::live::LiveCriticism(*calibration);
+  rearranged_ = calib::criticism::tests::RearrangementWatch(calibration);
+  live_ = calib::calibration::LiveTensor(calibration);
 }
 
 void LivePipeline::answers(int slot, const std::string& told) {
@@ -67,8 +67,8 @@ void LivePipeline::answers(int slot, const std::string& told) {
 }
 
 /// Where the array stands is known while a referenced table stands still and says so.
-calib::LiveConditions LivePipeline::conditions(Instant at) const {
-  calib::LiveConditions out;
+calib::calibration::LiveConditions LivePipeline::conditions(Instant at) const {
+  calib::calibration::LiveConditions out;
   if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
     out.angles = table_->angles;
   out.covariates = &inputs_.covariates();
@@ -96,12 +96,12 @@ TensorSample LivePipeline::judged(const Epoch& epoch, bool& finding_changed) {
   finding_changed = criticism_.add(sample, epoch.T_degC);
   rearranged_.add(epoch, criticism_.beyond());
   finding_changed = finding_changed || before != rearranged_.finding().has_value();
-  const calib::LiveState state = criticism_.finding().state;
-  if (state == calib::LiveState::near_source) sample.flags |= Flag::near_source;
-  if (state == calib::LiveState::suspect ||
-      (criticism_.beyond().value_or(false) && state != calib::LiveState::near_source))
+  const calib::criticism::live::LiveState state = criticism_.finding().state;
+  if (state == calib::criticism::live::LiveState::near_source) sample.flags |= Flag::near_source;
+  if (state == calib::criticism::live::LiveState::suspect ||
+      (criticism_.beyond().value_or(false) && state != calib::criticism::live::LiveState::near_source))
     sample.flags |= Flag::suspect;
   return sample;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -20,19 +20,19 @@
 /// tell or by what the readings show, the samples are raw and say `identity`.
 /// Pure: the daemon and the replay of a journal run the very same, and from the same
 /// readings, ticks and orders it makes the same samples to the last bit.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 /// As the configuration wants it.
-[[nodiscard]] SamplerConfig sampler_config(const Config& config);
+[[nodiscard]] SamplerConfig sampler_config(const config::Config& config);
 /// The auxiliary inputs and thermometers of all devices, in the order of the configuration.
-[[nodiscard]] LatestInputs inputs_of(const Config& config);
+[[nodiscard]] LatestInputs inputs_of(const config::Config& config);
 
 class LivePipeline {
  public:
   LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs = LatestInputs());
 
   /// From the next epoch on; null: the samples are raw and say so.
-  void use(std::shared_ptr<const calib::Calibration> calibration);
+  void use(std::shared_ptr<const calib::calibration::Calibration> calibration);
   /// A run has the table, or no longer.
   void set_calibrating(bool on) { calibrating_ = on; }
 
@@ -65,24 +65,24 @@ class LivePipeline {
 
   [[nodiscard]] const Sampler& sampler() const { return sampler_; }
   [[nodiscard]] const LatestInputs& inputs() const { return inputs_; }
-  [[nodiscard]] const calib::LiveTensor& live() const { return live_; }
+  [[nodiscard]] const calib::calibration::LiveTensor& live() const { return live_; }
   /// What the samples show of the calibration; a sensor in another place before all that follows from it.
-  [[nodiscard]] calib::LiveReport finding() const {
-    return calib::live_report(criticism_.finding(), rearranged_.finding());
+  [[nodiscard]] calib::report::LiveReport finding() const {
+    return calib::report::live_report(criticism_.finding(), rearranged_.finding());
   }
   [[nodiscard]] const InstrumentWatch& instruments() const { return instruments_; }
 
  private:
   [[nodiscard]] TensorSample tensor(const Epoch& epoch, bool& finding_changed);
   [[nodiscard]] TensorSample judged(const Epoch& epoch, bool& finding_changed);
-  [[nodiscard]] calib::LiveConditions conditions(Instant at) const;
+  [[nodiscard]] calib::calibration::LiveConditions conditions(Instant at) const;
 
   double baseline_m_;
   Sampler sampler_;
-  calib::LiveTensor live_;
-  calib::TensorPipeline raw_;
-  calib::LiveCriticism criticism_;
-  calib::RearrangementWatch rearranged_;
+  calib::calibration::LiveTensor live_;
+  calib::calibration::TensorPipeline raw_;
+  calib::criticism::live::LiveCriticism criticism_;
+  calib::criticism::tests::RearrangementWatch rearranged_;
   InstrumentWatch instruments_;
   std::array<std::string, kSensors> told_;  ///< who answers
   std::optional<TableReading> table_;       ///< the last
@@ -91,4 +91,4 @@ class LivePipeline {
   std::vector<EpochOrGap> ready_;  ///< reused, so that a sample allocates nothing
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

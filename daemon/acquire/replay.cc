@@ -9,7 +9,7 @@
 #include "daemon/acquire/instruments.h"
 #include "proto/stream_codec.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 std::string printable(std::string_view bytes) {
@@ -19,22 +19,23 @@ std::string printable(std::string_view bytes) {
 }  // namespace
 
 struct Replay::Life {
-  explicit Life(Config c)
+  explicit Life(config::Config c)
       : config(std::move(c)), pipeline(sampler_config(config), config.baseline_m, inputs_of(config)) {
-    for (const DeviceConfig* device : devices_of(config)) {
+    for (const config::DeviceConfig* device : devices_of(config)) {
       names.push_back(device != nullptr ? device->name : std::string());
       devices.push_back(device != nullptr ? device->device : nullptr);
     }
     wanted.resize(devices.size());
   }
-  Config config;
+  config::Config config;
   LivePipeline pipeline;
   std::vector<std::string> names;
   std::vector<std::shared_ptr<drivers::Device>> devices;  ///< by their number in the journal
   std::vector<std::string> wanted;                        ///< what each wants to send, not yet seen as sent
 };
 
-Replay::Replay(std::function<void(std::string_view)> line, std::shared_ptr<const calib::Calibration> instead)
+Replay::Replay(std::function<void(std::string_view)> line,
+               std::shared_ptr<const calib::calibration::Calibration> instead)
     : line_(std::move(line)), instead_(std::move(instead)) {}
 
 Replay::~Replay() = default;
@@ -143,7 +144,7 @@ Result<void> Replay::note(const RawRecord& record) {
 }
 
 Result<void> Replay::on(const LifeNote& note) {
-  auto config = parse_config(note.config, "the journal's configuration");
+  auto config = config::parse_config(note.config, "the journal's configuration");
   if (!config)
     return fail(ErrorCode::bad_input, config.error().lines.front(), "use the version that wrote it");
   ++counts_.lives;
@@ -162,9 +163,9 @@ Result<void> Replay::on(const CalibrationNote& note) {
     life_->pipeline.use(nullptr);
     return {};
   }
-  auto calibration = calib::calibration_from_json_text(note.json);
+  auto calibration = calib::calibration::calibration_from_json_text(note.json);
   if (!calibration) return tl::unexpected(calibration.error());
-  life_->pipeline.use(std::make_shared<const calib::Calibration>(*std::move(calibration)));
+  life_->pipeline.use(std::make_shared<const calib::calibration::Calibration>(*std::move(calibration)));
   return {};
 }
 
@@ -195,4 +196,4 @@ Result<void> Replay::on(const LostNote& note) {
   return {};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

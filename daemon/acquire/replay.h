@@ -21,7 +21,7 @@
 /// byte. Pure: the time is the journal's. Needs the journal from its first record on.
 ///
 /// Whether it went as it did then is checked as well: what the drivers want to send must be what was sent.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 struct ReplayCounts {
   std::uint64_t lives{0}, records{0}, samples{0}, missing{0}, gaps{0};
@@ -33,7 +33,8 @@ class Replay {
  public:
   /// `line`: a line of the stream without its end. `instead`: this calibration all along, not those used
   /// then.
-  Replay(std::function<void(std::string_view)> line, std::shared_ptr<const calib::Calibration> instead);
+  Replay(std::function<void(std::string_view)> line,
+         std::shared_ptr<const calib::calibration::Calibration> instead);
   ~Replay();
 
   /// Refuses what cannot be replayed.
@@ -58,10 +59,10 @@ class Replay {
   void say(const Gap& gap);
 
   std::function<void(std::string_view)> line_;
-  std::shared_ptr<const calib::Calibration> instead_;
+  std::shared_ptr<const calib::calibration::Calibration> instead_;
   std::unique_ptr<Life> life_;
   TensorEncoder encoder_;
   ReplayCounts counts_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

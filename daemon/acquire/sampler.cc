@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 constexpr int kReference = 0;
@@ -342,4 +342,4 @@ SamplerHealth Sampler::health() const {
   return health;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -31,7 +31,7 @@
 /// skew_bound_s: the most by which two of the four may differ in true time, from how early and how late each
 /// clock model allows its sample to be, and the shift left uninterpolated. Constant delays (filter group
 /// delay, wire time) must be configured; no software sees them.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 struct SamplerConfig {
   double rate_hz{50};
@@ -197,4 +197,4 @@ class Sampler {
   std::uint64_t epochs_{0}, gaps_{0};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

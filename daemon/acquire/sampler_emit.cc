@@ -6,7 +6,7 @@
 
 #include "daemon/acquire/sampler.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 constexpr std::size_t kReferenceIndex = 0;
@@ -165,4 +165,4 @@ Stamp Sampler::stamp(double t_s) const {
   return {origin_ + since, WallTime{origin_wall_ns_ + since.count()}};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 constexpr double kStrange = 1e-3;
@@ -35,4 +35,4 @@ bool StuckSensor::stands_still(const Eigen::Vector3d& y_nT) {
   return false;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

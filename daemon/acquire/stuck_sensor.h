@@ -12,7 +12,7 @@
 /// standstill when p q^(r-1) < 1e-3, and the first row of all. A fine digitiser is caught at the first
 /// repeat; one coarser than its noise needs more and is not accused wrongly. What has only ever said one
 /// thing is not known to measure. Pure.
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 
 class StuckSensor {
  public:
@@ -25,4 +25,4 @@ class StuckSensor {
   std::uint64_t row_{0};                                ///< repeats since the last reading that was new
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

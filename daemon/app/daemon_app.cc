@@ -9,25 +9,25 @@
 
 #include "daemon/app/service_notify.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(20);
 
-StreamConfig stream_config(const Config& config) {
-  StreamConfig out;
+serve::StreamConfig stream_config(const config::Config& config) {
+  serve::StreamConfig out;
   out.tcp = config.stream_tcp;
   out.unix_path = config.stream_unix;
   return out;
 }
 
-std::filesystem::path runs_directory(const Config& config) {
+std::filesystem::path runs_directory(const config::Config& config) {
   return std::filesystem::path(config.store_dir) / "runs";
 }
 
 }  // namespace
 
-DaemonApp::DaemonApp(boost::asio::io_context& io, Config config, CalibrationStore store)
+DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::CalibrationStore store)
     : config_(std::move(config)),
       clock_(config_.speed_up),
       store_(std::move(store)),
@@ -87,12 +87,12 @@ void DaemonApp::stop() {
 
 void DaemonApp::use_active_calibration() {
   auto active = store_.active();
-  std::shared_ptr<const calib::Calibration> used;
+  std::shared_ptr<const calib::calibration::Calibration> used;
   if (!active) {
     spdlog::error("the active calibration cannot be read, streaming raw: {}", active.error().text());
   } else if (*active) {
     spdlog::info("calibration {} is active", (*active)->id);
-    used = std::make_shared<const calib::Calibration>(**std::move(active));
+    used = std::make_shared<const calib::calibration::Calibration>(**std::move(active));
   } else {
     spdlog::info("no calibration is active: the stream is raw and says so");
   }
@@ -110,8 +110,8 @@ void DaemonApp::publish(const Gap& gap) {
   ++published_;
 }
 
-void DaemonApp::say(const Remark& remark, Instant now) {
-  const bool warning = remark.level == Remark::Level::warning;
+void DaemonApp::say(const core::Remark& remark, Instant now) {
+  const bool warning = remark.level == core::Remark::Level::warning;
   if (remark.topic.empty() && warning) return spdlog::warn("{}", remark.text);
   if (remark.topic.empty()) return spdlog::info("{}", remark.text);
   if (warning) return quiet_.warn(remark.topic, remark.text, now);
@@ -164,4 +164,4 @@ void DaemonApp::every_second(Stamp now) {
   if (watchdog_ && watchdog_->is_due(published_, epochs, host)) notify_watchdog();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

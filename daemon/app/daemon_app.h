@@ -29,11 +29,11 @@
 ///
 /// Order of starting: store, sockets, ports. Order of stopping: run (table stops), ports, sockets, worker,
 /// journal. Everything is on the one thread of the io_context but the solver.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
-class DaemonApp : private CoreActions {
+class DaemonApp : private core::CoreActions {
  public:
-  DaemonApp(boost::asio::io_context& io, Config config, CalibrationStore store);
+  DaemonApp(boost::asio::io_context& io, config::Config config, store::CalibrationStore store);
   ~DaemonApp() override;
 
   [[nodiscard]] Result<void> start();
@@ -44,8 +44,8 @@ class DaemonApp : private CoreActions {
   void record(const RawRecord& record) override { recording_.append(record); }
   void publish(const Epoch& epoch, const TensorSample& sample, std::span<const InputValue> inputs) override;
   void publish(const Gap& gap) override;
-  void carry_out(const Action& action, Stamp now) override { run_.carry_out(action, now); }
-  void say(const Remark& remark, Instant now) override;
+  void carry_out(const run::Action& action, Stamp now) override { run_.carry_out(action, now); }
+  void say(const core::Remark& remark, Instant now) override;
 
   void tick();
   void every_second(Stamp now);
@@ -62,16 +62,16 @@ class DaemonApp : private CoreActions {
   [[nodiscard]] Result<nlohmann::ordered_json> dry_run(const RunRequest& request) const;
   [[nodiscard]] StatusReport report() const;
 
-  Config config_;
+  config::Config config_;
   drivers::Clock clock_;
-  CalibrationStore store_;
-  Worker worker_;
+  store::CalibrationStore store_;
+  store::Worker worker_;
   QuietLog quiet_;
-  DaemonCore core_;
+  core::DaemonCore core_;
   Recording recording_;
-  StreamServer stream_;
-  ControlServer control_;
-  RunExecutor run_;
+  serve::StreamServer stream_;
+  serve::ControlServer control_;
+  run::RunExecutor run_;
   Ports ports_;
   drivers::PatientTimer timer_;
 
@@ -85,4 +85,4 @@ class DaemonApp : private CoreActions {
   bool stopping_{false};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

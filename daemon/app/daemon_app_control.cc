@@ -11,7 +11,7 @@
 #include "proto/calibration_request.h"
 #include "proto/status_codec.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 using Reply = Result<nlohmann::ordered_json>;
 
@@ -67,20 +67,20 @@ Reply DaemonApp::answer_run(const ControlRequest& request) {
       return fail(ErrorCode::state, "a magnet test is going on", "wait for its end, or: mgt run abort");
     done = run_.start(*wanted, now);
   } else if (request.command == ControlCommand::run_pause) {
-    done = run_.request(Request::pause, now);
+    done = run_.request(run::Request::pause, now);
   } else if (request.command == ControlCommand::run_resume) {
-    done = run_.request(Request::resume, now);
+    done = run_.request(run::Request::resume, now);
   } else if (request.command == ControlCommand::run_finish) {
-    done = run_.request(Request::finish, now);
+    done = run_.request(run::Request::finish, now);
   } else if (request.command == ControlCommand::run_redo) {
-    done = run_.request(Request::redo, now);
+    done = run_.request(run::Request::redo, now);
   } else if (request.command == ControlCommand::run_enter) {
     const auto scales = parse_scale_entry(request.args);
     if (!scales) return tl::unexpected(scales.error());
     done = run_.enter(*scales, now);
   } else if (request.command == ControlCommand::run_abort) {
     if (core_.probing()) return abort_magnet(now);
-    done = run_.request(Request::abort, now);
+    done = run_.request(run::Request::abort, now);
   }
   if (!done) return tl::unexpected(done.error());
   core_.show_links(now);
@@ -113,11 +113,11 @@ Reply DaemonApp::dry_run(const RunRequest& request) const {
   if (!plan) return tl::unexpected(plan.error());
   const nlohmann::json whole = to_json(*plan);
   return nlohmann::ordered_json{{"poses", plan->poses.size()},
-                                {"minutes", total_s(run_.pace(), *plan) / 60},
-                                {"text", describe(*plan, run_.pace())},
+                                {"minutes", plan::total_s(run_.pace(), *plan) / 60},
+                                {"text", plan::describe(*plan, run_.pace())},
                                 {"list", whole["poses"]},
                                 {"options", whole["options"]},
-                                {"limits_deg", to_json(run_.limits())},
+                                {"limits_deg", plan::to_json(run_.limits())},
                                 {"config", config_.text}};
 }
 
@@ -125,7 +125,7 @@ Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
   const WallTime now = clock_.now().wall;
   if (request.command == ControlCommand::calibrations_list) {
     auto list = nlohmann::ordered_json::array();
-    for (const CalibrationEntry& e : store_.list()) {
+    for (const store::CalibrationEntry& e : store_.list()) {
       list.push_back({{"id", e.id},
                       {"state", name(e.state)},
                       {"since", format_utc(e.since)},
@@ -146,7 +146,7 @@ Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
     if (!id) return tl::unexpected(id.error());
     const auto calibration = store_.show(*id);
     if (!calibration) return tl::unexpected(calibration.error());
-    return nlohmann::ordered_json(calib::to_json(*calibration));
+    return nlohmann::ordered_json(calib::calibration::to_json(*calibration));
   }
   const auto wanted = parse_accept_request(request.args);
   if (!wanted) return tl::unexpected(wanted.error());
@@ -160,7 +160,7 @@ Reply DaemonApp::import_calibration(const ControlRequest& request) {
   const WallTime now = clock_.now().wall;
   const auto wanted = parse_import_request(request.args);
   if (!wanted) return tl::unexpected(wanted.error());
-  const auto calibration = calib::calibration_from_json(wanted->calibration);
+  const auto calibration = calib::calibration::calibration_from_json(wanted->calibration);
   if (!calibration) return tl::unexpected(calibration.error());
   if (const double baseline_m = calibration->geometry.baseline_m;
       std::abs(baseline_m - config_.baseline_m) > kSameBaseline_m) {
@@ -182,4 +182,4 @@ Reply DaemonApp::import_calibration(const ControlRequest& request) {
   return reply;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

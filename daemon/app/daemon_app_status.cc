@@ -5,19 +5,20 @@
 #include "daemon/acquire/clock_report.h"
 #include "daemon/app/daemon_app.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 namespace {
 
 /// What every input measures now.
-std::vector<InputStatus> inputs_now(const Config& config, const LatestInputs& latest, Instant now) {
+std::vector<InputStatus> inputs_now(const config::Config& config, const acquire::LatestInputs& latest,
+                                    Instant now) {
   std::vector<InputStatus> out;
-  for (const DeviceConfig* device : devices_of(config)) {
+  for (const config::DeviceConfig* device : acquire::devices_of(config)) {
     if (device == nullptr) continue;
     for (const drivers::InputChannel& input : device->device->inputs()) {
       const double value = latest.values()[out.size()].value;
       const std::optional<Instant> heard = latest.heard(input.column);
-      const bool fresh = heard && now - *heard <= kFreshInput;
+      const bool fresh = heard && now - *heard <= acquire::kFreshInput;
       out.push_back({.name = input.column,
                      .device = device->name,
                      .input = input.input,
@@ -32,7 +33,7 @@ std::vector<InputStatus> inputs_now(const Config& config, const LatestInputs& la
 }  // namespace
 
 StatusReport DaemonApp::report() const {
-  const LivePipeline& pipeline = core_.pipeline();
+  const acquire::LivePipeline& pipeline = core_.pipeline();
   const Stamp now = clock_.now();
   StatusReport out;
   out.at = now;
@@ -46,17 +47,18 @@ StatusReport DaemonApp::report() const {
     for (const auto& [effect, lacks] : pipeline.live().left_out())
       out.calibration_use.left_out.push_back({effect, lacks});
   }
-  const calib::LiveReport found = pipeline.finding();
-  out.criticism = {std::string(calib::to_string(found.state)), found.measured, found.limit, found.remedy};
-  if (const InstrumentWatch& instruments = pipeline.instruments(); instruments.another())
+  const calib::report::LiveReport found = pipeline.finding();
+  out.criticism = {std::string(calib::criticism::live::to_string(found.state)), found.measured, found.limit,
+                   found.remedy};
+  if (const acquire::InstrumentWatch& instruments = pipeline.instruments(); instruments.another())
     out.criticism = {"identity", instruments.measured(),
                      "the calibration holds for the sensors that it was made with", instruments.remedy()};
   out.devices = core_.instruments().status();
   out.inputs = inputs_now(config_, pipeline.inputs(), now.mono);
-  const SamplerHealth sampler = pipeline.sampler().health();
+  const acquire::SamplerHealth sampler = pipeline.sampler().health();
   for (std::size_t i = 0; i < kSensors; ++i) {
     if (sampler.sensors[i].clock.samples > 0)
-      out.devices.at(i).clock = clock_report(sampler.sensors[i].clock, config_.rate_hz);
+      out.devices.at(i).clock = acquire::clock_report(sampler.sensors[i].clock, config_.rate_hz);
   }
   out.sampler = {.epochs = sampler.epochs,
                  .gaps = sampler.gaps,
@@ -73,4 +75,4 @@ StatusReport DaemonApp::report() const {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

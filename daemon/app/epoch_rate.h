@@ -7,7 +7,7 @@
 
 /// EpochRate tells how many epochs come per second of the rig's time, measured over about a second of the
 /// host's. Pure.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 class EpochRate {
  public:
@@ -34,4 +34,4 @@ class EpochRate {
   std::optional<double> rate_hz_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

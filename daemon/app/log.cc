@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 namespace {
 
 constexpr Duration kMinute = std::chrono::minutes(1);
@@ -69,4 +69,4 @@ void QuietLog::tick(Instant now) {
   }
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

@@ -8,7 +8,7 @@
 #include "proto/time.h"
 
 /// What the service writes to journald or stderr.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 /// Level: debug, info, warn, error. Under systemd lines carry no time of their own: the journal stamps them.
 void start_log(std::string_view level);
@@ -40,4 +40,4 @@ class QuietLog {
   std::map<std::string, Topic, std::less<>> topics_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

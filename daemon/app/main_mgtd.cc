@@ -27,15 +27,16 @@ int report(const Error& error) {
   return error.code == ErrorCode::io ? kExitIo : kExitUnavailable;
 }
 
-int run_service(Config config) {
-  start_log(config.log_level);
+int run_service(mgtd::daemon::config::Config config) {
+  mgtd::daemon::app::start_log(config.log_level);
   std::signal(SIGPIPE, SIG_IGN);
-  const auto lock = StoreLock::take(config.store_dir);
+  const auto lock = mgtd::daemon::store::StoreLock::take(config.store_dir);
   if (!lock) return report(lock.error());
-  auto store = CalibrationStore::open(std::filesystem::path(config.store_dir) / "calibrations");
+  auto store =
+      mgtd::daemon::store::CalibrationStore::open(std::filesystem::path(config.store_dir) / "calibrations");
   if (!store) return report(store.error());
   boost::asio::io_context io(1);
-  DaemonApp app(io, std::move(config), *std::move(store));
+  mgtd::daemon::app::DaemonApp app(io, std::move(config), *std::move(store));
   if (auto started = app.start(); !started) return report(started.error());
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   if (struct sigaction hangup{}; ::sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_DFL)
@@ -43,11 +44,11 @@ int run_service(Config config) {
   signals.async_wait([&](auto ec, int number) {
     if (ec) return;
     spdlog::info("signal {}: stopping the table and closing", number);
-    notify_stopping();
+    mgtd::daemon::app::notify_stopping();
     app.stop();
     io.stop();
   });
-  notify_ready();
+  mgtd::daemon::app::notify_ready();
   io.run();
   return 0;
 }
@@ -72,7 +73,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
-  auto config = load_config(config_file);
+  auto config = mgtd::daemon::config::load_config(config_file);
   if (!config) {
     for (const std::string& line : config.error().lines) fmt::print(stderr, "{}\n", line);
     return kExitConfig;

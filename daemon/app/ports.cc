@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/app/ports.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
-Ports::Ports(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
-             Instruments& instruments) {
-  const auto devices = devices_of(config);
+Ports::Ports(boost::asio::io_context& io, const drivers::Clock& clock, const config::Config& config,
+             acquire::Instruments& instruments) {
+  const auto devices = acquire::devices_of(config);
   for (const Slot slot : instruments.slots()) {
     if (!instruments.has_port(slot)) continue;
-    const DeviceConfig& device = *devices.at(slot.number());
+    const config::DeviceConfig& device = *devices.at(slot.number());
     ports_.emplace(
         slot, std::make_unique<drivers::PortLink>(io, clock, drivers::PortSettings{device.port, device.baud},
                                                   instruments.link(slot)));
@@ -24,4 +24,4 @@ void Ports::shutdown() {
   for (auto& [slot, port] : ports_) port->shutdown();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

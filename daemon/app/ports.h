@@ -10,13 +10,13 @@
 #include "drivers/port_link.h"
 
 /// Ports holds the serial ports of all instruments that have one.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 class Ports {
  public:
   /// All outlive this.
-  Ports(boost::asio::io_context& io, const drivers::Clock& clock, const Config& config,
-        Instruments& instruments);
+  Ports(boost::asio::io_context& io, const drivers::Clock& clock, const config::Config& config,
+        acquire::Instruments& instruments);
 
   void start();
   void send(Slot slot, std::string_view bytes) { ports_.at(slot)->send(bytes); }
@@ -27,4 +27,4 @@ class Ports {
   std::map<Slot, std::unique_ptr<drivers::PortLink>> ports_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

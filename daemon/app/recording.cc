@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <system_error>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 namespace {
 
 constexpr std::uint64_t kMegabyte = 1U << 20U;
 constexpr double kRoomAgain = 1.1;  // of the reserve
 
-RecordingStatus status_of(const Journal& journal) {
+RecordingStatus status_of(const store::Journal& journal) {
   RecordingStatus out;
   out.state = journal.recording() && !journal.trouble() ? "writing" : "stopped";
   if (journal.trouble()) out.why = journal.trouble()->text();
@@ -25,10 +25,10 @@ RecordingStatus status_of(const Journal& journal) {
 
 }  // namespace
 
-LifeNote Recording::start(Stamp now, StreamServer& stream) {
+LifeNote Recording::start(Stamp now, serve::StreamServer& stream) {
   const std::filesystem::path store(config_.store_dir);
   if (config_.journal) {
-    JournalConfig journal;
+    store::JournalConfig journal;
     journal.directory = store / "runs";
     journal.name = fmt::format("raw-{:011}", now.wall.ns / 1'000'000'000);
     journal.header = {config_.rig_name, ""};
@@ -43,11 +43,11 @@ LifeNote Recording::start(Stamp now, StreamServer& stream) {
   return life;
 }
 
-void Recording::start_disk_ring(LifeNote& life, Stamp now, StreamServer& stream) {
-  disk_ring_.emplace(DiskRingConfig{.directory = std::filesystem::path(config_.store_dir) / "stream",
-                                    .rig = config_.rig_name,
-                                    .rate_hz = config_.rate_hz,
-                                    .bytes = static_cast<std::uint64_t>(config_.ring_mb) * kMegabyte},
+void Recording::start_disk_ring(LifeNote& life, Stamp now, serve::StreamServer& stream) {
+  disk_ring_.emplace(store::DiskRingConfig{.directory = std::filesystem::path(config_.store_dir) / "stream",
+                                           .rig = config_.rig_name,
+                                           .rate_hz = config_.rate_hz,
+                                           .bytes = static_cast<std::uint64_t>(config_.ring_mb) * kMegabyte},
                      now);
   stream.keep(*disk_ring_);
   life.first_seq = disk_ring_->first_seq();
@@ -68,7 +68,7 @@ std::optional<LostNote> Recording::tick(Stamp now) {
 }
 
 /// On a change only.
-std::optional<std::uint64_t> Recording::watch(Journal& journal, const std::string& what, Instant now) {
+std::optional<std::uint64_t> Recording::watch(store::Journal& journal, const std::string& what, Instant now) {
   disk_sync_.look_after(journal);
   if (const auto error = journal.take_error()) log_.warn(what, error->text(), now);
   const auto lost = journal.take_resumed();
@@ -82,7 +82,7 @@ void Recording::guard_reserve() {
   if (ec) return;
   const auto free_mb = static_cast<double>(space.available) / static_cast<double>(kMegabyte);
   const auto reserve_mb = static_cast<double>(config_.reserve_mb);
-  for (Journal* const journal :
+  for (store::Journal* const journal :
        {journal_ ? &*journal_ : nullptr, disk_ring_ ? &disk_ring_->journal() : nullptr}) {
     if (journal == nullptr) continue;
     if (free_mb < reserve_mb) {
@@ -104,4 +104,4 @@ void Recording::report(StatusReport& out) const {
   out.oldest_seq = disk_ring_->oldest_seq();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

@@ -15,16 +15,16 @@
 
 /// Recording is what the rig records all the time: the journal of raw bytes and the stream's samples on disk,
 /// as far as the configuration wants them. Stops recording where the disk's reserve is touched.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 class Recording {
  public:
   /// All outlive this.
-  Recording(boost::asio::io_context& io, const Config& config, QuietLog& log)
+  Recording(boost::asio::io_context& io, const config::Config& config, QuietLog& log)
       : config_(config), log_(log), disk_sync_(io) {}
 
   /// Opens both. What is returned belongs first into the journal. The stream keeps its samples from here on.
-  [[nodiscard]] LifeNote start(Stamp now, StreamServer& stream);
+  [[nodiscard]] LifeNote start(Stamp now, serve::StreamServer& stream);
   void append(const RawRecord& record) {
     if (journal_) journal_->append(record);
   }
@@ -36,15 +36,16 @@ class Recording {
   void report(StatusReport& out) const;
 
  private:
-  void start_disk_ring(LifeNote& life, Stamp now, StreamServer& stream);
+  void start_disk_ring(LifeNote& life, Stamp now, serve::StreamServer& stream);
   /// Bytes that were lost before it went on.
-  [[nodiscard]] std::optional<std::uint64_t> watch(Journal& journal, const std::string& what, Instant now);
+  [[nodiscard]] std::optional<std::uint64_t> watch(store::Journal& journal, const std::string& what,
+                                                   Instant now);
 
-  const Config& config_;
+  const config::Config& config_;
   QuietLog& log_;
-  std::optional<DiskRing> disk_ring_;
-  std::optional<Journal> journal_;
-  DiskSync disk_sync_;
+  std::optional<store::DiskRing> disk_ring_;
+  std::optional<store::Journal> journal_;
+  store::DiskSync disk_sync_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 void notify_ready() { sd_notify(0, "READY=1"); }
 void notify_stopping() { sd_notify(0, "STOPPING=1"); }
@@ -18,4 +18,4 @@ std::optional<Duration> watchdog_period() {
   return Duration{static_cast<std::int64_t>(period_us) * 1000 / 2};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

@@ -6,7 +6,7 @@
 #include "proto/time.h"
 
 /// Reports readiness and state to the service manager (sd_notify). Outside systemd every call does nothing.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 void notify_ready();
 void notify_stopping();
@@ -15,4 +15,4 @@ void notify_watchdog();
 /// Half of WatchdogSec: how often notify_watchdog must be called; empty when no watchdog runs.
 [[nodiscard]] std::optional<Duration> watchdog_period();
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

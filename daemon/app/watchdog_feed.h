@@ -8,7 +8,7 @@
 /// honest gaps, must have come out since the last time; before the first epoch there is nothing that could.
 /// Pure, and asked once a second: an event loop that hangs does not ask, and one that lives on while the data
 /// stand still gets no.
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 
 class WatchdogFeed {
  public:
@@ -30,4 +30,4 @@ class WatchdogFeed {
   std::uint64_t published_{0};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

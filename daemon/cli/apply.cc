@@ -13,18 +13,18 @@
 #include "daemon/cli/command.h"
 #include "daemon/store/pose_source.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct ApplyArguments {
   std::string calibration, run, output;
-  calib::ApplyOptions options;
+  calib::calibration::ApplyOptions options;
 };
 
 /// Median over the rows of the closure's chi-square; empty where no row has the uncertainty of its closure.
-std::optional<double> median_closure_chi2(const std::vector<calib::AppliedPose>& rows) {
+std::optional<double> median_closure_chi2(const std::vector<calib::calibration::AppliedPose>& rows) {
   std::vector<double> chi2;
-  for (const calib::AppliedPose& row : rows)
+  for (const calib::calibration::AppliedPose& row : rows)
     if (std::isfinite(row.sample.closure.chi2)) chi2.push_back(row.sample.closure.chi2);
   if (chi2.empty()) return std::nullopt;
   const auto middle = chi2.begin() + static_cast<std::ptrdiff_t>(chi2.size() / 2);
@@ -33,7 +33,7 @@ std::optional<double> median_closure_chi2(const std::vector<calib::AppliedPose>&
 }
 
 /// Refuses a calibration of another rig.
-void doubt_closure(const std::vector<calib::AppliedPose>& rows) {
+void doubt_closure(const std::vector<calib::calibration::AppliedPose>& rows) {
   constexpr double kExpected = 3.4, kDoubtful = 100;  // median of chi-square with four degrees of freedom
   const auto chi2 = median_closure_chi2(rows);
   if (!chi2 || *chi2 < kDoubtful) return;
@@ -47,13 +47,14 @@ void doubt_closure(const std::vector<calib::AppliedPose>& rows) {
 int run_apply(const Session& session, const ApplyArguments& args) {
   const auto calibration = calibration_of(args.calibration, {});
   if (!calibration) return report(session, calibration.error());
-  const auto table = daemon::read_poses(args.run);
+  const auto table = store::read_poses(args.run);
   if (!table) return report(session, table.error());
-  const auto rows = calib::apply(*calibration, *table, args.options);
+  const auto rows = calib::calibration::apply(*calibration, *table, args.options);
   if (!rows) return report(session, rows.error());
-  const std::string csv = calib::format_applied(*rows);
+  const std::string csv = calib::calibration::format_applied(*rows);
   std::set<std::string> left_out;
-  for (const calib::AppliedPose& row : *rows) left_out.insert(row.left_out.begin(), row.left_out.end());
+  for (const calib::calibration::AppliedPose& row : *rows)
+    left_out.insert(row.left_out.begin(), row.left_out.end());
   for (const std::string& effect : left_out)
     fmt::print(stderr, "{} was left out where its inputs are missing: see the column left_out\n", effect);
   doubt_closure(*rows);
@@ -91,4 +92,4 @@ void add_apply(CLI::App& app, Session& session) {
                     "leave effects out whose inputs the table lacks, with wider standard deviations");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -5,10 +5,10 @@
 #include "daemon/cli/command.h"
 #include "daemon/serve/control_client.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// This sends one request to the daemon that `session` names and returns its answer.
 [[nodiscard]] Result<nlohmann::json> ask(const Session& session, ControlCommand command,
                                          nlohmann::json args = nlohmann::json::object());
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -3,12 +3,12 @@
 
 #include "daemon/cli/command.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
-Result<calib::Calibration> read_calibration(const std::string& path) {
+Result<calib::calibration::Calibration> read_calibration(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
-  auto calibration = calib::calibration_from_json_text(*text);
+  auto calibration = calib::calibration::calibration_from_json_text(*text);
   if (!calibration) {
     Error error = calibration.error();
     error.message = path + ": " + error.message;
@@ -17,17 +17,17 @@ Result<calib::Calibration> read_calibration(const std::string& path) {
   return calibration;
 }
 
-Result<calib::Calibration> calibration_of(const std::string& path, const FitFlags& flags) {
+Result<calib::calibration::Calibration> calibration_of(const std::string& path, const FitFlags& flags) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   if (const auto first = text->find_first_not_of(" \t\r\n");
       first != std::string::npos && (*text)[first] == '{')
     return read_calibration(path);
-  const auto source = daemon::read_run(path);
+  const auto source = store::read_run(path);
   if (!source) return tl::unexpected(source.error());
   const auto options = fit_options(flags, *source);
   if (!options) return tl::unexpected(options.error());
-  auto fitted = calib::fit(source->table, *options);
+  auto fitted = calib::fit::method_choice::fit(source->table, *options);
   if (!fitted) {
     Error error = fitted.error();
     error.message = path + ": " + error.message;
@@ -36,4 +36,4 @@ Result<calib::Calibration> calibration_of(const std::string& path, const FitFlag
   return std::move(fitted->calibration);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

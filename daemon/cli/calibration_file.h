@@ -5,12 +5,13 @@
 #include "calib/calibration/calibration.h"
 #include "daemon/cli/fit_flags.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// This reads a CAL.json. Refusals name the file.
-[[nodiscard]] Result<calib::Calibration> read_calibration(const std::string& path);
+[[nodiscard]] Result<calib::calibration::Calibration> read_calibration(const std::string& path);
 
 /// A CAL.json as it is, or a run fitted with these flags; told apart by content.
-[[nodiscard]] Result<calib::Calibration> calibration_of(const std::string& path, const FitFlags& flags);
+[[nodiscard]] Result<calib::calibration::Calibration> calibration_of(const std::string& path,
+                                                                     const FitFlags& flags);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

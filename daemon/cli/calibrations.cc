@@ -8,7 +8,7 @@
 #include "daemon/cli/ask.h"
 #include "daemon/cli/calibration_file.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 int print_list(const Session& session) {
@@ -77,7 +77,7 @@ int import_file(const Session& session, const CalibrationsArguments& args) {
   const auto calibration = read_calibration(args.file);
   if (!calibration) return report(session, calibration.error());
   const auto reply = ask(session, ControlCommand::calibrations_import,
-                         {{"calibration", calib::to_json(*calibration)},
+                         {{"calibration", calib::calibration::to_json(*calibration)},
                           {"origin", std::filesystem::path(args.file).filename().string()},
                           {"accept", args.accept},
                           {"force", args.force}});
@@ -115,4 +115,4 @@ void add_calibrations(CLI::App& app, Session& session) {
   });
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

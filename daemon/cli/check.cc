@@ -9,7 +9,7 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kCheckHelp =
@@ -32,24 +32,25 @@ struct CheckArguments {
 int run_check(const Session& session, const CheckArguments& args) {
   const auto calibration = read_calibration(args.calibration);
   if (!calibration) return report(session, calibration.error());
-  const auto source = daemon::read_run(args.run);
+  const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto checked = calib::check(*calibration, source->table, *options);
+  const auto checked = calib::validity::check(*calibration, source->table, *options);
   if (!checked) return report(session, checked.error());
   if (session.json) {
-    print_json(calib::to_json(*checked));
+    print_json(calib::report::to_json(*checked));
   } else {
     fmt::print("calibration {} against {} poses: {}\n", checked->calibration, checked->poses,
                checked->valid ? "VALID" : "NOT VALID");
     fmt::print("residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}\n", checked->residual_nT,
-               calib::kResidualIs, checked->noise_nT,
+               calib::report::kResidualIs, checked->noise_nT,
                checked->noise_from_dwells
                    ? "the larger of what the dwells tell and what the calibration's own run left"
                    : "of the calibration's own run");
-    fmt::print("{}\n", calib::change_table(checked->change, kPosesShown));
-    for (const std::string& reason : calib::validity_reasons(*checked)) fmt::print("note: {}\n", reason);
+    fmt::print("{}\n", calib::report::change_table(checked->change, kPosesShown));
+    for (const std::string& reason : calib::report::validity_reasons(*checked))
+      fmt::print("note: {}\n", reason);
   }
   return checked->valid ? 0 : 1;
 }
@@ -73,4 +74,4 @@ void add_check(CLI::App& app, Session& session) {
   add_table_flag(command, *args->flags);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -6,13 +6,13 @@
 #include "daemon/cli/command.h"
 #include "daemon/config/config.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 void add_check_config(CLI::App& app, Session& session) {
   const auto file = std::make_shared<std::string>();
   CLI::App* const command = add_command(
       app, session, "check-config", "read a configuration and list every mistake in it", [file, &session] {
-        const auto config = daemon::load_config(*file);
+        const auto config = config::load_config(*file);
         if (config) {
           for (const std::string& warning : config->warnings) fmt::print(stderr, "{}\n", warning);
           if (session.json) {
@@ -34,4 +34,4 @@ void add_check_config(CLI::App& app, Session& session) {
   command->add_option("FILE", *file, "the configuration")->required();
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

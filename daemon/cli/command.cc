@@ -12,7 +12,7 @@
 #include <optional>
 #include <utility>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 void print_json(const nlohmann::json& object) {
   fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
@@ -72,4 +72,4 @@ CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, 
   return command;
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -11,7 +11,7 @@
 /// Every command of `mgt` shares the --json switch, the control socket, and the way results and errors are
 /// printed. Results go to stdout, everything else to stderr; with --json stdout carries exactly one JSON
 /// object.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 struct Session {
   bool json{false};
@@ -29,7 +29,7 @@ void print_json(const nlohmann::json& object);
 /// Writes a whole file by way of a temporary one, so that a failure leaves the old file untouched. A device,
 /// a FIFO or a symbolic link is written to directly and stays what it is.
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::string& content);
-using daemon::read_file;
+using store::read_file;
 
 /// Adds a subcommand whose body runs after parsing; its return value is the exit code.
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,
@@ -63,4 +63,4 @@ void add_status(CLI::App& app, Session& session);
 void add_undo(CLI::App& app, Session& session);
 void add_watch(CLI::App& app, Session& session);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

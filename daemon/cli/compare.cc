@@ -7,7 +7,7 @@
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kCompareHelp =
@@ -27,12 +27,13 @@ int run_compare(const Session& session, const CompareArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto comparison = with_progress("compare", [&] { return calib::compare(source->table, *options); });
+  const auto comparison =
+      with_progress("compare", [&] { return calib::criticism::tests::compare(source->table, *options); });
   if (!comparison) return report(session, comparison.error());
   if (session.json) {
-    print_json(calib::to_json(*comparison));
+    print_json(calib::report::to_json(*comparison));
   } else {
-    fmt::print("{}", calib::to_text(*comparison));
+    fmt::print("{}", calib::report::to_text(*comparison));
   }
   return comparison->fits ? 0 : 1;
 }
@@ -49,4 +50,4 @@ void add_compare(CLI::App& app, Session& session) {
   args->flags = add_model_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -10,7 +10,7 @@
 #include "daemon/cli/ask.h"
 #include "daemon/cli/interrupt.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr auto kBetweenSigns = std::chrono::milliseconds(500);
@@ -56,7 +56,7 @@ int take_away(const Session& session) {
 /// Keeps control until Ctrl-C, or until somebody takes it away.
 int hold(const Session& session, const std::string& why) {
   catch_interrupts({SIGINT, SIGTERM});
-  auto client = daemon::ControlClient::connect(session.control_socket);
+  auto client = serve::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   const auto mine = client->request(ControlCommand::control_take, {{"why", why}, {"idle_s", kSilence_s}});
   if (!mine) return report(session, mine.error());
@@ -93,4 +93,4 @@ void add_control(CLI::App& app, Session& session) {
               [&session] { return take_away(session); });
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -17,7 +17,7 @@
 #include "daemon/cli/kept_run.h"
 #include "daemon/store/user_formulas.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 using nlohmann::json;
@@ -55,11 +55,12 @@ bool is_name(const std::string& name) {
 }
 
 Result<void> usable_name(const std::string& name) {
-  if (is_name(name) && name != "none" && calib::find_family(name) == nullptr) return {};
+  if (is_name(name) && name != "none" && calib::effects::library::find_family(name) == nullptr) return {};
   return fail(
       ErrorCode::usage,
-      calib::find_family(name) != nullptr ? name + " is an effect of the library"
-                                          : "'" + name + "' cannot be the name of an effect",
+      calib::effects::library::find_family(name) != nullptr
+          ? name + " is an effect of the library"
+          : "'" + name + "' cannot be the name of an effect",
       "use letters, digits, '_', '-' and '.', begin with a letter, and take none that mgt effects lists");
 }
 
@@ -73,11 +74,11 @@ Result<std::pair<std::string, std::string>> scan_of(const std::string& text) {
                    text.substr(equals + 1, colon - equals - 1) + ".." + text.substr(colon + 1)};
 }
 
-Result<calib::EffectSpec> spec_of(const DefineArguments& args) {
+Result<calib::effects::EffectSpec> spec_of(const DefineArguments& args) {
   if (const auto ok = usable_name(args.name); !ok) return tl::unexpected(ok.error());
-  calib::EffectSpec spec{.name = args.name, .where = {}, .parameters = {}};
+  calib::effects::EffectSpec spec{.name = args.name, .where = {}, .parameters = {}};
   if (!args.scale.empty() && args.level != "site") {
-    const auto where = calib::Where::parse(args.scale);
+    const auto where = calib::effects::Where::parse(args.scale);
     if (!where) return tl::unexpected(where.error());
     spec.where = *where;
   }
@@ -96,17 +97,17 @@ Result<calib::EffectSpec> spec_of(const DefineArguments& args) {
 }
 
 /// The formula as it was defined on another run.
-Result<daemon::Definition> definition_from(const std::string& path, const std::string& name) {
-  const auto source = daemon::read_run(path);
+Result<store::Definition> definition_from(const std::string& path, const std::string& name) {
+  const auto source = store::read_run(path);
   if (!source) return tl::unexpected(source.error());
-  for (const daemon::Definition& d : source->definitions)
+  for (const store::Definition& d : source->definitions)
     if (d.name == name) return d;
   return fail(ErrorCode::bad_input, path + " keeps no formula called " + name,
               "mgt model " + path + " lists them");
 }
 
 /// Largest difference between the coefficients and those found before, in their joint standard deviations.
-double disagreement(const daemon::Definition& before, const calib::FormulaExamination& now) {
+double disagreement(const store::Definition& before, const calib::criticism::tests::FormulaExamination& now) {
   double out = 0;
   for (const auto& a : before.found) {
     for (const auto& b : now.coefficients)
@@ -115,11 +116,11 @@ double disagreement(const daemon::Definition& before, const calib::FormulaExamin
   return out;
 }
 
-Result<void> keep(KeptRun& run, const daemon::Definition& definition) {
-  std::vector<daemon::Definition> all = run.source.definitions;
-  std::erase_if(all, [&](const daemon::Definition& d) { return d.name == definition.name; });
+Result<void> keep(KeptRun& run, const store::Definition& definition) {
+  std::vector<store::Definition> all = run.source.definitions;
+  std::erase_if(all, [&](const store::Definition& d) { return d.name == definition.name; });
   all.push_back(definition);
-  return run.file.set_document(daemon::kFormulasDocument, daemon::to_text(all));
+  return run.file.set_document(store::kFormulasDocument, store::to_text(all));
 }
 
 /// What this run says of a formula from another one.
@@ -131,16 +132,17 @@ struct Confirmation {
 constexpr double kConfirmed_log10_p = -2;
 constexpr double kAllAbsorbed = 0.9995;  ///< in squares
 
-bool nothing_left(const calib::FormulaExamination& x) {
+bool nothing_left(const calib::criticism::tests::FormulaExamination& x) {
   return x.wholly_absorbed() || x.absorbed > kAllAbsorbed;
 }
 
 constexpr double kAgree_sigmas = 4;
 
-void print(const Session& session, const DefineArguments& args, const calib::FormulaExamination& x,
-           const daemon::Definition& definition, const Confirmation& c) {
+void print(const Session& session, const DefineArguments& args,
+           const calib::criticism::tests::FormulaExamination& x, const store::Definition& definition,
+           const Confirmation& c) {
   if (session.json) {
-    json out = to_json(x);
+    json out = calib::report::to_json(x);
     out["schema"] = "mgt.define/1";
     out["spec"] = definition.spec;
     out["exploratory"] = definition.exploratory();
@@ -149,7 +151,7 @@ void print(const Session& session, const DefineArguments& args, const calib::For
     print_json(out);
     return;
   }
-  fmt::print("{}", to_text(x));
+  fmt::print("{}", calib::report::to_text(x));
   if (x.wholly_absorbed()) return;
   if (nothing_left(x)) {
     fmt::print("not kept: nothing of it is left to be seen on these poses\n");
@@ -172,16 +174,16 @@ void print(const Session& session, const DefineArguments& args, const calib::For
 }
 
 int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
-  std::vector<daemon::Definition> all = run.source.definitions;
-  if (std::erase_if(all, [&](const daemon::Definition& d) { return d.name == args.name; }) == 0)
+  std::vector<store::Definition> all = run.source.definitions;
+  if (std::erase_if(all, [&](const store::Definition& d) { return d.name == args.name; }) == 0)
     return report(session, {ErrorCode::usage, args.run + " keeps no formula called " + args.name,
                             "mgt model " + args.run + " lists them"});
-  for (const calib::EffectPtr& e : run.options.effects) {
+  for (const calib::effects::EffectPtr& e : run.options.effects) {
     if (e->name() != args.name) continue;
     return report(session, {ErrorCode::state, "the model of the run holds " + args.name,
                             fmt::format("mgt drop {} {} takes it out first", args.name, args.run)});
   }
-  if (auto ok = run.file.set_document(daemon::kFormulasDocument, daemon::to_text(all)); !ok)
+  if (auto ok = run.file.set_document(store::kFormulasDocument, store::to_text(all)); !ok)
     return report(session, ok.error());
   if (session.json) {
     print_json({{"schema", "mgt.define/1"}, {"dropped", args.name}});
@@ -199,12 +201,13 @@ int run_define(const Session& session, const DefineArguments& args) {
     return report(session, {ErrorCode::usage, "a formula is given, or taken from another run with --from",
                             "mgt define RUN NAME 'EXPR', or mgt define RUN NAME --from OTHER.mgtrun"});
   }
-  daemon::Definition definition;
-  const std::string here = calib::data_hash(run->source.table);
+  store::Definition definition;
+  const std::string here = calib::poses::data_hash(run->source.table);
   if (args.from.empty()) {
     const auto spec = spec_of(args);
     if (!spec) return report(session, spec.error());
-    if (const auto ok = calib::check_angles(args.expression); !ok) return report(session, ok.error());
+    if (const auto ok = calib::effects::formula::check_angles(args.expression); !ok)
+      return report(session, ok.error());
     definition = {args.name, spec->text(), here, {}, {}};
   } else {
     auto other = definition_from(args.from, args.name);
@@ -212,12 +215,13 @@ int run_define(const Session& session, const DefineArguments& args) {
     definition = std::move(*other);
     definition.confirmed_log10_p.reset();
   }
-  const auto spec = calib::EffectSpec::parse(definition.spec);
+  const auto spec = calib::effects::EffectSpec::parse(definition.spec);
   if (!spec) return report(session, spec.error());
-  if (const auto ok = calib::check_columns(*spec, run->source.table); !ok) return report(session, ok.error());
-  calib::FitOptions options = run->options;
-  std::erase_if(options.effects, [&](const calib::EffectPtr& e) { return e->name() == args.name; });
-  const auto x = calib::examine_formula(run->source.table, options, *spec);
+  if (const auto ok = calib::effects::formula::check_columns(*spec, run->source.table); !ok)
+    return report(session, ok.error());
+  calib::fit::FitOptions options = run->options;
+  std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) { return e->name() == args.name; });
+  const auto x = calib::criticism::tests::examine_formula(run->source.table, options, *spec);
   if (!x) return report(session, x.error());
   Confirmation confirmation{.asked = definition.found_on != here};
   if (confirmation.asked) {
@@ -228,7 +232,7 @@ int run_define(const Session& session, const DefineArguments& args) {
     definition.found = x->coefficients;
   }
   if (!nothing_left(*x)) {
-    for (const daemon::Definition& d : run->source.definitions)
+    for (const store::Definition& d : run->source.definitions)
       if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);
     if (auto ok = keep(*run, definition); !ok) return report(session, ok.error());
   }
@@ -259,4 +263,4 @@ void add_define(CLI::App& app, Session& session) {
   args->flags = add_kept_model_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -6,7 +6,7 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kDiffHelp =
@@ -34,18 +34,19 @@ int run_diff(const Session& session, const DiffArguments& args) {
     if (!c->accepted_by_checks)
       fmt::print(stderr, "warning: {} fails its own checks; see mgt fit\n", c == &*a ? args.a : args.b);
   }
-  const calib::DiffReport found = calib::diff(*a, *b);
+  const calib::validity::DiffReport found = calib::validity::diff(*a, *b);
   if (session.json) {
     print_json({{"schema", "mgt.diff/1"},
                 {"a", a->id},
                 {"b", b->id},
                 {"changed", found.changed},
-                {"conclusion", calib::conclusion_text(found)},
-                {"remarks", calib::remarks_of(found)},
-                {"change", calib::to_json(found.change)}});
+                {"conclusion", calib::report::conclusion_text(found)},
+                {"remarks", calib::report::remarks_of(found)},
+                {"change", calib::report::to_json(found.change)}});
   } else {
-    fmt::print("{}\n\n{}\n", calib::conclusion_text(found), calib::change_table(found.change, kChangesShown));
-    for (const std::string& remark : calib::remarks_of(found)) fmt::print("note: {}\n", remark);
+    fmt::print("{}\n\n{}\n", calib::report::conclusion_text(found),
+               calib::report::change_table(found.change, kChangesShown));
+    for (const std::string& remark : calib::report::remarks_of(found)) fmt::print("note: {}\n", remark);
   }
   return found.changed ? 1 : 0;
 }
@@ -63,4 +64,4 @@ void add_diff(CLI::App& app, Session& session) {
   args->flags = add_fit_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

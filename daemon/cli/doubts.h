@@ -9,20 +9,19 @@
 #include "daemon/store/pose_source.h"
 
 /// Doubts are what is still open about the model that a run file keeps: see calib/criticism/search/choice.h.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// How the model of RUN came to be; empty for a pose table.
-[[nodiscard]] Result<std::vector<daemon::ModelStep>> history_of(const std::string& run,
-                                                                const daemon::PoseSource& source);
+[[nodiscard]] Result<std::vector<store::ModelStep>> history_of(const std::string& run,
+                                                               const store::PoseSource& source);
 
 /// Of the effects in `options` that were added to the model of RUN, those about which something is open on
 /// these poses.
-[[nodiscard]] Result<std::vector<calib::Choice>> doubts_of(const std::string& run,
-                                                           const daemon::PoseSource& source,
-                                                           const calib::FitOptions& options);
+[[nodiscard]] Result<std::vector<calib::criticism::search::Choice>> doubts_of(
+    const std::string& run, const store::PoseSource& source, const calib::fit::FitOptions& options);
 
 /// One paragraph each.
-[[nodiscard]] std::string doubts_text(const std::vector<calib::Choice>& doubts);
-[[nodiscard]] nlohmann::json doubts_json(const std::vector<calib::Choice>& doubts);
+[[nodiscard]] std::string doubts_text(const std::vector<calib::criticism::search::Choice>& doubts);
+[[nodiscard]] nlohmann::json doubts_json(const std::vector<calib::criticism::search::Choice>& doubts);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -5,7 +5,7 @@
 #include "calib/effects/library/library.h"
 #include "daemon/cli/command.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kEffectsHelp =
@@ -18,16 +18,19 @@ what looks alike and how to tell them apart.
 An effect goes into a model as NAME[@WHERE][,PARAM=VALUE]: mgt fit run.mgtrun --with axis.cubic@s3.z)";
 
 int run(const Session& session, const std::string& name) {
-  std::span<const calib::EffectFamily> families = calib::effect_families();
+  std::span<const calib::effects::library::EffectFamily> families =
+      calib::effects::library::effect_families();
   if (!name.empty()) {
-    const calib::EffectFamily* family = calib::find_family(calib::family_name(name));
-    if (family == nullptr) return report(session, calib::make_effect(name).error());
+    const calib::effects::library::EffectFamily* family =
+        calib::effects::library::find_family(calib::effects::family_name(name));
+    if (family == nullptr) return report(session, calib::effects::library::make_effect(name).error());
     families = {family, 1};
   }
   if (session.json) {
-    print_json(calib::effects_json(families));
+    print_json(calib::effects::library::effects_json(families));
   } else {
-    std::cout << (name.empty() ? calib::effect_list() : calib::effect_page(families.front()));
+    std::cout << (name.empty() ? calib::effects::library::effect_list()
+                               : calib::effects::library::effect_page(families.front()));
   }
   return 0;
 }
@@ -42,4 +45,4 @@ void add_effects(CLI::App& app, Session& session) {
   command->footer(kEffectsHelp);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

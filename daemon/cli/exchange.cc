@@ -10,15 +10,15 @@
 #include "daemon/store/pose_source.h"
 #include "daemon/store/run_file.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct ExchangeArguments {
   std::string from, to;
 };
 
-daemon::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args) {
-  daemon::RunHeader header;
+store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args) {
+  store::RunHeader header;
   header.run_id = std::filesystem::path(args.to).stem().string();
   header.rig = "imported";
   if (!table.poses.empty() && table.poses.front().t_utc) header.started_utc = *table.poses.front().t_utc;
@@ -28,9 +28,9 @@ daemon::RunHeader header_of(const PoseTable& table, const ExchangeArguments& arg
 }
 
 int run_import(const Session& session, const ExchangeArguments& args) {
-  const auto table = daemon::read_poses(args.from);
+  const auto table = store::read_poses(args.from);
   if (!table) return report(session, table.error());
-  if (auto done = daemon::import_poses(*table, args.to, header_of(*table, args)); !done)
+  if (auto done = store::import_poses(*table, args.to, header_of(*table, args)); !done)
     return report(session, done.error());
   if (session.json) {
     print_json({{"schema", "mgt.import/1"}, {"poses", table->poses.size()}, {"output", args.to}});
@@ -41,9 +41,9 @@ int run_import(const Session& session, const ExchangeArguments& args) {
 }
 
 int run_export(const Session& session, const ExchangeArguments& args) {
-  const auto table = daemon::read_poses(args.from);
+  const auto table = store::read_poses(args.from);
   if (!table) return report(session, table.error());
-  const std::string csv = calib::format_pose_table(*table);
+  const std::string csv = calib::poses::format_pose_table(*table);
   if (args.to.empty() && !session.json) {
     fmt::print("{}", csv);
     return 0;
@@ -80,4 +80,4 @@ void add_export(CLI::App& app, Session& session) {
   command->add_option("-o,--output", args->to, "POSES.csv; standard output when absent");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -13,7 +13,7 @@
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kExplainHelp =
@@ -39,20 +39,22 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const calib::ExplainOptions wanted{.fit = *options, .also = formulas_of(*source, *options)};
-  const auto explained = with_progress("explain", [&] { return calib::explain(source->table, wanted); });
+  const calib::criticism::search::ExplainOptions wanted{.fit = *options,
+                                                        .also = formulas_of(*source, *options)};
+  const auto explained =
+      with_progress("explain", [&] { return calib::criticism::search::explain(source->table, wanted); });
   if (!explained) return report(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
   if (session.json) {
-    nlohmann::json out = calib::to_json(*explained);
+    nlohmann::json out = calib::report::to_json(*explained);
     out["chosen_in_doubt"] = doubts_json(*doubts);
     print_json(out);
   } else {
-    fmt::print("{}", calib::to_text(*explained));
+    fmt::print("{}", calib::report::to_text(*explained));
     if (!doubts->empty()) fmt::print("\nopen since it was chosen:\n{}", doubts_text(*doubts));
   }
-  return explained->finding == calib::Finding::pass ? 0 : 1;
+  return explained->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }
 
 }  // namespace
@@ -67,4 +69,4 @@ void add_explain(CLI::App& app, Session& session) {
   args->flags = add_model_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

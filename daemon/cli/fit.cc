@@ -10,7 +10,7 @@
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct FitArguments {
@@ -23,18 +23,19 @@ int run_fit(const Session& session, const FitArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  auto fitted = with_progress("fit", [&] { return calib::fit(source->table, *options); });
+  auto fitted = with_progress("fit", [&] { return calib::fit::method_choice::fit(source->table, *options); });
   if (!fitted) return report(session, fitted.error());
-  daemon::name_instruments(fitted->calibration, args.run);
+  acquire::name_instruments(fitted->calibration, args.run);
   if (!args.output.empty()) {
-    if (auto written = write_file(args.output, calib::to_json_text(fitted->calibration)); !written)
+    if (auto written = write_file(args.output, calib::calibration::to_json_text(fitted->calibration));
+        !written)
       return report(session, written.error());
     fmt::print(stderr, "calibration {} written to {}\n", fitted->calibration.id, args.output);
   }
   if (session.json) {
-    print_json(calib::to_json(*fitted));
+    print_json(calib::report::to_json(*fitted));
   } else {
-    fmt::print("{}", calib::to_text(*fitted));
+    fmt::print("{}", calib::report::to_text(*fitted));
   }
   return fitted->calibration.accepted_by_checks ? 0 : 1;
 }
@@ -50,4 +51,4 @@ void add_fit(CLI::App& app, Session& session) {
   args->flags = add_fit_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -13,7 +13,7 @@
 #include "daemon/run/solver.h"
 #include "proto/units.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 namespace {
 
@@ -62,9 +62,10 @@ bool looks_like_radians(const PoseTable& table) {
 }
 
 /// Puts one effect into a list; it replaces the same law on the same axes.
-void put(std::vector<calib::EffectPtr>& effects, calib::EffectPtr effect) {
-  std::erase_if(effects,
-                [&](const calib::EffectPtr& e) { return calib::same_law_on_a_common_axis(*e, *effect); });
+void put(std::vector<calib::effects::EffectPtr>& effects, calib::effects::EffectPtr effect) {
+  std::erase_if(effects, [&](const calib::effects::EffectPtr& e) {
+    return calib::effects::same_law_on_a_common_axis(*e, *effect);
+  });
   effects.push_back(std::move(effect));
 }
 
@@ -107,8 +108,8 @@ std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
   return f;
 }
 
-Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
-  auto source = daemon::read_runs(run, flags.further);
+Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
+  auto source = store::read_runs(run, flags.further);
   if (source && looks_like_radians(source->table))
     fmt::print(stderr,
                "no table angle is beyond {:.1f} degrees: are they radians? azimuth_deg, pitch_deg and "
@@ -117,26 +118,26 @@ Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& f
   return source;
 }
 
-Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source) {
-  auto kept = daemon::fit_options(source);
+Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::PoseSource& source) {
+  auto kept = run::fit_options(source);
   if (!kept) return tl::unexpected(kept.error());
-  calib::FitOptions out = std::move(*kept);
-  const auto method = calib::method_from(flags.method);
+  calib::fit::FitOptions out = std::move(*kept);
+  const auto method = calib::fit::method_from(flags.method);
   if (!method)
     return fail(ErrorCode::usage, "no method '" + flags.method + "'", "simplified, two-step or joint");
   out.method = *method;
   const bool leave = std::find(flags.with.begin(), flags.with.end(), "none") != flags.with.end();
-  if (leave || out.method != calib::Method::joint) out.effects.clear();
+  if (leave || out.method != calib::fit::Method::joint) out.effects.clear();
   if (!out.effects.empty())
     fmt::print(stderr, "with the model kept in the run: {} (--with none ignores it)\n",
                fmt::join(source.model, ", "));
   for (const std::string& name : flags.with) {
     if (name == "none") continue;
-    auto effect = calib::make_effect(daemon::whole_spec(name, source.definitions));
+    auto effect = calib::effects::library::make_effect(store::whole_spec(name, source.definitions));
     if (!effect) return tl::unexpected(effect.error());
     put(out.effects, *effect);
   }
-  if (!out.effects.empty() && out.method != calib::Method::joint) {
+  if (!out.effects.empty() && out.method != calib::fit::Method::joint) {
     return fail(ErrorCode::usage, "--with needs the joint method", "leave --method out");
   }
   if (flags.field_nT) out.field_nT = flags.field_nT;
@@ -149,4 +150,4 @@ Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseS
   return out;
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

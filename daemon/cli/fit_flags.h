@@ -11,7 +11,7 @@
 
 /// Every command with a fit understands these options; this also says how they combine with what a run file
 /// states.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 struct FitFlags {
   std::string method{"joint"};
@@ -32,10 +32,11 @@ void add_field_flags(CLI::App* command, FitFlags& flags);
 void add_table_flag(CLI::App* command, FitFlags& flags);
 
 /// RUN, and the further runs behind it.
-[[nodiscard]] Result<daemon::PoseSource> read_source(const std::string& run, const FitFlags& flags);
+[[nodiscard]] Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags);
 
 /// What the command line says goes before what the run file says, and that before the defaults. Effects come
 /// beside those of the model that the run file keeps; one of the same name stands in its place.
-[[nodiscard]] Result<calib::FitOptions> fit_options(const FitFlags& flags, const daemon::PoseSource& source);
+[[nodiscard]] Result<calib::fit::FitOptions> fit_options(const FitFlags& flags,
+                                                         const store::PoseSource& source);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

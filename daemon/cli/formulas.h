@@ -6,11 +6,11 @@
 #include "calib/fit/method_choice/fit.h"
 #include "daemon/store/pose_source.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// Formulas of the run file become candidates beside the library when its poses have their columns and the
 /// model lacks them. Those that were suggested by these very poses are named on stderr.
-[[nodiscard]] std::vector<calib::CandidateEffect> formulas_of(const daemon::PoseSource& source,
-                                                              const calib::FitOptions& options);
+[[nodiscard]] std::vector<calib::criticism::tests::CandidateEffect> formulas_of(
+    const store::PoseSource& source, const calib::fit::FitOptions& options);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 void GapLine::add(std::uint64_t from_seq, std::uint64_t to_seq, const std::string& why) {
   from_ = empty() ? from_seq : std::min(from_, from_seq);
@@ -22,4 +22,4 @@ std::string GapLine::text() const {
                      all ? "," : "", why);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -6,7 +6,7 @@
 
 /// A GapLine turns GAP objects that follow each other into one line for a person. A sensor that is away sends
 /// one a second; what matters is how many samples are missing by now, between which, and why.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 class GapLine {
  public:
@@ -22,4 +22,4 @@ class GapLine {
   std::vector<std::string> why_;  ///< each once, in their order
 };
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

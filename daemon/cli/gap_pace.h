@@ -4,7 +4,7 @@
 
 /// Decides when a gap that goes on is mentioned again: 10 s after it began, a minute after that, then every
 /// ten minutes. A rig without power sends a GAP a second; nobody wants to read each of them.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 class GapPace {
  public:
@@ -20,4 +20,4 @@ class GapPace {
   int mentioned_{0};
 };
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -3,7 +3,7 @@
 
 #include "daemon/cli/svg.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 const char* const kHtmlStyle = R"(
 :root{color-scheme:light;--ink:#1d2329;--quiet:#66707a;--rule:#d9dee3;--good:#1b7f4b;--bad:#b3401a;--open:#8a6100}
@@ -47,4 +47,4 @@ std::string html_good(const std::string& text) {
   return "<p class=\"good\"><b>What good looks like:</b> " + text + "</p>";
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

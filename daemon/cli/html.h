@@ -5,7 +5,7 @@
 #include <vector>
 
 /// This makes the tables and the style of the report's page.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 extern const char* const kHtmlStyle;
 
@@ -17,4 +17,4 @@ using Rows = std::vector<std::vector<std::string>>;
 /// The caption that says what to expect of a section.
 [[nodiscard]] std::string html_good(const std::string& text);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

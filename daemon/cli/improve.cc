@@ -10,7 +10,7 @@
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kImproveHelp =
@@ -26,16 +26,17 @@ struct ImproveArguments {
 };
 
 /// What each effect of the final model removes from the error.
-std::optional<calib::Waterfall> waterfall_of(const PoseTable& table, calib::FitOptions options,
-                                             const calib::Calibration& calibration) {
+std::optional<calib::criticism::search::Waterfall> waterfall_of(
+    const PoseTable& table, calib::fit::FitOptions options,
+    const calib::calibration::Calibration& calibration) {
   options.effects.clear();
-  for (const calib::CalibratedEffect& e : calibration.effects) {
-    auto effect = calib::make_effect(e.effect);
+  for (const calib::calibration::CalibratedEffect& e : calibration.effects) {
+    auto effect = calib::effects::library::make_effect(e.effect);
     if (!effect) return std::nullopt;
     options.effects.push_back(std::move(*effect));
   }
   if (options.effects.empty()) return std::nullopt;
-  auto steps = calib::waterfall(table, options);
+  auto steps = calib::criticism::search::waterfall(table, options);
   return steps ? std::optional(std::move(*steps)) : std::nullopt;
 }
 
@@ -44,26 +45,27 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  auto improved = with_progress("improve", [&] { return calib::improve(source->table, *options); });
+  auto improved =
+      with_progress("improve", [&] { return calib::criticism::search::improve(source->table, *options); });
   if (!improved) return report(session, improved.error());
-  daemon::name_instruments(improved->fit.calibration, args.run);
+  acquire::name_instruments(improved->fit.calibration, args.run);
   if (!args.output.empty()) {
-    const calib::Calibration& calibration = improved->fit.calibration;
-    if (auto written = write_file(args.output, calib::to_json_text(calibration)); !written)
+    const calib::calibration::Calibration& calibration = improved->fit.calibration;
+    if (auto written = write_file(args.output, calib::calibration::to_json_text(calibration)); !written)
       return report(session, written.error());
     fmt::print(stderr, "calibration {} written to {}\n", calibration.id, args.output);
   }
   const auto steps = with_progress(
       "waterfall", [&] { return waterfall_of(source->table, *options, improved->fit.calibration); });
   if (session.json) {
-    nlohmann::json out = calib::to_json(*improved);
-    out["waterfall"] = steps ? calib::to_json(*steps) : nlohmann::json();
+    nlohmann::json out = calib::report::to_json(*improved);
+    out["waterfall"] = steps ? calib::report::to_json(*steps) : nlohmann::json();
     print_json(out);
   } else {
-    fmt::print("{}", calib::to_text(*improved));
-    if (steps) fmt::print("\n{}", calib::to_text(*steps));
+    fmt::print("{}", calib::report::to_text(*improved));
+    if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
   }
-  return improved->finding == calib::Finding::pass ? 0 : 1;
+  return improved->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }
 
 }  // namespace
@@ -79,4 +81,4 @@ void add_improve(CLI::App& app, Session& session) {
   args->flags = add_model_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -5,7 +5,7 @@
 
 #include "proto/number.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 template <typename Allowed>
@@ -30,4 +30,4 @@ CLI::Validator above_zero(double high, const std::string& unit) {
                [high](double x) { return x > 0 && x <= high; });
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

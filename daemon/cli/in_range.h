@@ -5,7 +5,7 @@
 
 /// This checks numbers of the command line that have a physical range. The error names the number that was
 /// given, the range and its unit; nan and inf are outside of every range.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// From `low` to `high`, both included.
 [[nodiscard]] CLI::Validator in_range(double low, double high, const std::string& unit);
@@ -13,4 +13,4 @@ namespace mgtd::cli {
 /// Above zero, up to `high`.
 [[nodiscard]] CLI::Validator above_zero(double high, const std::string& unit);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 volatile std::sig_atomic_t came = 0;
@@ -19,4 +19,4 @@ void catch_interrupts(std::initializer_list<int> signals) {
 
 bool interrupted() { return came != 0; }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -2,7 +2,7 @@
 #pragma once
 #include <initializer_list>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// From now on these signals are remembered instead of ending the program, and a system call that waits
 /// (for a line of the keyboard) ends when one comes: std::signal would have it go on.
@@ -10,4 +10,4 @@ void catch_interrupts(std::initializer_list<int> signals);
 /// Whether one came.
 [[nodiscard]] bool interrupted();
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -16,7 +16,7 @@
 #include "daemon/store/rotated_files.h"
 #include "proto/raw_log.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 /// More than any header: its text has at most 65 535 bytes.
@@ -66,7 +66,7 @@ Error cannot_play(const std::vector<JournalFile>& files, std::uint64_t missing) 
       files.size() == 1 ? first.path
                         : fmt::format("{} to {} ({} files)", first.path, files.back().path, files.size());
   const auto before =
-      daemon::rotated_name(std::filesystem::path(first.path).parent_path(), first.life, missing, ".raw");
+      store::rotated_name(std::filesystem::path(first.path).parent_path(), first.life, missing, ".raw");
   std::error_code ignored;
   if (std::filesystem::exists(before, ignored))
     return {ErrorCode::bad_input,
@@ -133,4 +133,4 @@ Result<Journals> journals_of(const std::vector<std::string>& paths) {
               "name the raw-*.raw files of the daemon's runs folder");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -9,7 +9,7 @@
 /// play: those of a start of the daemon from its first file on, as far as none between is missing. What the
 /// limits on the journal's space and age have removed from the front of a long life takes the rest of that
 /// life with it: what drivers and clocks had learnt by then is in no later file.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 struct Journals {
   std::vector<std::string> play;
@@ -19,4 +19,4 @@ struct Journals {
 /// Refuses what is no journal, and files of which none can be played.
 [[nodiscard]] Result<Journals> journals_of(const std::vector<std::string>& paths);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

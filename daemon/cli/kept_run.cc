@@ -9,7 +9,7 @@
 
 #include "proto/run_status.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 std::string who() {
@@ -26,7 +26,7 @@ WallTime now() {
 }  // namespace
 
 Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
-  auto source = daemon::read_run(path);
+  auto source = store::read_run(path);
   if (!source) return tl::unexpected(source.error());
   if (!source->header) {
     return fail(
@@ -34,7 +34,7 @@ Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
         fmt::format("make a run file of it (mgt import {} -o RUN.mgtrun), or use --with in each command",
                     path));
   }
-  auto file = daemon::RunFile::open(path, daemon::Access::resume);
+  auto file = store::RunFile::open(path, store::Access::resume);
   if (!file) return tl::unexpected(file.error());
   const auto state = file->state();
   if (!state) return tl::unexpected(state.error());
@@ -53,4 +53,4 @@ Result<void> keep_step(KeptRun& run, const std::string& action, const std::strin
       {now(), who(), action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

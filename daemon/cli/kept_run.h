@@ -9,12 +9,12 @@
 /// A KeptRun is a run file whose model an operator works on: what was measured, the model as it is kept, and
 /// the way to write the next step. Refuses a pose table, which keeps nothing, and a run that is still being
 /// measured.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 struct KeptRun {
-  daemon::RunFile file;
-  daemon::PoseSource source;
-  calib::FitOptions options;  ///< with the kept model
+  store::RunFile file;
+  store::PoseSource source;
+  calib::fit::FitOptions options;  ///< with the kept model
 };
 
 [[nodiscard]] Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags);
@@ -23,4 +23,4 @@ struct KeptRun {
 [[nodiscard]] Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                                      const nlohmann::json& result);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -7,7 +7,7 @@
 #include "daemon/cli/ask.h"
 #include "daemon/cli/interrupt.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 int print_end(const Session& session, const nlohmann::json& status) {
@@ -21,7 +21,7 @@ int print_end(const Session& session, const nlohmann::json& status) {
 
 /// Tells the operator what to do until the daemon has seen all arms or gives up.
 int run_magnet_test(const Session& session) {
-  auto client = daemon::ControlClient::connect(session.control_socket);
+  auto client = serve::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   catch_interrupts({SIGINT, SIGTERM, SIGHUP});
   auto status = client->request(ControlCommand::magnet_start);
@@ -45,4 +45,4 @@ void add_magnet_test(CLI::App& run, Session& session) {
       [&session] { return run_magnet_test(session); });
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -57,44 +57,44 @@ constexpr const char* kDescription =
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace mgtd::cli;
+  using namespace mgtd::daemon::cli;
   CLI::App app{kDescription, "mgt"};
   app.set_version_flag("--version", MGTD_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
-  Session session;
+  mgtd::daemon::cli::Session session;
   session.control_socket = "/run/mgtd/control.sock";
   app.add_option("--socket", session.control_socket, "control socket of the daemon")
       ->envname("MGTD_CONTROL")
       ->capture_default_str();
   app.add_flag("--json", session.json,
                "one JSON object on stdout, messages on stderr; also after the command");
-  add_status(app, session);
-  add_watch(app, session);
-  add_run(app, session);
-  add_calibrations(app, session);
-  add_control(app, session);
-  add_fit(app, session);
-  add_apply(app, session);
-  add_plan(app, session);
-  add_check(app, session);
-  add_compare(app, session);
-  add_diff(app, session);
-  add_explain(app, session);
-  add_effects(app, session);
-  add_improve(app, session);
-  add_add(app, session);
-  add_drop(app, session);
-  add_undo(app, session);
-  add_model(app, session);
-  add_define(app, session);
-  add_next(app, session);
-  add_replay(app, session);
-  add_report(app, session);
-  add_import(app, session);
-  add_export(app, session);
-  add_check_config(app, session);
-  add_ports(app, session);
+  mgtd::daemon::cli::add_status(app, session);
+  mgtd::daemon::cli::add_watch(app, session);
+  mgtd::daemon::cli::add_run(app, session);
+  mgtd::daemon::cli::add_calibrations(app, session);
+  mgtd::daemon::cli::add_control(app, session);
+  mgtd::daemon::cli::add_fit(app, session);
+  mgtd::daemon::cli::add_apply(app, session);
+  mgtd::daemon::cli::add_plan(app, session);
+  mgtd::daemon::cli::add_check(app, session);
+  mgtd::daemon::cli::add_compare(app, session);
+  mgtd::daemon::cli::add_diff(app, session);
+  mgtd::daemon::cli::add_explain(app, session);
+  mgtd::daemon::cli::add_effects(app, session);
+  mgtd::daemon::cli::add_improve(app, session);
+  mgtd::daemon::cli::add_add(app, session);
+  mgtd::daemon::cli::add_drop(app, session);
+  mgtd::daemon::cli::add_undo(app, session);
+  mgtd::daemon::cli::add_model(app, session);
+  mgtd::daemon::cli::add_define(app, session);
+  mgtd::daemon::cli::add_next(app, session);
+  mgtd::daemon::cli::add_replay(app, session);
+  mgtd::daemon::cli::add_report(app, session);
+  mgtd::daemon::cli::add_import(app, session);
+  mgtd::daemon::cli::add_export(app, session);
+  mgtd::daemon::cli::add_check_config(app, session);
+  mgtd::daemon::cli::add_ports(app, session);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
     session.json =
         session.json || std::find(words.begin(), words.end(), std::string_view("--json")) != words.end();
     const auto unknown = unknown_command(app);
-    return report(session, unknown ? *unknown : wrong_words(app, error));
+    return mgtd::daemon::cli::report(session, unknown ? *unknown : wrong_words(app, error));
   }
   return session.exit_code;
 }

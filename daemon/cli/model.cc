@@ -18,7 +18,7 @@
 #include "daemon/cli/kept_run.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 using nlohmann::json;
@@ -43,9 +43,10 @@ struct ModelArguments {
 };
 
 /// What each effect of the model removes from the error; empty without effects, or if a fit fails.
-std::optional<calib::Waterfall> waterfall_of(const KeptRun& run, const calib::FitOptions& options) {
+std::optional<calib::criticism::search::Waterfall> waterfall_of(const KeptRun& run,
+                                                                const calib::fit::FitOptions& options) {
   if (options.effects.empty()) return std::nullopt;
-  auto steps = calib::waterfall(run.source.table, options);
+  auto steps = calib::criticism::search::waterfall(run.source.table, options);
   return steps ? std::optional(std::move(*steps)) : std::nullopt;
 }
 
@@ -55,10 +56,10 @@ std::string model_text(const std::vector<std::string>& specs) {
 
 /// Keeps the change or says why not, and prints it. `choice`: what the poses said of an effect that is added.
 int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
-             const calib::ModelChange& change, const std::string& spec, const calib::FitOptions& options,
-             const calib::Choice& choice) {
+             const calib::criticism::search::ModelChange& change, const std::string& spec,
+             const calib::fit::FitOptions& options, const calib::criticism::search::Choice& choice) {
   const bool keep = args.force || !change.vetoed();
-  json made = to_json(change);
+  json made = calib::report::to_json(change);
   if (!choice.spec.empty()) made["choice"] = to_json(choice);
   if (keep) {
     if (auto ok = keep_step(run, change.adding ? "add" : "drop", spec, made); !ok)
@@ -68,17 +69,17 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
   if (session.json) {
     json out = std::move(made);
     out["kept"] = keep;
-    out["waterfall"] = steps ? to_json(*steps) : json();
+    out["waterfall"] = steps ? calib::report::to_json(*steps) : json();
     print_json(out);
   } else {
-    fmt::print("{}", to_text(change));
-    if (steps) fmt::print("\n{}", to_text(*steps));
-    if (choice.open()) fmt::print("\n{}\n", to_text(choice));
+    fmt::print("{}", calib::report::to_text(change));
+    if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
+    if (choice.open()) fmt::print("\n{}\n", calib::report::to_text(choice));
     if (keep) fmt::print("\nkept in {}; mgt undo takes it back\n", args.run);
   }
   if (!keep) {
-    for (const calib::Veto veto : change.vetoes())
-      fmt::print(stderr, "mgt: not kept: {}\n", to_text(change, veto));
+    for (const calib::criticism::search::Veto veto : change.vetoes())
+      fmt::print(stderr, "mgt: not kept: {}\n", calib::report::to_text(change, veto));
     fmt::print(stderr, "     these poses do not support this change; --force keeps it all the same\n");
   }
   return keep ? 0 : 1;
@@ -87,18 +88,21 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
 int run_add(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
-  const auto effect = calib::make_effect(daemon::whole_spec(args.effect, run->source.definitions));
+  const auto effect =
+      calib::effects::library::make_effect(store::whole_spec(args.effect, run->source.definitions));
   if (!effect) return report(session, effect.error());
-  const auto change =
-      with_progress("add", [&] { return calib::add_effect(run->source.table, run->options, *effect); });
+  const auto change = with_progress(
+      "add", [&] { return calib::criticism::search::add_effect(run->source.table, run->options, *effect); });
   if (!change) return report(session, change.error());
-  const auto found = calib::make_effect(change->spec);
+  const auto found = calib::effects::library::make_effect(change->spec);
   if (!found) return report(session, found.error());
-  calib::Choice choice;
-  const calib::ExplainOptions without{.fit = run->options, .also = formulas_of(run->source, run->options)};
-  if (const auto before = with_progress("add", [&] { return calib::explain(run->source.table, without); }))
-    choice = calib::choice_of(*before, run->source.table, *found);
-  calib::FitOptions options = run->options;
+  calib::criticism::search::Choice choice;
+  const calib::criticism::search::ExplainOptions without{.fit = run->options,
+                                                         .also = formulas_of(run->source, run->options)};
+  if (const auto before =
+          with_progress("add", [&] { return calib::criticism::search::explain(run->source.table, without); }))
+    choice = calib::criticism::search::choice_of(*before, run->source.table, *found);
+  calib::fit::FitOptions options = run->options;
   options.effects.push_back(*found);
   return conclude(session, args, *run, *change, change->spec, options, choice);
 }
@@ -106,7 +110,7 @@ int run_add(const Session& session, const ModelArguments& args) {
 /// The place of an effect in the kept model, by its name or by its whole spec.
 Result<std::size_t> place_of(const KeptRun& run, const std::string& effect) {
   for (std::size_t i = 0; i < run.options.effects.size(); ++i) {
-    const calib::Effect& e = *run.options.effects[i];
+    const calib::effects::Effect& e = *run.options.effects[i];
     if (effect == e.name() || effect == e.spec()) return i;
   }
   return fail(ErrorCode::refused, fmt::format("the model kept in the run holds no {}", effect),
@@ -118,10 +122,10 @@ int run_drop(const Session& session, const ModelArguments& args) {
   if (!run) return report(session, run.error());
   const auto place = place_of(*run, args.effect);
   if (!place) return report(session, place.error());
-  const auto change =
-      with_progress("drop", [&] { return calib::drop_effect(run->source.table, run->options, *place); });
+  const auto change = with_progress(
+      "drop", [&] { return calib::criticism::search::drop_effect(run->source.table, run->options, *place); });
   if (!change) return report(session, change.error());
-  calib::FitOptions options = run->options;
+  calib::fit::FitOptions options = run->options;
   options.effects.erase(options.effects.begin() + static_cast<std::ptrdiff_t>(*place));
   return conclude(session, args, *run, *change, run->source.model[*place], options, {});
 }
@@ -131,16 +135,16 @@ int run_undo(const Session& session, const ModelArguments& args) {
   if (!run) return report(session, run.error());
   const auto steps = run->file.model_steps();
   if (!steps) return report(session, steps.error());
-  const auto last = daemon::undoable(*steps);
+  const auto last = store::undoable(*steps);
   if (!last) {
     return report(session,
                   {ErrorCode::refused, "there is nothing to undo: the run keeps the model it began with",
                    "mgt add puts an effect in"});
   }
   if (auto ok = keep_step(*run, "undo", last->spec, json::object()); !ok) return report(session, ok.error());
-  std::vector<daemon::ModelStep> all = *steps;
+  std::vector<store::ModelStep> all = *steps;
   all.push_back({.at = {}, .who = {}, .action = "undo", .spec = last->spec, .result = {}});
-  const auto model = daemon::kept_model(all);
+  const auto model = store::kept_model(all);
   if (session.json) {
     print_json({{"schema", "mgt.undo/1"},
                 {"undone", {{"action", last->action}, {"spec", last->spec}}},
@@ -151,7 +155,7 @@ int run_undo(const Session& session, const ModelArguments& args) {
   return 0;
 }
 
-json step_json(const daemon::ModelStep& s) {
+json step_json(const store::ModelStep& s) {
   return {{"t", format_utc(s.at)},
           {"who", s.who},
           {"action", s.action},
@@ -160,18 +164,18 @@ json step_json(const daemon::ModelStep& s) {
 }
 
 int run_model(const Session& session, const ModelArguments& args) {
-  const auto file = daemon::RunFile::open(args.run, daemon::Access::read_only);
+  const auto file = store::RunFile::open(args.run, store::Access::read_only);
   if (!file) return report(session, file.error());
   const auto steps = file->model_steps();
   if (!steps) return report(session, steps.error());
-  const auto source = daemon::read_run(args.run);
+  const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
-  const auto model = daemon::kept_model(*steps);
+  const auto model = store::kept_model(*steps);
   if (session.json) {
     json history = json::array();
-    for (const daemon::ModelStep& s : *steps) history.push_back(step_json(s));
+    for (const store::ModelStep& s : *steps) history.push_back(step_json(s));
     json formulas = json::array();
-    for (const daemon::Definition& d : source->definitions)
+    for (const store::Definition& d : source->definitions)
       formulas.push_back({{"name", d.name}, {"spec", d.spec}, {"exploratory", d.exploratory()}});
     print_json({{"schema", "mgt.model/1"},
                 {"model", model},
@@ -179,7 +183,7 @@ int run_model(const Session& session, const ModelArguments& args) {
                 {"formulas", std::move(formulas)}});
     return 0;
   }
-  for (const daemon::ModelStep& s : *steps) {
+  for (const store::ModelStep& s : *steps) {
     const json result = json::parse(s.result, nullptr, false);
     std::string rms;
     if (result.is_object() && result.contains("rms_before_nT")) {
@@ -189,7 +193,7 @@ int run_model(const Session& session, const ModelArguments& args) {
     fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
   }
   fmt::print("the model: {}\n", model_text(model));
-  for (const daemon::Definition& d : source->definitions)
+  for (const store::Definition& d : source->definitions)
     fmt::print("formula: {}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "");
   return 0;
 }
@@ -239,4 +243,4 @@ void add_model(CLI::App& app, Session& session) {
   add_run_argument(command, *args);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

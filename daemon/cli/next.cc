@@ -12,7 +12,7 @@
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kNextHelp =
@@ -32,18 +32,22 @@ struct NextArguments {
 
 /// Where the verdict leaves nothing open: an effect of the model against the first that could stand in its
 /// place, both asked about beside the others of the model.
-Result<calib::NextReport> next_about(const PoseTable& table, calib::FitOptions options,
-                                     const std::vector<calib::Choice>& doubts, calib::NextReport otherwise) {
-  const auto open = std::find_if(doubts.begin(), doubts.end(),
-                                 [](const calib::Choice& choice) { return !choice.alternatives.empty(); });
+Result<calib::criticism::search::NextReport> next_about(
+    const PoseTable& table, calib::fit::FitOptions options,
+    const std::vector<calib::criticism::search::Choice>& doubts,
+    calib::criticism::search::NextReport otherwise) {
+  const auto open = std::find_if(
+      doubts.begin(), doubts.end(),
+      [](const calib::criticism::search::Choice& choice) { return !choice.alternatives.empty(); });
   if (open == doubts.end()) {
     if (!doubts.empty()) otherwise.nothing_to_settle.reset(), otherwise.none_helps = false;
     return otherwise;
   }
-  std::erase_if(options.effects, [&](const calib::EffectPtr& e) { return e->spec() == open->spec; });
-  return calib::next_of(table, {.fit = options},
-                        std::pair{std::string(calib::family_name(open->spec)),
-                                  std::string(calib::family_name(open->alternatives.front()))});
+  std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) { return e->spec() == open->spec; });
+  return calib::criticism::search::next_of(
+      table, {.fit = options},
+      std::pair{std::string(calib::effects::family_name(open->spec)),
+                std::string(calib::effects::family_name(open->alternatives.front()))});
 }
 
 int run_next(const Session& session, const NextArguments& args) {
@@ -64,23 +68,24 @@ int run_next(const Session& session, const NextArguments& args) {
   if (args.pair.size() == 2) pair = {args.pair[0], args.pair[1]};
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
-  auto next = with_progress("next", [&] { return calib::next_of(source->table, {.fit = *options}, pair); });
+  auto next = with_progress(
+      "next", [&] { return calib::criticism::search::next_of(source->table, {.fit = *options}, pair); });
   if (next && !pair && next->effect.empty())
     next = next_about(source->table, *options, *doubts, std::move(*next));
   if (!next) return report(session, next.error());
   if (!args.output.empty() && !next->steps.empty()) {
-    const calib::NextStep& best = next->steps.front();
-    if (auto written = write_file(args.output, calib::pose_list(best)); !written)
+    const calib::criticism::search::NextStep& best = next->steps.front();
+    if (auto written = write_file(args.output, calib::report::pose_list(best)); !written)
       return report(session, written.error());
     fmt::print(stderr, "{} poses written to {}: {}\n", best.poses.size(), args.output,
                best.measurement.action);
   }
   if (session.json) {
-    nlohmann::json out = to_json(*next);
+    nlohmann::json out = calib::report::to_json(*next);
     out["chosen_in_doubt"] = doubts_json(*doubts);
     print_json(out);
   } else {
-    fmt::print("{}{}", doubts_text(*doubts), to_text(*next));
+    fmt::print("{}{}", doubts_text(*doubts), calib::report::to_text(*next));
   }
   return next->steps.empty() && !next->effect.empty() ? 1 : 0;
 }
@@ -99,4 +104,4 @@ void add_next(CLI::App& app, Session& session) {
   args->flags = add_model_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

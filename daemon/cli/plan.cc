@@ -13,7 +13,7 @@
 #include "daemon/run/limits_cost.h"
 #include "daemon/run/planned_poses.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kPlanHelp =
@@ -42,41 +42,41 @@ struct PlanArguments {
 
 /// The run that a configuration describes.
 struct LimitedRun {
-  daemon::PlanOptions options;
+  plan::PlanOptions options;
   drivers::TableLimits limits;
 };
 struct Wanted {
-  calib::DesignRequest request;
+  calib::design::DesignRequest request;
   std::optional<LimitedRun> run;
 };
 
 Result<void> take_config(const PlanArguments& args, Wanted& wanted) {
-  const auto config = daemon::load_config(args.config);
+  const auto config = config::load_config(args.config);
   if (!config) {
     std::string all;
     for (const std::string& line : config.error().lines) all += (all.empty() ? "" : "\n") + line;
     return fail(ErrorCode::bad_input, all, "mgt check-config FILE lists every mistake");
   }
-  auto poses = daemon::planned_poses(*config);
+  auto poses = run::planned_poses(*config);
   if (!poses) return tl::unexpected(poses.error());
   wanted.request.poses = std::move(*poses);
-  daemon::assume(*config, wanted.request);
-  wanted.run = LimitedRun{daemon::plan_options(*config), daemon::table_limits(*config)};
+  run::assume(*config, wanted.request);
+  wanted.run = LimitedRun{run::plan_options(*config), run::table_limits(*config)};
   return {};
 }
 
 Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   if (!args.config.empty()) return take_config(args, wanted);
-  calib::DesignRequest& request = wanted.request;
+  calib::design::DesignRequest& request = wanted.request;
   if (args.poses.empty()) {
-    auto poses = daemon::planned_poses(daemon::Config{});
+    auto poses = run::planned_poses(config::Config{});
     if (!poses) return tl::unexpected(poses.error());
     request.poses = std::move(*poses);
     return {};
   }
   const auto text = read_file(args.poses);
   if (!text) return tl::unexpected(text.error());
-  auto poses = calib::parse_pose_list(*text, args.poses);
+  auto poses = calib::poses::parse_pose_list(*text, args.poses);
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);
   return {};
@@ -85,7 +85,7 @@ Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
 /// The command line takes precedence over the configuration, and that over the earlier calibration.
 Result<Wanted> wanted_of(const PlanArguments& args) {
   Wanted out;
-  calib::DesignRequest& r = out.request;
+  calib::design::DesignRequest& r = out.request;
   r.scalar_sd_nT = args.scalar_sd_nT;
   r.pose_noise_nT = args.noise_nT;
   r.warming_degC = args.warming_degC;
@@ -98,7 +98,7 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
   }
   if (auto taken = take_poses(args, out); !taken) return tl::unexpected(taken.error());
   for (const std::string& name : args.with) {
-    auto effect = calib::make_effect(name);
+    auto effect = calib::effects::library::make_effect(name);
     if (!effect) return tl::unexpected(effect.error());
     r.effects.push_back(*effect);
   }
@@ -118,20 +118,20 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
 int run_plan(const Session& session, const PlanArguments& args) {
   const auto wanted = wanted_of(args);
   if (!wanted) return report(session, wanted.error());
-  const auto planned = with_progress("plan", [&] { return calib::evaluate_design(wanted->request); });
+  const auto planned = with_progress("plan", [&] { return calib::design::evaluate_design(wanted->request); });
   if (!planned) return report(session, planned.error());
-  std::optional<daemon::LimitsCost> limits;
+  std::optional<run::LimitsCost> limits;
   if (wanted->run) {
-    auto cost = daemon::limits_cost(wanted->run->options, wanted->run->limits, wanted->request);
+    auto cost = run::limits_cost(wanted->run->options, wanted->run->limits, wanted->request);
     if (!cost) return report(session, cost.error());
     limits = *std::move(cost);
   }
   if (session.json) {
-    nlohmann::json out = calib::to_json(*planned);
-    if (limits) out["limits"] = daemon::to_json(*limits);
+    nlohmann::json out = calib::report::to_json(*planned);
+    if (limits) out["limits"] = run::to_json(*limits);
     print_json(out);
   } else {
-    fmt::print("{}{}", limits ? daemon::to_text(*limits) + "\n" : "", calib::to_text(*planned));
+    fmt::print("{}{}", limits ? run::to_text(*limits) + "\n" : "", calib::report::to_text(*planned));
   }
   return planned->determined ? 0 : 1;
 }
@@ -182,4 +182,4 @@ void add_plan(CLI::App& app, Session& session) {
       ->check(above_zero(10, "deg"));
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

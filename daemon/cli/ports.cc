@@ -10,7 +10,7 @@
 #include "daemon/store/durable_file.h"
 #include "drivers/port_list.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 std::string config_line(const drivers::PortInfo& port, std::span<const drivers::PortInfo> all) {
@@ -70,12 +70,12 @@ int write_serials(const Session& session, const std::string& file) {
   if (!status) return report(session, status.error());
   const SerialLines done = with_serials(*text, serials_of(*status));
   if (!done.written.empty()) {
-    if (const auto good = daemon::parse_config(done.text, file); !good) {
+    if (const auto good = config::parse_config(done.text, file); !good) {
       for (const std::string& line : good.error().lines) fmt::print(stderr, "{}\n", line);
       fmt::print(stderr, "{} is left as it was\n", file);
       return 2;
     }
-    if (auto written = daemon::write_durably(file, done.text); !written)
+    if (auto written = store::write_durably(file, done.text); !written)
       return report(session, written.error());
   }
   if (session.json) {
@@ -101,4 +101,4 @@ void add_ports(CLI::App& app, Session& session) {
       "fill the serial numbers of the instruments that answer the daemon into this configuration");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

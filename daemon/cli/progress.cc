@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 int terminal_width(int fd) {
   winsize size{};
@@ -44,4 +44,4 @@ std::string progress_line(const RunStatus& status, int width) {
   return line;
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -5,7 +5,7 @@
 #include "proto/run_status.h"
 
 /// This shows the progress of a run to someone who waits for it.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// One line of at most `width` characters: bar, counts, time left, what is happening now.
 ///   [#########...........]  70/157  random  dwelling   4 min 10 s left
@@ -17,4 +17,4 @@ namespace mgtd::cli {
 /// Columns of the terminal behind a descriptor; 100 where it does not say.
 [[nodiscard]] int terminal_width(int fd);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -9,7 +9,7 @@
 
 #include "proto/number.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct Word {
@@ -59,4 +59,4 @@ Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What wh
   return out;
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

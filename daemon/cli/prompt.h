@@ -8,7 +8,7 @@
 #include "proto/operator_prompt.h"
 
 /// This is the dialogue with the operator of a run that is set by hand: text comes in, requests go out.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// What to do on a line that was typed at a prompt.
 struct PromptAnswer {
@@ -24,4 +24,4 @@ struct PromptAnswer {
 /// for a reading.
 [[nodiscard]] Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What what);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

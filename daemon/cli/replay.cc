@@ -16,7 +16,7 @@
 #include "daemon/cli/journal_files.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct ReplayArguments {
@@ -60,7 +60,7 @@ class PlayProgress {
 
 /// How many bytes could not be read because they are damaged. A last record that is cut short because the
 /// daemon was killed does not count as damage.
-Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay, PlayProgress& progress) {
+Result<std::uint64_t> play(const std::string& path, acquire::Replay& replay, PlayProgress& progress) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(ErrorCode::bad_input, path + ": cannot be read", "check path and permissions");
   RawLogDecoder decoder;
@@ -85,7 +85,7 @@ Result<std::uint64_t> play(const std::string& path, daemon::Replay& replay, Play
   return decoder.state() == RawLogDecoder::State::damaged || unread > kRawRecordMax ? unread : 0;
 }
 
-nlohmann::json summary(const daemon::ReplayCounts& counts, const std::vector<Error>& left_out,
+nlohmann::json summary(const acquire::ReplayCounts& counts, const std::vector<Error>& left_out,
                        std::uint64_t damaged) {
   auto not_played = nlohmann::json::array();
   for (const Error& why : left_out) not_played.push_back({{"message", why.message}, {"remedy", why.remedy}});
@@ -101,7 +101,7 @@ nlohmann::json summary(const daemon::ReplayCounts& counts, const std::vector<Err
           {"parted", counts.parted ? nlohmann::json(*counts.parted) : nlohmann::json()}};
 }
 
-void print_summary(const daemon::ReplayCounts& counts, std::uint64_t damaged) {
+void print_summary(const acquire::ReplayCounts& counts, std::uint64_t damaged) {
   fmt::print(stderr, "{} samples, {} missing in {} gaps, from {} start{} of the daemon\n", counts.samples,
              counts.missing, counts.gaps, counts.lives, counts.lives == 1 ? "" : "s");
   if (counts.bytes_lost > 0)
@@ -125,11 +125,11 @@ int run_replay(const Session& session, const ReplayArguments& args) {
   const auto journals = journals_of(args.journals);
   if (!journals) return report(session, journals.error());
   for (const Error& why : journals->left_out) fmt::print(stderr, "{}\n", why.text());
-  std::shared_ptr<const calib::Calibration> instead;
+  std::shared_ptr<const calib::calibration::Calibration> instead;
   if (!args.calibration.empty()) {
     auto calibration = read_calibration(args.calibration);
     if (!calibration) return report(session, calibration.error());
-    instead = std::make_shared<const calib::Calibration>(*std::move(calibration));
+    instead = std::make_shared<const calib::calibration::Calibration>(*std::move(calibration));
   }
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
   Output output{session.json ? nullptr : stdout};
@@ -140,7 +140,7 @@ int run_replay(const Session& session, const ReplayArguments& args) {
                     {ErrorCode::io, args.output + ": cannot be written", "check the folder and the disk"});
     output.file = file.get();
   }
-  daemon::Replay replay([&output](std::string_view line) { output.write(line); }, instead);
+  acquire::Replay replay([&output](std::string_view line) { output.write(line); }, instead);
   std::uint64_t damaged = 0;
   {
     PlayProgress progress(journals->play, output.file == stdout && isatty(STDOUT_FILENO) != 0);
@@ -174,4 +174,4 @@ void add_replay(CLI::App& app, Session& session) {
   command->add_option("-o,--output", args->output, "file; standard output when absent");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

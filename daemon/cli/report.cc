@@ -11,7 +11,7 @@
 #include "daemon/cli/report_page.h"
 #include "daemon/cli/work_progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kReportHelp =
@@ -32,11 +32,11 @@ Result<ReportContent> content_of(const ReportArguments& args) {
   if (!source) return tl::unexpected(source.error());
   auto options = fit_options(*args.flags, *source);
   if (!options) return tl::unexpected(options.error());
-  auto fitted = calib::fit(source->table, *options);
+  auto fitted = calib::fit::method_choice::fit(source->table, *options);
   if (!fitted) return tl::unexpected(fitted.error());
-  auto comparison = calib::compare(source->table, *options);
+  auto comparison = calib::criticism::tests::compare(source->table, *options);
   if (!comparison) return tl::unexpected(comparison.error());
-  auto explained = calib::explain(source->table, {.fit = *options});
+  auto explained = calib::criticism::search::explain(source->table, {.fit = *options});
   if (!explained) return tl::unexpected(explained.error());
   auto history = history_of(args.run, *source);
   if (!history) return tl::unexpected(history.error());
@@ -54,9 +54,10 @@ Result<ReportContent> content_of(const ReportArguments& args) {
                     .command = fmt::format("mgt report {} -o {}", name, args.output)};
   // With the model that explain ended with, the waterfall shows what adding the named effects would remove.
   if (!out.explained.model.empty()) {
-    calib::FitOptions whole = *options;
+    calib::fit::FitOptions whole = *options;
     whole.effects = out.explained.model;
-    if (auto steps = calib::waterfall(out.source.table, whole)) out.waterfall = std::move(*steps);
+    if (auto steps = calib::criticism::search::waterfall(out.source.table, whole))
+      out.waterfall = std::move(*steps);
   }
   return out;
 }
@@ -89,4 +90,4 @@ void add_report(CLI::App& app, Session& session) {
   args->flags = add_model_flags(command);
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -22,7 +22,7 @@
 #include "daemon/cli/svg.h"
 #include "proto/units.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 std::string number(double x) { return fmt::format("{:.3f}", x); }
@@ -41,7 +41,7 @@ std::string duration(const PoseTable& table) {
   return a && b ? fmt::format("{:.0f} minutes", (*b - *a) / 60) : "not recorded";
 }
 
-std::vector<std::string> error_row(const std::string& name, const calib::ErrorSummary& e) {
+std::vector<std::string> error_row(const std::string& name, const calib::fit::ErrorSummary& e) {
   std::vector<std::string> out{name};
   for (const double x : e.total_field_rmse_nT) out.push_back(number(x));
   const Gradient& g = e.tensor_rmse_nT_per_m;
@@ -49,9 +49,9 @@ std::vector<std::string> error_row(const std::string& name, const calib::ErrorSu
   return out;
 }
 
-std::string banner_class(calib::Finding finding) {
-  if (finding == calib::Finding::pass) return "banner pass";
-  return finding == calib::Finding::bad_data ? "banner bad" : "banner";
+std::string banner_class(calib::criticism::search::Finding finding) {
+  if (finding == calib::criticism::search::Finding::pass) return "banner pass";
+  return finding == calib::criticism::search::Finding::bad_data ? "banner bad" : "banner";
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ std::string measured_section(const ReportContent& c) {
             {"extra columns", columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, ", "))},
             {"data", c.fit.calibration.data_hash}};
   if (c.source.header) {
-    const daemon::RunHeader& h = *c.source.header;
+    const store::RunHeader& h = *c.source.header;
     const std::string started = h.started_utc.ns == 0
                                     ? "start not recorded"
                                     : fmt::format("started {:.19}Z", format_utc(h.started_utc));
@@ -83,11 +83,12 @@ std::string measured_section(const ReportContent& c) {
 
 std::string verdict_section(const ReportContent& c) {
   const std::string word(to_string(c.explained.finding));
-  std::string text = calib::sentence(c.explained);
+  std::string text = calib::report::sentence(c.explained);
   std::string out = fmt::format("<div class=\"{}\"><strong>{}</strong>{}</div>",
                                 banner_class(c.explained.finding), word, escaped(text));
-  for (const calib::Choice& choice : c.doubts)
-    out += "<p><strong>Open since it was chosen:</strong> " + escaped(calib::to_text(choice)) + ".</p>";
+  for (const calib::criticism::search::Choice& choice : c.doubts)
+    out +=
+        "<p><strong>Open since it was chosen:</strong> " + escaped(calib::report::to_text(choice)) + ".</p>";
   Rows rows;
   std::set<std::size_t> failed;
   for (const Check& check : c.fit.calibration.checks) {
@@ -105,7 +106,7 @@ std::string verdict_section(const ReportContent& c) {
         "{:.3g} times the noise: look at what the model leaves and what could be missing.</p>",
         c.fit.residual_nT / c.fit.noise_nT);
   }
-  for (const std::string& reason : calib::fit_reasons(c.fit))
+  for (const std::string& reason : calib::report::fit_reasons(c.fit))
     out += "<p class=\"quiet\">" + escaped(reason) + "</p>";
   return out + html_good(
                    "every check passed, and the residual is near the noise. A calibration that fails a check "
@@ -121,7 +122,7 @@ std::string errors_section(const ReportContent& c) {
   if (c.fit.check_poses) rows.push_back(error_row("check poses", *c.fit.check_poses));
   return "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares over the poses, nT and "
          "nT/m; " +
-         escaped(calib::rows_text(c.fit)) + ".</p>" +
+         escaped(calib::report::rows_text(c.fit)) + ".</p>" +
          html_table({"", "s1", "s2", "s3", "s4", "xx", "yy", "zz", "xy", "xz", "yz"}, rows, false) +
          html_good(fmt::format(
              "the last rows agree with each other (nothing was overfitted) and lie near the noise of a "
@@ -135,17 +136,17 @@ std::string residual_section(const ReportContent& c) {
       "<h2>What the model leaves</h2><p>Residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}. {}</p>"
       "<p class=\"quiet\">Each row is a way of looking at it, each plot its means over a covariate, of the "
       "component that depends most.</p>",
-      c.comparison.residual_nT, calib::kResidualIs, c.comparison.noise_nT,
-      calib::noise_source(c.comparison.noise.known),
-      escaped(calib::as_sentence(calib::noise_of_tests(c.comparison.noise))));
-  for (const calib::ResidualChannel& channel : c.comparison.channels) {
+      c.comparison.residual_nT, calib::report::kResidualIs, c.comparison.noise_nT,
+      calib::report::noise_source(c.comparison.noise.known),
+      escaped(calib::report::as_sentence(calib::report::noise_of_tests(c.comparison.noise))));
+  for (const calib::criticism::tests::ResidualChannel& channel : c.comparison.channels) {
     double scale = 0;
-    for (const calib::Dependence& d : channel.against)
+    for (const calib::criticism::tests::Dependence& d : channel.against)
       for (const double m : d.means) scale = std::max(scale, std::abs(m));
     out += fmt::format("<h3>{} <span class=\"quiet\">rms {:.3g}{}{}: {}</span></h3><div class=\"plots\">",
                        escaped(channel.name), channel.rms, channel.unit.empty() ? "" : " ",
                        escaped(channel.unit), escaped(channel.meaning));
-    for (const calib::Dependence& d : channel.against) {
+    for (const calib::criticism::tests::Dependence& d : channel.against) {
       const bool stands_out = d.log10_p < kStandsOut;
       out += fmt::format("<figure{}>{}<figcaption>{}, {}</figcaption></figure>",
                          stands_out ? " class=\"out\"" : "",
@@ -156,11 +157,11 @@ std::string residual_section(const ReportContent& c) {
                                      .unit = channel.unit,
                                      .scale = scale,
                                      .stands_out = stands_out}),
-                         escaped(d.component), escaped(calib::p_phrase(d.log10_p)));
+                         escaped(d.component), escaped(calib::stats::p_phrase(d.log10_p)));
     }
     out += "</div>";
   }
-  for (const std::string& line : calib::alike_text(c.comparison))
+  for (const std::string& line : calib::report::alike_text(c.comparison))
     out += "<p class=\"quiet\">" + escaped(line) + ".</p>";
   return out +
          html_good(
@@ -173,10 +174,10 @@ std::string residual_section(const ReportContent& c) {
 
 std::string waterfall_section(const ReportContent& c) {
   if (!c.waterfall) return "";
-  const calib::Waterfall& w = *c.waterfall;
+  const calib::criticism::search::Waterfall& w = *c.waterfall;
   std::vector<Bar> bars{{"without any effect", w.without_nT,
                          fmt::format("{:.3g} nT, {:.3g} nT/m", w.without_nT, w.without_nT_per_m), 2}};
-  for (const calib::WaterfallStep& s : w.steps) {
+  for (const calib::criticism::search::WaterfallStep& s : w.steps) {
     bars.push_back({s.effect + ", added first", s.first_nT,
                     fmt::format("{:.3g} nT, {:.3g} nT/m", s.first_nT, s.first_nT_per_m), 0});
     bars.push_back(
@@ -195,4 +196,4 @@ std::string waterfall_section(const ReportContent& c) {
              "another one.");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -13,18 +13,18 @@
 #include "daemon/store/pose_source.h"
 
 /// The report of a run is one page that needs nothing else: no script, no font, no network.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 struct ReportContent {
   std::string run;  ///< file name
-  daemon::PoseSource source;
-  calib::FitReport fit;
-  calib::Comparison comparison;
-  calib::ExplainReport explained;
-  std::optional<calib::Waterfall> waterfall;  ///< of a model with effects
-  std::vector<daemon::ModelStep> history;
-  std::vector<calib::Choice> doubts;  ///< what is open about effects of the kept model
-  std::string command;                ///< that makes this report again
+  store::PoseSource source;
+  calib::fit::FitReport fit;
+  calib::criticism::tests::Comparison comparison;
+  calib::criticism::search::ExplainReport explained;
+  std::optional<calib::criticism::search::Waterfall> waterfall;  ///< of a model with effects
+  std::vector<store::ModelStep> history;
+  std::vector<calib::criticism::search::Choice> doubts;  ///< what is open about effects of the kept model
+  std::string command;                                   ///< that makes this report again
 };
 
 [[nodiscard]] std::string report_page(const ReportContent& content);
@@ -40,4 +40,4 @@ struct ReportContent {
 [[nodiscard]] std::string parameters_section(const ReportContent& content);
 [[nodiscard]] std::string history_section(const ReportContent& content);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

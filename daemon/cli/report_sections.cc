@@ -17,14 +17,14 @@
 #include "daemon/cli/report_page.h"
 #include "daemon/cli/svg.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr std::size_t kCandidates = 12;
 
-std::string alternatives_text(const calib::Candidate& candidate) {
+std::string alternatives_text(const calib::criticism::tests::Candidate& candidate) {
   std::vector<std::string> names;
-  for (const calib::Alternative& r : candidate.alternatives)
+  for (const calib::criticism::tests::Alternative& r : candidate.alternatives)
     if (r.possible) names.push_back(r.effect);
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -37,18 +37,20 @@ std::string candidates_section(const ReportContent& c) {
   std::vector<Bar> bars;
   Rows rows;
   for (std::size_t i = 0; i < std::min(kCandidates, all.size()); ++i) {
-    const calib::Candidate& x = all[i];
+    const calib::criticism::tests::Candidate& x = all[i];
     const bool named =
         std::find(c.explained.named.begin(), c.explained.named.end(), x.effect) != c.explained.named.end();
     bars.push_back({x.effect, x.d, fmt::format("{:.1f}", x.d), named ? 1 : 2});
-    rows.push_back({x.effect, x.where, fmt::format("{:.1f}", x.d), calib::p_text(x.log10_p),
-                    calib::size_text(x), x.plausible ? "" : "beyond what occurs", alternatives_text(x)});
+    rows.push_back({x.effect, x.where, fmt::format("{:.1f}", x.d), calib::stats::p_text(x.log10_p),
+                    calib::report::size_text(x), x.plausible ? "" : "beyond what occurs",
+                    alternatives_text(x)});
   }
   return "<h2>What could be missing</h2><p class=\"quiet\">Every effect of the library was tried on what the "
          "model "
          "leaves, with calibration, attitude and field free. d is its size in units of its own "
          "uncertainty.</p>" +
-         svg_bars(bars, calib::kSeen, fmt::format("d = {:g}: seen in 99 of 100 runs", calib::kSeen)) +
+         svg_bars(bars, calib::criticism::tests::kSeen,
+                  fmt::format("d = {:g}: seen in 99 of 100 runs", calib::criticism::tests::kSeen)) +
          html_table({"effect", "where", "d", "p", "size", "", "could also be"}, rows, true) +
          html_good(
              "all bars short of the dashed line. Orange bars are named by the verdict; a name is a "
@@ -59,14 +61,16 @@ std::string candidates_section(const ReportContent& c) {
 std::string limits_section(const ReportContent& c) {
   std::string out = "<h2>What this run cannot tell</h2>";
   Rows untestable, detectable, next;
-  for (const calib::Untestable& u : c.explained.untestable) untestable.push_back({u.effect, u.why});
-  for (const calib::Detectable& d : c.explained.detectable)
-    detectable.push_back({d.effect, calib::detectable_text(d)});
-  for (const calib::NextMeasurement& n : c.explained.next)
+  for (const calib::criticism::tests::Untestable& u : c.explained.untestable)
+    untestable.push_back({u.effect, u.why});
+  for (const calib::criticism::tests::Detectable& d : c.explained.detectable)
+    detectable.push_back({d.effect, calib::report::detectable_text(d)});
+  for (const calib::design::NextMeasurement& n : c.explained.next)
     next.push_back({n.action, fmt::format("{:.0f}", n.minutes), fmt::format("{:.3f}", n.p_right_before),
                     fmt::format("{:.3f}", n.p_right_after)});
   out += html_table({"untestable", "why"}, untestable, true);
-  for (const std::string& w : calib::weak_texts(c.fit)) out += "<p class=\"quiet\">" + escaped(w) + "</p>";
+  for (const std::string& w : calib::report::weak_texts(c.fit))
+    out += "<p class=\"quiet\">" + escaped(w) + "</p>";
   if (!next.empty())
     out += "<h3>What would settle the name</h3>" +
            html_table({"measurement", "minutes", "p right now", "p right then"}, next, true);
@@ -80,14 +84,15 @@ std::string limits_section(const ReportContent& c) {
 std::string parameters_section(const ReportContent& c) {
   std::vector<std::string> head{"", "s1", "s2", "s3", "s4"};
   Rows rows;
-  for (int k = 0; k < calib::kSensorParameters; ++k) {
-    const bool scale = k >= calib::cx && k <= calib::cz, offset = k >= calib::ix && k <= calib::iz;
-    std::vector<std::string> row{std::string(calib::kParameterNames[static_cast<std::size_t>(k)]) +
+  for (int k = 0; k < calib::sensor::kSensorParameters; ++k) {
+    const bool scale = k >= calib::sensor::cx && k <= calib::sensor::cz,
+               offset = k >= calib::sensor::ix && k <= calib::sensor::iz;
+    std::vector<std::string> row{std::string(calib::sensor::kParameterNames[static_cast<std::size_t>(k)]) +
                                  (scale    ? ""
                                   : offset ? ", nT"
                                            : ", deg")};
     for (int s = 0; s < kSensors; ++s) {
-      const int slot = s * calib::kSensorParameters + k;
+      const int slot = s * calib::sensor::kSensorParameters + k;
       double value = c.fit.calibration.sensors[static_cast<std::size_t>(s)].parameters()[k];
       double sd = std::sqrt(c.fit.calibration.covariance(slot, slot));
       if (!scale && !offset) value = to_deg(value), sd = to_deg(sd);
@@ -98,8 +103,8 @@ std::string parameters_section(const ReportContent& c) {
     rows.push_back(std::move(row));
   }
   Rows effects;
-  for (const calib::CalibratedEffect& e : c.fit.calibration.effects) {
-    for (const calib::EffectCoefficient& x : e.coefficients)
+  for (const calib::calibration::CalibratedEffect& e : c.fit.calibration.effects) {
+    for (const calib::calibration::EffectCoefficient& x : e.coefficients)
       effects.push_back({e.effect, x.name, fmt::format("{:+.5g} ± {:.2g} {}", x.value, x.sd, x.unit)});
   }
   std::string out = "<h2>Parameters</h2>" + html_table(head, rows, false);
@@ -113,7 +118,7 @@ std::string parameters_section(const ReportContent& c) {
 std::string history_section(const ReportContent& c) {
   if (c.history.empty()) return "";
   Rows rows;
-  for (const daemon::ModelStep& s : c.history) {
+  for (const store::ModelStep& s : c.history) {
     const auto result = nlohmann::json::parse(s.result, nullptr, false);
     std::string change;
     if (result.is_object() && result.contains("rms_before_nT"))
@@ -141,4 +146,4 @@ std::string report_page(const ReportContent& c) {
                    escaped(c.command));
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

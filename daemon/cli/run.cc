@@ -20,7 +20,7 @@
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct RunArguments {
@@ -47,7 +47,7 @@ int print_end(const Session& session, const RunStatus& run) {
 }
 
 /// Asks until the operator enters something that the daemon accepts. False at the end of the input.
-bool answer(const Session& session, daemon::ControlClient& client, const OperatorPrompt& prompt) {
+bool answer(const Session& session, serve::ControlClient& client, const OperatorPrompt& prompt) {
   while (!interrupted()) {
     fmt::print(stderr, "{}", question(prompt));
     std::string line;
@@ -71,7 +71,7 @@ bool answer(const Session& session, daemon::ControlClient& client, const Operato
 int follow(const Session& session) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   catch_interrupts({SIGINT});
-  auto client = daemon::ControlClient::connect(session.control_socket);
+  auto client = serve::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   std::string last;
   int last_tenth = -1;
@@ -109,10 +109,10 @@ Result<nlohmann::json> request_of(const RunArguments& args) {
   if (!args.poses_file.empty()) {
     const auto text = read_file(args.poses_file);
     if (!text) return tl::unexpected(text.error());
-    const auto list = calib::read_pose_list(*text, args.poses_file);
+    const auto list = calib::poses::read_pose_list(*text, args.poses_file);
     if (!list) return tl::unexpected(list.error());
     request.list = std::filesystem::path(args.poses_file).filename();
-    request.poses = daemon::requested_poses(*list);
+    request.poses = plan::requested_poses(*list);
   }
   nlohmann::json out = to_json(request);
   if (out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).size() + 100 > kControlLineLimit)
@@ -134,23 +134,23 @@ int start(const Session& session, const RunArguments& args) {
 
 /// What the limits of the daemon's table cost this run. Nothing where there are none, and for a list of
 /// poses, which is taken as intended. An error if the plan cannot calibrate even without limits.
-Result<std::optional<daemon::LimitsCost>> cost_of_limits(const nlohmann::json& reply) {
+Result<std::optional<run::LimitsCost>> cost_of_limits(const nlohmann::json& reply) {
   for (const char* key : {"options", "limits_deg", "config"})
     if (!reply.contains(key))
       return fail(ErrorCode::protocol, fmt::format("the daemon's answer has no '{}'", key),
                   "use mgt and mgtd of the same version");
-  const auto options = daemon::plan_options_from_json(reply.at("options"));
+  const auto options = plan::plan_options_from_json(reply.at("options"));
   if (!options) return tl::unexpected(options.error());
-  if (!options->list.empty()) return std::optional<daemon::LimitsCost>();
-  const auto limits = daemon::table_limits_from_json(reply.at("limits_deg"));
+  if (!options->list.empty()) return std::optional<run::LimitsCost>();
+  const auto limits = plan::table_limits_from_json(reply.at("limits_deg"));
   if (!limits) return tl::unexpected(limits.error());
   const auto config =
-      daemon::parse_config(reply.at("config").get<std::string>(), "the daemon's configuration");
+      config::parse_config(reply.at("config").get<std::string>(), "the daemon's configuration");
   if (!config)
     return fail(ErrorCode::protocol, config.error().lines.front(), "use mgt and mgtd of the same version");
-  calib::DesignRequest request;
-  daemon::assume(*config, request);
-  return daemon::limits_cost(*options, *limits, std::move(request));
+  calib::design::DesignRequest request;
+  run::assume(*config, request);
+  return run::limits_cost(*options, *limits, std::move(request));
 }
 
 int dry_run(const Session& session, const RunArguments& args) {
@@ -163,12 +163,12 @@ int dry_run(const Session& session, const RunArguments& args) {
     fmt::print(stderr, "what the limits of the table cost cannot be computed: {}\n", limits.error().text());
   if (session.json) {
     reply->erase("config");
-    if (limits && *limits) (*reply)["limits"] = daemon::to_json(**limits);
+    if (limits && *limits) (*reply)["limits"] = run::to_json(**limits);
     print_json(*reply);
     return 0;
   }
   fmt::print("{}\n{}nothing was moved\n", reply->at("text").get<std::string>(),
-             limits && *limits ? daemon::to_text(**limits) : "");
+             limits && *limits ? run::to_text(**limits) : "");
   return 0;
 }
 
@@ -256,4 +256,4 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return simple(session, ControlCommand::run_abort, false); });
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -9,7 +9,7 @@
 #include "drivers/identity.h"
 #include "proto/instrument_identity.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 std::string_view trimmed(std::string_view line) {
@@ -104,4 +104,4 @@ std::string serial_told(std::string_view driver, const std::string& identity) {
   return std::string(serial_of({"", identity}));
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

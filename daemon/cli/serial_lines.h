@@ -7,7 +7,7 @@
 
 /// This writes the key `serial` of each instrument into the text of a configuration. Everything else,
 /// comments included, stays as it was written.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 struct SerialLines {
   std::string text;
@@ -24,4 +24,4 @@ struct SerialLines {
 /// "1002" out of what a device of that driver says of itself; empty: it does not tell.
 [[nodiscard]] std::string serial_told(std::string_view driver, const std::string& identity);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

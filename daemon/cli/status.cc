@@ -10,7 +10,7 @@
 #include "daemon/cli/progress.h"
 #include "proto/status_codec.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 std::string text_or(const nlohmann::json& object, const char* key, const char* otherwise) {
@@ -208,4 +208,4 @@ void add_status(CLI::App& app, Session& session) {
                       "up to so many seconds for every device to be live; exit code 1 when one is not");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -7,7 +7,7 @@
 #include <array>
 #include <iterator>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 /// Colours that can be distinguished with every kind of colour vision.
@@ -97,4 +97,4 @@ std::string svg_bars(const std::vector<Bar>& bars, std::optional<double> mark, c
   return out + "</svg>";
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

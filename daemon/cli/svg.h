@@ -5,7 +5,7 @@
 #include <vector>
 
 /// This makes small drawings for the report, as inline SVG: nothing is loaded, nothing runs.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// Text as HTML and SVG need it.
 [[nodiscard]] std::string escaped(const std::string& text);
@@ -29,4 +29,4 @@ struct Bar {
 [[nodiscard]] std::string svg_bars(const std::vector<Bar>& bars, std::optional<double> mark,
                                    const std::string& mark_text);
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -15,7 +15,7 @@
 #include "daemon/cli/progress.h"
 #include "daemon/serve/stream_reader.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 struct WatchArguments {
@@ -119,7 +119,7 @@ void show(const nlohmann::json& object, std::string& criticism, Gaps& gaps) {
   }
 }
 
-Result<daemon::StreamReader> open_stream(const Session& session, const WatchArguments& args) {
+Result<serve::StreamReader> open_stream(const Session& session, const WatchArguments& args) {
   const auto where = stream_of(session, args);
   if (!where) return tl::unexpected(where.error());
   WatchRequest request;
@@ -128,7 +128,7 @@ Result<daemon::StreamReader> open_stream(const Session& session, const WatchArgu
   request.classes.add(StreamClass::status);
   if (session.json || args.raw) request.classes = StreamClasses::all();
   request.rate_hz = args.rate_hz;
-  return daemon::StreamReader::open(*where, request);
+  return serve::StreamReader::open(*where, request);
 }
 
 int run_watch(const Session& session, const WatchArguments& args) {
@@ -172,4 +172,4 @@ void add_watch(CLI::App& app, Session& session) {
   command->add_flag("--raw", args->raw, "the objects as they come, one per line");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -12,7 +12,7 @@
 
 #include "daemon/cli/progress.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr std::chrono::seconds kQuiet{2};  // nobody minds to wait so long
@@ -72,4 +72,4 @@ void WorkProgress::show(const std::stop_token& stop) {
   if (shown) fmt::print(stderr, "\r\x1b[K");
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -10,7 +10,7 @@
 /// Shows on a terminal how long a computation has taken so far and, where it says how much of it is done, how
 /// long it will still take. Nothing appears within the first two seconds, nor where stderr is no terminal,
 /// and nothing is left on the screen afterwards.
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 
 /// What is known of a computation that is under way.
 struct WorkState {
@@ -52,4 +52,4 @@ template <class Work>
   return work();
 }
 
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

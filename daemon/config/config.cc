@@ -14,7 +14,7 @@
 #include "daemon/store/durable_file.h"
 #include "drivers/registry.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 namespace {
 
 using drivers::Role;
@@ -109,7 +109,8 @@ void Reader::read_calibration(const toml::table& root) {
   Settings s = section(root, "calibration");
   config_.effects = s.texts("effects");
   for (const std::string& effect : config_.effects) {
-    if (const auto known = calib::make_effect(effect); !known) s.object("effects", known.error().message);
+    if (const auto known = calib::effects::library::make_effect(effect); !known)
+      s.object("effects", known.error().message);
   }
   close(s);
 }
@@ -218,13 +219,13 @@ void Reader::read_mounts(Settings& s) {
   const bool by_hand = s.boolean("mount_by_hand", false);
   const std::vector<std::string> ways = s.texts("mounts");
   for (const std::string& way : ways) {
-    const auto mounting = parse_mounting(way);
+    const auto mounting = plan::parse_mounting(way);
     if (mounting)
       config_.mounts.push_back(*mounting);
     else
       s.object("mounts", mounting.error().text());
   }
-  if (by_hand && ways.empty()) config_.mounts = usual_mounts();
+  if (by_hand && ways.empty()) config_.mounts = plan::usual_mounts();
   if (!by_hand) config_.mounts.clear();
 }
 
@@ -362,7 +363,7 @@ tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_vi
 }
 
 tl::expected<Config, ConfigErrors> load_config(const std::string& path) {
-  auto text = read_file(path);
+  auto text = store::read_file(path);
   if (!text) {
     return tl::unexpected(
         ConfigErrors{{text.error().message +
@@ -371,4 +372,4 @@ tl::expected<Config, ConfigErrors> load_config(const std::string& path) {
   return parse_config(*std::move(text), path);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

@@ -15,7 +15,7 @@
 /// Config holds what mgtd.toml says. The file is read once at start; every mistake in it is reported at once,
 /// with file and line, and a file with a mistake starts nothing. systemd/mgtd.toml lists every key with its
 /// unit and default.
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 
 /// A serial port and the device behind it. The device has read and checked its own settings.
 struct DeviceConfig {
@@ -95,4 +95,4 @@ struct ConfigErrors {
 [[nodiscard]] tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file);
 [[nodiscard]] tl::expected<Config, ConfigErrors> load_config(const std::string& path);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

@@ -10,23 +10,25 @@
 #include "calib/effects/formula/formula_names.h"
 #include "calib/poses/pose_columns.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 namespace {
 
 /// Of formulas.
-constexpr std::array<calib::Level, 3> kLevels{calib::Level::axis, calib::Level::platform, calib::Level::site};
+constexpr std::array<calib::effects::Level, 3> kLevels{
+    calib::effects::Level::axis, calib::effects::Level::platform, calib::effects::Level::site};
 
 /// A name that stands for something else in formulas of one level or another.
 bool means_something_else(const std::string& column) {
-  return std::any_of(kLevels.begin(), kLevels.end(), [&](calib::Level level) {
-    return calib::formula_name(column, level, std::nullopt, 0).source != calib::FormulaName::Source::column;
+  return std::any_of(kLevels.begin(), kLevels.end(), [&](calib::effects::Level level) {
+    return calib::effects::formula::formula_name(column, level, std::nullopt, 0).source !=
+           calib::effects::formula::FormulaName::Source::column;
   });
 }
 
 }  // namespace
 
 InputColumns::InputColumns() {
-  for (const calib::PoseColumn& column : calib::pose_columns())
+  for (const calib::poses::PoseColumn& column : calib::poses::pose_columns())
     if (!drivers::sensor_of(column.name)) fixed_.insert(column.name);
 }
 
@@ -54,4 +56,4 @@ void InputColumns::add(drivers::Settings& s, const DeviceConfig& device, Config&
   }
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

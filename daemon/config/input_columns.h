@@ -9,7 +9,7 @@
 
 /// InputColumns knows which columns the inputs of all devices add to the pose table, and refuses a name that
 /// is taken.
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 
 class InputColumns {
  public:
@@ -24,4 +24,4 @@ class InputColumns {
   std::map<std::string, std::string> measured_;                       ///< and where each is measured
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

@@ -8,7 +8,7 @@
 
 #include "proto/number.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 
 Result<boost::asio::ip::tcp::endpoint> parse_tcp_address(std::string_view text) {
   const auto bad = [&] {
@@ -32,4 +32,4 @@ Result<boost::asio::ip::tcp::endpoint> parse_tcp_address(std::string_view text) 
   return boost::asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(*port));
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

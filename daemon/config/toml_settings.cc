@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 namespace {
 
 using drivers::Settings;
@@ -61,4 +61,4 @@ Settings to_settings(const toml::table& table, std::string section) {
   return settings;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

@@ -7,11 +7,11 @@
 
 /// This turns one TOML table into Settings: nested tables are flattened with dots, and every key knows its
 /// place in the file.
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 
 [[nodiscard]] drivers::Place place_of(const toml::source_region& source);
 
 /// Values that Settings has no type for (dates, mixed lists, tables in lists) are objected to by name.
 [[nodiscard]] drivers::Settings to_settings(const toml::table& table, std::string section);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

@@ -13,7 +13,7 @@
 
 /// CoreActions is all that the core asks to be done: by the daemon on ports, disk and sockets, by tests in
 /// memory.
-namespace mgtd::daemon {
+namespace mgtd::daemon::core {
 
 /// A line for the operator's log.
 struct Remark {
@@ -40,8 +40,8 @@ class CoreActions {
   virtual void publish(const Gap& gap) = 0;
   /// What the run asks for; but its orders to the table, which the core gives itself. Answers go to
   /// DaemonCore::run().
-  virtual void carry_out(const Action& action, Stamp now) = 0;
+  virtual void carry_out(const run::Action& action, Stamp now) = 0;
   virtual void say(const Remark& remark, Instant now) = 0;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::core

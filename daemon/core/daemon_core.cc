@@ -8,16 +8,17 @@
 #include "calib/calibration/calibration_json.h"
 #include "drivers/hand_table.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::core {
 namespace {
 
-bool is_rearranged(calib::LiveState state) {
-  return state == calib::LiveState::exchanged || state == calib::LiveState::turned;
+bool is_rearranged(calib::criticism::live::LiveState state) {
+  return state == calib::criticism::live::LiveState::exchanged ||
+         state == calib::criticism::live::LiveState::turned;
 }
 
 }  // namespace
 
-DaemonCore::DaemonCore(const Config& config, CoreActions& actions)
+DaemonCore::DaemonCore(const config::Config& config, CoreActions& actions)
     : config_(config),
       actions_(actions),
       instruments_(
@@ -26,18 +27,18 @@ DaemonCore::DaemonCore(const Config& config, CoreActions& actions)
            .on_event = [this](Slot slot, const DeviceEvent& event, Stamp now) { on_event(slot, event, now); },
            .on_link = [this](Slot slot, const LinkHealth& health, Stamp now) { on_link(slot, health, now); },
            .on_raw = [this](const RawRecord& record) { on_raw(record); }}),
-      pipeline_(sampler_config(config), config.baseline_m, inputs_of(config)),
-      run_([this](const Action& action, Stamp now) { carry_out(action, now); }) {}
+      pipeline_(acquire::sampler_config(config), config.baseline_m, acquire::inputs_of(config)),
+      run_([this](const run::Action& action, Stamp now) { carry_out(action, now); }) {}
 
 void DaemonCore::begin(const LifeNote& life, Stamp now) {
   note(life, now);
-  SamplerConfig sampler = sampler_config(config_);
+  acquire::SamplerConfig sampler = acquire::sampler_config(config_);
   sampler.first_seq = life.first_seq;
-  pipeline_ = LivePipeline(sampler, config_.baseline_m, inputs_of(config_));
+  pipeline_ = acquire::LivePipeline(sampler, config_.baseline_m, acquire::inputs_of(config_));
 }
 
-void DaemonCore::use(std::shared_ptr<const calib::Calibration> calibration, Stamp now) {
-  note(CalibrationNote{calibration ? calib::to_json_text(*calibration) : std::string()}, now);
+void DaemonCore::use(std::shared_ptr<const calib::calibration::Calibration> calibration, Stamp now) {
+  note(CalibrationNote{calibration ? calib::calibration::to_json_text(*calibration) : std::string()}, now);
   pipeline_.use(std::move(calibration));
 }
 
@@ -61,7 +62,7 @@ void DaemonCore::on_event(Slot slot, const DeviceEvent& event, Stamp now) {
   if (const auto* said = std::get_if<DeviceNote>(&event)) return inform(slot.name(), said->what, now.mono);
   if (const auto* fault = std::get_if<DeviceFault>(&event)) {
     warn(slot.name(), fault->remedy.empty() ? fault->what : fault->what + "; " + fault->remedy, now.mono);
-    run_.feed(DeviceFaulted{slot, *fault}, now);
+    run_.feed(run::DeviceFaulted{slot, *fault}, now);
   }
 }
 
@@ -81,7 +82,7 @@ void DaemonCore::on_link(Slot slot, const LinkHealth& health, Stamp now) {
     inform(slot.name(), words, now.mono);
   else
     warn(slot.name(), words, now.mono);
-  if (answered && !answers(health.state)) run_.feed(DeviceLost{slot, health.detail}, now);
+  if (answered && !answers(health.state)) run_.feed(run::DeviceLost{slot, health.detail}, now);
 }
 
 void DaemonCore::came_back(Slot slot, const LinkHealth& health, Stamp now) {
@@ -90,8 +91,8 @@ void DaemonCore::came_back(Slot slot, const LinkHealth& health, Stamp now) {
     note(ReopenedNote{*sensor}, now);
     pipeline_.reopened(*sensor);
   }
-  run_.feed(LinkSeen{slot, health}, now);  // who it is, before it counts as back
-  run_.feed(DeviceBack{slot}, now);
+  run_.feed(run::LinkSeen{slot, health}, now);  // who it is, before it counts as back
+  run_.feed(run::DeviceBack{slot}, now);
 }
 
 void DaemonCore::on_raw(const RawRecord& record) {
@@ -133,7 +134,7 @@ void DaemonCore::tick(Stamp now) {
   pipeline_.advance(now.mono);
   deliver(now);
   if (run_.active() && run_.fsm()->status(now.mono).state == RunState::preflight) show_links(now);
-  run_.feed(Tick{}, now);
+  run_.feed(run::Tick{}, now);
   follow_probe(now.mono, nullptr);
 }
 
@@ -145,13 +146,13 @@ void DaemonCore::every_second(Stamp now) {
 
 void DaemonCore::show_links(Stamp now) {
   if (!run_.active()) return;
-  for (const auto& [slot, health] : instruments_.links()) run_.feed(LinkSeen{slot, health}, now);
-  if (!readings_say_.empty()) run_.feed(ReadingsSay{readings_say_, pipeline_.finding().remedy}, now);
+  for (const auto& [slot, health] : instruments_.links()) run_.feed(run::LinkSeen{slot, health}, now);
+  if (!readings_say_.empty()) run_.feed(run::ReadingsSay{readings_say_, pipeline_.finding().remedy}, now);
 }
 
 void DaemonCore::order(const TableOrder& order, Stamp now) {
   if (instruments_.has_port(Slot::table())) note(order, now);
-  daemon::carry_out(order, instruments_.table());
+  acquire::carry_out(order, instruments_.table());
   instruments_.link(Slot::table()).flush(now);
 }
 
@@ -159,12 +160,12 @@ void DaemonCore::abandon_run(Stamp now) {
   if (run_.active()) order({TableOrder::What::stop, {}}, now);
 }
 
-void DaemonCore::carry_out(const Action& action, Stamp now) {
-  if (std::holds_alternative<HomeTable>(action)) return order({TableOrder::What::home, {}}, now);
-  if (std::holds_alternative<StopTable>(action)) return order({TableOrder::What::stop, {}}, now);
-  if (const auto* move = std::get_if<MoveTable>(&action))
+void DaemonCore::carry_out(const run::Action& action, Stamp now) {
+  if (std::holds_alternative<run::HomeTable>(action)) return order({TableOrder::What::home, {}}, now);
+  if (std::holds_alternative<run::StopTable>(action)) return order({TableOrder::What::stop, {}}, now);
+  if (const auto* move = std::get_if<run::MoveTable>(&action))
     return order({TableOrder::What::move, move->target}, now);
-  if (const auto* set = std::get_if<SetTable>(&action)) {
+  if (const auto* set = std::get_if<run::SetTable>(&action)) {
     if (auto* const table = dynamic_cast<drivers::HandTable*>(&instruments_.table())) table->set(set->angles);
     return;
   }
@@ -177,7 +178,7 @@ Result<void> DaemonCore::begin_probe(Stamp now) {
   if (run_.active())
     return fail(ErrorCode::state, "a run is going on: a magnet would spoil it",
                 "wait for it, or: mgt run abort");
-  if (auto ready = ready_for_magnet(instruments_.links()); !ready) return ready;
+  if (auto ready = run::ready_for_magnet(instruments_.links()); !ready) return ready;
   inform("", "magnet test: begun", now.mono);
   probe_.emplace(now.mono, config_.speed_up);
   return {};
@@ -200,23 +201,24 @@ void DaemonCore::follow_probe(Instant now, const Epoch* epoch) {
 
 /// On a change of state only.
 void DaemonCore::tell_criticism(Stamp now) {
-  const calib::LiveReport found = pipeline_.finding();
+  const calib::report::LiveReport found = pipeline_.finding();
   const bool rearranged = is_rearranged(found.state);
   if (rearranged || !readings_say_.empty()) {
     readings_say_ = rearranged ? found.measured : std::string();
-    run_.feed(ReadingsSay{readings_say_, found.remedy}, now);
+    run_.feed(run::ReadingsSay{readings_say_, found.remedy}, now);
   }
-  if (found.state == calib::LiveState::suspect) {
+  if (found.state == calib::criticism::live::LiveState::suspect) {
     warn("",
          fmt::format("the calibration is suspect: {}; limit {}; {}", found.measured, found.limit,
                      found.remedy),
          now.mono);
-  } else if (found.state == calib::LiveState::near_source) {
+  } else if (found.state == calib::criticism::live::LiveState::near_source) {
     warn("", fmt::format("something magnetic is near: {}; {}", found.measured, found.remedy), now.mono);
   } else if (rearranged) {
     warn("", fmt::format("the samples are raw from here on: {}; {}", found.measured, found.remedy), now.mono);
   } else {
-    inform("", fmt::format("the stream's closure: {}", calib::to_string(found.state)), now.mono);
+    inform("", fmt::format("the stream's closure: {}", calib::criticism::live::to_string(found.state)),
+           now.mono);
   }
 }
 
@@ -240,4 +242,4 @@ void DaemonCore::tell_identity(Instant now) {
     warn("", fmt::format("the samples are raw: {}; {}", identity_, pipeline_.instruments().remedy()), now);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::core

@@ -22,12 +22,12 @@
 ///
 /// Does not know files, sockets, threads or a clock, and keeps no run file: whoever carries out the run's
 /// actions does.
-namespace mgtd::daemon {
+namespace mgtd::daemon::core {
 
 class DaemonCore {
  public:
   /// Both outlive this. The devices of a configuration serve one core.
-  DaemonCore(const Config& config, CoreActions& actions);
+  DaemonCore(const config::Config& config, CoreActions& actions);
   DaemonCore(const DaemonCore&) = delete;
   DaemonCore& operator=(const DaemonCore&) = delete;
 
@@ -36,7 +36,7 @@ class DaemonCore {
   /// Opens instruments that have no port. The others are opened through their links.
   void start_instruments(Stamp now) { instruments_.start(now); }
   /// From the next epoch on; null: the samples are raw and say so.
-  void use(std::shared_ptr<const calib::Calibration> calibration, Stamp now);
+  void use(std::shared_ptr<const calib::calibration::Calibration> calibration, Stamp now);
   /// Every 20-50 ms.
   void tick(Stamp now);
   /// Every second of the host's time.
@@ -57,13 +57,13 @@ class DaemonCore {
   /// Writes into the journal what a replay has to know beside the wires.
   void note(const JournalNote& note, Stamp at);
 
-  [[nodiscard]] Instruments& instruments() { return instruments_; }
-  [[nodiscard]] const Instruments& instruments() const { return instruments_; }
-  [[nodiscard]] CurrentRun& run() { return run_; }
-  [[nodiscard]] const CurrentRun& run() const { return run_; }
-  [[nodiscard]] const LivePipeline& pipeline() const { return pipeline_; }
+  [[nodiscard]] acquire::Instruments& instruments() { return instruments_; }
+  [[nodiscard]] const acquire::Instruments& instruments() const { return instruments_; }
+  [[nodiscard]] run::CurrentRun& run() { return run_; }
+  [[nodiscard]] const run::CurrentRun& run() const { return run_; }
+  [[nodiscard]] const acquire::LivePipeline& pipeline() const { return pipeline_; }
   /// Under way, or the last; empty: there was none.
-  [[nodiscard]] const std::optional<WiringProbe>& probe() const { return probe_; }
+  [[nodiscard]] const std::optional<run::WiringProbe>& probe() const { return probe_; }
   [[nodiscard]] bool probing() const { return probe_ && !probe_->ended(); }
 
  private:
@@ -71,7 +71,7 @@ class DaemonCore {
   void on_link(Slot slot, const LinkHealth& health, Stamp now);
   void on_raw(const RawRecord& record);
   void came_back(Slot slot, const LinkHealth& health, Stamp now);
-  void carry_out(const Action& action, Stamp now);
+  void carry_out(const run::Action& action, Stamp now);
   void deliver(Stamp now);
   void settle_calibrating(Stamp at);
   void follow_probe(Instant now, const Epoch* epoch);
@@ -85,17 +85,17 @@ class DaemonCore {
     actions_.say({Remark::Level::warning, std::move(topic), std::move(text)}, now);
   }
 
-  const Config& config_;
+  const config::Config& config_;
   CoreActions& actions_;
-  Instruments instruments_;
-  LivePipeline pipeline_;
-  CurrentRun run_;
-  std::optional<WiringProbe> probe_;
+  acquire::Instruments instruments_;
+  acquire::LivePipeline pipeline_;
+  run::CurrentRun run_;
+  std::optional<run::WiringProbe> probe_;
   std::map<Slot, LinkState> link_states_;
-  bool calibrating_{false};                     ///< as the pipeline knows it
-  std::string readings_say_;                    ///< what the run was told; empty: nothing
-  std::vector<calib::LeftOutEffect> left_out_;  ///< as the log knows them
-  std::string identity_;                        ///< likewise
+  bool calibrating_{false};                                  ///< as the pipeline knows it
+  std::string readings_say_;                                 ///< what the run was told; empty: nothing
+  std::vector<calib::calibration::LeftOutEffect> left_out_;  ///< as the log knows them
+  std::string identity_;                                     ///< likewise
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::core

@@ -5,7 +5,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 constexpr double kSameAzimuth_rad = to_rad(0.2);
@@ -44,4 +44,4 @@ std::optional<TableAngles> waypoint(const TableAngles& from, int last_sense, con
   return before;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -8,7 +8,7 @@
 
 /// From which side the azimuth comes to a pose: backlash of the table and hysteresis of the cores show only
 /// where both sides occur.
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 inline constexpr double kApproach_rad = to_rad(5);  ///< overshoot
 
@@ -27,4 +27,4 @@ inline constexpr double kApproach_rad = to_rad(5);  ///< overshoot
                                                   const TableAngles& target, int sense, double approach_rad,
                                                   const drivers::TableLimits& limits);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

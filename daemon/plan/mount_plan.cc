@@ -13,7 +13,7 @@
 #include "proto/number.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 /// Evenly over at most one turn of the travel, in random order.
@@ -127,4 +127,4 @@ Result<TableAngles> parse_mounting(const std::string& text) {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

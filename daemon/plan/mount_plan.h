@@ -8,7 +8,7 @@
 /// The standard set belongs to the first mounting (level, by default). The random poses are shared out to the
 /// mountings and, last, to the first one put on once more, so that what changed with time shows; in each of
 /// them azimuths evenly over the travel in random order, some visited twice, dwell and sense at random.
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 /// Level, and on each of its four sides.
 [[nodiscard]] std::vector<TableAngles> usual_mounts();
@@ -23,4 +23,4 @@ void note_mounts(RunPlan& plan);
 /// Reads that: "level", or axis and degrees, one or several: "pitch -90", "pitch 20 roll 90".
 [[nodiscard]] Result<TableAngles> parse_mounting(const std::string& text);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

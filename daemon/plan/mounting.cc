@@ -7,11 +7,11 @@
 
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 Eigen::Matrix3d rotation(const TableAngles& a) {
-  return calib::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
+  return calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
 }
 
 }  // namespace
@@ -31,4 +31,4 @@ TableAngles platform_angles(const TableAngles& mounting, const TableAngles& tabl
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -9,8 +9,8 @@
 ///
 /// and a, p, r are what the pose table records. At p = +-90 deg, where azimuth and roll turn about one axis,
 /// the roll is 0.
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 [[nodiscard]] TableAngles platform_angles(const TableAngles& mounting, const TableAngles& table);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

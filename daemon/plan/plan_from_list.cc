@@ -8,7 +8,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 using Range = drivers::TableLimits::Range;
@@ -54,7 +54,7 @@ Result<PlannedPose> planned(const RunRequest& request, const RequestedPose& wish
 
 }  // namespace
 
-std::vector<RequestedPose> requested_poses(const calib::PoseList& list) {
+std::vector<RequestedPose> requested_poses(const calib::poses::PoseList& list) {
   std::vector<RequestedPose> out;
   for (std::size_t i = 0; i < list.table.poses.size(); ++i) {
     const Pose& p = list.table.poses[i];
@@ -96,4 +96,4 @@ Result<RunPlan> listed_plan(const RunRequest& request, const PlanOptions& option
   return plan;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -6,10 +6,10 @@
 #include "daemon/plan/run_plan.h"
 #include "proto/run_request.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 /// Turns a list of poses into the request for them that a client sends to the daemon.
-[[nodiscard]] std::vector<RequestedPose> requested_poses(const calib::PoseList& list);
+[[nodiscard]] std::vector<RequestedPose> requested_poses(const calib::poses::PoseList& list);
 
 /// A plan of the poses that a list names, in its order: what `mgt next -o` and `mgt plan` speak of becomes a
 /// run. A dwell that the list leaves out is `options.dwell_short_s`; an angle may be given by whole turns
@@ -20,4 +20,4 @@ namespace mgtd::daemon {
 [[nodiscard]] Result<RunPlan> listed_plan(const RunRequest& request, const PlanOptions& options,
                                           const drivers::TableLimits& limits);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -10,7 +10,7 @@
 /// standard's; its distributions are not, for each library may draw them in its own way. Boost.Random draws
 /// the same everywhere, but rounds 64 bits to a double where uniform() drops the low 11: with it, the seed in
 /// a run file would no longer give that run's plan.
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 class RandomSource {
  public:
@@ -32,4 +32,4 @@ class RandomSource {
   std::mt19937_64 engine_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -8,7 +8,7 @@
 
 #include "daemon/plan/approach.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 double move_s(const Pace& pace, const TableAngles& from, const TableAngles& to) {
   const double most_rad =
@@ -71,4 +71,4 @@ std::string describe(const RunPlan& plan, const Pace& pace) {
   return text;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -6,7 +6,7 @@
 
 /// The duration of a plan is the sum over its poses: the longest travel of an axis at the table's speed,
 /// settling, dwell.
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 struct Pace {
   double velocity_rad_per_s{0.17};  ///< of every axis; they move together
@@ -28,4 +28,4 @@ struct Pace {
 /// "157 poses: 36 standard, 121 random (24 of them revisits) ..." and the notes, one per line.
 [[nodiscard]] std::string describe(const RunPlan& plan, const Pace& pace);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

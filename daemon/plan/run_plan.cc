@@ -13,7 +13,7 @@
 #include "daemon/plan/random_source.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 using drivers::TableLimits;
@@ -238,4 +238,4 @@ Result<RunPlan> make_plan(const PlanOptions& options, const TableLimits& limits)
   return plan;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

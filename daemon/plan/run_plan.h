@@ -21,7 +21,7 @@
 ///
 /// The same options and seed give the same plan with every compiler and library. Angles are multiples of
 /// 0.01 degree (a limit that is not one is kept off by less than that).
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 /// Planned angles are multiples of 0.01 deg: k / 100 is read back bit for bit.
 inline constexpr double kPerDegree = 100;
@@ -66,4 +66,4 @@ struct RunPlan {
 /// notes say what a calibration will lack.
 [[nodiscard]] Result<RunPlan> make_plan(const PlanOptions& options, const drivers::TableLimits& limits);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

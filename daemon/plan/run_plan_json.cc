@@ -11,7 +11,7 @@
 #include "proto/operator_prompt.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 using nlohmann::json;
@@ -160,4 +160,4 @@ Result<RunPlan> plan_from_json(std::string_view text) {
   }
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

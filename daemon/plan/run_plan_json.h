@@ -11,7 +11,7 @@
 ///   { "schema":"mgtd.plan/1", "options":{...}, "notes":[...], "poses":[ { "number":1, "set":"standard",
 ///     "azimuth_deg":..., "pitch_deg":..., "roll_deg":..., "dwell_s":..., "sense":1, "mount":null,
 ///     "mounting":null, "revisit_of":null, "since_stop_s":null, "note":null }, ... ] }
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 
 [[nodiscard]] nlohmann::json to_json(const RunPlan& plan);
 
@@ -24,4 +24,4 @@ namespace mgtd::daemon {
 /// Gives back exactly the plan that was written; anything else is refused with the place of the mistake.
 [[nodiscard]] Result<RunPlan> plan_from_json(std::string_view text);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/run/current_run.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
-void CurrentRun::begin(RunConfig config, RunPlan plan, Stamp now, const std::optional<EarlierLife>& earlier) {
+void CurrentRun::begin(RunConfig config, plan::RunPlan plan, Stamp now,
+                       const std::optional<EarlierLife>& earlier) {
   waiting_.clear();
   fsm_ = std::make_unique<RunFsm>(std::move(config), std::move(plan), now, earlier);
   feed(Tick{}, now);
@@ -25,4 +26,4 @@ void CurrentRun::feed(const Event& event, Stamp now) {
   stepping_ = false;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -11,7 +11,7 @@
 /// CurrentRun holds the run that is under way, or the last one, and puts the events in order that reach it:
 /// what happens while its actions are carried out reaches it after them. One run at a time. Pure: actions go
 /// to the owner.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class CurrentRun {
  public:
@@ -21,7 +21,7 @@ class CurrentRun {
   CurrentRun& operator=(const CurrentRun&) = delete;
 
   /// Takes the place of the one before.
-  void begin(RunConfig config, RunPlan plan, Stamp now,
+  void begin(RunConfig config, plan::RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier = std::nullopt);
   /// Forgets the last one.
   void drop() { fsm_.reset(); }
@@ -44,4 +44,4 @@ class CurrentRun {
   bool stepping_{false};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr std::size_t kFewestSamples = 8;   // fewer give no standard deviation worth the name
@@ -198,4 +198,4 @@ Result<Pose> Dwell::pose(const DwellPlace& place) const {
   return pose;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -21,7 +21,7 @@
 /// inputs: means. An epoch with a sensor that repeats itself (Flag::frozen) is no measurement: it counts as
 /// missing. What makes a pose unusable is an Error of pose(): too many epochs missing, saturation, a sensor
 /// whose value stands still.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct DwellConfig {
   double length_s{5};
@@ -98,4 +98,4 @@ class Dwell {
   std::optional<Stamp> first_;  ///< relates monotonic and wall time
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

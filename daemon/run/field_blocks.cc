@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/run/field_blocks.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 FieldBlocks::FieldBlocks(double rate_hz, Instant begin)
     : expected_samples_(rate_hz * kBlock_s), begin_(begin), block_end_(begin + from_seconds(kBlock_s)) {}
@@ -49,4 +49,4 @@ FieldBlocks::Axes FieldBlocks::expected_nT2() const {
   return steps_nT2_ / (2 * static_cast<double>(steps_) * expected_samples_);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

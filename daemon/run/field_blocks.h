@@ -10,7 +10,7 @@
 
 /// The field while the table stands, in blocks: the mean of every axis over half a second, and the readings
 /// of the scalar reference. What changes between blocks, beyond their noise, is the field itself.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class FieldBlocks {
  public:
@@ -47,4 +47,4 @@ class FieldBlocks {
   std::vector<double> f_nT_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

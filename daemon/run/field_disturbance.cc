@@ -8,7 +8,7 @@
 
 #include "calib/stats/f_distribution.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr double kMemory = 400;              // degrees of freedom
@@ -91,7 +91,7 @@ struct DisturbanceStatistic {
   }
   [[nodiscard]] std::optional<FieldDisturbance> disturbance(double change_nT, double f, double k, double nu,
                                                             bool by_scalar) const {
-    if (change_nT <= limit_nT || calib::f_log10_p(f, k, nu) > log10_p) return std::nullopt;
+    if (change_nT <= limit_nT || calib::stats::f_log10_p(f, k, nu) > log10_p) return std::nullopt;
     return FieldDisturbance{change_nT, limit_nT, by_scalar};
   }
 };
@@ -104,4 +104,4 @@ std::optional<FieldDisturbance> disturbance_in(const FieldBlocks& field, const F
   return statistic.scalar();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -17,7 +17,7 @@
 /// `limit_nT`. What is common to all axes counts once: the degrees of freedom are those of three axes, so
 /// that ambient noise, which the twelve share, raises no alarm; where the axes are independent the rate of
 /// false alarms is smaller than stated.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct DisturbanceLimits {
   double limit_nT{0.5};      ///< rms change of the field, below which nothing matters
@@ -58,4 +58,4 @@ struct FieldDisturbance {
                                                              const DisturbanceLimits& limits,
                                                              std::size_t looks);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

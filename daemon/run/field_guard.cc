@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 FieldGuard::FieldGuard(const FieldGuardConfig& config, Instant now)
     : config_(config), blocks_(config.rate_hz, now), noise_(config.scalar_sd_nT) {}
@@ -60,4 +60,4 @@ void FieldGuard::paused() {
   since_.reset();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -9,7 +9,7 @@
 
 /// Guards the field while the table stands: does it change during a dwell (FieldDisturbance), is it at
 /// another level than at the pose before, and has it been calm for long enough to go on? Time comes in.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct FieldGuardConfig {
   DisturbanceLimits limits;
@@ -60,4 +60,4 @@ class FieldGuard {
   std::optional<Instant> since_;    ///< this pose is disturbed, by whatever comes and goes
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

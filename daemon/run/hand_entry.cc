@@ -13,7 +13,7 @@
 #include "daemon/plan/mounting.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using What = OperatorPrompt::What;
@@ -46,30 +46,30 @@ std::string on_scales(const TableAngles& a) {
                      to_deg(a.pitch_rad), to_deg(a.roll_rad));
 }
 
-std::string request_text(What what, const PlannedPose& pose, std::size_t poses) {
+std::string request_text(What what, const plan::PlannedPose& pose, std::size_t poses) {
   if (what == What::note) return fmt::format("before pose {} of {}: {}", pose.number, poses, pose.note);
   if (what == What::mount)
     return fmt::format(
         "mounting {}: put the array on the table {} and enter its azimuth, pitch and roll on the "
         "table",
-        pose.mount.value_or(0), mounting_in_words(pose.mounting));
+        pose.mount.value_or(0), plan::mounting_in_words(pose.mounting));
   return fmt::format("pose {} of {}: turn the table to {} and enter what its scales say", pose.number, poses,
                      on_scales(pose.target));
 }
 
 }  // namespace
 
-HandEntry::HandEntry(bool scales, const RunPlan& plan, const std::vector<Pose>& earlier)
+HandEntry::HandEntry(bool scales, const plan::RunPlan& plan, const std::vector<Pose>& earlier)
     : scales_(scales),
       mounts_first_(!plan.poses.empty() && plan.poses.front().mount.has_value()),
       mounts_(std::any_of(plan.poses.begin(), plan.poses.end(),
-                          [](const PlannedPose& p) { return p.mount.has_value(); })),
+                          [](const plan::PlannedPose& p) { return p.mount.has_value(); })),
       poses_(plan.poses.size()) {
   if (!used()) return;
   for (const Pose& pose : earlier) turns_.add(pose);
 }
 
-bool HandEntry::ask_before(const PlannedPose& pose) {
+bool HandEntry::ask_before(const plan::PlannedPose& pose) {
   if (!pose.note.empty() && noted_ != pose.number) {
     ask(What::note, pose, {});
     return true;
@@ -85,7 +85,7 @@ bool HandEntry::ask_before(const PlannedPose& pose) {
   return false;
 }
 
-void HandEntry::ask(What what, const PlannedPose& pose, std::string again) {
+void HandEntry::ask(What what, const plan::PlannedPose& pose, std::string again) {
   prompt_ = OperatorPrompt{.what = what,
                            .pose = pose.number,
                            .mount = pose.mount,
@@ -98,13 +98,13 @@ std::string HandEntry::question() const {
   return prompt_->again.empty() ? prompt_->text : prompt_->again + "; " + prompt_->text;
 }
 
-void HandEntry::carried_out(const PlannedPose& pose) {
+void HandEntry::carried_out(const plan::PlannedPose& pose) {
   noted_ = pose.number;
   prompt_.reset();
 }
 
 Result<void> HandEntry::possible(const TableAngles& angles, const drivers::TableLimits& limits) const {
-  if (prompt_->what == What::table && !inside(limits, angles))
+  if (prompt_->what == What::table && !plan::inside(limits, angles))
     return fail(ErrorCode::usage, fmt::format("{} is outside the table's limits", on_scales(angles)),
                 "read the scales again; the limits are those of the configuration");
   return {};
@@ -116,7 +116,7 @@ std::string HandEntry::said(const TableAngles& angles) const {
                      on_scales(angles));
 }
 
-bool HandEntry::enter(const TableAngles& angles, const PlannedPose& pose) {
+bool HandEntry::enter(const TableAngles& angles, const plan::PlannedPose& pose) {
   // The field cannot judge the first poses.
   const std::string far = far_from(prompt_->target, angles);
   const auto twice = [&](const std::optional<TableAngles>& before) {
@@ -142,10 +142,10 @@ bool HandEntry::enter(const TableAngles& angles, const PlannedPose& pose) {
 }
 
 TableAngles HandEntry::platform(const TableAngles& table) const {
-  return mounted_ ? platform_angles(mounting_, table) : table;
+  return mounted_ ? plan::platform_angles(mounting_, table) : table;
 }
 
-HandEntry::Judgement HandEntry::judge(const Pose& measured, const PlannedPose& pose) {
+HandEntry::Judgement HandEntry::judge(const Pose& measured, const plan::PlannedPose& pose) {
   if (!unproved_) return {};
   const What what = scales_ ? What::table : What::mount;
   const TableAngles entry = what == What::mount ? mounting_ : table_;
@@ -173,7 +173,7 @@ void HandEntry::stored(const Pose& pose) {
 
 void HandEntry::paused() { forgotten_ = std::exchange(table_of_, std::nullopt); }
 
-HandEntry::Forgotten HandEntry::forget(const PlannedPose& under_way) {
+HandEntry::Forgotten HandEntry::forget(const plan::PlannedPose& under_way) {
   Forgotten out;
   if (mounted_)
     out.mount = std::exchange(mounted_, std::nullopt);
@@ -186,4 +186,4 @@ HandEntry::Forgotten HandEntry::forget(const PlannedPose& under_way) {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -19,12 +19,12 @@
 /// operator's word: it stands, and the poses measured with it are not held against others. Angles in radians.
 ///
 /// Pure: the run stops the table, shows the prompt, and waits.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class HandEntry {
  public:
   /// `scales`: the table is turned by hand. `earlier`: poses of an earlier life of the run.
-  HandEntry(bool scales, const RunPlan& plan, const std::vector<Pose>& earlier);
+  HandEntry(bool scales, const plan::RunPlan& plan, const std::vector<Pose>& earlier);
 
   /// Anything in this run is set by hand.
   [[nodiscard]] bool used() const { return scales_ || mounts_first_; }
@@ -32,20 +32,20 @@ class HandEntry {
   [[nodiscard]] bool way_known() const { return !scales_ && (!mounts_ || mounted_); }
 
   /// What has to be asked before this pose can be measured; false: nothing.
-  [[nodiscard]] bool ask_before(const PlannedPose& pose);
+  [[nodiscard]] bool ask_before(const plan::PlannedPose& pose);
   [[nodiscard]] const std::optional<OperatorPrompt>& prompt() const { return prompt_; }
   /// The prompt as one sentence; it begins with why the entry is asked for once more.
   [[nodiscard]] std::string question() const;
   /// The note of a pose wants something done; nothing is to be entered.
   [[nodiscard]] bool wants_deed() const { return prompt_ && prompt_->what == OperatorPrompt::What::note; }
-  void carried_out(const PlannedPose& pose);
+  void carried_out(const plan::PlannedPose& pose);
 
   /// Why angles cannot be the answer to the prompt (ErrorCode::usage).
   [[nodiscard]] Result<void> possible(const TableAngles& angles, const drivers::TableLimits& limits) const;
   /// "pose 7: entered the scales of the table: azimuth 20, pitch 0, roll 0 deg".
   [[nodiscard]] std::string said(const TableAngles& angles) const;
   /// False: it is asked for once more.
-  [[nodiscard]] bool enter(const TableAngles& angles, const PlannedPose& pose);
+  [[nodiscard]] bool enter(const TableAngles& angles, const plan::PlannedPose& pose);
 
   /// What the scales of a table that is turned by hand say.
   [[nodiscard]] const TableAngles& scales() const { return table_; }
@@ -57,7 +57,7 @@ class HandEntry {
     std::string against{};  ///< what speaks against an entry that the operator stands by
   };
   /// Holds the last entry against the first pose that was measured with it.
-  [[nodiscard]] Judgement judge(const Pose& measured, const PlannedPose& pose);
+  [[nodiscard]] Judgement judge(const Pose& measured, const plan::PlannedPose& pose);
   void stored(const Pose& pose);
   void dropped(int number) { turns_.remove(number); }
 
@@ -72,10 +72,10 @@ class HandEntry {
     std::optional<int> mount{};  ///< all poses of this mounting
     bool last_pose{false};       ///< the pose that was stored last
   };
-  [[nodiscard]] Forgotten forget(const PlannedPose& under_way);
+  [[nodiscard]] Forgotten forget(const plan::PlannedPose& under_way);
 
  private:
-  void ask(OperatorPrompt::What what, const PlannedPose& pose, std::string again);
+  void ask(OperatorPrompt::What what, const plan::PlannedPose& pose, std::string again);
 
   const bool scales_;
   bool mounts_first_, mounts_;  ///< the first pose, any pose, has a mounting of its own
@@ -94,4 +94,4 @@ class HandEntry {
   RotationConsistency turns_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

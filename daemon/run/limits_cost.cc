@@ -14,7 +14,7 @@
 #include "daemon/run/planned_poses.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using drivers::TableLimits;
@@ -62,7 +62,8 @@ double rms(const Gradient& g) {
   return std::sqrt((g.xx * g.xx + g.yy * g.yy + g.zz * g.zz + g.xy * g.xy + g.xz * g.xz + g.yz * g.yz) / 6);
 }
 
-LimitsCost::Group tensor_group(const calib::DesignReport& within, const calib::DesignReport& without) {
+LimitsCost::Group tensor_group(const calib::design::DesignReport& within,
+                               const calib::design::DesignReport& without) {
   static constexpr std::array<std::pair<const char*, double Gradient::*>, 6> kComponents{
       {{"xx", &Gradient::xx},
        {"yy", &Gradient::yy},
@@ -81,13 +82,13 @@ LimitsCost::Group tensor_group(const calib::DesignReport& within, const calib::D
   return out;
 }
 
-LimitsCost::Group parameter_group(const Kind& kind, const calib::DesignReport& within,
-                                  const calib::DesignReport& without) {
+LimitsCost::Group parameter_group(const Kind& kind, const calib::design::DesignReport& within,
+                                  const calib::design::DesignReport& without) {
   LimitsCost::Group out{.name = kind.name, .unit = without.parameters[kind.first].unit, .worst = {}};
   double inside = 0, outside = 0, count = 0;
   for (std::size_t slot = 0; slot < kSensors; ++slot) {
     for (std::size_t k = kind.first; k < kind.first + 3; ++k, ++count) {
-      const std::size_t at = slot * calib::kSensorParameters + k;
+      const std::size_t at = slot * calib::sensor::kSensorParameters + k;
       const double free = without.parameters[at].sd;
       outside += free * free;
       if (!within.determined) continue;
@@ -107,14 +108,14 @@ std::string amount(double sd, const std::string& unit) {
   return unit.empty() ? fmt::format("{:.3g} ppm", 1e6 * sd) : fmt::format("{:.3g} {}", sd, unit);
 }
 
-Result<calib::DesignReport> expected(const PlanOptions& options, const TableLimits& limits,
-                                     calib::DesignRequest request) {
+Result<calib::design::DesignReport> expected(const plan::PlanOptions& options, const TableLimits& limits,
+                                             calib::design::DesignRequest request) {
   auto poses = planned_poses(options, limits);
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);
   request.power = false;
   request.candidates.clear();
-  return calib::evaluate_design(request);
+  return calib::design::evaluate_design(request);
 }
 
 std::string axes_text(const LimitsCost& cost) {
@@ -156,8 +157,8 @@ double attitudes_left_out(const TableLimits& limits) {
   return 1 - kept;
 }
 
-Result<std::optional<LimitsCost>> limits_cost(const PlanOptions& options, const TableLimits& limits,
-                                              calib::DesignRequest request) {
+Result<std::optional<LimitsCost>> limits_cost(const plan::PlanOptions& options, const TableLimits& limits,
+                                              calib::design::DesignRequest request) {
   LimitsCost out;
   for (const NamedAxis& axis : kTableAxes) {
     const Range& range = limits.*axis.range;
@@ -176,7 +177,7 @@ Result<std::optional<LimitsCost>> limits_cost(const PlanOptions& options, const 
   for (const Kind& kind : kKinds) out.groups.push_back(parameter_group(kind, *within, *without));
   const double wanted = rms(without->tensor_sd_nT_per_m);
   for (const double times : kMore) {
-    PlanOptions more = options;
+    plan::PlanOptions more = options;
     more.random = static_cast<int>(std::lround(times * options.random));
     const auto longer = expected(more, limits, request);
     if (!longer || !longer->determined || rms(longer->tensor_sd_nT_per_m) > wanted) continue;
@@ -224,4 +225,4 @@ std::string to_text(const LimitsCost& cost) {
   return out + "  what to do: " + remedy(cost) + "\n";
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -14,7 +14,7 @@
 /// limits (calib/design/experiment_design.h), beside those of the same run, with as many poses, on the same
 /// axes without limits: azimuth and roll a whole turn, pitch from -90 to 90 deg. An axis that the table does
 /// not have is no limit.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct LimitsCost {
   /// An axis that does not reach everything.
@@ -43,12 +43,12 @@ struct LimitsCost {
 [[nodiscard]] double attitudes_left_out(const drivers::TableLimits& limits);
 
 /// `request` but for its poses. Nothing where the limits leave nothing out.
-[[nodiscard]] Result<std::optional<LimitsCost>> limits_cost(const PlanOptions& options,
+[[nodiscard]] Result<std::optional<LimitsCost>> limits_cost(const plan::PlanOptions& options,
                                                             const drivers::TableLimits& limits,
-                                                            calib::DesignRequest request);
+                                                            calib::design::DesignRequest request);
 
 [[nodiscard]] nlohmann::json to_json(const LimitsCost& cost);
 /// A table with what to do.
 [[nodiscard]] std::string to_text(const LimitsCost& cost);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

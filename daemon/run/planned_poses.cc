@@ -9,16 +9,17 @@
 #include "daemon/plan/run_duration.h"
 #include "daemon/plan/run_plan.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 /// Ends at `end_s`.
-Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pace) {
+Pose pose_of(const plan::PlannedPose& planned, double end_s, int sense, const plan::Pace& pace) {
   Pose pose;
   pose.number = planned.number;
   pose.set = planned.set;
   pose.t_s = end_s - planned.dwell_s / 2;
-  const TableAngles a = planned.mount ? platform_angles(planned.mounting, planned.target) : planned.target;
+  const TableAngles a =
+      planned.mount ? plan::platform_angles(planned.mounting, planned.target) : planned.target;
   pose.azimuth_rad = a.azimuth_rad;
   pose.pitch_rad = a.pitch_rad;
   pose.roll_rad = a.roll_rad;
@@ -31,15 +32,15 @@ Pose pose_of(const PlannedPose& planned, double end_s, int sense, const Pace& pa
 
 }  // namespace
 
-drivers::TableLimits table_limits(const Config& config) {
+drivers::TableLimits table_limits(const config::Config& config) {
   constexpr double kPi = std::numbers::pi;
   const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
   if (table != nullptr) return table->limits();
   return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
 }
 
-PlanOptions plan_options(const Config& config) {
-  const RunDefaults& d = config.run;
+plan::PlanOptions plan_options(const config::Config& config) {
+  const config::RunDefaults& d = config.run;
   return {.step_deg = d.step_deg,
           .random = d.random,
           .revisits = d.revisits,
@@ -50,7 +51,7 @@ PlanOptions plan_options(const Config& config) {
           .by_hand = config.by_hand()};
 }
 
-Result<PoseTable> planned_poses(const Config& config) {
+Result<PoseTable> planned_poses(const config::Config& config) {
   const drivers::TableLimits limits = table_limits(config);
   if (limits.azimuth.max_rad <= limits.azimuth.min_rad)
     return fail(
@@ -63,21 +64,23 @@ Result<PoseTable> planned_poses(const Config& config) {
   return planned_poses(plan_options(config), limits);
 }
 
-Result<PoseTable> planned_poses(const PlanOptions& options, const drivers::TableLimits& limits) {
-  const auto plan = make_plan(options, limits);
+Result<PoseTable> planned_poses(const plan::PlanOptions& options, const drivers::TableLimits& limits) {
+  const auto plan = plan::make_plan(options, limits);
   if (!plan) return tl::unexpected(plan.error());
-  const Pace pace;
+  const plan::Pace pace;
   PoseTable out;
   double t_s = 0;
   TableAngles at;
   int sense = 0;
   for (std::size_t k = 0; k < plan->poses.size(); ++k) {
-    const PlannedPose& planned = plan->poses[k];
+    const plan::PlannedPose& planned = plan->poses[k];
     const double begun_s = t_s;
-    t_s += pose_s(pace, *plan, k);
-    const auto by_way_of = waypoint(at, sense, planned.target, planned.sense, kApproach_rad, limits);
-    if (by_way_of && !planned.mount) out.path.push_back({begun_s + move_s(pace, at, *by_way_of), *by_way_of});
-    const int last = sense_of(by_way_of.value_or(at).azimuth_rad, planned.target.azimuth_rad);
+    t_s += plan::pose_s(pace, *plan, k);
+    const auto by_way_of =
+        plan::waypoint(at, sense, planned.target, planned.sense, plan::kApproach_rad, limits);
+    if (by_way_of && !planned.mount)
+      out.path.push_back({begun_s + plan::move_s(pace, at, *by_way_of), *by_way_of});
+    const int last = plan::sense_of(by_way_of.value_or(at).azimuth_rad, planned.target.azimuth_rad);
     if (last != 0) sense = last;
     at = planned.target;
     out.poses.push_back(pose_of(planned, t_s, sense, pace));
@@ -85,7 +88,7 @@ Result<PoseTable> planned_poses(const PlanOptions& options, const drivers::Table
   return out;
 }
 
-void assume(const Config& config, calib::DesignRequest& request) {
+void assume(const config::Config& config, calib::design::DesignRequest& request) {
   request.candidates = reachable(config, std::move(request.candidates));
   request.geometry.baseline_m = config.baseline_m;
   request.table_sd_rad = to_rad(config.table_sd_deg);
@@ -97,7 +100,7 @@ void assume(const Config& config, calib::DesignRequest& request) {
   if (config.declination_deg) request.declination_rad = to_rad(*config.declination_deg);
 }
 
-std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles> attitudes) {
+std::vector<TableAngles> reachable(const config::Config& config, std::vector<TableAngles> attitudes) {
   constexpr double kSlack_rad = 1e-9;
   const drivers::TableLimits limits = table_limits(config);
   // 270 degrees is -90 to a table that ends at 180.
@@ -117,4 +120,4 @@ std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles
   return attitudes;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -8,23 +8,25 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 /// The poses that a run of this configuration would measure, with their times, as a table without readings.
-[[nodiscard]] Result<PoseTable> planned_poses(const Config& config);
+[[nodiscard]] Result<PoseTable> planned_poses(const config::Config& config);
 
 /// The same for a run with these options on a table with these limits.
-[[nodiscard]] Result<PoseTable> planned_poses(const PlanOptions& options, const drivers::TableLimits& limits);
+[[nodiscard]] Result<PoseTable> planned_poses(const plan::PlanOptions& options,
+                                              const drivers::TableLimits& limits);
 
 /// How the runs of this configuration are planned, and on what table.
-[[nodiscard]] PlanOptions plan_options(const Config& config);
+[[nodiscard]] plan::PlanOptions plan_options(const config::Config& config);
 /// A configuration without a table stands for one that reaches every attitude.
-[[nodiscard]] drivers::TableLimits table_limits(const Config& config);
+[[nodiscard]] drivers::TableLimits table_limits(const config::Config& config);
 
 /// Takes over what the configuration says of rig and site; the poses are left alone.
-void assume(const Config& config, calib::DesignRequest& request);
+void assume(const config::Config& config, calib::design::DesignRequest& request);
 
 /// Those of the attitudes that this configuration's table can take.
-[[nodiscard]] std::vector<TableAngles> reachable(const Config& config, std::vector<TableAngles> attitudes);
+[[nodiscard]] std::vector<TableAngles> reachable(const config::Config& config,
+                                                 std::vector<TableAngles> attitudes);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

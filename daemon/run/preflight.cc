@@ -10,7 +10,7 @@
 #include "calib/sensor/channels.h"
 #include "daemon/run/wiring.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr std::size_t kMinPairs = 20;     // fewer make no standard deviation worth the name
@@ -201,7 +201,7 @@ Check Preflight::scatter(int slot, const Statistics& s) const {
   }
   return check(named("rest", slot), most <= config_.max_scatter_ratio,
                most > 0 ? fmt::format("{} scatters by {:.2f} nT, {:.1f} x its noise",
-                                      calib::channel_name(worst), s.scatter_nT[worst], most)
+                                      calib::sensor::channel_name(worst), s.scatter_nT[worst], most)
                         : fmt::format("below {:.0f} nT", config_.scatter_floor_nT),
                fmt::format("{:.0f} x the noise", config_.max_scatter_ratio),
                "the field moves: keep people, cars and tools away, see that the table stands still");
@@ -215,7 +215,7 @@ Check Preflight::alive(int slot, const Statistics& s) const {
   const auto pairs = static_cast<double>(s.pairs);
   const bool moves = !config_.frozen_check || s.changes[worst] > kFrozenPreflight * pairs;
   return check(named("alive", slot), s.pairs > 0 && moves,
-               fmt::format("{} changed in {:.0f} of {:.0f} steps", calib::channel_name(worst),
+               fmt::format("{} changed in {:.0f} of {:.0f} steps", calib::sensor::channel_name(worst),
                            s.changes[worst], pairs),
                fmt::format("{:.0f} %", 100 * kFrozenPreflight),
                "the digitiser repeats an old sample or the channel is open: check supply and cable");
@@ -291,4 +291,4 @@ bool all_passed(const std::vector<Check>& checks) {
   return std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed; });
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -22,7 +22,7 @@
 /// drift and no slow disturbance enters; the total scatter against it shows those. Sensors that are turned or
 /// mirrored against the others are named as far as one attitude shows it, and refused for nothing: they may
 /// be meant so, and the fit finds every mounting (wiring.h).
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct PreflightConfig {
   double length_s{5};
@@ -102,4 +102,4 @@ class Preflight {
 
 [[nodiscard]] bool all_passed(const std::vector<Check>& checks);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -9,7 +9,7 @@
 
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr std::size_t kRemembered = 30;  ///< poses that a new one is held against, spread over the run
@@ -69,7 +69,7 @@ Eigen::Vector3d best_direction(const std::vector<Pair>& pairs) {
 RotationConsistency::Seen RotationConsistency::seen(const Pose& pose) {
   const TableAngles a = pose.angles().value_or(TableAngles{});
   Seen out{.number = pose.number,
-           .R = calib::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0),
+           .R = calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0),
            .u = {}};
   for (std::size_t i = 0; i < out.u.size(); ++i) out.u[i] = pose.y_nT[i].normalized();
   return out;
@@ -116,4 +116,4 @@ RotationFinding RotationConsistency::judge(const Pose& pose) const {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -15,7 +15,7 @@
 /// new one, in the middle of its pairs, is its disagreement: one wrong pose among the earlier ones does no
 /// harm. Sensors that are not calibrated yet turn a direction by a degree (offsets of 1 % of the field), so
 /// blunders are seen and readings to a degree are not judged.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct RotationFinding {
   bool agrees{true};
@@ -44,4 +44,4 @@ class RotationConsistency {
   std::vector<Seen> poses_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -9,7 +9,7 @@
 #include "proto/run_status.h"
 
 /// All that a run can ask for, to be carried out in the order given.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct HomeTable {};
 struct MoveTable {
@@ -64,4 +64,4 @@ using Action =
     std::variant<HomeTable, MoveTable, SetTable, StopTable, StorePose, DropPoses, StorePath, StoreChecks,
                  StartSolve, CancelSolve, ProposeCalibration, PublishStatus, Record, Finish>;
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

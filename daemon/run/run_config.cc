@@ -4,11 +4,11 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "daemon/config/config.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
-RunConfig run_config(const Config& config, const drivers::TableLimits& limits) {
+RunConfig run_config(const config::Config& config, const drivers::TableLimits& limits) {
   RunConfig out;
-  out.fewest_poses = calib::kFewestPoses;
+  out.fewest_poses = calib::fit::joint::kFewestPoses;
   out.limits = limits;
   out.preflight.length_s = config.run.preflight_s;
   out.preflight.field_nT = config.field_nT;
@@ -33,4 +33,4 @@ RunConfig run_config(const Config& config, const drivers::TableLimits& limits) {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -16,9 +16,11 @@
 #include "proto/units.h"
 
 /// Settings of one calibration run, beside its plan; angles in radians, times in seconds.
-namespace mgtd::daemon {
-
+namespace mgtd::daemon::config {
 struct Config;
+}  // namespace mgtd::daemon::config
+
+namespace mgtd::daemon::run {
 
 struct RunConfig {
   std::string run_id;
@@ -26,14 +28,14 @@ struct RunConfig {
   PreflightConfig preflight;
   SettleConfig settle;  ///< noise_nT is replaced by what the preflight finds
   DwellConfig dwell;    ///< length_s is that of each planned pose
-  Pace pace;
+  plan::Pace pace;
 
   /// Measure no further pose once the tensor is known so well (nT/m, worst component); empty: the whole plan.
   std::optional<double> until_tensor_sd_nT_per_m;
-  std::size_t fewest_poses{1};         ///< that a calibration needs: none is finished before
-  int retries{3};                      ///< of one pose, before the run pauses and asks
-  double approach_rad{kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
-  double reach_rad{to_rad(1)};         ///< a table at rest further from its target has not reached it
+  std::size_t fewest_poses{1};               ///< that a calibration needs: none is finished before
+  int retries{3};                            ///< of one pose, before the run pauses and asks
+  double approach_rad{plan::kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
+  double reach_rad{to_rad(1)};               ///< a table at rest further from its target has not reached it
 
   /// That the active calibration was made with; empty: it does not say, or there is none.
   std::vector<InstrumentIdentity> calibrated{};
@@ -54,6 +56,6 @@ struct RunConfig {
 };
 
 /// As the configuration wants it, on a table of these limits.
-[[nodiscard]] RunConfig run_config(const Config& config, const drivers::TableLimits& limits);
+[[nodiscard]] RunConfig run_config(const config::Config& config, const drivers::TableLimits& limits);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

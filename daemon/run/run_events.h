@@ -13,7 +13,7 @@
 #include "proto/slot.h"
 
 /// An Event is all that can happen to a run.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 enum class Request { pause, resume, abort, finish, redo };  ///< of the operator
 [[nodiscard]] constexpr std::string_view name(Request request) {
@@ -84,4 +84,4 @@ using Event = std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReadin
                            TableReading, LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, ReadingsSay,
                            PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -13,7 +13,7 @@
 #include "daemon/run/planned_poses.h"
 #include "daemon/run/solver.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr const char* kSuffix = ".mgtrun";
@@ -25,8 +25,8 @@ std::string run_id_at(WallTime t) {
   return id + "Z";
 }
 
-PlanOptions plan_options(const Config& config, const RunRequest& r) {
-  PlanOptions out = plan_options(config);
+plan::PlanOptions plan_options(const config::Config& config, const RunRequest& r) {
+  plan::PlanOptions out = run::plan_options(config);
   out.step_deg = r.step_deg.value_or(out.step_deg);
   out.random = r.random.value_or(out.random);
   out.revisits =
@@ -37,8 +37,8 @@ PlanOptions plan_options(const Config& config, const RunRequest& r) {
   return out;
 }
 
-RunOptions run_options(const Config& c, const RunRequest& r) {
-  RunOptions out;
+store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
+  store::RunOptions out;
   out.baseline_m = c.baseline_m;
   out.field_nT = c.field_nT;
   if (c.field_nT) out.field_sd_nT = c.field_sd_nT;
@@ -51,8 +51,9 @@ RunOptions run_options(const Config& c, const RunRequest& r) {
 
 }  // namespace
 
-RunExecutor::RunExecutor(const Config& config, std::filesystem::path directory, CalibrationStore& store,
-                         Worker& worker, CurrentRun& run, RunHooks hooks)
+RunExecutor::RunExecutor(const config::Config& config, std::filesystem::path directory,
+                         store::CalibrationStore& store, store::Worker& worker, CurrentRun& run,
+                         RunHooks hooks)
     : config_(config),
       directory_(std::move(directory)),
       store_(store),
@@ -62,8 +63,8 @@ RunExecutor::RunExecutor(const Config& config, std::filesystem::path directory, 
 
 /// Nothing for a file whose plan cannot be read.
 std::optional<RunExecutor::Interrupted> RunExecutor::resumable(const std::filesystem::path& path,
-                                                               const RunFile& file) const {
-  const auto plan = plan_from_json(file.header().plan);
+                                                               const store::RunFile& file) const {
+  const auto plan = plan::plan_from_json(file.header().plan);
   if (!plan) return std::nullopt;
   return Interrupted{path, file.header().run_id, static_cast<int>(file.pose_count().value_or(0)),
                      static_cast<int>(plan->poses.size())};
@@ -77,7 +78,7 @@ void RunExecutor::find_interrupted() {
   }
   std::sort(files.rbegin(), files.rend());
   for (const auto& path : files) {
-    const auto file = RunFile::open(path, Access::read_only);
+    const auto file = store::RunFile::open(path, store::Access::read_only);
     if (!file) {
       spdlog::warn("{}: {}", path.string(), file.error().text());
       continue;
@@ -97,19 +98,20 @@ void RunExecutor::find_interrupted() {
   }
 }
 
-Result<RunPlan> RunExecutor::plan(const RunRequest& request) const {
-  const PlanOptions options = plan_options(config_, request);
+Result<plan::RunPlan> RunExecutor::plan(const RunRequest& request) const {
+  const plan::PlanOptions options = plan_options(config_, request);
   const drivers::TableLimits& limits = hooks_.limits();
-  return request.poses.empty() ? make_plan(options, limits) : listed_plan(request, options, limits);
+  return request.poses.empty() ? plan::make_plan(options, limits)
+                               : plan::listed_plan(request, options, limits);
 }
 
-Pace RunExecutor::pace() const { return {}; }
+plan::Pace RunExecutor::pace() const { return {}; }
 
 RunConfig RunExecutor::run_config(const std::string& run_id, const RunRequest& request) const {
-  RunConfig out = daemon::run_config(config_, hooks_.limits());
+  RunConfig out = run::run_config(config_, hooks_.limits());
   out.run_id = run_id;
   if (const auto active = store_.active(); active && *active)
-    out.calibrated = instruments_among((*active)->checks);
+    out.calibrated = acquire::instruments_among((*active)->checks);
   out.retries = request.retries.value_or(out.retries);
   out.pace = pace();
   return out;
@@ -133,15 +135,15 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
   if (!planned) return tl::unexpected(planned.error());
   failed_.reset();
   const std::string id = run_id_at(now.wall);
-  auto file = RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
-                                                            .rig = config_.rig_name,
-                                                            .started_utc = now.wall,
-                                                            .software = "mgtd " MGTD_VERSION,
-                                                            .config = config_.text,
-                                                            .plan = to_json(*planned).dump(),
-                                                            .seed = planned->options.seed,
-                                                            .source = "measured",
-                                                            .options = run_options(config_, request)});
+  auto file = store::RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
+                                                                   .rig = config_.rig_name,
+                                                                   .started_utc = now.wall,
+                                                                   .software = "mgtd " MGTD_VERSION,
+                                                                   .config = config_.text,
+                                                                   .plan = to_json(*planned).dump(),
+                                                                   .seed = planned->options.seed,
+                                                                   .source = "measured",
+                                                                   .options = run_options(config_, request)});
   if (!file) return tl::unexpected(file.error());
   for (const std::string& effect : config_.effects) {
     if (auto put = file->append_model_step({now.wall, "mgtd configuration", "add", effect, "{}"}); !put)
@@ -151,7 +153,7 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
   return {};
 }
 
-void RunExecutor::begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
+void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan plan, Stamp now,
                         const std::optional<EarlierLife>& earlier) {
   file_ = std::move(file);
   given_up_.reset();
@@ -178,9 +180,9 @@ Result<void> RunExecutor::table_is_there() const {
 
 Result<void> RunExecutor::resume_interrupted(Stamp now) {
   if (auto there = table_is_there(); !there) return there;
-  auto file = RunFile::open(interrupted_->file, Access::resume);
+  auto file = store::RunFile::open(interrupted_->file, store::Access::resume);
   if (!file) return tl::unexpected(file.error());
-  auto plan = plan_from_json(file->header().plan);
+  auto plan = plan::plan_from_json(file->header().plan);
   if (!plan) return tl::unexpected(plan.error());
   const auto poses = file->poses();
   if (!poses) return tl::unexpected(poses.error());
@@ -191,7 +193,8 @@ Result<void> RunExecutor::resume_interrupted(Stamp now) {
     earlier.poses.push_back(pose);
     earlier.last_t_s = std::max(earlier.last_t_s, pose.t_s.value_or(0));
   }
-  if (const auto known = file->checks(kInstrumentsStage)) earlier.instruments = instruments_among(*known);
+  if (const auto known = file->checks(acquire::kInstrumentsStage))
+    earlier.instruments = acquire::instruments_among(*known);
   RunConfig config = run_config(file->header().run_id, {});
   interrupted_.reset();
   begin(*std::move(file), std::move(config), *std::move(plan), now, earlier);
@@ -199,7 +202,7 @@ Result<void> RunExecutor::resume_interrupted(Stamp now) {
 }
 
 Result<void> RunExecutor::drop_interrupted() {
-  auto file = RunFile::open(interrupted_->file, Access::resume);
+  auto file = store::RunFile::open(interrupted_->file, store::Access::resume);
   if (!file) return tl::unexpected(file.error());
   if (auto set = file->set_state(RunState::aborted, "interrupted, then given up by the operator"); !set)
     return set;
@@ -257,4 +260,4 @@ void RunExecutor::abandon() {
                file_->header().run_id);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

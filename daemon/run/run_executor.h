@@ -22,7 +22,7 @@
 /// and proposes the calibration. (The core gives the table its orders itself.) A run that a dead daemon left
 /// behind is found at start and offered. After each pose the worker says what the calibration would be worth
 /// so far.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct RunHooks {
   std::function<const drivers::TableLimits&()> limits;  ///< as the table knows them by now
@@ -34,14 +34,14 @@ struct RunHooks {
 
 class RunExecutor {
  public:
-  RunExecutor(const Config& config, std::filesystem::path directory, CalibrationStore& store, Worker& worker,
-              CurrentRun& run, RunHooks hooks);
+  RunExecutor(const config::Config& config, std::filesystem::path directory, store::CalibrationStore& store,
+              store::Worker& worker, CurrentRun& run, RunHooks hooks);
 
   /// Looks for a run that was under way when the daemon died.
   void find_interrupted();
 
-  [[nodiscard]] Result<RunPlan> plan(const RunRequest& request) const;
-  [[nodiscard]] Pace pace() const;
+  [[nodiscard]] Result<plan::RunPlan> plan(const RunRequest& request) const;
+  [[nodiscard]] plan::Pace pace() const;
   [[nodiscard]] const drivers::TableLimits& limits() const { return hooks_.limits(); }
   /// Refused while a run is active, or one is waiting to be resumed or aborted.
   [[nodiscard]] Result<void> start(const RunRequest& request, Stamp now);
@@ -69,7 +69,7 @@ class RunExecutor {
 
   [[nodiscard]] RunConfig run_config(const std::string& run_id, const RunRequest& request) const;
   [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
-                                                     const RunFile& file) const;
+                                                     const store::RunFile& file) const;
   [[nodiscard]] Result<void> table_is_there() const;
   [[nodiscard]] Result<void> resume_interrupted(Stamp now);
   [[nodiscard]] Result<void> drop_interrupted();
@@ -82,7 +82,7 @@ class RunExecutor {
     out.message = std::move(message);
     return out;
   }
-  void begin(RunFile file, RunConfig config, RunPlan plan, Stamp now,
+  void begin(store::RunFile file, RunConfig config, plan::RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
   void learn_accuracy();
   void act(const HomeTable&, Stamp) {}  // the core's, as are the next three
@@ -100,18 +100,18 @@ class RunExecutor {
   void act(const Record& action, Stamp now);
   void act(const Finish& action, Stamp);
 
-  const Config& config_;
+  const config::Config& config_;
   std::filesystem::path directory_;
-  CalibrationStore& store_;
-  Worker& worker_;
+  store::CalibrationStore& store_;
+  store::Worker& worker_;
   CurrentRun& run_;
   RunHooks hooks_;
-  std::optional<RunFile> file_;
-  PoseTable poses_;                                ///< stored so far; the worker gets copies
-  std::shared_ptr<const calib::JointState> near_;  ///< of the last fit while measuring
-  bool learning_{false};                           ///< the worker is at such a fit
+  std::optional<store::RunFile> file_;
+  PoseTable poses_;                                            ///< stored so far; the worker gets copies
+  std::shared_ptr<const calib::fit::joint::JointState> near_;  ///< of the last fit while measuring
+  bool learning_{false};                                       ///< the worker is at such a fit
   std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};
-  std::optional<calib::Calibration> solved_;
+  std::optional<calib::calibration::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
   std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins
   /// The last run, when it failed with poses on disk: resume takes it up.
@@ -119,4 +119,4 @@ class RunExecutor {
   std::uint64_t generation_{0};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -11,7 +11,7 @@
 #include "daemon/run/run_executor.h"
 #include "daemon/run/solver.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 void RunExecutor::act(const DropPoses& action, Stamp) {
   if (auto dropped = file_->remove_poses(action.numbers); !dropped) {
@@ -40,14 +40,15 @@ void RunExecutor::learn_accuracy() {
       [poses = poses_, near = near_,
        options = fit_options(file_->header().options)](std::stop_token stop) mutable {
         options.stop = std::move(stop);
-        return calib::accuracy_so_far(poses, options, near.get());
+        return calib::fit::joint::accuracy_so_far(poses, options, near.get());
       },
-      [this, generation = generation_, count = poses_.poses.size()](Result<calib::AccuracySoFar> known) {
+      [this, generation = generation_,
+       count = poses_.poses.size()](Result<calib::fit::joint::AccuracySoFar> known) {
         if (generation != generation_ || !active()) return;
         learning_ = false;
         if (known) {
           run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
-          near_ = std::make_shared<const calib::JointState>(std::move(known->state));
+          near_ = std::make_shared<const calib::fit::joint::JointState>(std::move(known->state));
         }
         if (poses_.poses.size() != count) learn_accuracy();
       });
@@ -67,15 +68,15 @@ void RunExecutor::act(const StartSolve&, Stamp) {
   learning_job_.request_stop();  // what it would say is part of what follows
   solving_job_ =
       worker_.run([path = file_->path()](std::stop_token stop) { return solve_run(path, std::move(stop)); },
-                  [this, generation = generation_](Result<calib::FitReport> report) {
+                  [this, generation = generation_](Result<calib::fit::FitReport> report) {
                     if (generation != generation_ || !active()) return;
                     SolveDone done{tl::unexpected(Error{})};
                     if (const auto active = store_.active(); report && active && *active)
-                      hold_against(**active, *report);
+                      acquire::hold_against(**active, *report);
                     if (report) {
-                      const calib::Calibration& c = report->calibration;
-                      done.result = Solution{c.accepted_by_checks, c.id, calib::fit_reasons(*report),
-                                             c.checks, calib::lack_of_fit_text(*report)};
+                      const calib::calibration::Calibration& c = report->calibration;
+                      done.result = Solution{c.accepted_by_checks, c.id, calib::report::fit_reasons(*report),
+                                             c.checks, calib::report::lack_of_fit_text(*report)};
                       solved_ = c;
                     } else {
                       done.result = tl::unexpected(report.error());
@@ -91,7 +92,7 @@ void RunExecutor::act(const ProposeCalibration& action, Stamp now) {
       fail(ErrorCode::internal, fmt::format("calibration {} was not solved here", action.calibration_id));
   if (solved_ && solved_->id == action.calibration_id)
     proposed = store_.propose(*solved_, file_->header().run_id, now.wall);
-  if (proposed) proposed = file_->set_document("proposed", calib::to_json_text(*solved_));
+  if (proposed) proposed = file_->set_document("proposed", calib::calibration::to_json_text(*solved_));
   run_.answer(CalibrationProposed{std::move(proposed)});
 }
 
@@ -119,4 +120,4 @@ void RunExecutor::act(const Finish& action, Stamp) {
   if (action.state == RunState::failed) failed_ = resumable(file_->path(), *file_);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr double kStatusEvery_s = 1.0;
@@ -26,7 +26,7 @@ FieldGuardConfig field_guard(const RunConfig& config) {
 
 }  // namespace
 
-RunFsm::RunFsm(RunConfig config, RunPlan plan, Stamp now, const std::optional<EarlierLife>& earlier)
+RunFsm::RunFsm(RunConfig config, plan::RunPlan plan, Stamp now, const std::optional<EarlierLife>& earlier)
     : config_(std::move(config)),
       plan_(std::move(plan)),
       progress_(plan_, config_.pace),
@@ -217,4 +217,4 @@ RunStatus RunFsm::status(Instant now) const {
   return s;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -65,7 +65,7 @@
 /// - Every target lies within the limits, or the table is not moved.
 /// - Poses stored by an earlier life of the run are skipped. A new run whose preflight fails is `failed`; one
 ///   that has poses already pauses instead.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 /// A run that was interrupted: when it began (origin of t_s) and what it has.
 struct EarlierLife {
@@ -79,7 +79,8 @@ struct EarlierLife {
 class RunFsm {
  public:
   /// The run begins with the first step().
-  RunFsm(RunConfig config, RunPlan plan, Stamp now, const std::optional<EarlierLife>& earlier = std::nullopt);
+  RunFsm(RunConfig config, plan::RunPlan plan, Stamp now,
+         const std::optional<EarlierLife>& earlier = std::nullopt);
 
   [[nodiscard]] std::vector<Action> step(const Event& event, Stamp now);
 
@@ -88,7 +89,7 @@ class RunFsm {
   [[nodiscard]] Result<void> possible(const ScaleEntered& entered) const;
   [[nodiscard]] RunStatus status(Instant now) const;
   [[nodiscard]] bool ended() const { return in<phase::Ended>() != nullptr; }
-  [[nodiscard]] const RunPlan& plan() const { return plan_; }
+  [[nodiscard]] const plan::RunPlan& plan() const { return plan_; }
 
  private:
   // What happens.
@@ -164,7 +165,7 @@ class RunFsm {
     return in<phase::Preflighting>() || in<phase::Dwelling>() || in<phase::Suspended>();
   }
   [[nodiscard]] bool timed_out(double limit_s) const { return now_.mono - entered_ > from_seconds(limit_s); }
-  [[nodiscard]] const PlannedPose& planned() const { return plan_.poses[progress_.index()]; }
+  [[nodiscard]] const plan::PlannedPose& planned() const { return plan_.poses[progress_.index()]; }
   [[nodiscard]] bool identity_settled();  ///< false: the run is held
   [[nodiscard]] std::optional<TableAngles> waypoint() const;
   [[nodiscard]] bool reached(const TableReading& reading, const TableAngles& goal) const;
@@ -183,7 +184,7 @@ class RunFsm {
   }
 
   RunConfig config_;
-  RunPlan plan_;
+  plan::RunPlan plan_;
   RunProgress progress_;
   Stamp run_start_;
 
@@ -207,4 +208,4 @@ class RunFsm {
   std::optional<double> tensor_sd_nT_per_m_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -9,7 +9,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/run/run_fsm.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr std::string_view kUnreachable = "the table cannot be reached and may still move";
@@ -236,7 +236,8 @@ bool RunFsm::identity_settled() {
     return false;
   }
   if (!identity_.confirmed().empty()) act(Record{"the operator goes on although " + identity_.confirmed()});
-  if (const auto own = identity_.begin(); !own.empty()) act(StoreChecks{kInstrumentsStage, to_checks(own)});
+  if (const auto own = identity_.begin(); !own.empty())
+    act(StoreChecks{acquire::kInstrumentsStage, acquire::to_checks(own)});
   return true;
 }
 
@@ -302,4 +303,4 @@ void RunFsm::on(const DeviceFaulted& faulted) {
   hold(what);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

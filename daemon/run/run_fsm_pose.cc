@@ -9,7 +9,7 @@
 #include "daemon/plan/approach.h"
 #include "daemon/run/run_fsm.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 std::string in_words(const TableAngles& a) {
@@ -45,7 +45,7 @@ void RunFsm::begin_preflight() {
 
 void RunFsm::begin_pose(std::size_t index) {
   progress_.begin(index, now_.mono);
-  if (!inside(config_.limits, planned().target)) {
+  if (!plan::inside(config_.limits, planned().target)) {
     hold(fmt::format(
         "pose {} asks for {}, outside the table's limits; widen the limits in the configuration to "
         "what they were when the run was planned, or abort",
@@ -66,13 +66,14 @@ void RunFsm::begin_pose(std::size_t index) {
 /// not, or when the limits leave no room (the sense that is stored is always the real one).
 std::optional<TableAngles> RunFsm::waypoint() const {
   if (!table_.latest()) return std::nullopt;
-  return daemon::waypoint(table_.latest()->angles, table_.sense().value_or(0), planned().target,
-                          planned().sense, config_.approach_rad, config_.limits);
+  return plan::waypoint(table_.latest()->angles, table_.sense().value_or(0), planned().target,
+                        planned().sense, config_.approach_rad, config_.limits);
 }
 
 void RunFsm::move_to_target() {
   const TableAngles goal = planned().target;
-  const int sense = table_.latest() ? sense_of(table_.latest()->angles.azimuth_rad, goal.azimuth_rad) : 0;
+  const int sense =
+      table_.latest() ? plan::sense_of(table_.latest()->angles.azimuth_rad, goal.azimuth_rad) : 0;
   if (sense != 0) table_.set_sense(sense);
   enter(phase::Moving{goal, Settle(config_.settle, now_.mono)},
         fmt::format("{}: moving to {}", pose_of(), in_words(goal)));
@@ -280,4 +281,4 @@ void RunFsm::bad_pose(const Error& why) {
   go_on();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 RunIdentity::RunIdentity(const std::vector<InstrumentIdentity>& calibrated,
                          const std::vector<InstrumentIdentity>& own) {
@@ -34,7 +34,7 @@ bool RunIdentity::readings_say(const ReadingsSay& say) {
 }
 
 Check RunIdentity::check() const {
-  const InstrumentWatch& watch = own_.another() ? own_ : calibrated_;
+  const acquire::InstrumentWatch& watch = own_.another() ? own_ : calibrated_;
   const std::string measured = watch.another() ? watch.measured() : readings_say_.measured;
   const std::string remedy = watch.another() ? watch.remedy() : readings_say_.remedy;
   if (measured.empty()) return {"identity", true, "no sensor is known to be another one", "none", ""};
@@ -54,4 +54,4 @@ std::vector<InstrumentIdentity> RunIdentity::begin() {
   return answering_;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

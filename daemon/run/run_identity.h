@@ -14,7 +14,7 @@
 /// A sensor that is not the calibrated one fails the check `identity` of the first preflight; the operator
 /// may mean it so and resume. One that is not the one that this run began with fails it for as long as it is
 /// there.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class RunIdentity {
  public:
@@ -40,10 +40,10 @@ class RunIdentity {
   [[nodiscard]] std::vector<InstrumentIdentity> begin();
 
  private:
-  InstrumentWatch own_{kByRun}, calibrated_{kByCalibration};
+  acquire::InstrumentWatch own_{acquire::kByRun}, calibrated_{acquire::kByCalibration};
   std::vector<InstrumentIdentity> answering_;  ///< by place
   ReadingsSay readings_say_;
   std::string confirmed_;  ///< what was said of another sensor before the operator resumed
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/run/run_phase.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 struct Shown {
@@ -33,4 +33,4 @@ bool is_measuring(const Phase& phase) {
          !std::holds_alternative<phase::Stopping>(phase) && !std::holds_alternative<phase::Ended>(phase);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -13,7 +13,7 @@
 #include "proto/time.h"
 
 /// The phases of a calibration run, each with what only it needs. Which follows which: run_fsm.h.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace phase {
 
 struct Preflighting {
@@ -59,4 +59,4 @@ using Phase = std::variant<phase::Preflighting, phase::Homing, phase::Asking, ph
 /// From the preflight to the last pose, or waiting for a device to go on with that.
 [[nodiscard]] bool is_measuring(const Phase& phase);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -3,17 +3,17 @@
 
 #include <algorithm>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 constexpr double kPriorPoses = 3;  // weight of what was foreseen
 }
 
-RunProgress::RunProgress(const RunPlan& plan, Pace pace)
+RunProgress::RunProgress(const plan::RunPlan& plan, plan::Pace pace)
     : done_(plan.poses.size(), false), solve_s_(pace.solve_s), foreseen_s_(0), measured_s_(0) {
   double sum_s = 0;
   for (std::size_t i = 0; i < plan.poses.size(); ++i) {
     dwell_s_.push_back(plan.poses[i].dwell_s);
-    overhead_s_.push_back(pose_s(pace, plan, i) - plan.poses[i].dwell_s);
+    overhead_s_.push_back(plan::pose_s(pace, plan, i) - plan.poses[i].dwell_s);
     sum_s += overhead_s_.back();
   }
   if (!done_.empty()) foreseen_s_ = measured_s_ = kPriorPoses * sum_s / static_cast<double>(done_.size());
@@ -64,4 +64,4 @@ double RunProgress::remaining_s(Instant now) const {
   return sum_s;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

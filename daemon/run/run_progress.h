@@ -11,11 +11,11 @@
 /// How much of a plan is done, which pose is under way and how often it failed, and how long the rest will
 /// take. The estimate starts from the table's speed and learns from every pose: what it took beside its
 /// dwell, against what was foreseen.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class RunProgress {
  public:
-  RunProgress(const RunPlan& plan, Pace pace);
+  RunProgress(const plan::RunPlan& plan, plan::Pace pace);
 
   void set_done(std::size_t index) { done_.at(index) = true; }  ///< in an earlier life of the run
   void undo(std::size_t index) { done_.at(index) = false; }     ///< to be measured again
@@ -56,4 +56,4 @@ class RunProgress {
   bool cut_{false};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

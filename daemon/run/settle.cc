@@ -9,7 +9,7 @@
 
 #include "calib/sensor/channels.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr std::size_t kFewestInWindow = 6;
@@ -116,21 +116,23 @@ SettleOutcome Settle::judge_field(Instant now) const {
   if (worst.drift_excess > 1) {
     return {open,
             fmt::format("{} drifts {:.2f} nT over {:.1f} s, {:.1f} s after the stop",
-                        calib::channel_name(worst.drifting_axis), worst.change_nT, config_.window_s, since_s),
+                        calib::sensor::channel_name(worst.drifting_axis), worst.change_nT, config_.window_s,
+                        since_s),
             fmt::format("{:.2f} nT", worst.limit_nT),
             "lengthen settle_max_s, or look for a motor that stays on or iron that moves"};
   }
   const double most_nT = config_.disturbed_ratio * config_.noise_nT;
   if (config_.noise_nT > 0 && worst.sd_nT > most_nT) {
-    return {last_chance ? SettleState::disturbed : SettleState::settling,
-            fmt::format("{} scatters by {:.2f} nT", calib::channel_name(worst.noisy_axis), worst.sd_nT),
-            fmt::format("{:.2f} nT, {:.0f} x the noise of the preflight", most_nT, config_.disturbed_ratio),
-            "something magnetic moves near the array, or the table's drive is still powered"};
+    return {
+        last_chance ? SettleState::disturbed : SettleState::settling,
+        fmt::format("{} scatters by {:.2f} nT", calib::sensor::channel_name(worst.noisy_axis), worst.sd_nT),
+        fmt::format("{:.2f} nT, {:.0f} x the noise of the preflight", most_nT, config_.disturbed_ratio),
+        "something magnetic moves near the array, or the table's drive is still powered"};
   }
   return {since_s < config_.min_s ? open : SettleState::settled,
-          fmt::format("{} drifts {:.2f} nT over {:.1f} s", calib::channel_name(worst.drifting_axis),
+          fmt::format("{} drifts {:.2f} nT over {:.1f} s", calib::sensor::channel_name(worst.drifting_axis),
                       worst.change_nT, config_.window_s),
           fmt::format("{:.2f} nT", worst.limit_nT), ""};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -15,7 +15,7 @@
 /// of its own standard error or below `tolerance_nT`, and sd is below disturbed_ratio x the noise known from
 /// the preflight. A trend that remains at max_s is `timed_out`; scatter that remains is `disturbed`:
 /// something in the room moves.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 struct SettleConfig {
   double min_s{0.5};       ///< from stop; eddy currents and ringing of the table
@@ -74,4 +74,4 @@ class Settle {
   std::optional<SettleOutcome> final_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

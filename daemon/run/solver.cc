@@ -6,10 +6,10 @@
 #include "calib/report/rearrangement_text.h"
 #include "daemon/acquire/calibrated_with.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
-calib::FitOptions fit_options(const RunOptions& options) {
-  calib::FitOptions out;
+calib::fit::FitOptions fit_options(const store::RunOptions& options) {
+  calib::fit::FitOptions out;
   out.field_nT = options.field_nT;
   out.field_sd_nT = options.field_sd_nT.value_or(out.field_sd_nT);
   out.inclination_rad = options.inclination_rad;
@@ -19,30 +19,30 @@ calib::FitOptions fit_options(const RunOptions& options) {
   return out;
 }
 
-Result<calib::FitOptions> fit_options(const PoseSource& source) {
-  calib::FitOptions out = source.header ? fit_options(source.header->options) : calib::FitOptions{};
+Result<calib::fit::FitOptions> fit_options(const store::PoseSource& source) {
+  calib::fit::FitOptions out = source.header ? fit_options(source.header->options) : calib::fit::FitOptions{};
   for (const std::string& spec : source.model) {
-    auto effect = calib::make_effect(spec);
+    auto effect = calib::effects::library::make_effect(spec);
     if (!effect) return tl::unexpected(effect.error());
     out.effects.push_back(std::move(*effect));
   }
   return out;
 }
 
-Result<calib::FitReport> solve_run(const std::filesystem::path& run_file, std::stop_token stop) {
-  const auto source = read_run(run_file);
+Result<calib::fit::FitReport> solve_run(const std::filesystem::path& run_file, std::stop_token stop) {
+  const auto source = store::read_run(run_file);
   if (!source) return tl::unexpected(source.error());
   auto options = fit_options(*source);
   if (options) options->stop = std::move(stop);
   if (!options) return tl::unexpected(options.error());
-  auto report = calib::fit(source->table, *options);
+  auto report = calib::fit::method_choice::fit(source->table, *options);
   if (!report) return report;
-  name_instruments(report->calibration, run_file);
+  acquire::name_instruments(report->calibration, run_file);
   if (report->calibration.accepted_by_checks) return report;
   // The cause, before what it led to.
-  if (const auto exchange = calib::exchange_in_run(source->table, options->field_nT))
-    report->found_beside.insert(report->found_beside.begin(), calib::exchange_text(*exchange));
+  if (const auto exchange = calib::criticism::tests::exchange_in_run(source->table, options->field_nT))
+    report->found_beside.insert(report->found_beside.begin(), calib::report::exchange_text(*exchange));
   return report;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

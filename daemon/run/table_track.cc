@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr double kSamePlace_rad = 1e-5;
@@ -48,4 +48,4 @@ std::optional<Instant> TableTrack::rests_since() const {
 
 std::vector<TableReading> TableTrack::take_path() { return std::exchange(path_, {}); }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -7,7 +7,7 @@
 #include "proto/time.h"
 
 /// What the table has reported: where it is, how it came there, and since when it rests. Angles in radians.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class TableTrack {
  public:
@@ -46,4 +46,4 @@ class TableTrack {
 /// The largest difference of the three angles.
 [[nodiscard]] double furthest_rad(const TableAngles& a, const TableAngles& b);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -12,7 +12,7 @@
 
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using Eigen::Matrix3d;
@@ -102,7 +102,7 @@ std::string mirror_in_words(const Matrix3d& S) {
 std::string in_words(const std::vector<Matrix3d>& ways) {
   if (ways.empty())
     return "reads another field, whichever way it is turned: look at its range, scale and supply";
-  if (ways.size() == 1) return daemon::in_words(ways.front());
+  if (ways.size() == 1) return run::in_words(ways.front());
   if (all_of(ways, mirrored)) return "mirrored (left-handed axes); which ones, further attitudes will tell";
   if (all_of(ways, [](const Matrix3d& S) { return !mirrored(S); }))
     return "turned; about which axis, further attitudes will tell";
@@ -127,7 +127,8 @@ void Wiring::add(const std::array<Eigen::Vector3d, kSensors>& y_nT,
   Seen seen;
   for (std::size_t i = 0; i < kSensors; ++i) seen.y[i] = y_nT[i] / field_nT;
   if (angles)
-    seen.R_PS = calib::table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
+    seen.R_PS =
+        calib::sensor::table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
   seen_.push_back(seen);
 }
 
@@ -189,4 +190,4 @@ std::vector<std::string> Wiring::findings() const {
   return out;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

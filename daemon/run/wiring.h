@@ -17,7 +17,7 @@
 /// another where it changes the reading by more than kTolerance of it. What one attitude leaves open, the
 /// first turns of the table close; until then nothing is claimed. Swapped cables are not seen here
 /// (wiring_probe.h).
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class Wiring {
  public:
@@ -48,4 +48,4 @@ class Wiring {
 /// y = S b as words: "turned by 90 deg about z", "mirrored (left-handed axes: y reversed)".
 [[nodiscard]] std::string in_words(const Eigen::Matrix3d& S);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr std::array<std::string_view, kSensors> kWhere{"+X", "+Y", "-X", "-Y"};
@@ -150,4 +150,4 @@ Result<void> ready_for_magnet(const std::vector<std::pair<Slot, LinkHealth>>& li
               "check its port, cable and supply; when mgt status shows it live, say it again");
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -23,7 +23,7 @@
 /// other's, for kHeld_s on end. A dipole falls by 8 over a doubled distance, so a magnet nearer than half an
 /// arm to one sensor leaves no doubt; where there is doubt, there is no answer. Arms that nobody answered
 /// for, and a sensor that answered for two arms, are said to be open; nothing is guessed.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class WiringProbe {
  public:
@@ -76,4 +76,4 @@ class WiringProbe {
 /// All four sensors speak; otherwise an arm would wait for one that cannot answer.
 [[nodiscard]] Result<void> ready_for_magnet(const std::vector<std::pair<Slot, LinkHealth>>& links);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

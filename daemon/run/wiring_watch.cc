@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 std::optional<Check> WiringWatch::add(const Pose& pose) {
   constexpr std::size_t kFirst = 4, kLast = 32;
@@ -24,4 +24,4 @@ std::optional<Check> WiringWatch::add(const Pose& pose) {
                "place and the wires of its axes"};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -10,7 +10,7 @@
 
 /// The wiring as the poses of a run show it, said when the turns of the table have shown it, and again when
 /// further ones show more.
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 
 class WiringWatch {
  public:
@@ -22,4 +22,4 @@ class WiringWatch {
   std::vector<std::string> said_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

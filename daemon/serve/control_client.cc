@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 Result<ControlClient> ControlClient::connect(const std::string& path) {
   auto stream = LineStream::connect_unix(path);
@@ -31,4 +31,4 @@ Result<nlohmann::json> ControlClient::request(ControlCommand command, nlohmann::
   }
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

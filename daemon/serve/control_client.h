@@ -10,7 +10,7 @@
 
 /// A ControlClient is the operator's side of the control socket: one request, one answer, one after the
 /// other.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 class ControlClient {
  public:
@@ -28,4 +28,4 @@ class ControlClient {
   std::uint64_t next_id_{1};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

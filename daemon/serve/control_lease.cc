@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 bool needs_control(ControlCommand command) {
   switch (command) {
@@ -103,4 +103,4 @@ std::optional<ControlHolder> ControlLease::holder(Instant now) const {
                        .left_s = to_seconds(by->until - now)};
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -18,7 +18,7 @@
 /// - control.take keeps it until control.release, the end of the connection, or the silence it stated.
 /// - Pause and abort are never refused: everyone who may use the socket may stop the table.
 /// - control.break takes control away from whoever has it; who breaks does not get it thereby.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 struct ControlPeer {
   std::uint64_t connection{0};
@@ -60,4 +60,4 @@ class ControlLease {
 /// False for what only looks, and for what is never refused.
 [[nodiscard]] bool needs_control(ControlCommand command);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

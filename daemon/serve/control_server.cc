@@ -13,7 +13,7 @@
 #include "daemon/serve/listener.h"
 #include "drivers/clock.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 constexpr std::size_t kControlBacklog = 4 * 1024 * 1024;  // bytes of replies a client may leave unread
@@ -165,4 +165,4 @@ Result<void> ControlServer::start() { return state_->start(); }
 void ControlServer::stop() { state_->stop(); }
 ControlStatus ControlServer::stats() const { return state_->stats(); }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -19,7 +19,7 @@
 /// sends too long a line or does not read is told why and disconnected.
 ///
 /// Everything runs on the io_context's thread; the server must not outlive the io_context.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 struct ControlConfig {
   std::string path{"/run/mgtd/control.sock"};
@@ -47,4 +47,4 @@ class ControlServer {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -11,7 +11,7 @@
 
 #include "daemon/config/tcp_address.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 /// Read once: what was given away is not offered again. -1 stands where one was.
@@ -50,4 +50,4 @@ int take_inherited_tcp(const boost::asio::ip::tcp::endpoint& endpoint) {
   });
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

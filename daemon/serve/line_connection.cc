@@ -7,7 +7,7 @@
 #include <boost/asio/error.hpp>
 #include <boost/asio/post.hpp>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
@@ -105,4 +105,4 @@ void LineConnection::close(std::string_view reason) {
   asio::post(socket_.get_executor(), [handlers = std::move(handlers_)] {});
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -14,7 +14,7 @@
 /// A LineConnection is one connected peer that speaks in lines. Reads a kilobyte at a time, so that a peer
 /// that floods costs the others no more than that per turn; writes without ever blocking. Everything runs on
 /// the io_context's thread.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 class LineConnection : public std::enable_shared_from_this<LineConnection> {
  public:
@@ -66,4 +66,4 @@ class LineConnection : public std::enable_shared_from_this<LineConnection> {
   bool waiting_{false};  ///< for the socket to become writable
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -15,7 +15,7 @@
 #include "daemon/config/tcp_address.h"
 #include "daemon/serve/unix_socket.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -29,13 +29,13 @@ int left_ms(Clock::time_point end) {
 }  // namespace
 
 Result<LineStream> LineStream::connect_unix(const std::string& path) {
-  const auto fd = daemon::connect_unix(path);
+  const auto fd = serve::connect_unix(path);
   if (!fd) return tl::unexpected(fd.error());
   return LineStream(*fd, path);
 }
 
 Result<LineStream> LineStream::connect_tcp(const std::string& address) {
-  const auto endpoint = parse_tcp_address(address);
+  const auto endpoint = config::parse_tcp_address(address);
   if (!endpoint) return tl::unexpected(endpoint.error());
   const int fd = ::socket(endpoint->protocol().family(), SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (fd >= 0 && ::connect(fd, endpoint->data(), static_cast<socklen_t>(endpoint->size())) == 0) {
@@ -104,4 +104,4 @@ Result<std::optional<std::string>> LineStream::read_line(Duration wait) {
   }
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

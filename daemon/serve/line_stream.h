@@ -9,7 +9,7 @@
 
 /// A LineStream is a blocking connection to the daemon, line by line, for the operator's tool. Every wait has
 /// a limit.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 class LineStream {
  public:
@@ -34,4 +34,4 @@ class LineStream {
   std::string in_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -13,7 +13,7 @@
 #include "daemon/serve/inherited_sockets.h"
 #include "daemon/serve/unix_socket.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
@@ -112,7 +112,7 @@ class Listener::State : public std::enable_shared_from_this<State> {
 };
 
 Result<Listener> Listener::tcp(asio::io_context& io, const std::string& address) {
-  const auto endpoint = parse_tcp_address(address);
+  const auto endpoint = config::parse_tcp_address(address);
   if (!endpoint) return tl::unexpected(endpoint.error());
   if (const int fd = take_inherited_tcp(*endpoint); fd >= 0) {
     return Listener(
@@ -153,4 +153,4 @@ void Listener::start(OnClient on_client) { state_->start(std::move(on_client)); 
 void Listener::stop() { state_->stop(); }
 std::uint16_t Listener::port() const { return state_->port(); }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

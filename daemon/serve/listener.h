@@ -13,7 +13,7 @@
 
 /// A Listener waits for clients at a TCP address or a Unix socket and hands connected sockets to the server.
 /// When file descriptors run out it pauses for a second instead of spinning.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 class Listener {
  public:
@@ -45,4 +45,4 @@ class Listener {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

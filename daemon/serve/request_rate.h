@@ -6,7 +6,7 @@
 
 /// RequestRate limits how often a client may ask: `burst` requests at once, and `per_s` a second in the long
 /// run.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 struct RateLimit {
   double per_s{0};
@@ -32,4 +32,4 @@ class RequestRate {
   Instant at_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 /// Memory for a line of so many bytes, and no more than twice as much: a slot that once held a STATUS, five
@@ -65,4 +65,4 @@ std::uint64_t SampleRing::find_seq(std::uint64_t seq) const {
   return low;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

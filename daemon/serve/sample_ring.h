@@ -13,7 +13,7 @@
 /// on and stay at their number; the oldest are overwritten. Slots keep their memory, up to twice what their
 /// line needs: among lines of like length pushing allocates nothing once every slot has held one, and a long
 /// line now and then does not make the ring grow.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 struct StreamRecord {
   StreamClass stream_class{StreamClass::tensor};
@@ -54,4 +54,4 @@ class SampleRing {
   std::uint64_t next_seq_{0};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

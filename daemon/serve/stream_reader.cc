@@ -6,7 +6,7 @@
 #include "proto/json_line.h"
 #include "proto/stream_codec.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 using Json = nlohmann::json;
@@ -64,4 +64,4 @@ Result<std::optional<Json>> StreamReader::next(Duration wait) {
   return object;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -10,7 +10,7 @@
 
 /// A StreamReader is the operator's side of the live stream: it waits for the greeting, sends its watch, and
 /// reads one object after the other.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 class StreamReader {
  public:
@@ -34,4 +34,4 @@ class StreamReader {
   nlohmann::json greeting_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -14,7 +14,7 @@
 #include "proto/tensor_encoder.h"
 #include "proto/watch_request.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 constexpr int kBadLines = 32;                            // in a row, before a client counts as flooding
@@ -37,7 +37,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   Result<void> start();
   void stop();
 
-  void keep(DiskRing& disk) {
+  void keep(store::DiskRing& disk) {
     disk_ = &disk;
     const auto& between = disk.between();
     ring_ = SampleRing(config_.ring_lines, between ? between->from_seq : disk.first_seq());
@@ -72,7 +72,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
     std::shared_ptr<LineConnection> connection;
     RequestRate rate;
     Subscription subscription{};
-    std::optional<RingReader> past{};  ///< while it reads what is on disk
+    std::optional<store::RingReader> past{};  ///< while it reads what is on disk
     int bad_lines{0};
   };
 
@@ -89,7 +89,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
   StreamConfig config_;
   std::string greeting_;
   SampleRing ring_;
-  DiskRing* disk_{nullptr};
+  store::DiskRing* disk_{nullptr};
   TensorEncoder encoder_;
   std::vector<Listener> listeners_;
   std::uint16_t tcp_port_{0};
@@ -237,7 +237,7 @@ StreamServer::StreamServer(boost::asio::io_context& io, StreamConfig config, Gre
     : state_(std::make_shared<State>(io, std::move(config), greeting)) {}
 StreamServer::~StreamServer() { state_->stop(); }
 
-void StreamServer::keep(DiskRing& disk) { state_->keep(disk); }
+void StreamServer::keep(store::DiskRing& disk) { state_->keep(disk); }
 Result<void> StreamServer::start() { return state_->start(); }
 void StreamServer::stop() { state_->stop(); }
 void StreamServer::publish(const TensorSample& sample, std::span<const InputValue> inputs) {
@@ -254,4 +254,4 @@ void StreamServer::publish_line(StreamClass stream_class, std::string_view line)
 StreamStatus StreamServer::stats() const { return state_->stats(); }
 std::uint16_t StreamServer::tcp_port() const { return state_->tcp_port(); }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -29,7 +29,7 @@
 /// disconnected with a reason when it stays behind, floods or asks too often.
 ///
 /// Everything runs on the io_context's thread; the server must not outlive the io_context.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 struct StreamConfig {
   std::string tcp{"127.0.0.1:7450"};               ///< empty: no TCP
@@ -49,7 +49,7 @@ class StreamServer {
 
   /// What is published is also kept on disk, and clients go back to what is there. Before start(); the ring
   /// outlives the server. Begins with what lies between the last life and this one.
-  void keep(DiskRing& disk);
+  void keep(store::DiskRing& disk);
   /// Binds and listens. On an error nothing is left listening.
   [[nodiscard]] Result<void> start();
   /// Says why to every client, closes, removes the Unix socket.
@@ -72,4 +72,4 @@ class StreamServer {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -7,7 +7,7 @@
 
 #include "proto/stream_codec.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 namespace {
 
@@ -120,4 +120,4 @@ bool Subscription::stays_behind(const SampleRing& ring) const {
          (strikes_ >= kStrikes || ring.end() - cursor_ > (1 + kStrikes) * std::uint64_t{ring.capacity()});
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -17,7 +17,7 @@
 /// A client that the ring has overtaken is told by a GAP which epochs it lost ("client too slow") and goes on
 /// with the newest sample. Overtaken three times without keeping up for a ring length in between, it has
 /// stayed behind and is to be disconnected.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 class Subscription {
  public:
@@ -61,4 +61,4 @@ class Subscription {
   std::uint64_t kept_up_{0};  ///< records looked at since it was last overtaken
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 struct Address {
@@ -134,4 +134,4 @@ Result<int> connect_unix(const std::string& path) {
                   : "is mgtd running (systemctl status mgtd)? is this its socket (--socket, MGTD_CONTROL)?");
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

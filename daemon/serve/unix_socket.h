@@ -8,7 +8,7 @@
 #include "proto/error.h"
 
 /// Unix sockets are files; the mode of the file says who may connect.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 /// A listening socket and the file it is known by. Owns both.
 class UnixSocket {
@@ -38,4 +38,4 @@ class UnixSocket {
 /// A connected socket (close-on-exec), or `unreachable` with what to look at.
 [[nodiscard]] Result<int> connect_unix(const std::string& path);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

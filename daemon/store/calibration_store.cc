@@ -11,7 +11,7 @@
 #include "calib/validity/calibration_validity.h"
 #include "daemon/store/durable_file.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using nlohmann::json;
@@ -23,7 +23,7 @@ Error unknown(std::string_view id) {
           "list them: mgt calibrations list"};
 }
 
-Error failed_checks(const calib::Calibration& calibration) {
+Error failed_checks(const calib::calibration::Calibration& calibration) {
   std::string failed;
   for (const Check& c : calibration.checks) {
     if (!c.passed)
@@ -133,10 +133,11 @@ std::filesystem::path CalibrationStore::file_of(std::string_view id) const {
   return directory_ / (std::string(id) + ".json");
 }
 
-Result<void> CalibrationStore::propose(const calib::Calibration& calibration, std::string_view origin,
-                                       WallTime now) {
-  const std::string text = calib::to_json_text(calibration);
-  if (const auto sound = calib::calibration_from_json_text(text); !sound || sound->id != calibration.id) {
+Result<void> CalibrationStore::propose(const calib::calibration::Calibration& calibration,
+                                       std::string_view origin, WallTime now) {
+  const std::string text = calib::calibration::to_json_text(calibration);
+  if (const auto sound = calib::calibration::calibration_from_json_text(text);
+      !sound || sound->id != calibration.id) {
     return fail(ErrorCode::internal, "a calibration that is not sealed cannot be proposed", "");
   }
   if (find(calibration.id) != nullptr) return {};
@@ -144,9 +145,9 @@ Result<void> CalibrationStore::propose(const calib::Calibration& calibration, st
   return record({now, "proposed", calibration.id, std::string(origin)});
 }
 
-Result<void> CalibrationStore::import(const calib::Calibration& calibration, std::string_view origin,
-                                      bool force, WallTime now) {
-  if (auto usable = calib::validate(calibration); !usable) return usable;
+Result<void> CalibrationStore::import(const calib::calibration::Calibration& calibration,
+                                      std::string_view origin, bool force, WallTime now) {
+  if (auto usable = calib::validity::validate(calibration); !usable) return usable;
   if (!calibration.accepted_by_checks && !force) return tl::unexpected(failed_checks(calibration));
   return propose(calibration, origin, now);
 }
@@ -176,7 +177,7 @@ std::optional<std::string> CalibrationStore::active_id() const {
   return activations_.back();
 }
 
-Result<std::optional<calib::Calibration>> CalibrationStore::active() const {
+Result<std::optional<calib::calibration::Calibration>> CalibrationStore::active() const {
   const auto id = active_id();
   if (!id) return std::nullopt;
   auto calibration = show(*id);
@@ -184,12 +185,12 @@ Result<std::optional<calib::Calibration>> CalibrationStore::active() const {
   return std::move(*calibration);
 }
 
-Result<calib::Calibration> CalibrationStore::show(std::string_view id) const {
+Result<calib::calibration::Calibration> CalibrationStore::show(std::string_view id) const {
   const bool known = std::any_of(entries_.begin(), entries_.end(), [&](const auto& e) { return e.id == id; });
   if (!known) return tl::unexpected(unknown(id));
   const auto text = read_file(file_of(id));
   if (!text) return tl::unexpected(text.error());
-  auto calibration = calib::calibration_from_json_text(*text);
+  auto calibration = calib::calibration::calibration_from_json_text(*text);
   if (calibration && calibration->id == id) return calibration;
   const std::string why =
       calibration ? "it holds calibration " + calibration->id : calibration.error().text();
@@ -197,4 +198,4 @@ Result<calib::Calibration> CalibrationStore::show(std::string_view id) const {
               "restore it from a backup, or roll back: mgt calibrations rollback");
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

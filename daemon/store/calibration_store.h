@@ -14,7 +14,7 @@
 /// became of them. The active calibration is what the log says; a calibration is never changed or deleted.
 /// Every step is written, synced and renamed: killed at any moment, the store holds either the state before
 /// or the state after.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 enum class CalibrationState { proposed, accepted, active };
 [[nodiscard]] std::string_view name(CalibrationState state);
@@ -34,13 +34,13 @@ class CalibrationStore {
   [[nodiscard]] static Result<CalibrationStore> open(std::filesystem::path directory);
 
   /// Proposing what is already known changes nothing. Refuses an unsealed calibration.
-  [[nodiscard]] Result<void> propose(const calib::Calibration& calibration, std::string_view origin,
-                                     WallTime now);
+  [[nodiscard]] Result<void> propose(const calib::calibration::Calibration& calibration,
+                                     std::string_view origin, WallTime now);
   /// Proposes a calibration that was made elsewhere. Refuses one that cannot be used (calibration_validity.h)
   /// and, without `force`, one that failed its checks. Does not know the rig: whether it is of this array is
   /// the caller's question.
-  [[nodiscard]] Result<void> import(const calib::Calibration& calibration, std::string_view origin,
-                                    bool force, WallTime now);
+  [[nodiscard]] Result<void> import(const calib::calibration::Calibration& calibration,
+                                    std::string_view origin, bool force, WallTime now);
   /// Makes a proposed (or formerly active) calibration active. Refuses an unknown id and, without `force`,
   /// one that failed its checks.
   [[nodiscard]] Result<void> accept(std::string_view id, WallTime now, bool force = false);
@@ -49,9 +49,9 @@ class CalibrationStore {
 
   [[nodiscard]] std::optional<std::string> active_id() const;
   /// Empty when none is active.
-  [[nodiscard]] Result<std::optional<calib::Calibration>> active() const;
+  [[nodiscard]] Result<std::optional<calib::calibration::Calibration>> active() const;
   [[nodiscard]] std::vector<CalibrationEntry> list() const { return entries_; }
-  [[nodiscard]] Result<calib::Calibration> show(std::string_view id) const;
+  [[nodiscard]] Result<calib::calibration::Calibration> show(std::string_view id) const;
 
  private:
   struct Event {
@@ -71,4 +71,4 @@ class CalibrationStore {
   std::vector<std::string> activations_;  ///< stack: last is active
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

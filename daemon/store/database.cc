@@ -8,7 +8,7 @@
 #include <cstring>
 #include <system_error>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 constexpr int kBusy_ms = 1000;
@@ -210,4 +210,4 @@ Error Database::error(int code) const {
   }
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -13,7 +13,7 @@
 
 /// This wraps SQLite in values: a connection, a statement, a transaction. Errors name the file, what SQLite
 /// says, and what to do.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 class Database;
 
@@ -85,4 +85,4 @@ class Database {
   sqlite3* db_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 constexpr const char* kStem = "stream";
@@ -194,4 +194,4 @@ bool RingReader::read(const std::function<void(const RingRecord&)>& show) {
   return decoder_.state() != RawLogDecoder::State::damaged || open_next();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -17,7 +17,7 @@
 ///
 /// Numbers of the stream go on from life to life: a new one begins after all that the last may have used, and
 /// between() says what lies between. STATUS and RUN are not kept.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 struct DiskRingConfig {
   std::filesystem::path directory;
@@ -101,4 +101,4 @@ class RingReader {
   RawLogDecoder decoder_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

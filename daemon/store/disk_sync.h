@@ -10,7 +10,7 @@
 
 /// DiskSync makes the disk finish what journals have written, on a thread of its own, so that a disk that
 /// takes seconds delays nobody. Journals outlive it.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 class DiskSync {
  public:
@@ -32,4 +32,4 @@ class DiskSync {
   Worker worker_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

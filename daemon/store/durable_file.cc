@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 Error cannot(const char* what, const std::filesystem::path& path, int os_error) {
@@ -86,4 +86,4 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   return std::move(text).str();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -8,7 +8,7 @@
 
 /// A durable file is whole or absent, whenever the power fails: it is written beside its place, synced and
 /// renamed, and its directory is synced.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 /// Replaces what stands under `path`.
 [[nodiscard]] Result<void> write_durably(const std::filesystem::path& path, std::string_view text);
@@ -19,4 +19,4 @@ namespace mgtd::daemon {
 /// The whole file. `bad_input` when it cannot be read.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

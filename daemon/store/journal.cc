@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 void sync_and_close(int fd) {
@@ -171,4 +171,4 @@ std::optional<std::uint64_t> Journal::take_resumed() {
   return lost_ - std::exchange(lost_told_, lost_);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -21,7 +21,7 @@
 /// When the disk refuses, recording stops, says so once, and everything else goes on; a new file is tried
 /// every retry_every, and recording goes on, which is said, when it has taken the first bytes. Before a new
 /// file the oldest go by the `keep` rule.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 struct JournalConfig {
   std::filesystem::path directory;
@@ -92,4 +92,4 @@ class Journal {
   std::optional<Error> trouble_, untold_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/store/model_history.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 struct Stage {
@@ -34,4 +34,4 @@ std::optional<ModelStep> undoable(std::span<const ModelStep> steps) {
   return last.by == nullptr ? std::nullopt : std::optional(*last.by);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

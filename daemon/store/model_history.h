@@ -9,7 +9,7 @@
 
 /// The history of a model lists the effects that an operator put in and took out on a run, step by step. The
 /// steps are never changed; the model is what they lead to.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 struct ModelStep {
   WallTime at;
@@ -24,4 +24,4 @@ struct ModelStep {
 /// The step that an undo would take back; empty when none is left.
 [[nodiscard]] std::optional<ModelStep> undoable(std::span<const ModelStep> steps);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

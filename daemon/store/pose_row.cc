@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 std::size_t slot(int index) { return static_cast<std::size_t>(index / 3); }
@@ -62,4 +62,4 @@ std::span<const PoseColumn> pose_columns() {
   return columns;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

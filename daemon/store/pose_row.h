@@ -7,7 +7,7 @@
 #include "proto/pose.h"
 
 /// The run file stores a pose in numeric columns, named as in the pose table, with angles in rad.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 struct PoseColumn {
   std::string name;
@@ -20,4 +20,4 @@ struct PoseColumn {
 /// `number`, `set`, `t_utc` and covariates are not among them.
 [[nodiscard]] std::span<const PoseColumn> pose_columns();
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -11,7 +11,7 @@
 #include "daemon/store/durable_file.h"
 #include "daemon/store/run_file.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
@@ -47,7 +47,7 @@ Result<PoseSource> read_run(const std::filesystem::path& path) {
   }
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
-  auto table = calib::parse_pose_table(*text, path.string());
+  auto table = calib::poses::parse_pose_table(*text, path.string());
   if (!table) return tl::unexpected(table.error());
   return PoseSource{std::move(*table), std::nullopt, {}, {}};
 }
@@ -64,7 +64,7 @@ Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vect
                               first.string(), out->header->options.baseline_m, path,
                               other->header->options.baseline_m),
                   "judge them one by one");
-    auto both = calib::joined(out->table, other->table);
+    auto both = calib::poses::joined(out->table, other->table);
     if (!both) return tl::unexpected(both.error());
     out->table = std::move(*both);
   }
@@ -77,4 +77,4 @@ Result<PoseTable> read_poses(const std::filesystem::path& path) {
   return std::move(source->table);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -12,7 +12,7 @@
 
 /// The RUN argument of every offline command names a run file or a pose table in CSV; the content tells
 /// which.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 struct PoseSource {
   PoseTable table;
@@ -28,4 +28,4 @@ struct PoseSource {
                                            const std::vector<std::string>& others);
 [[nodiscard]] Result<PoseTable> read_poses(const std::filesystem::path& path);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 namespace fs = std::filesystem;
 
@@ -54,4 +54,4 @@ std::size_t remove_oldest(const std::vector<RotatedFile>& files, const KeepRule&
   return removed;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

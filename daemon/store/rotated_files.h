@@ -9,7 +9,7 @@
 
 /// Rotated files follow each other as STEM.000000.SUFFIX, STEM.000001.SUFFIX, ...; a rule says when the
 /// oldest are deleted. Names sort by age.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 struct RotatedFile {
   std::filesystem::path path;
@@ -35,4 +35,4 @@ struct KeepRule {
 /// Removes the oldest until `rule` holds with `coming` bytes more. Gives how many went.
 std::size_t remove_oldest(const std::vector<RotatedFile>& files, const KeepRule& rule, std::uint64_t coming);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -16,7 +16,7 @@
 #include "daemon/store/pose_row.h"
 #include "daemon/store/run_schema.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 bool is_finished(RunState state) {
@@ -243,4 +243,4 @@ Result<void> import_poses(const PoseTable& table, const std::filesystem::path& p
   return made;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -22,7 +22,7 @@
 /// A write that returned success survives SIGKILL and loss of power (WAL, synchronous=FULL); one that did not
 /// has left nothing. Every write is one transaction. Inside: SI and nT, radians; reals are stored bit for
 /// bit. One writer; any number of readers beside it. Not thread-safe. Raw bytes are not in here (journal.h).
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 enum class Access {
   read_only,  ///< also while the daemon writes, also on a medium that cannot be written
@@ -97,4 +97,4 @@ class RunFile {
 [[nodiscard]] Result<void> import_poses(const PoseTable& table, const std::filesystem::path& path,
                                         RunHeader header);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -8,7 +8,7 @@
 #include "daemon/store/pose_row.h"
 #include "daemon/store/run_file.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 /// Runs `sql` and makes one T of every row.
@@ -152,4 +152,4 @@ Result<std::vector<ModelStep>> RunFile::model_steps() const {
       });
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

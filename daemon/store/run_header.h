@@ -9,7 +9,7 @@
 #include "proto/time.h"
 
 /// The header of a run file is written before the first pose and never changed afterwards.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 /// What a later fit of the same file must know to give the same answer. Empty: not stated.
 struct RunOptions {
@@ -33,4 +33,4 @@ struct RunHeader {
   RunOptions options;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -8,7 +8,7 @@
 #include "daemon/store/pose_row.h"
 #include "proto/number.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 std::string schema() {
@@ -165,4 +165,4 @@ Result<RunHeader> check_run_schema(const Database& db, const std::string& file) 
   return from_meta(*meta);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

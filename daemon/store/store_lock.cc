@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 constexpr mode_t kMode = 0640;
@@ -53,4 +53,4 @@ StoreLock::~StoreLock() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

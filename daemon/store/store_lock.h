@@ -9,7 +9,7 @@
 /// that was started by mistake would write gaps of its own between the samples of the first.
 ///
 /// The lock is the kernel's, on the file `lock` in the folder: it ends with the process, however that ends.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 class StoreLock {
  public:
@@ -25,4 +25,4 @@ class StoreLock {
   int fd_;
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -6,7 +6,7 @@
 
 #include "proto/json_text.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 using nlohmann::json;
 
@@ -14,7 +14,7 @@ std::string to_text(const std::vector<Definition>& definitions) {
   json out = json::array();
   for (const Definition& d : definitions) {
     json found = json::array();
-    for (const calib::EffectCoefficient& c : d.found)
+    for (const calib::calibration::EffectCoefficient& c : d.found)
       found.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
     out.push_back({{"name", d.name},
                    {"spec", d.spec},
@@ -49,15 +49,16 @@ Result<std::vector<Definition>> definitions_from_text(const std::string& text) {
 }
 
 std::string whole_spec(const std::string& text, const std::vector<Definition>& definitions) {
-  const auto known = std::find_if(definitions.begin(), definitions.end(),
-                                  [&](const Definition& d) { return d.name == calib::family_name(text); });
-  const auto asked = calib::EffectSpec::parse(text);
+  const auto known = std::find_if(definitions.begin(), definitions.end(), [&](const Definition& d) {
+    return d.name == calib::effects::family_name(text);
+  });
+  const auto asked = calib::effects::EffectSpec::parse(text);
   if (known == definitions.end() || !asked || asked->find("expr") != nullptr) return text;
-  auto spec = calib::EffectSpec::parse(known->spec);
+  auto spec = calib::effects::EffectSpec::parse(known->spec);
   if (!spec) return text;
   if (asked->where) spec->where = asked->where;
   for (const auto& [key, value] : asked->parameters) spec->set(key, value);
   return spec->text();
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

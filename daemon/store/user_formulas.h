@@ -10,7 +10,7 @@
 #include "proto/error.h"
 
 /// A user's formulas on a run are kept in its file (document "formulas").
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 inline constexpr std::string_view kFormulasDocument = "formulas";
 
@@ -18,8 +18,8 @@ struct Definition {
   std::string name;
   std::string spec;      ///< complete, as make_effect reads it
   std::string found_on;  ///< data hash of the run it was thought of on: there its p-value proves nothing
-  std::vector<calib::EffectCoefficient> found;  ///< its coefficients there
-  std::optional<double> confirmed_log10_p;      ///< on this run, where that is another
+  std::vector<calib::calibration::EffectCoefficient> found;  ///< its coefficients there
+  std::optional<double> confirmed_log10_p;                   ///< on this run, where that is another
   [[nodiscard]] bool exploratory() const { return !confirmed_log10_p.has_value(); }
 };
 
@@ -29,4 +29,4 @@ struct Definition {
 /// NAME[@WHERE][,PARAM=VALUE] of a definition as its whole spec; every other text stays as it is.
 [[nodiscard]] std::string whole_spec(const std::string& text, const std::vector<Definition>& definitions);
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -12,7 +12,7 @@
 /// A Worker is a thread beside the live one; the daemon has one for fits and one for the disk (disk_sync.h).
 /// It gets values, gives a value back on the live thread, and owns nothing live. Jobs run one after the
 /// other.
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 
 class Worker {
  public:
@@ -49,4 +49,4 @@ class Worker {
   boost::asio::thread_pool pool_{1};
 };
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kStandard = 36, kDozen = 12;
 
-calib::Calibration calibrated(const Scene& scene, std::uint64_t seed) {
-  auto fitted = calib::fit(scene.run(seed), {});
+calib::calibration::Calibration calibrated(const Scene& scene, std::uint64_t seed) {
+  auto fitted = calib::fit::method_choice::fit(scene.run(seed), {});
   if (!fitted) throw std::runtime_error(fitted.error().text());
   return std::move(fitted->calibration);
 }
@@ -29,8 +29,9 @@ PoseTable dozen(const Scene& scene, std::uint64_t seed) {
   return table;
 }
 
-calib::ValidityReport checked(const calib::Calibration& calibration, const PoseTable& table) {
-  auto report = calib::check(calibration, table, {});
+calib::validity::ValidityReport checked(const calib::calibration::Calibration& calibration,
+                                        const PoseTable& table) {
+  auto report = calib::validity::check(calibration, table, {});
   if (!report) throw std::runtime_error(report.error().text());
   return *std::move(report);
 }
@@ -43,17 +44,17 @@ Alarms alarms(const Scene& scene, int runs) {
   out.runs = runs;
   for (int run = 0; run < runs; ++run) {
     const auto seed = 100'000 + 4 * static_cast<std::uint64_t>(run);
-    const calib::Calibration old = calibrated(scene, seed);
-    const calib::ValidityReport same = checked(old, dozen(scene, seed + 1));
+    const calib::calibration::Calibration old = calibrated(scene, seed);
+    const calib::validity::ValidityReport same = checked(old, dozen(scene, seed + 1));
     out.false_check += same.valid ? 0 : 1;
-    out.false_diff += calib::diff(old, calibrated(scene, seed + 2)).changed ? 1 : 0;
+    out.false_diff += calib::validity::diff(old, calibrated(scene, seed + 2)).changed ? 1 : 0;
     // The same poses with the change that they are said to show.
     const auto& all = same.change.parameters;
     const auto found = std::find_if(all.begin(), all.end(), [](const auto& p) { return p.name == kMoved; });
     Scene later = scene;
     later.rig[1][7] += found->seen;
     out.size_nT += found->seen / runs;
-    const calib::ValidityReport moved = checked(old, dozen(later, seed + 1));
+    const calib::validity::ValidityReport moved = checked(old, dozen(later, seed + 1));
     out.seen_check += moved.valid ? 0 : 1;
     const auto& named = moved.change.named;
     out.named_check += !named.empty() && named.front().name == kMoved ? 1 : 0;
@@ -71,7 +72,7 @@ Foretold foretold(const Scene& scene, int runs) {
     return table;
   };
   const auto truth = models_of(scene.rig);
-  calib::DesignRequest request;
+  calib::design::DesignRequest request;
   request.poses = simulate(1);
   request.f_nT = scene.site.f_nT;
   request.inclination_rad = to_rad(scene.site.inclination_deg);
@@ -80,16 +81,16 @@ Foretold foretold(const Scene& scene, int runs) {
   request.scalar_sd_nT = scene.f_sd_nT;
   request.table_sd_rad = to_rad(scene.table_sd_deg);
   request.sensors = truth;
-  const auto planned = calib::evaluate_design(request);
+  const auto planned = calib::design::evaluate_design(request);
   if (!planned || !planned->determined) throw std::runtime_error("the plan does not determine the rig");
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(calib::kSensorBlock);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(calib::fit::joint::kSensorBlock);
   for (int run = 0; run < runs; ++run) {
-    const auto fit = calib::fit_joint(simulate(200'000 + static_cast<std::uint64_t>(run)), {});
+    const auto fit = calib::fit::joint::fit_joint(simulate(200'000 + static_cast<std::uint64_t>(run)), {});
     if (!fit) throw std::runtime_error(fit.error().text());
-    for (int j = 0; j < calib::kSensorBlock; ++j) {
-      const auto i = static_cast<std::size_t>(j / calib::kSensorParameters);
-      const int p = j % calib::kSensorParameters;
-      const calib::Expected& expected = planned->parameters[static_cast<std::size_t>(j)];
+    for (int j = 0; j < calib::fit::joint::kSensorBlock; ++j) {
+      const auto i = static_cast<std::size_t>(j / calib::sensor::kSensorParameters);
+      const int p = j % calib::sensor::kSensorParameters;
+      const calib::design::Expected& expected = planned->parameters[static_cast<std::size_t>(j)];
       const double sd = expected.sd * (expected.unit == "deg" ? kRadiansPerDegree : 1);
       const double error = fit->state.sensors[i].parameters()[p] - truth[i].parameters()[p];
       sum[j] += error * error / (sd * sd) / runs;

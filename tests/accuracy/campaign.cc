@@ -15,22 +15,22 @@
 namespace mgtd::testing {
 namespace {
 
-using calib::kSensorBlock;
-using calib::kSensorParameters;
-using calib::SensorModel;
+using calib::fit::joint::kSensorBlock;
+using calib::sensor::kSensorParameters;
+using calib::sensor::SensorModel;
 
 constexpr std::array<double, 5> kGradient{30, -45, -20, 50, 10};  // nT/m; norm of the tensor 50 and more
 constexpr double kNormal95 = 1.959964;
 constexpr std::size_t kStandardPoses = 36;
 
-calib::JointOptions options_of(const Scene& scene) {
-  calib::JointOptions out;
-  if (scene.gradient) out.effects = {*calib::make_effect("site.gradient")};
+calib::fit::joint::JointOptions options_of(const Scene& scene) {
+  calib::fit::joint::JointOptions out;
+  if (scene.gradient) out.effects = {*calib::effects::library::make_effect("site.gradient")};
   return out;
 }
 
-calib::JointFit fitted(const PoseTable& table, const Scene& scene) {
-  auto fit = calib::fit_joint(table, options_of(scene));
+calib::fit::joint::JointFit fitted(const PoseTable& table, const Scene& scene) {
+  auto fit = calib::fit::joint::fit_joint(table, options_of(scene));
   if (!fit) throw std::runtime_error(fit.error().text());
   return *std::move(fit);
 }
@@ -68,24 +68,26 @@ Components mean_square(const std::array<SensorModel, 4>& estimate, const Scene& 
 
 /// Inverse of the information at the truth with the true weights.
 Components bound_square(const PoseTable& table, const Scene& scene) {
-  calib::JointOptions options = options_of(scene);
+  calib::fit::joint::JointOptions options = options_of(scene);
   options.table_sd_rad = to_rad(scene.table_sd_deg);
-  auto problem = calib::joint_problem(table, options);
+  auto problem = calib::fit::joint::joint_problem(table, options);
   if (!problem) throw std::runtime_error(problem.error().text());
-  calib::fix_gauge(*problem, options);
-  calib::weight_by_pose(*problem, calib::AxisNoise::Constant(scene.noise_nT));
-  const auto n = calib::direction_of(to_rad(scene.site.inclination_deg), to_rad(scene.site.declination_deg));
+  calib::fit::joint::fix_gauge(*problem, options);
+  calib::fit::joint::weight_by_pose(*problem, calib::calibration::AxisNoise::Constant(scene.noise_nT));
+  const auto n =
+      calib::fit::joint::direction_of(to_rad(scene.site.inclination_deg), to_rad(scene.site.declination_deg));
   const auto truth = models_of(scene.rig);
-  const calib::JointState state = calib::joint_state(*problem, truth, n, scene.site.f_nT);
-  const auto covariance = calib::covariance_of(calib::reduce(*problem, state, 0).S);
+  const calib::fit::joint::JointState state =
+      calib::fit::joint::joint_state(*problem, truth, n, scene.site.f_nT);
+  const auto covariance = calib::fit::joint::covariance_of(calib::fit::joint::reduce(*problem, state, 0).S);
   if (!covariance) throw std::runtime_error(covariance.error().text());
   const Gradient g =
-      calib::calibration_tensor_sd(truth, {scene.site.baseline_m}, *covariance, scene.site.f_nT);
+      calib::fit::joint::calibration_tensor_sd(truth, {scene.site.baseline_m}, *covariance, scene.site.f_nT);
   return Components(g.xx, g.yy, g.zz, g.xy, g.xz, g.yz).square();
 }
 
 /// Estimate less truth: the 48 parameters, then the coefficients of the gradient.
-Eigen::VectorXd error_of(const calib::JointFit& fit, const Scene& scene) {
+Eigen::VectorXd error_of(const calib::fit::joint::JointFit& fit, const Scene& scene) {
   const auto truth = models_of(scene.rig);
   const Eigen::Index m = fit.state.coefficients.size();
   Eigen::VectorXd e(kSensorBlock + m);
@@ -98,10 +100,10 @@ Eigen::VectorXd error_of(const calib::JointFit& fit, const Scene& scene) {
   return e;
 }
 
-Eigen::MatrixXd covariance_of_errors(const calib::JointFit& fit) {
+Eigen::MatrixXd covariance_of_errors(const calib::fit::joint::JointFit& fit) {
   std::vector<Eigen::Index> slots;
   for (Eigen::Index slot = 0; slot < fit.covariance.rows(); ++slot) {
-    if (slot < kSensorBlock || slot >= calib::kEffectSlot) slots.push_back(slot);
+    if (slot < kSensorBlock || slot >= calib::fit::joint::kEffectSlot) slots.push_back(slot);
   }
   return fit.covariance(slots, slots);
 }
@@ -109,7 +111,7 @@ Eigen::MatrixXd covariance_of_errors(const calib::JointFit& fit) {
 std::string name_of(Eigen::Index j) {
   if (j >= kSensorBlock) return "site.gradient";
   return "s" + std::to_string(j / kSensorParameters + 1) + " " +
-         std::string(calib::kParameterNames.at(static_cast<std::size_t>(j % kSensorParameters)));
+         std::string(calib::sensor::kParameterNames.at(static_cast<std::size_t>(j % kSensorParameters)));
 }
 
 }  // namespace
@@ -138,8 +140,8 @@ TensorErrors tensor_errors(const Scene& scene, int seeds) {
   for (int seed = 0; seed < seeds; ++seed) {
     const PoseTable table = scene.run(1000 + static_cast<std::uint64_t>(seed));
     out.joint += mean_square(fitted(table, scene).state.sensors, scene, fields) / seeds;
-    const auto readings = calib::readings_of(table, {});
-    const auto linear = calib::two_step(*readings, {});
+    const auto readings = calib::fit::readings_of(table, {});
+    const auto linear = calib::fit::two_step::two_step(*readings, {});
     if (!linear) throw std::runtime_error(linear.error().text());
     out.two_step += mean_square(linear->sensors, scene, fields) / seeds;
     if (seed % kBoundEvery != 0) continue;
@@ -157,7 +159,8 @@ Consistency consistency(const Scene& scene, int runs) {
   out.runs = runs;
   Eigen::VectorXd covered;
   for (int run = 0; run < runs; ++run) {
-    const calib::JointFit fit = fitted(scene.run(50'000 + static_cast<std::uint64_t>(run)), scene);
+    const calib::fit::joint::JointFit fit =
+        fitted(scene.run(50'000 + static_cast<std::uint64_t>(run)), scene);
     const Eigen::VectorXd e = error_of(fit, scene);
     const Eigen::MatrixXd C = covariance_of_errors(fit);
     out.nees += e.dot(C.ldlt().solve(e)) / runs;
@@ -166,8 +169,8 @@ Consistency consistency(const Scene& scene, int runs) {
   }
   out.unknowns = static_cast<double>(covered.size());
   const double dof = out.unknowns * runs;
-  out.band_low = calib::chi_square_limit(0.9995, dof) / runs;
-  out.band_high = calib::chi_square_limit(0.0005, dof) / runs;
+  out.band_low = calib::stats::chi_square_limit(0.9995, dof) / runs;
+  out.band_high = calib::stats::chi_square_limit(0.0005, dof) / runs;
   out.intervals = static_cast<int>(covered.size()) * runs;
   out.covered = covered.mean();
   Eigen::Index worst = 0;
@@ -180,10 +183,10 @@ Consistency consistency(const Scene& scene, int runs) {
 std::array<SensorModel, 4> models_of(const RigTruth& rig) {
   std::array<SensorModel, 4> out;
   for (std::size_t i = 0; i < rig.size(); ++i) {
-    calib::ParameterVector p;
+    calib::sensor::ParameterVector p;
     for (int j = 0; j < kSensorParameters; ++j) {
       const double value = rig[i].at(static_cast<std::size_t>(j));
-      const bool angle = j <= calib::psi || j >= calib::alpha;
+      const bool angle = j <= calib::sensor::psi || j >= calib::sensor::alpha;
       p[j] = angle ? to_rad(value) : value;
     }
     out[i] = SensorModel::from_parameters(p);

@@ -46,32 +46,34 @@ std::bitset<12> channels_hit(Gross kind, std::mt19937_64& random) {
 }
 
 /// Least squares at the true weights without what is bad.
-std::array<calib::SensorModel, 4> oracle(const Spoilt& run, const Scene& scene) {
-  calib::JointOptions options;
+std::array<calib::sensor::SensorModel, 4> oracle(const Spoilt& run, const Scene& scene) {
+  calib::fit::joint::JointOptions options;
   options.table_sd_rad = to_rad(scene.table_sd_deg);
-  auto problem = calib::joint_problem(run.table, options);
+  auto problem = calib::fit::joint::joint_problem(run.table, options);
   if (!problem) throw std::runtime_error(problem.error().text());
-  calib::fix_gauge(*problem, options);
-  calib::weight_by_pose(*problem, calib::AxisNoise::Constant(scene.noise_nT));
-  std::vector<calib::JointPose> kept;
+  calib::fit::joint::fix_gauge(*problem, options);
+  calib::fit::joint::weight_by_pose(*problem, calib::calibration::AxisNoise::Constant(scene.noise_nT));
+  std::vector<calib::fit::joint::JointPose> kept;
   for (std::size_t k = 0; k < run.bad.size(); ++k) {
-    calib::JointPose pose = problem->poses[k];
+    calib::fit::joint::JointPose pose = problem->poses[k];
     for (std::size_t c = 0; c < 12; ++c)
       if (run.bad[k][c]) pose.weight[static_cast<Eigen::Index>(c)] = 0;
     if (!run.bad[k].all()) kept.push_back(pose);
   }
   problem->poses = std::move(kept);
-  const auto n = calib::direction_of(to_rad(scene.site.inclination_deg), to_rad(scene.site.declination_deg));
-  calib::JointState state = calib::joint_state(*problem, models_of(scene.rig), n, scene.site.f_nT);
-  const auto solution = calib::solve(*problem, std::move(state));
+  const auto n =
+      calib::fit::joint::direction_of(to_rad(scene.site.inclination_deg), to_rad(scene.site.declination_deg));
+  calib::fit::joint::JointState state =
+      calib::fit::joint::joint_state(*problem, models_of(scene.rig), n, scene.site.f_nT);
+  const auto solution = calib::fit::joint::solve(*problem, std::move(state));
   if (!solution) throw std::runtime_error(solution.error().text());
   return solution->state.sensors;
 }
 
 /// Good readings that are left out.
-int good_left_out(const calib::FitReport& report, const Spoilt& run) {
+int good_left_out(const calib::fit::FitReport& report, const Spoilt& run) {
   int out = 0;
-  for (const calib::OutlierNode& node : report.outliers) {
+  for (const calib::fit::OutlierNode& node : report.outliers) {
     const std::bitset<12>& bad = run.bad.at(static_cast<std::size_t>(node.pose - 1));
     for (std::size_t c = 0; c < 12; ++c) {
       const std::string sensor = "s" + std::to_string(c / 3 + 1);
@@ -138,7 +140,7 @@ Robustness robustness(const Contamination& what, int runs) {
   for (int run = 0; run < runs; ++run) {
     const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(run);
     const Spoilt data = spoilt(scene.run(seed), what, seed);
-    const auto report = calib::fit(data.table, {});
+    const auto report = calib::fit::method_choice::fit(data.table, {});
     if (!report || !report->calibration.accepted_by_checks) {
       ++out.refused;
       continue;

@@ -109,7 +109,7 @@ std::string rates(double hours) {
     trial.devices.at(kWrong).ppm = 1e6 * (1 / (1 + percent / 100) - 1);
     trial.to_s = 3600 * hours;
     const TrialResult r = run_trial(trial);
-    const daemon::ClockState& clock = r.health.sensors.at(kWrong).clock;
+    const daemon::acquire::ClockState& clock = r.health.sensors.at(kWrong).clock;
     out.line({fmt::format("{:+g} %", percent), fmt::format("{:.4f} %", 100 * r.violated_share()),
               fmt::format("{:.1f}", static_cast<double>(r.flagged) * trial.period_s),
               fmt::format("{:+.4f} ± {:.4f} %", 100 * clock.rate_error, 100 * clock.rate_error_pm),

@@ -18,8 +18,8 @@
 namespace mgtd::testing {
 namespace {
 
-using calib::ErrorSummary;
-using calib::kSensorParameters;
+using calib::fit::ErrorSummary;
+using calib::sensor::kSensorParameters;
 
 const std::vector<std::string> kSensorHeader{"total field, nT rms", "s1", "s2", "s3", "s4"};
 
@@ -27,7 +27,7 @@ Noise gaussian(double sd) { return {Noise::Kind::gaussian, sd, 0}; }
 Noise uniform(double half) { return {Noise::Kind::uniform, half, 0}; }
 
 RunErrors simulated(const Noise& noise, double baseline_m, int seeds) {
-  calib::FitOptions options;
+  calib::fit::FitOptions options;
   options.baseline_m = baseline_m;
   std::vector<RunErrors> runs;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -106,8 +106,8 @@ std::string table2(const RunErrors& g, const RunErrors& u, const RunErrors& wide
 
 double accuracy(double estimate, double truth) { return 100 * (1 - std::abs((estimate - truth) / truth)); }
 
-double shown(const calib::SensorModel& sensor, int p) {
-  return sensor.parameters()[p] * calib::shown_parameters()[static_cast<std::size_t>(p)].factor;
+double shown(const calib::sensor::SensorModel& sensor, int p) {
+  return sensor.parameters()[p] * calib::sensor::shown_parameters()[static_cast<std::size_t>(p)].factor;
 }
 
 std::string table3(const RunErrors& run) {
@@ -125,7 +125,8 @@ std::string table3(const RunErrors& run) {
       const double truth = paper.number(row, 2 + i);
       const double a = shown(two.sensors[i], p), b = shown(joint.sensors[i], p);
       const auto slot = static_cast<Eigen::Index>(i) * kSensorParameters + p;
-      const double sd = std::sqrt(joint.covariance(slot, slot)) * calib::shown_parameters()[row].factor;
+      const double sd =
+          std::sqrt(joint.covariance(slot, slot)) * calib::sensor::shown_parameters()[row].factor;
       values.line({paper.rows[row][0] + (paper.rows[row][1] == "1" ? "" : ", " + paper.rows[row][1]),
                    fmt::format("s{}", i + 1), paper.rows[row][2 + i], paper.rows[row][6 + i],
                    fmt::format("{:.6f}", a), fmt::format("{:.6f}", b), fmt::format("{:.6f}", sd),
@@ -149,8 +150,8 @@ std::string table3(const RunErrors& run) {
 RunErrors experiment(bool gradient, bool in_model, std::uint64_t seed) {
   Scene scene;
   scene.gradient = gradient;
-  calib::FitOptions options;
-  if (in_model) options.effects = {*calib::make_effect("site.gradient")};
+  calib::fit::FitOptions options;
+  if (in_model) options.effects = {*calib::effects::library::make_effect("site.gradient")};
   return run_errors(scene.rig, scene.run(seed), options);
 }
 
@@ -204,16 +205,16 @@ RigTruth rig_of_site(const PaperTable& paper, std::size_t site) {
   return out;
 }
 
-calib::Calibration calibrated(const RigTruth& rig, std::uint64_t seed) {
+calib::calibration::Calibration calibrated(const RigTruth& rig, std::uint64_t seed) {
   Scene scene;
   scene.rig = rig;
-  return calib::fit(scene.run(seed), {})->calibration;
+  return calib::fit::method_choice::fit(scene.run(seed), {})->calibration;
 }
 
 std::string table6() {
   const PaperTable paper = paper_table(6);
   const RigTruth a = rig_of_site(paper, 0), b = rig_of_site(paper, 1);
-  const calib::Calibration ca = calibrated(a, 61), cb = calibrated(b, 62);
+  const calib::calibration::Calibration ca = calibrated(a, 61), cb = calibrated(b, 62);
   MarkdownTable out({"parameter", "sensor", "paper, site a", "paper, site b", "b − a", "here, b − a",
                      "standard error", "b − a in standard errors"});
   for (std::size_t p = 0; p < 12; ++p) {
@@ -222,7 +223,7 @@ std::string table6() {
       if (std::abs(b[i][p] - a[i][p]) > std::abs(b[most][p] - a[most][p])) most = i;
     }
     const auto slot = static_cast<Eigen::Index>(most) * kSensorParameters + static_cast<Eigen::Index>(p);
-    const double factor = calib::shown_parameters()[p].factor;
+    const double factor = calib::sensor::shown_parameters()[p].factor;
     const double sd = std::sqrt(ca.covariance(slot, slot) + cb.covariance(slot, slot)) * factor;
     const int at = static_cast<int>(p);
     out.line({paper.rows[p][0] + (paper.rows[p][1] == "1" ? "" : ", " + paper.rows[p][1]),

@@ -11,12 +11,13 @@
 namespace mgtd::testing {
 namespace {
 
-using calib::ErrorSummary;
+using calib::fit::ErrorSummary;
 
-calib::FitReport fitted(const PoseTable& table, calib::FitOptions options, calib::Method method) {
+calib::fit::FitReport fitted(const PoseTable& table, calib::fit::FitOptions options,
+                             calib::fit::Method method) {
   options.method = method;
-  if (method != calib::Method::joint) options.effects.clear();
-  auto report = calib::fit(table, options);
+  if (method != calib::fit::Method::joint) options.effects.clear();
+  auto report = calib::fit::method_choice::fit(table, options);
   if (!report) throw std::runtime_error(report.error().text());
   return *std::move(report);
 }
@@ -36,10 +37,10 @@ void add(const ErrorSummary& from, double weight, ErrorSummary& to) {
 
 }  // namespace
 
-RunErrors run_errors(const RigTruth& rig, const PoseTable& table, const calib::FitOptions& options) {
+RunErrors run_errors(const RigTruth& rig, const PoseTable& table, const calib::fit::FitOptions& options) {
   RunErrors out;
-  out.two_step_report = fitted(table, options, calib::Method::two_step);
-  out.joint_report = fitted(table, options, calib::Method::joint);
+  out.two_step_report = fitted(table, options, calib::fit::Method::two_step);
+  out.joint_report = fitted(table, options, calib::fit::Method::joint);
   out.before = out.two_step_report.before;
   out.step1 = out.two_step_report.after_step1;
   out.two_step = out.two_step_report.after;
@@ -49,10 +50,10 @@ RunErrors run_errors(const RigTruth& rig, const PoseTable& table, const calib::F
     out.odd = halves->odd;
     out.even = halves->even;
   }
-  const auto readings = calib::readings_of(table, options);
+  const auto readings = calib::fit::readings_of(table, options);
   if (!readings) throw std::runtime_error(readings.error().text());
-  out.floor = calib::summarise(calib::corrected_fields(*readings, models_of(rig)), readings->f_nT,
-                               {.baseline_m = options.baseline_m});
+  out.floor = calib::fit::summarise(calib::fit::corrected_fields(*readings, models_of(rig)), readings->f_nT,
+                                    {.baseline_m = options.baseline_m});
   return out;
 }
 

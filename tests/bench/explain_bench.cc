@@ -24,7 +24,7 @@ void explain_157(benchmark::State& state, const Hidden& hidden) {
   const PoseTable table = hidden_run({.hidden = hidden}, 1);
   std::size_t tested = 0;
   for (auto _ : state) {
-    const auto report = explain(table, {});
+    const auto report = criticism::search::explain(table, {});
     if (!report) return state.SkipWithError(report.error().text().c_str());
     tested = report->candidates.size();
   }
@@ -42,7 +42,7 @@ void improve_four(benchmark::State& state) {
   const PoseTable table = hidden_run({.hidden = four_laws()}, 1);
   std::size_t rounds = 0;
   for (auto _ : state) {
-    const auto report = improve(table, {});
+    const auto report = criticism::search::improve(table, {});
     if (!report) return state.SkipWithError(report.error().text().c_str());
     rounds = report->rounds.size();
   }

@@ -19,11 +19,11 @@ PoseTable poses(int count, bool with_gradient) {
 void joint(benchmark::State& state) {
   const bool with_gradient = state.range(1) != 0;
   const PoseTable table = poses(static_cast<int>(state.range(0)), with_gradient);
-  JointOptions options;
-  if (with_gradient) options.effects = {*make_effect("site.gradient")};
+  fit::joint::JointOptions options;
+  if (with_gradient) options.effects = {*effects::library::make_effect("site.gradient")};
   int iterations = 0;
   for (auto _ : state) {
-    const auto fit = fit_joint(table, options);
+    const auto fit = fit::joint::fit_joint(table, options);
     if (!fit) return state.SkipWithError(fit.error().text().c_str());
     iterations = fit->iterations;
   }
@@ -43,10 +43,10 @@ void joint_with(benchmark::State& state, const char* spec) {
     for (std::size_t i = 0; i < kSensors; ++i)
       pose.T_degC[i] = 25 + 3 * std::sin(0.1 * pose.number + static_cast<double>(i));
   }
-  JointOptions options;
-  options.effects = {*make_effect(spec)};
+  fit::joint::JointOptions options;
+  options.effects = {*effects::library::make_effect(spec)};
   for (auto _ : state) {
-    const auto fit = fit_joint(table, options);
+    const auto fit = fit::joint::fit_joint(table, options);
     if (!fit) return state.SkipWithError(fit.error().text().c_str());
   }
 }

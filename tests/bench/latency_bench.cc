@@ -111,7 +111,7 @@ class Instruments {
 class Acquisition {
  public:
   Acquisition(boost::asio::io_context& io, const mgtd::testing::ScratchDirectory& scratch,
-              StreamServer& server)
+              serve::StreamServer& server)
       : server_(server) {
     for (int slot = 0; slot < kSensors; ++slot) {
       drivers::Settings settings(fmt::format("sensor s{}", slot + 1), 1);
@@ -144,10 +144,10 @@ class Acquisition {
     }
   }
 
-  StreamServer& server_;
+  serve::StreamServer& server_;
   drivers::Clock clock_;
-  Sampler sampler_{SamplerConfig{}};
-  calib::TensorPipeline pipeline_{calib::Geometry{}};
+  acquire::Sampler sampler_{acquire::SamplerConfig{}};
+  calib::calibration::TensorPipeline pipeline_{calib::sensor::Geometry{}};
   std::vector<EpochOrGap> complete_;
   std::vector<std::unique_ptr<drivers::DeviceLink>> links_;
   std::vector<std::unique_ptr<drivers::PortLink>> ports_;
@@ -158,7 +158,7 @@ std::vector<HostClock::time_point> receive(const std::string& where, std::size_t
   std::vector<HostClock::time_point> out;
   WatchRequest request{StreamClasses{}, std::nullopt, std::nullopt};
   request.classes.add(StreamClass::tensor);
-  auto reader = StreamReader::open(where, request);
+  auto reader = serve::StreamReader::open(where, request);
   while (reader && out.size() < wanted) {
     const auto line = reader->next_line(std::chrono::seconds(30));
     const auto now = HostClock::now();
@@ -186,10 +186,10 @@ void bytes_to_client(benchmark::State& state) {
     const mgtd::testing::ScratchDirectory scratch;
     Instruments instruments(scratch, std::chrono::milliseconds(state.range(0)));
     boost::asio::io_context io;
-    StreamConfig config;
+    serve::StreamConfig config;
     config.tcp.clear();
     config.unix_path = scratch / "stream.sock";
-    StreamServer server(io, config, {});
+    serve::StreamServer server(io, config, {});
     if (!server.start()) return state.SkipWithError("cannot listen");
     std::vector<double> us;
     {
@@ -248,10 +248,10 @@ void sixteen_clients(benchmark::State& state) {
     const mgtd::testing::ScratchDirectory scratch;
     Instruments instruments(scratch, std::chrono::milliseconds(0));
     boost::asio::io_context io;
-    StreamConfig config;
+    serve::StreamConfig config;
     config.tcp.clear();
     config.unix_path = scratch / "stream.sock";
-    StreamServer server(io, config, {});
+    serve::StreamServer server(io, config, {});
     if (!server.start()) return state.SkipWithError("cannot listen");
     std::vector<std::vector<HostClock::time_point>> received(kReaders);
     double cpu_share = 0;

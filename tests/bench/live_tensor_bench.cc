@@ -9,32 +9,33 @@
 namespace mgtd::calib {
 namespace {
 
-Calibration calibration(const std::vector<std::string>& effects) {
-  Calibration c;
+calibration::Calibration calibration(const std::vector<std::string>& effects) {
+  calibration::Calibration c;
   c.sample_noise_nT.setConstant(0.3);
   c.covariance.diagonal().setConstant(1e-10);
   c.reference.t_utc = "2026-11-21T10:00:00.000000Z";
   for (const std::string& spec : effects) {
-    CalibratedEffect e{spec, {}, {}};
-    const EffectPtr effect = *make_effect(spec);
-    for (const Coefficient& k : effect->coefficients())
+    calibration::CalibratedEffect e{spec, {}, {}};
+    const effects::EffectPtr effect = *effects::library::make_effect(spec);
+    for (const effects::Coefficient& k : effect->coefficients())
       e.coefficients.push_back({k.name, k.typical, 0.1 * k.typical, k.unit});
     c.effects.push_back(std::move(e));
   }
   Eigen::Index m = 0;
-  for (const CalibratedEffect& e : c.effects) m += static_cast<Eigen::Index>(e.coefficients.size());
-  c.effect_covariance.setZero(m, kArrayParameters + m);
+  for (const calibration::CalibratedEffect& e : c.effects)
+    m += static_cast<Eigen::Index>(e.coefficients.size());
+  c.effect_covariance.setZero(m, calibration::kArrayParameters + m);
   c.effect_covariance.rightCols(m).diagonal().setConstant(1e-4);
   c.seal();
   return c;
 }
 
 void run(benchmark::State& state, const std::vector<std::string>& effects) {
-  LiveTensor live(std::make_shared<const Calibration>(calibration(effects)));
+  calibration::LiveTensor live(std::make_shared<const calibration::Calibration>(calibration(effects)));
   Epoch epoch;
   epoch.y_nT.fill({20'000, 3'000, 45'000});
   epoch.T_degC.fill(23);
-  const LiveConditions conditions{.angles = TableAngles{0.1, 0.2, 0.3}};
+  const calibration::LiveConditions conditions{.angles = TableAngles{0.1, 0.2, 0.3}};
   for (auto _ : state) {
     epoch.y_nT[0][0] += 1e-3;
     epoch.t.mono += std::chrono::milliseconds(20);

@@ -20,7 +20,7 @@ void sampler_push(benchmark::State& state) {
   std::int64_t epochs = 0;
   std::vector<EpochOrGap> out;
   for (auto _ : state) {
-    daemon::Sampler sampler({});
+    mgtd::daemon::acquire::Sampler sampler({});
     for (const FieldReading& reading : readings) {
       sampler.push(reading, out);
       epochs += static_cast<std::int64_t>(out.size());

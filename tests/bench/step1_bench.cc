@@ -26,11 +26,11 @@ Data one_sensor(const std::vector<testing::AttitudeDeg>& attitudes) {
 void step1(benchmark::State& state) {
   const Data data = one_sensor(state.range(0) == 5832 ? testing::grid_5832() : testing::standard_run(121, 1));
   for (auto _ : state) {
-    auto fitted = scalar_calibration(data.y_nT, data.f_nT);
+    auto fitted = sensor::scalar_calibration(data.y_nT, data.f_nT);
     if (!fitted) return state.SkipWithError(fitted.error().text().c_str());
     benchmark::DoNotOptimize(fitted->K);
   }
-  state.counters["condition"] = scalar_calibration(data.y_nT, data.f_nT)->condition;
+  state.counters["condition"] = sensor::scalar_calibration(data.y_nT, data.f_nT)->condition;
 }
 BENCHMARK(step1)->ArgName("poses")->Arg(157)->Arg(5832)->Unit(benchmark::kMicrosecond);
 
@@ -40,7 +40,7 @@ void step1_field_per_pose(benchmark::State& state) {
   for (Eigen::Index k = 0; k < data.f_nT.size(); ++k)
     data.f_nT[k] += 10 * std::sin(0.01 * static_cast<double>(k));
   for (auto _ : state) {
-    auto fitted = scalar_calibration(data.y_nT, data.f_nT);
+    auto fitted = sensor::scalar_calibration(data.y_nT, data.f_nT);
     if (!fitted) return state.SkipWithError(fitted.error().text().c_str());
     benchmark::DoNotOptimize(fitted->K);
   }

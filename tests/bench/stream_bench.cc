@@ -18,15 +18,16 @@ namespace {
 using mgtd::testing::LinePeer;
 
 /// A calibration as a run leaves it: gains, offsets, noise and a full covariance.
-std::shared_ptr<const calib::Calibration> calibration() {
-  auto c = std::make_shared<calib::Calibration>();
+std::shared_ptr<const calib::calibration::Calibration> calibration() {
+  auto c = std::make_shared<calib::calibration::Calibration>();
   c->id = "c0123456789ab";
   c->sample_noise_nT.setConstant(0.1);
   c->pose_noise_nT.setConstant(0.05);
   std::mt19937_64 random(3);
   std::normal_distribution<double> gauss(0, 1e-6);
-  Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(calib::kArrayParameters, calib::kArrayParameters,
-                                                      [&] { return gauss(random); });
+  Eigen::MatrixXd root =
+      Eigen::MatrixXd::NullaryExpr(calib::calibration::kArrayParameters, calib::calibration::kArrayParameters,
+                                   [&] { return gauss(random); });
   c->covariance = root * root.transpose();
   return c;
 }
@@ -48,7 +49,7 @@ std::vector<Epoch> epochs() {
 }
 
 std::vector<TensorSample> samples() {
-  const calib::TensorPipeline pipeline(calibration());
+  const calib::calibration::TensorPipeline pipeline(calibration());
   std::vector<TensorSample> out;
   for (const Epoch& epoch : epochs()) out.push_back(pipeline.apply(epoch));
   return out;
@@ -67,7 +68,7 @@ BENCHMARK(encode_tensor);
 
 void apply_tensor(benchmark::State& state) {
   const auto input = epochs();
-  const calib::TensorPipeline pipeline(calibration());
+  const calib::calibration::TensorPipeline pipeline(calibration());
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(pipeline.apply(input[i++ % input.size()]));
   state.SetItemsProcessed(state.iterations());
@@ -77,9 +78,9 @@ BENCHMARK(apply_tensor);
 /// Epoch -> calibrated tensor with standard deviations -> line -> ring.
 void pipeline_epochs(benchmark::State& state) {
   const auto input = epochs();
-  const calib::TensorPipeline pipeline(calibration());
+  const calib::calibration::TensorPipeline pipeline(calibration());
   TensorEncoder encoder;
-  SampleRing ring(StreamConfig{}.ring_lines);
+  serve::SampleRing ring(serve::StreamConfig{}.ring_lines);
   std::size_t i = 0;
   for (auto _ : state) {
     const TensorSample sample = pipeline.apply(input[i++ % input.size()]);
@@ -94,10 +95,10 @@ BENCHMARK(pipeline_epochs);
 void publish(benchmark::State& state) {
   boost::asio::io_context io;
   const mgtd::testing::ScratchDirectory scratch;
-  StreamConfig config;
+  serve::StreamConfig config;
   config.tcp.clear();
   config.unix_path = scratch / "stream.sock";
-  StreamServer server(io, config, {});
+  serve::StreamServer server(io, config, {});
   if (!server.start()) return state.SkipWithError("cannot listen");
   std::vector<LinePeer> clients;
   for (std::int64_t n = 0; n < state.range(0); ++n) {

@@ -8,13 +8,13 @@
 namespace mgtd::calib {
 namespace {
 
-Calibration calibration() {
-  Calibration c;
+calibration::Calibration calibration() {
+  calibration::Calibration c;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const double s = 0.01 * static_cast<double>(i + 1);
-    ParameterVector p;
+    sensor::ParameterVector p;
     p << s, -2 * s, 1.5 * s, 1 + s, 1 - s, 1 + 2 * s, 100 * s, -5000 * s, 300, -s, 2 * s, 3 * s;
-    c.sensors[i] = SensorModel::from_parameters(p);
+    c.sensors[i] = sensor::SensorModel::from_parameters(p);
   }
   c.sample_noise_nT.setConstant(0.3);
   c.covariance.diagonal().setConstant(1e-10);
@@ -23,8 +23,8 @@ Calibration calibration() {
 }
 
 void tensor_pipeline(benchmark::State& state) {
-  const auto shared = std::make_shared<Calibration>(calibration());
-  const TensorPipeline pipeline(shared);
+  const auto shared = std::make_shared<calibration::Calibration>(calibration());
+  const calibration::TensorPipeline pipeline(shared);
   Epoch epoch;
   for (std::size_t i = 0; i < kSensors; ++i)
     epoch.y_nT[i] = shared->sensors[i].predict({20'000, 3'000, 45'000});
@@ -41,9 +41,9 @@ BENCHMARK(tensor_pipeline);
 
 /// What a change of the active calibration costs.
 void tensor_pipeline_prepare(benchmark::State& state) {
-  const auto shared = std::make_shared<Calibration>(calibration());
+  const auto shared = std::make_shared<calibration::Calibration>(calibration());
   for (auto _ : state) {
-    TensorPipeline pipeline(shared);
+    calibration::TensorPipeline pipeline(shared);
     benchmark::DoNotOptimize(pipeline);
   }
 }

@@ -17,10 +17,10 @@ PoseTable poses(std::int64_t count) {
 }
 
 void two_step_estimate(benchmark::State& state) {
-  const FitOptions options;
-  const auto readings = readings_of(poses(state.range(0)), options);
+  const fit::FitOptions options;
+  const auto readings = fit::readings_of(poses(state.range(0)), options);
   for (auto _ : state) {
-    auto fitted = two_step(*readings, options);
+    auto fitted = fit::two_step::two_step(*readings, options);
     if (!fitted) return state.SkipWithError(fitted.error().text().c_str());
     benchmark::DoNotOptimize(fitted->sensors);
   }
@@ -30,7 +30,7 @@ BENCHMARK(two_step_estimate)->ArgName("poses")->Arg(157)->Arg(5832)->Unit(benchm
 void two_step_report(benchmark::State& state) {
   const PoseTable table = poses(state.range(0));
   for (auto _ : state) {
-    auto report = fit(table, {});
+    auto report = fit::method_choice::fit(table, {});
     if (!report) return state.SkipWithError(report.error().text().c_str());
     benchmark::DoNotOptimize(report->chi2);
   }

@@ -14,16 +14,17 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array kFindings{Finding::pass,    Finding::explained, Finding::ambiguous,
-                               Finding::partial, Finding::unknown,   Finding::bad_data};
+constexpr std::array kFindings{criticism::search::Finding::pass,      criticism::search::Finding::explained,
+                               criticism::search::Finding::ambiguous, criticism::search::Finding::partial,
+                               criticism::search::Finding::unknown,   criticism::search::Finding::bad_data};
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 std::optional<double> number(const Json& value) {
   return value.is_null() ? std::nullopt : std::optional(value.get<double>());
 }
 
-Finding finding(const std::string& name) {
-  for (const Finding f : kFindings)
+criticism::search::Finding finding(const std::string& name) {
+  for (const criticism::search::Finding f : kFindings)
     if (to_string(f) == name) return f;
   throw std::runtime_error("'" + name + "' is no verdict");
 }

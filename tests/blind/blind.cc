@@ -13,47 +13,49 @@
 namespace mgtd::calib::testing {
 namespace {
 
-double told_at_best(const ExplainReport& r) {
+double told_at_best(const criticism::search::ExplainReport& r) {
   double out = 1;
   if (r.rounds.empty()) return out;
-  for (const Alternative& alternative : r.rounds.front().added.alternatives)
+  for (const criticism::tests::Alternative& alternative : r.rounds.front().added.alternatives)
     out = std::min(out, alternative.p_right);
   return out;
 }
 
-void count(const ExplainReport& r, const std::string& truth, Answers& out) {
+void count(const criticism::search::ExplainReport& r, const std::string& truth, Answers& out) {
   ++out.runs;
   ++out.findings[r.finding];
-  if (r.finding == Finding::pass) return;
+  if (r.finding == criticism::search::Finding::pass) return;
   ++out.detected;
   out.told_at_best += told_at_best(r);
   if (r.named.empty()) return;
   ++out.first[r.named.front()];
   std::vector<std::string> set = r.named;
-  for (const Round& round : r.rounds) set.insert(set.end(), round.possible.begin(), round.possible.end());
+  for (const criticism::search::Round& round : r.rounds)
+    set.insert(set.end(), round.possible.begin(), round.possible.end());
   std::sort(set.begin(), set.end());
   set.erase(std::unique(set.begin(), set.end()), set.end());
   out.set_sizes.push_back(static_cast<int>(set.size()));
   if (r.named.front() == truth) ++out.named_first;
   if (std::find(set.begin(), set.end(), truth) != set.end()) ++out.in_set;
-  if (r.finding == Finding::explained && r.named.front() != truth) ++out.wrong_single;
+  if (r.finding == criticism::search::Finding::explained && r.named.front() != truth) ++out.wrong_single;
 }
 
-bool changes_the_field(const ExplainReport& r) {
+bool changes_the_field(const criticism::search::ExplainReport& r) {
   return !r.next.empty() && r.next.front().action.find("field") != std::string::npos;
 }
 
 /// Every effect of the library but one.
-std::vector<CandidateEffect> library_without(const PoseTable& table, std::string_view name) {
-  std::vector<CandidateEffect> out = library_candidates(table).testable;
-  std::erase_if(out, [&](const CandidateEffect& s) { return s.name == name; });
+std::vector<criticism::tests::CandidateEffect> library_without(const PoseTable& table,
+                                                               std::string_view name) {
+  std::vector<criticism::tests::CandidateEffect> out = criticism::tests::library_candidates(table).testable;
+  std::erase_if(out, [&](const criticism::tests::CandidateEffect& s) { return s.name == name; });
   return out;
 }
 
 void ask(const PoseTable& table, const std::string& truth, Answers& out, bool taken_out = false) {
-  ExplainOptions options;
+  criticism::search::ExplainOptions options;
   if (taken_out) options.candidate_effects = library_without(table, truth);
-  const auto report = explain(table, options);
+  const auto report = criticism::search::explain(table, options);
   if (!report) {
     ++out.runs, ++out.refused;
     return;
@@ -73,15 +75,15 @@ Hidden both(const Hidden& a, const Hidden& b) {
   };
 }
 
-void count(const ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers& out) {
+void count(const criticism::search::ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers& out) {
   const auto is_true = [&](const std::string& name) {
     return name == truth[0].law->name || name == truth[1].law->name;
   };
   int added = 0, found = 0;
   for (const Pick& pick : truth) {
     const std::string name(pick.law->name);
-    const auto has = [&](const ImproveRound& round) { return round.added.effect == name; };
-    const auto may = [&](const ImproveRound& round) {
+    const auto has = [&](const criticism::search::ImproveRound& round) { return round.added.effect == name; };
+    const auto may = [&](const criticism::search::ImproveRound& round) {
       return has(round) ||
              std::find(round.possible.begin(), round.possible.end(), name) != round.possible.end();
     };
@@ -90,10 +92,11 @@ void count(const ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers&
     found += was_found ? 1 : 0;
     if (!was_found) ++out.missed[name];
   }
-  const bool wrong = std::any_of(r.rounds.begin(), r.rounds.end(), [&](const ImproveRound& round) {
-    return !is_true(round.added.effect) &&
-           std::none_of(round.possible.begin(), round.possible.end(), is_true);
-  });
+  const bool wrong =
+      std::any_of(r.rounds.begin(), r.rounds.end(), [&](const criticism::search::ImproveRound& round) {
+        return !is_true(round.added.effect) &&
+               std::none_of(round.possible.begin(), round.possible.end(), is_true);
+      });
   out.both_added += added == 2 ? 1 : 0;
   out.both_found += found == 2 ? 1 : 0;
   out.wrong_added += wrong ? 1 : 0;
@@ -101,7 +104,7 @@ void count(const ImproveReport& r, const std::array<Pick, 2>& truth, TwoAnswers&
 
 }  // namespace
 
-int Answers::of(Finding finding) const {
+int Answers::of(criticism::search::Finding finding) const {
   const auto found = findings.find(finding);
   return found == findings.end() ? 0 : found->second;
 }
@@ -124,16 +127,16 @@ Answers clean(const HiddenRun& run, int runs, std::uint64_t seed) {
 
 double crb_of(const HiddenLaw& law, int sensor, int axis, std::uint64_t seed) {
   const PoseTable table = hidden_run({}, seed);
-  const auto fit = fit_joint(table, {});
+  const auto fit = fit::joint::fit_joint(table, {});
   if (!fit) throw std::runtime_error(fit.error().text());
-  const Residual residual(fit->problem, fit->state, 0);
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(residual.poses() * kPoseRows, 1);
+  const criticism::tests::Residual residual(fit->problem, fit->state, 0);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(residual.poses() * criticism::tests::kPoseRows, 1);
   for (Eigen::Index k = 0; k < residual.poses(); ++k) {
-    const JointPose& pose = fit->problem.poses[static_cast<std::size_t>(k)];
+    const fit::joint::JointPose& pose = fit->problem.poses[static_cast<std::size_t>(k)];
     const Eigen::Vector3d v =
         pose.y_nT.segment<3>(3 * sensor) - fit->state.sensors[static_cast<std::size_t>(sensor)].offset_nT;
     const int c = 3 * sensor + axis;
-    rows(k * kPoseRows + c, 0) = pose.weight[c] * law.law(*pose.pose, sensor, axis, v);
+    rows(k * criticism::tests::kPoseRows + c, 0) = pose.weight[c] * law.law(*pose.pose, sensor, axis, v);
   }
   return 1 / residual.project(rows).projected.norm();
 }
@@ -142,7 +145,7 @@ Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed, boo
   Answers out;
   for (int i = 0; i < runs; ++i) {
     const std::uint64_t s = seed + static_cast<std::uint64_t>(i);
-    const int c = i % kChannels;
+    const int c = i % sensor::kChannels;
     const double size = (i % 2 == 0 ? d : -d) * crb_of(law, c / 3, c % 3, s);
     ask(hidden_run({.hidden = hide(law, c / 3, c % 3, size)}, s), std::string(law.name), out, taken_out);
   }
@@ -163,7 +166,7 @@ TwoAnswers two_hidden(double d, int runs, std::uint64_t seed) {
       const Pick& p = truth.at(k);
       parts.at(k) = hide(*p.law, p.sensor, p.axis, d * crb_of(*p.law, p.sensor, p.axis, s));
     }
-    const auto report = improve(hidden_run({.hidden = both(parts[0], parts[1])}, s), {});
+    const auto report = criticism::search::improve(hidden_run({.hidden = both(parts[0], parts[1])}, s), {});
     ++out.runs;
     if (report) count(*report, truth, out);
   }

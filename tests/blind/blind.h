@@ -13,7 +13,7 @@ namespace mgtd::calib::testing {
 /// Counts of one cell.
 struct Answers {
   int runs{0}, refused{0};
-  std::map<Finding, int> findings;
+  std::map<criticism::search::Finding, int> findings;
   int detected{0};      ///< any verdict but PASS
   int named_first{0};   ///< the first name is the right one, of those detected
   int in_set{0};        ///< the right name is among those that are named or possible
@@ -25,7 +25,7 @@ struct Answers {
   std::vector<int> set_sizes;  ///< of each detection
   int advised{0};              ///< the advice is a change of the field
 
-  [[nodiscard]] int of(Finding finding) const;
+  [[nodiscard]] int of(criticism::search::Finding finding) const;
   Answers& operator+=(const Answers& other);
 };
 

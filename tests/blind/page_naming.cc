@@ -21,15 +21,16 @@ int median(std::vector<int> values) {
 }
 
 std::vector<std::string> naming_line(std::string name, double d, const Answers& a) {
-  return {std::move(name),
-          fmt::format("{:.0f}", d),
-          percent(a.detected, a.runs),
-          percent(a.named_first, a.detected),
-          a.detected > 0 ? fmt::format("{:.1f}", 100 * a.told_at_best / a.detected) : "-",
-          percent(a.in_set, a.detected),
-          std::to_string(median(a.set_sizes)),
-          percent(a.wrong_single, a.runs),
-          percent(a.of(Finding::partial) + a.of(Finding::unknown), a.runs)};
+  return {
+      std::move(name),
+      fmt::format("{:.0f}", d),
+      percent(a.detected, a.runs),
+      percent(a.named_first, a.detected),
+      a.detected > 0 ? fmt::format("{:.1f}", 100 * a.told_at_best / a.detected) : "-",
+      percent(a.in_set, a.detected),
+      std::to_string(median(a.set_sizes)),
+      percent(a.wrong_single, a.runs),
+      percent(a.of(criticism::search::Finding::partial) + a.of(criticism::search::Finding::unknown), a.runs)};
 }
 
 /// At one field strength no residual tells these two apart.
@@ -89,10 +90,11 @@ std::string one_field_page(const Sizes& n) {
     for (const double d : {10.0, 20.0, 40.0}) {
       const Answers a = hidden(law, d, n.runs, seed += 10'000);
       table.line({std::string(law.name) + (law.name == "axis.transverse" ? ", squares" : ""),
-                  fmt::format("{:.0f}", d), percent(a.of(Finding::ambiguous), a.runs),
+                  fmt::format("{:.0f}", d), percent(a.of(criticism::search::Finding::ambiguous), a.runs),
                   percent(a.in_set, a.runs), percent(a.advised, a.runs),
-                  percent(a.of(Finding::explained), a.runs)});
-      fmt::print(stderr, "one field: {} {}\n", law.name, percent(a.of(Finding::ambiguous), a.runs));
+                  percent(a.of(criticism::search::Finding::explained), a.runs)});
+      fmt::print(stderr, "one field: {} {}\n", law.name,
+                 percent(a.of(criticism::search::Finding::ambiguous), a.runs));
     }
   }
   return "## Own square or transverse squares, one field strength\n\nNothing but their idealised forms would "
@@ -112,21 +114,28 @@ std::string open_page(const Sizes& n) {
       sum.at(taken_out ? 1 : 0) += a;
       const auto most = std::max_element(a.first.begin(), a.first.end(),
                                          [](const auto& x, const auto& y) { return x.second < y.second; });
-      table.line({std::string(law.name), fmt::format("{:.0f}", d), percent(a.detected, a.runs),
-                  percent(a.of(Finding::unknown) + a.of(Finding::partial), a.runs),
-                  percent(a.of(Finding::explained), a.runs), most == a.first.end() ? "-" : most->first});
-      fmt::print(stderr, "open: d = {} {}: {}\n", d, law.name,
-                 percent(a.of(Finding::unknown) + a.of(Finding::partial), a.runs));
+      table.line(
+          {std::string(law.name), fmt::format("{:.0f}", d), percent(a.detected, a.runs),
+           percent(a.of(criticism::search::Finding::unknown) + a.of(criticism::search::Finding::partial),
+                   a.runs),
+           percent(a.of(criticism::search::Finding::explained), a.runs),
+           most == a.first.end() ? "-" : most->first});
+      fmt::print(
+          stderr, "open: d = {} {}: {}\n", d, law.name,
+          percent(a.of(criticism::search::Finding::unknown) + a.of(criticism::search::Finding::partial),
+                  a.runs));
     };
     for (const HiddenLaw& law : unlisted_laws()) add(law, false);
     for (const HiddenLaw& law : hidden_laws())
       if (!inseparable(law)) add(law, true);
     for (const bool taken_out : {false, true}) {
       const Answers& a = sum.at(taken_out ? 1 : 0);
-      table.line({taken_out ? "all that were taken out" : "all that were never in it",
-                  fmt::format("{:.0f}", d), percent(a.detected, a.runs),
-                  percent(a.of(Finding::unknown) + a.of(Finding::partial), a.runs),
-                  percent(a.of(Finding::explained), a.runs), ""});
+      table.line(
+          {taken_out ? "all that were taken out" : "all that were never in it", fmt::format("{:.0f}", d),
+           percent(a.detected, a.runs),
+           percent(a.of(criticism::search::Finding::unknown) + a.of(criticism::search::Finding::partial),
+                   a.runs),
+           percent(a.of(criticism::search::Finding::explained), a.runs), ""});
     }
   }
   return "## What is in no library\n\nLaws that were never in it, and laws of the library with the library's "

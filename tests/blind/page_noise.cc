@@ -31,9 +31,11 @@ std::string clean_page(const Sizes& n) {
   for (const auto& [name, run] : kinds) {
     const Answers a = clean(run, n.clean, seed += 100'000);
     table.line({name, std::to_string(a.runs), percent(a.detected, a.runs),
-                std::to_string(a.of(Finding::explained)), std::to_string(a.of(Finding::ambiguous)),
-                std::to_string(a.of(Finding::partial)), std::to_string(a.of(Finding::unknown)),
-                std::to_string(a.of(Finding::bad_data)), std::to_string(a.refused)});
+                std::to_string(a.of(criticism::search::Finding::explained)),
+                std::to_string(a.of(criticism::search::Finding::ambiguous)),
+                std::to_string(a.of(criticism::search::Finding::partial)),
+                std::to_string(a.of(criticism::search::Finding::unknown)),
+                std::to_string(a.of(criticism::search::Finding::bad_data)), std::to_string(a.refused)});
     fmt::print(stderr, "clean: {}: {}\n", name, percent(a.detected, a.runs));
   }
   return "## Clean runs\n\nNothing is hidden; every verdict but PASS is a false alarm. Aim: 0.7 to 1.3 %, "

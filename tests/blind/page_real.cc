@@ -117,8 +117,8 @@ std::string nees(const std::vector<double>& of, double dof) {
   const auto n = static_cast<double>(of.size());
   double mean = 0;
   for (const double v : of) mean += v / n;
-  return fmt::format("{:.1f} ({:.1f}-{:.1f})", mean, chi_square_limit(0.975, n * dof) / n,
-                     chi_square_limit(0.025, n * dof) / n);
+  return fmt::format("{:.1f} ({:.1f}-{:.1f})", mean, stats::chi_square_limit(0.975, n * dof) / n,
+                     stats::chi_square_limit(0.025, n * dof) / n);
 }
 
 std::string verdicts(const Answers& answers) {
@@ -126,8 +126,10 @@ std::string verdicts(const Answers& answers) {
   const auto add = [&](int n, std::string_view what) {
     if (n > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", what, n);
   };
-  for (const Finding f : {Finding::pass, Finding::explained, Finding::ambiguous, Finding::partial,
-                          Finding::unknown, Finding::bad_data})
+  for (const criticism::search::Finding f :
+       {criticism::search::Finding::pass, criticism::search::Finding::explained,
+        criticism::search::Finding::ambiguous, criticism::search::Finding::partial,
+        criticism::search::Finding::unknown, criticism::search::Finding::bad_data})
     add(count(answers, [f](const RealAnswer& a) { return !a.explain_refused && a.finding == f; }),
         to_string(f));
   add(count(answers, [](const RealAnswer& a) { return a.explain_refused; }), "refused");
@@ -181,7 +183,7 @@ std::vector<std::string> site_line(const RealKind& kind, const Answers& all) {
   const bool goes = std::find(kind.right.begin(), kind.right.end(), "site.transient") != kind.right.end();
   const auto set_aside = [&](const RealAnswer& a) { return goes && a.left_out && !a.named_any(); };
   const auto said = [&](const RealAnswer& a) {
-    return !a.explain_refused && (a.finding != Finding::pass || set_aside(a));
+    return !a.explain_refused && (a.finding != criticism::search::Finding::pass || set_aside(a));
   };
   const int detected = count(all, said);
   const auto right = [&](const std::vector<std::string>& names) {

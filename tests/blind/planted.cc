@@ -38,18 +38,20 @@ rig::Scenario scenario() {
 }
 
 /// By pose, what the effect adds to the readings and to the scalar reference, in standard deviations.
-Eigen::MatrixXd signature(const JointFit& fit, const PoseTable& with, const PoseTable& without) {
+Eigen::MatrixXd signature(const fit::joint::JointFit& fit, const PoseTable& with, const PoseTable& without) {
   const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n * kPoseRows, 1);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n * criticism::tests::kPoseRows, 1);
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto p = static_cast<std::size_t>(k);
-    const JointPose& pose = fit.problem.poses[p];
-    for (int c = 0; c < kChannels; ++c) {
+    const fit::joint::JointPose& pose = fit.problem.poses[p];
+    for (int c = 0; c < sensor::kChannels; ++c) {
       const auto s = static_cast<std::size_t>(c / 3);
-      rows(k * kPoseRows + c, 0) = pose.weight[c] * (with.poses[p].y_nT[s] - without.poses[p].y_nT[s])[c % 3];
+      rows(k * criticism::tests::kPoseRows + c, 0) =
+          pose.weight[c] * (with.poses[p].y_nT[s] - without.poses[p].y_nT[s])[c % 3];
     }
     if (without.poses[p].f_nT)
-      rows(k * kPoseRows + kChannels, 0) = (*with.poses[p].f_nT - *without.poses[p].f_nT) * pose.f_weight;
+      rows(k * criticism::tests::kPoseRows + sensor::kChannels, 0) =
+          (*with.poses[p].f_nT - *without.poses[p].f_nT) * pose.f_weight;
   }
   return rows;
 }
@@ -94,11 +96,11 @@ double sigmas_of(const Stage& stage, const Planted& effect, std::uint64_t seed) 
   // The same seed draws the same noise and the same errors of the table: what differs is the effect.
   const PoseTable without = planted_run(stage, {}, seed);
   const PoseTable with = planted_run(stage, {scaled(effect, kLittle)}, seed);
-  JointOptions options;
+  fit::joint::JointOptions options;
   if (!stage.scenario.scalar) options.field_nT = stage.scenario.f_nT;
-  const auto fit = fit_joint(without, options);
+  const auto fit = fit::joint::fit_joint(without, options);
   if (!fit) throw std::runtime_error(fit.error().text());
-  const Residual residual(fit->problem, fit->state, 0);
+  const criticism::tests::Residual residual(fit->problem, fit->state, 0);
   return residual.project(signature(*fit, with, without)).projected.norm() / kLittle;
 }
 

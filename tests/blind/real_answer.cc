@@ -19,7 +19,7 @@
 namespace mgtd::calib::testing {
 namespace {
 
-using Sensors = std::array<SensorModel, kSensors>;
+using Sensors = std::array<sensor::SensorModel, kSensors>;
 constexpr double kField_nT = 50'000, kBaseline_m = 0.4;
 constexpr double kAsGood = 1.2;  ///< times the plain rig's error
 
@@ -52,8 +52,8 @@ double tensor_error(const Sensors& estimate, const rig::RigTruth& truth) {
   return std::sqrt(sum / static_cast<double>(kFields.size()));
 }
 
-ParameterVector parameters_of(const rig::SensorTruth& t) {
-  ParameterVector out;
+sensor::ParameterVector parameters_of(const rig::SensorTruth& t) {
+  sensor::ParameterVector out;
   out << to_rad(t.theta_deg), to_rad(t.phi_deg), to_rad(t.psi_deg), t.scale, t.offset_nT, to_rad(t.alpha_deg),
       to_rad(t.beta_deg), to_rad(t.gamma_deg);
   return out;
@@ -63,7 +63,8 @@ ParameterVector parameters_of(const rig::SensorTruth& t) {
 Eigen::Matrix3d common_turn(const Sensors& estimate, const rig::RigTruth& truth) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < estimate.size(); ++i)
-    sum += estimate[i].R_PS() * SensorModel::from_parameters(parameters_of(truth[i])).R_PS().transpose();
+    sum +=
+        estimate[i].R_PS() * sensor::SensorModel::from_parameters(parameters_of(truth[i])).R_PS().transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * svd.matrixV().transpose();
 }
@@ -71,14 +72,15 @@ Eigen::Matrix3d common_turn(const Sensors& estimate, const rig::RigTruth& truth)
 /// A coarse table leaves the common rotation of all sensors uncertain by a quarter degree, and the angles
 /// follow it along a curve that is far from straight beside what is known of them against each other. So the
 /// common rotation is taken out exactly, and its own normalised square added.
-double nees_of_scales(const Calibration& calibration, const rig::RigTruth& truth,
+double nees_of_scales(const calibration::Calibration& calibration, const rig::RigTruth& truth,
                       const std::vector<Eigen::Index>& which) {
   const Eigen::Matrix3d R = common_turn(calibration.sensors, truth);
   const auto parameters = [&](const Eigen::Matrix3d& turn) {
-    Eigen::VectorXd all(kArrayParameters);
+    Eigen::VectorXd all(calibration::kArrayParameters);
     for (int i = 0; i < kSensors; ++i)
-      all.segment<kSensorParameters>(i * kSensorParameters) =
-          turned(SensorModel::from_parameters(parameters_of(truth[static_cast<std::size_t>(i)])), turn)
+      all.segment<sensor::kSensorParameters>(i * sensor::kSensorParameters) =
+          fit::turned(sensor::SensorModel::from_parameters(parameters_of(truth[static_cast<std::size_t>(i)])),
+                      turn)
               .parameters();
     return Eigen::VectorXd(all(which));
   };
@@ -87,9 +89,9 @@ double nees_of_scales(const Calibration& calibration, const rig::RigTruth& truth
   constexpr double kStep = 1e-6;
   for (int a = 0; a < 3; ++a)
     J.col(a) = (parameters(Eigen::AngleAxisd(kStep, Eigen::Vector3d::Unit(a)) * R) - at) / kStep;
-  Eigen::VectorXd estimate(kArrayParameters);
+  Eigen::VectorXd estimate(calibration::kArrayParameters);
   for (int i = 0; i < kSensors; ++i)
-    estimate.segment<kSensorParameters>(i * kSensorParameters) =
+    estimate.segment<sensor::kSensorParameters>(i * sensor::kSensorParameters) =
         calibration.sensors[static_cast<std::size_t>(i)].parameters();
   const Eigen::LDLT<Eigen::MatrixXd> C(calibration.covariance(which, which));
   const Eigen::VectorXd d = estimate(which) - at;
@@ -101,34 +103,37 @@ double nees_of_scales(const Calibration& calibration, const rig::RigTruth& truth
   return left.dot(C.solve(left)) + rotation.dot(information * rotation);
 }
 
-void judge_covariance(const Calibration& calibration, const rig::RigTruth& truth, RealAnswer& out) {
-  Eigen::VectorXd error(kArrayParameters);
+void judge_covariance(const calibration::Calibration& calibration, const rig::RigTruth& truth,
+                      RealAnswer& out) {
+  Eigen::VectorXd error(calibration::kArrayParameters);
   std::vector<Eigen::Index> scales, offsets;
   for (int i = 0; i < kSensors; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    error.segment<kSensorParameters>(i * kSensorParameters) =
+    error.segment<sensor::kSensorParameters>(i * sensor::kSensorParameters) =
         calibration.sensors[s].parameters() - parameters_of(truth[s]);
-    for (int p = 0; p < kSensorParameters; ++p)
-      (p >= ix && p <= iz ? offsets : scales).push_back(i * kSensorParameters + p);
+    for (int p = 0; p < sensor::kSensorParameters; ++p)
+      (p >= sensor::ix && p <= sensor::iz ? offsets : scales).push_back(i * sensor::kSensorParameters + p);
   }
   const Eigen::VectorXd e = error(offsets);
   out.nees_offsets = e.dot(calibration.covariance(offsets, offsets).ldlt().solve(e));
   out.nees_scales = nees_of_scales(calibration, truth, scales);
 }
 
-void read(const ExplainReport& report, const rig::RigTruth& truth, RealAnswer& out) {
+void read(const criticism::search::ExplainReport& report, const rig::RigTruth& truth, RealAnswer& out) {
   out.finding = report.finding;
   out.left_out = !report.outliers.empty();
   out.named = out.declared = report.named;
-  for (const Round& round : report.rounds)
+  for (const criticism::search::Round& round : report.rounds)
     out.declared.insert(out.declared.end(), round.possible.begin(), round.possible.end());
   if (!report.rounds.empty() && report.rounds.back().fit)
     out.error_after_nT_per_m = tensor_error(report.rounds.back().fit->state.sensors, truth);
 }
 
 bool right_names(const RealAnswer& a, const RealKind& kind) {
-  if (a.finding != Finding::explained && a.finding != Finding::ambiguous) return false;
-  if (a.finding == Finding::explained && a.wrong_name(kind)) return false;
+  if (a.finding != criticism::search::Finding::explained &&
+      a.finding != criticism::search::Finding::ambiguous)
+    return false;
+  if (a.finding == criticism::search::Finding::explained && a.wrong_name(kind)) return false;
   // Several laws at once: each of them. Several names of one thing: one of them.
   const auto found = [&](const std::string& name) { return holds(a.declared, name); };
   return kind.name == "two-laws" ? std::all_of(kind.right.begin(), kind.right.end(), found)
@@ -142,24 +147,24 @@ bool RealAnswer::wrong_name(const RealKind& kind) const {
 }
 
 bool RealAnswer::wrong_single(const RealKind& kind) const {
-  return finding == Finding::explained && named.size() == 1 && wrong_name(kind);
+  return finding == criticism::search::Finding::explained && named.size() == 1 && wrong_name(kind);
 }
 
 bool RealAnswer::good(const RealKind& kind) const {
   const bool said = !fit_refused && !explain_refused;
   switch (kind.must) {
     case Must::pass:
-      return said && accepted && finding == Finding::pass && named.empty();
+      return said && accepted && finding == criticism::search::Finding::pass && named.empty();
     case Must::name:
       return said && right_names(*this, kind);
     case Must::open:
-      return said && finding != Finding::pass && !wrong_name(kind);
+      return said && finding != criticism::search::Finding::pass && !wrong_name(kind);
     case Must::set_aside:
       return said && accepted && !wrong_name(kind) && over_plain() <= kAsGood;
     case Must::refuse:
-      return !accepted && (explain_refused || finding == Finding::bad_data);
+      return !accepted && (explain_refused || finding == criticism::search::Finding::bad_data);
     case Must::agree:
-      return said && accepted == (finding == Finding::pass) && named.empty();
+      return said && accepted == (finding == criticism::search::Finding::pass) && named.empty();
   }
   return false;
 }
@@ -167,19 +172,19 @@ bool RealAnswer::good(const RealKind& kind) const {
 RealAnswer answer_to(const RealRun& run, bool parameters) {
   RealAnswer out;
   const std::clock_t begin = std::clock();
-  const auto fitted = fit(run.table, {});
-  const auto explained = explain(run.table, {});
+  const auto fitted = fit::method_choice::fit(run.table, {});
+  const auto explained = criticism::search::explain(run.table, {});
   out.cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   out.fit_refused = !fitted;
   out.explain_refused = !explained;
   if (fitted) {
-    const Calibration& calibration = fitted->calibration;
+    const calibration::Calibration& calibration = fitted->calibration;
     out.accepted = calibration.accepted_by_checks;
     out.error_nT_per_m = out.error_after_nT_per_m = tensor_error(calibration.sensors, run.truth);
     if (parameters) judge_covariance(calibration, run.truth, out);
   }
   if (explained) read(*explained, run.truth, out);
-  if (const auto plain = fit_joint(run.plain, {}))
+  if (const auto plain = fit::joint::fit_joint(run.plain, {}))
     out.plain_nT_per_m = tensor_error(plain->state.sensors, run.plain_truth);
   return out;
 }

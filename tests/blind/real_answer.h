@@ -13,7 +13,7 @@ namespace mgtd::calib::testing {
 struct RealAnswer {
   bool fit_refused{false}, explain_refused{false};
   bool accepted{false};  ///< by the checks of the fit
-  Finding finding{Finding::pass};
+  criticism::search::Finding finding{criticism::search::Finding::pass};
   bool left_out{false};  ///< explain set something aside
   std::vector<std::string> named{};
   std::vector<std::string> declared{};  ///< named, or possible in the place of a name

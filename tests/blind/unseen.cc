@@ -22,42 +22,45 @@ T must(Result<T> result) {
   return *std::move(result);
 }
 
-JointOptions with(const std::vector<std::string>& effects) {
-  JointOptions out;
-  for (const std::string& spec : effects) out.effects.push_back(must(make_effect(spec)));
+fit::joint::JointOptions with(const std::vector<std::string>& effects) {
+  fit::joint::JointOptions out;
+  for (const std::string& spec : effects) out.effects.push_back(must(effects::library::make_effect(spec)));
   return out;
 }
 
 /// Of the poses of set "check", the fit frozen.
-double unseen_rms_nT(const PoseTable& table, const JointOptions& options, const JointFit& fit) {
-  JointProblem problem = must(joint_problem(table, options, PoseUse::check));
-  for (JointPose& pose : problem.poses) {
+double unseen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& options,
+                     const fit::joint::JointFit& fit) {
+  fit::joint::JointProblem problem = must(fit::joint::joint_problem(table, options, fit::PoseUse::check));
+  for (fit::joint::JointPose& pose : problem.poses) {
     pose.weight = fit.pose_noise_nT.reshaped<Eigen::RowMajor>().cwiseInverse();
     if (pose.has_angles) pose.attitude_weight = 1 / fit.table_sd_rad;
   }
-  JointState state = joint_state(problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  fit::joint::JointState state =
+      fit::joint::joint_state(problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
   state.coefficients = fit.state.coefficients;
-  refit_nuisances(problem, state);
-  return joint_errors(problem, state, FixedBlock::frozen).residual_nT;
+  fit::joint::refit_nuisances(problem, state);
+  return fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen).residual_nT;
 }
 
 double frozen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {
-  JointOptions options = with(effects);
-  options.effects = must(profile_search(table, options));
-  return unseen_rms_nT(table, options, must(fit_joint(table, options)));
+  fit::joint::JointOptions options = with(effects);
+  options.effects = must(fit::joint::profile_search(table, options));
+  return unseen_rms_nT(table, options, must(fit::joint::fit_joint(table, options)));
 }
 
 }  // namespace
 
 Unseen unseen(const PoseTable& table, const std::vector<std::string>& true_effects) {
-  const ImproveReport report = must(improve(table, {}));
+  const criticism::search::ImproveReport report = must(criticism::search::improve(table, {}));
   Unseen out{.nothing_nT = frozen_rms_nT(table, {}),
              .oracle_nT = frozen_rms_nT(table, true_effects),
              .chi2 = report.fit.chi2,
              .dof = report.fit.dof,
              .rounds = static_cast<int>(report.rounds.size()),
              .added = {}};
-  for (const CalibratedEffect& effect : report.fit.calibration.effects) out.added.push_back(effect.effect);
+  for (const calibration::CalibratedEffect& effect : report.fit.calibration.effects)
+    out.added.push_back(effect.effect);
   out.improved_nT = frozen_rms_nT(table, out.added);
   return out;
 }

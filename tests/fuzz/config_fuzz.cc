@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using mgtd::testing::require;
   const auto config =
-      mgtd::daemon::parse_config(std::string(reinterpret_cast<const char*>(data), size), "mgtd.toml");
+      mgtd::daemon::config::parse_config(std::string(reinterpret_cast<const char*>(data), size), "mgtd.toml");
   if (config) {
     for (const auto& sensor : config->sensors) require(sensor.device != nullptr);
     require(config->rate_hz > 0 && config->baseline_m > 0);

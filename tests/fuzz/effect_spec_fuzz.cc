@@ -9,12 +9,12 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using mgtd::testing::require;
   const auto spec =
-      mgtd::calib::EffectSpec::parse(std::string_view(reinterpret_cast<const char*>(data), size));
+      mgtd::calib::effects::EffectSpec::parse(std::string_view(reinterpret_cast<const char*>(data), size));
   if (!spec) {
     require(!spec.error().message.empty());
     return 0;
   }
-  const auto again = mgtd::calib::EffectSpec::parse(spec->text());
+  const auto again = mgtd::calib::effects::EffectSpec::parse(spec->text());
   require(again.has_value() && again->text() == spec->text());
   return 0;
 }

@@ -12,7 +12,7 @@ namespace {
 using mgtd::testing::require;
 
 void as_measured(std::string_view text) {
-  const auto table = mgtd::calib::parse_pose_table(text, "poses.csv");
+  const auto table = mgtd::calib::poses::parse_pose_table(text, "poses.csv");
   if (!table) {
     require(table.error().message.find("poses.csv") != std::string::npos && !table.error().remedy.empty());
     return;
@@ -20,14 +20,14 @@ void as_measured(std::string_view text) {
   for (const mgtd::Pose& pose : table->poses) {
     for (const auto& y : pose.y_nT) require(y.allFinite());
   }
-  const std::string written = mgtd::calib::format_pose_table(*table);
-  const auto again = mgtd::calib::parse_pose_table(written, "again.csv");
-  require(again.has_value() && mgtd::calib::format_pose_table(*again) == written);
-  require(mgtd::calib::data_hash(*again) == mgtd::calib::data_hash(*table));
+  const std::string written = mgtd::calib::poses::format_pose_table(*table);
+  const auto again = mgtd::calib::poses::parse_pose_table(written, "again.csv");
+  require(again.has_value() && mgtd::calib::poses::format_pose_table(*again) == written);
+  require(mgtd::calib::poses::data_hash(*again) == mgtd::calib::poses::data_hash(*table));
 }
 
 void as_planned(std::string_view text) {
-  const auto list = mgtd::calib::parse_pose_list(text, "poses.csv");
+  const auto list = mgtd::calib::poses::parse_pose_list(text, "poses.csv");
   if (!list) return;
   for (const mgtd::Pose& pose : list->poses) require(pose.angles().has_value());
 }

@@ -21,7 +21,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void read_all(const mgtd::daemon::RunFile& run) {
+void read_all(const mgtd::daemon::store::RunFile& run) {
   static_cast<void>(run.poses());
   static_cast<void>(run.pose_count());
   static_cast<void>(run.path_readings());
@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
   {
-    const auto run = mgtd::daemon::RunFile::open(path, mgtd::daemon::Access::read_only);
+    const auto run = mgtd::daemon::store::RunFile::open(path, mgtd::daemon::store::Access::read_only);
     if (run) {
       read_all(*run);
     } else {

@@ -37,7 +37,7 @@ std::set<int> stored(const Bench& bench) {
   std::set<int> numbers;
   for (const auto& entry : fs::recursive_directory_iterator(bench.dir().path())) {
     if (entry.path().extension() != ".mgtrun") continue;
-    const auto file = daemon::RunFile::open(entry.path(), daemon::Access::read_only);
+    const auto file = daemon::store::RunFile::open(entry.path(), daemon::store::Access::read_only);
     EXPECT_TRUE(file) << (file ? "" : file.error().text());
     if (!file) continue;
     const auto poses = file->poses();

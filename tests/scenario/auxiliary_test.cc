@@ -22,7 +22,7 @@ constexpr const char* kScenario =
     "[[effect]]\nname = 'platform.current'\nwhere = 's2'\nof = 'lamp_A'\nnT_per_A = [4, -3, 6]\n";
 
 /// Readings of an array at rest, 50 a second, from `from_s` on; what the stream says of the last one.
-TensorSample last_of(LivePipeline& pipeline, const Pose& pose, double from_s) {
+TensorSample last_of(daemon::acquire::LivePipeline& pipeline, const Pose& pose, double from_s) {
   std::optional<TensorSample> last;
   for (std::uint64_t k = 0; k < 400; ++k) {
     const double t_s = from_s + 0.02 * static_cast<double>(k);
@@ -43,17 +43,18 @@ TensorSample last_of(LivePipeline& pipeline, const Pose& pose, double from_s) {
 
 TEST(Auxiliary, ACurrentIsMeasuredFittedAndTakenOutOfTheStream) {
   VirtualDaemon daemon(test::scenario_of(kScenario));
-  std::shared_ptr<const calib::Calibration> calibration;
-  daemon.solver = [&](const PoseTable& poses) -> Result<Solution> {
-    calib::FitOptions options;
-    options.effects = {*calib::make_effect("platform.current@s2")};
-    auto fitted = calib::fit(poses, options);
+  std::shared_ptr<const calib::calibration::Calibration> calibration;
+  daemon.solver = [&](const PoseTable& poses) -> Result<daemon::run::Solution> {
+    calib::fit::FitOptions options;
+    options.effects = {*calib::effects::library::make_effect("platform.current@s2")};
+    auto fitted = calib::fit::method_choice::fit(poses, options);
     if (!fitted) return tl::unexpected(fitted.error());
-    calibration = std::make_shared<const calib::Calibration>(fitted->calibration);
-    return Solution{calibration->accepted_by_checks, calibration->id, calib::fit_reasons(*fitted), {}};
+    calibration = std::make_shared<const calib::calibration::Calibration>(fitted->calibration);
+    return daemon::run::Solution{
+        calibration->accepted_by_checks, calibration->id, calib::report::fit_reasons(*fitted), {}};
   };
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); })) << daemon.health(6).detail;
-  daemon.start(*make_plan({}, daemon.table().limits()));
+  daemon.start(*daemon::plan::make_plan({}, daemon.table().limits()));
   ASSERT_TRUE(daemon.run(4 * 3600)) << daemon.status->message;
   ASSERT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
   for (const Pose& pose : daemon.poses.poses) {
@@ -75,7 +76,7 @@ TEST(Auxiliary, ACurrentIsMeasuredFittedAndTakenOutOfTheStream) {
 
   // The stream takes it out while it is told of the current, and says so when it is not.
   const Pose& pose = daemon.poses.poses.front();
-  LivePipeline pipeline({}, 0.4);
+  daemon::acquire::LivePipeline pipeline({}, 0.4);
   pipeline.use(calibration);
   EXPECT_TRUE(last_of(pipeline, pose, 0).flags.has(Flag::incomplete)) << "nobody has told the current";
   const auto lamp = [](double t_s, double current_A) {
@@ -105,7 +106,8 @@ TEST(Auxiliary, InputsOfTheDigitisersAreColumnsOfEveryPose) {
       "[[covariate]]\nname = 'supply_V'\nmean = 12\namplitude = 0.3\nwave = 'sine'\nevery_s = 4000\n"
       "input = 's1.r'\nper_V = 5\n"));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  daemon.start(*make_plan({.step_deg = 20, .random = 12, .revisits = 2}, daemon.table().limits()));
+  daemon.start(
+      *daemon::plan::make_plan({.step_deg = 20, .random = 12, .revisits = 2}, daemon.table().limits()));
   const double begun_s = daemon.t_s;
   ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
   ASSERT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;

@@ -54,9 +54,10 @@ double worst_nT(VirtualDaemon& daemon) {
   return worst;
 }
 
-RunPlan plan_for(VirtualDaemon& daemon) {
-  return *make_plan({.step_deg = 20, .random = 30, .revisits = 4, .dwell_short_s = 4, .dwell_long_s = 8},
-                    daemon.table().limits());
+daemon::plan::RunPlan plan_for(VirtualDaemon& daemon) {
+  return *daemon::plan::make_plan(
+      {.step_deg = 20, .random = 30, .revisits = 4, .dwell_short_s = 4, .dwell_long_s = 8},
+      daemon.table().limits());
 }
 
 TEST(DisturbedField, VehiclesThatPassCostTimeAndNoPoseIsSpoiled) {
@@ -79,7 +80,7 @@ TEST(DisturbedField, VehiclesThatPassCostTimeAndNoPoseIsSpoiled) {
 TEST(DisturbedField, TheSameTrafficSpoilsPosesWhenNobodyLooks) {
   VirtualDaemon daemon(scenario_of(kRig + traffic(40, 2400)));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  RunConfig config = daemon.run_config();
+  daemon::run::RunConfig config = daemon.run_config();
   config.disturbance.limit_nT = 1e9;
   config.field_step_nT = 0;
   daemon.start(plan_for(daemon), config);
@@ -124,7 +125,7 @@ TEST(DisturbedField, WhatStaysPausesTheRunAndTheOperatorMayTakeItAsItIs) {
   ASSERT_TRUE(daemon.run(2000, [&] { return daemon.status->state == RunState::paused; }));
   EXPECT_THAT(daemon.status->message, HasSubstr("has not become so within 600 s"));
   EXPECT_THAT(daemon.status->message, HasSubstr("mgt run resume takes the field as it is"));
-  daemon.tell(Request::resume);
+  daemon.tell(daemon::run::Request::resume);
   ASSERT_TRUE(daemon.run(3600));
   EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
 }

@@ -60,8 +60,9 @@ class FaultTeller {
  private:
   void quiet_until(RunState when) {
     EXPECT_TRUE(daemon_.run(60, [&] { return daemon_.all_live(); }));
-    plan_ = *make_plan({.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
-                       daemon_.table().limits());
+    plan_ = *daemon::plan::make_plan(
+        {.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
+        daemon_.table().limits());
     daemon_.start(plan_);
     EXPECT_TRUE(
         daemon_.run(600, [&] { return daemon_.poses.poses.size() >= 3 && daemon_.status->state == when; }));
@@ -75,7 +76,7 @@ class FaultTeller {
   }
   void strike() {
     if (words_ == "kill" || words_ == "terminate") {
-      EarlierLife earlier{daemon_.started_utc(), {}, 0};
+      daemon::run::EarlierLife earlier{daemon_.started_utc(), {}, 0};
       for (const Pose& pose : daemon_.poses.poses) {
         earlier.stored.insert(pose.number);
         earlier.last_t_s = std::max(earlier.last_t_s, *pose.t_s);
@@ -126,7 +127,7 @@ class FaultTeller {
       if (paused_s > 40 && daemon_.t_s - told_s > 40) {
         told_s = daemon_.t_s;
         asked_ = true;
-        daemon_.tell(Request::resume);
+        daemon_.tell(daemon::run::Request::resume);
       }
       if (daemon_.poses.poses.size() >= poses_before + 4 && status.state == RunState::dwelling) return;
     }
@@ -171,7 +172,7 @@ class FaultTeller {
 
   VirtualDaemon daemon_;
   StreamJudge judge_;
-  RunPlan plan_;
+  daemon::plan::RunPlan plan_;
   std::string words_, pause_;
   std::size_t port_{0};
   std::vector<std::string> links_;

@@ -39,15 +39,15 @@ class Calibrated : public testing::Test {
  protected:
   void begin(const std::string& more = "") {
     stream.emplace(scenario_of(kRig + more));
-    calib::Calibration c = *test::perfect_calibration(stream->rig.world().scenario());
-    c.checks = to_checks(calibrated_ones());
+    calib::calibration::Calibration c = *test::perfect_calibration(stream->rig.world().scenario());
+    c.checks = daemon::acquire::to_checks(calibrated_ones());
     c.seal();
     stream->on_line = [this](const RingRecord& record) {
       json line = json::parse(record.line);
       if (line.at("class") == "TENSOR") samples.push_back(std::move(line));
     };
     stream->start();
-    stream->use(std::make_shared<const calib::Calibration>(c));
+    stream->use(std::make_shared<const calib::calibration::Calibration>(c));
     stream->run(10);
     ASSERT_GT(samples.size(), 200U);
     for (std::size_t i = samples.size() - 100; i < samples.size(); ++i)
@@ -99,7 +99,7 @@ TEST_F(Calibrated, WithoutSerialNumbersTheReadingsTellAnExchange) {
   EXPECT_GT(samples.front().at("closure").at("chi2"), 1e3);
   for (std::size_t i = 0; i < samples.size(); ++i)
     ASSERT_EQ(flags(samples[i]), i < 9 ? "suspect" : "uncalibrated identity") << i;
-  ASSERT_EQ(stream->pipeline().finding().state, calib::LiveState::exchanged);
+  ASSERT_EQ(stream->pipeline().finding().state, calib::criticism::live::LiveState::exchanged);
   EXPECT_THAT(stream->pipeline().finding().measured, HasSubstr("s2 and s4 are exchanged"));
   stream->fault("exchange fluxgate2 fluxgate4");
   stream->run(10);
@@ -114,7 +114,7 @@ TEST_F(Calibrated, ATurnedSensorIsNamedBeforeASourceNearby) {
   stream->run(5);
   EXPECT_NE(flags(samples.front()), "");
   EXPECT_EQ(flags(samples.back()), "uncalibrated identity");
-  ASSERT_EQ(stream->pipeline().finding().state, calib::LiveState::turned);
+  ASSERT_EQ(stream->pipeline().finding().state, calib::criticism::live::LiveState::turned);
   EXPECT_THAT(stream->pipeline().finding().measured, HasSubstr("s3 is turned by 90 deg about Z"));
 }
 
@@ -124,12 +124,12 @@ class ARun : public testing::Test {
     EXPECT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
   }
   void start(std::vector<InstrumentIdentity> calibrated) {
-    RunConfig config = daemon.run_config();
+    daemon::run::RunConfig config = daemon.run_config();
     config.calibrated = std::move(calibrated);
-    daemon.start(
-        *make_plan({.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
-                   daemon.table().limits()),
-        config);
+    daemon.start(*daemon::plan::make_plan(
+                     {.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
+                     daemon.table().limits()),
+                 config);
   }
   bool run_to(RunState state) {
     return daemon.run(600, [&] { return daemon.status->state == state && !daemon.status->goes_on; });
@@ -148,7 +148,7 @@ TEST_F(ARun, PausesBeforeItsFirstPoseAndSaysWhich) {
       AllOf(HasSubstr("s2 and s4 are exchanged: the device with serial number 1002, calibrated as s2, "
                       "now answers on the port of s4"),
             HasSubstr("swap the plugs back")));
-  daemon.tell(Request::resume);
+  daemon.tell(daemon::run::Request::resume);
   ASSERT_TRUE(run_to(RunState::dwelling)) << "an operator who means it so goes on";
   EXPECT_THAT(daemon.records, Contains(HasSubstr("the operator goes on although s2 and s4 are exchanged")));
 }
@@ -162,14 +162,14 @@ TEST_F(ARun, DoesNotMixTheInstrumentsOfItsPoses) {
   daemon.run(5);
   EXPECT_THAT(daemon.status->message, HasSubstr("s2 and s4 are exchanged"));
   const std::size_t poses = daemon.poses.poses.size();
-  daemon.tell(Request::resume);
+  daemon.tell(daemon::run::Request::resume);
   daemon.run(30);
   EXPECT_EQ(daemon.status->state, RunState::paused);
   EXPECT_EQ(daemon.poses.poses.size(), poses);
   daemon.fault("exchange fluxgate2 fluxgate4");
   daemon.run(5);
   EXPECT_THAT(daemon.status->message, HasSubstr("answers in its place again"));
-  daemon.tell(Request::resume);
+  daemon.tell(daemon::run::Request::resume);
   ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
   EXPECT_EQ(daemon.finished->state, RunState::done);
 }
@@ -182,28 +182,28 @@ class ARunThatIsNotTold : public ARun {
 TEST_F(ARunThatIsNotTold, NamesTheExchangeFromItsPoses) {
   start({});
   ASSERT_TRUE(daemon.run(3600, [&] { return daemon.poses.poses.size() >= 14; }));
-  EXPECT_FALSE(calib::exchange_in_run(daemon.poses, std::nullopt));
+  EXPECT_FALSE(calib::criticism::tests::exchange_in_run(daemon.poses, std::nullopt));
   daemon.fault("exchange fluxgate2 fluxgate4");
   ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
-  const auto found = calib::exchange_in_run(daemon.poses, std::nullopt);
+  const auto found = calib::criticism::tests::exchange_in_run(daemon.poses, std::nullopt);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->from_pose, daemon.poses.poses.at(14).number);
-  EXPECT_THAT(calib::exchange_text(*found), HasSubstr("s2 and s4 are exchanged from pose 15 on"));
+  EXPECT_THAT(calib::report::exchange_text(*found), HasSubstr("s2 and s4 are exchanged from pose 15 on"));
   EXPECT_LT(found->residual_nT, 2);
   EXPECT_GT(found->without_nT, 50);
 }
 
 TEST(ExchangedSince, IsToldByEachOthersParameters) {
   const auto before = test::perfect_calibration(scenario_of(kRig));
-  calib::Calibration now = *before;
-  for (calib::SensorModel& sensor : now.sensors) sensor.offset_nT += Eigen::Vector3d(3, -4, 2);
-  EXPECT_FALSE(calib::exchanged_since(*before, now)) << "sensors age";
+  calib::calibration::Calibration now = *before;
+  for (calib::sensor::SensorModel& sensor : now.sensors) sensor.offset_nT += Eigen::Vector3d(3, -4, 2);
+  EXPECT_FALSE(calib::criticism::tests::exchanged_since(*before, now)) << "sensors age";
   std::swap(now.sensors[1], now.sensors[3]);
-  const auto found = calib::exchanged_since(*before, now);
+  const auto found = calib::criticism::tests::exchanged_since(*before, now);
   ASSERT_TRUE(found);
-  EXPECT_EQ(calib::rearrangement_text(*found), "s2 and s4 are exchanged");
+  EXPECT_EQ(calib::report::rearrangement_text(*found), "s2 and s4 are exchanged");
   now.sensors[1].offset_nT += Eigen::Vector3d(0, 60, 0);
-  EXPECT_FALSE(calib::exchanged_since(*before, now)) << "that is another sensor";
+  EXPECT_FALSE(calib::criticism::tests::exchanged_since(*before, now)) << "that is another sensor";
 }
 
 }  // namespace

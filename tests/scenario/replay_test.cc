@@ -35,12 +35,13 @@ struct Recorded {
 
 struct Replayed {
   std::vector<std::string> lines;
-  ReplayCounts counts;
+  acquire::ReplayCounts counts;
 };
 
-Replayed replay(const std::string& journal, std::shared_ptr<const calib::Calibration> instead = nullptr) {
+Replayed replay(const std::string& journal,
+                std::shared_ptr<const calib::calibration::Calibration> instead = nullptr) {
   Replayed out;
-  Replay again([&](std::string_view line) { out.lines.emplace_back(line); }, std::move(instead));
+  acquire::Replay again([&](std::string_view line) { out.lines.emplace_back(line); }, std::move(instead));
   RawLogDecoder decoder;
   decoder.feed(journal);
   while (const auto record = decoder.next()) {
@@ -167,7 +168,7 @@ TEST(Replay, AJournalThatWasTouchedIsNoticed) {
 TEST(Replay, RefusesWhatHasNoBeginning) {
   Recorded live(table6());
   live.daemon.run(1);
-  Replay again([](std::string_view) {}, nullptr);
+  acquire::Replay again([](std::string_view) {}, nullptr);
   const auto refused = again.feed({0, RawDirection::received, {}, "*0102\r"});
   ASSERT_FALSE(refused);
   EXPECT_FALSE(refused.error().remedy.empty());

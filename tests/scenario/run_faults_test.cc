@@ -21,9 +21,10 @@ rig::Scenario table6() {
   return scenario_of("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n");
 }
 
-RunPlan plan_for(VirtualDaemon& daemon) {
-  return *make_plan({.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
-                    daemon.table().limits());
+daemon::plan::RunPlan plan_for(VirtualDaemon& daemon) {
+  return *daemon::plan::make_plan(
+      {.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
+      daemon.table().limits());
 }
 
 /// Started and some poses far.
@@ -53,7 +54,7 @@ TEST_P(TroubleThatPasses, CostsTimeButNeitherThePlanNorTheData) {
     });
     for (int i = 0; i < 5 && !daemon.finished; ++i) {  // an operator who looks and goes on
       daemon.run(60);
-      daemon.tell(Request::resume);
+      daemon.tell(daemon::run::Request::resume);
       daemon.run(1200);
     }
     const std::string fault = GetParam();
@@ -157,7 +158,7 @@ TEST(RunFaults, JammedTableEndsInAPauseThatNamesTheTable) {
   daemon.fault("freeze table");
   ASSERT_TRUE(run_to(daemon, RunState::paused, 1200));
   EXPECT_THAT(daemon.status->message, HasSubstr("table"));
-  daemon.tell(Request::abort);
+  daemon.tell(daemon::run::Request::abort);
   ASSERT_TRUE(daemon.run(60));
   EXPECT_EQ(daemon.finished->state, RunState::aborted);
 }
@@ -177,7 +178,7 @@ TEST(RunFaults, AbortInMotionLeavesTheTableStandingStill) {
   start(daemon, 1);
   ASSERT_TRUE(run_to(daemon, RunState::moving));
   daemon.run(0.5);
-  daemon.tell(Request::abort);
+  daemon.tell(daemon::run::Request::abort);
   ASSERT_TRUE(daemon.run(60));
   EXPECT_EQ(daemon.finished->state, RunState::aborted);
   for (const auto axis : {rig::azimuth, rig::pitch, rig::roll})
@@ -191,7 +192,7 @@ TEST(RunFaults, KilledAnywhereTheRunGoesOnAtTheNextPose) {
     start(daemon, 4);
     daemon.run(after_s);
     const std::size_t kept = daemon.poses.poses.size();
-    EarlierLife earlier{daemon.started_utc(), {}, 0};
+    daemon::run::EarlierLife earlier{daemon.started_utc(), {}, 0};
     for (const Pose& pose : daemon.poses.poses) {
       earlier.stored.insert(pose.number);
       earlier.last_t_s = *pose.t_s;

@@ -59,15 +59,15 @@ Figures figures(const std::filesystem::path& store) {
   return out;
 }
 
-void sync(Journal& journal) {
+void sync(store::Journal& journal) {
   for (const int fd : journal.take_syncs()) {
     ::close(fd);
     journal.synced(0);
   }
 }
 
-JournalConfig journal_in(const std::string& store) {
-  JournalConfig out;
+store::JournalConfig journal_in(const std::string& store) {
+  store::JournalConfig out;
   out.directory = store + "/runs";
   out.name = "raw-1";
   out.header = {"rig", ""};
@@ -114,7 +114,7 @@ class Household {
   double log_bytes{0};
   std::uint64_t samples{0}, gap_records{0};
   [[nodiscard]] Figures look() const { return figures(store_.path()); }
-  [[nodiscard]] const Journal& raw() const { return raw_; }
+  [[nodiscard]] const store::Journal& raw() const { return raw_; }
 
  private:
   void second() {
@@ -135,10 +135,10 @@ class Household {
   }
 
   mgtd::testing::TemporaryDirectory store_;
-  Journal raw_;
-  DiskRing disk_;
-  SampleRing ring_;
-  Subscription client_;
+  store::Journal raw_;
+  store::DiskRing disk_;
+  serve::SampleRing ring_;
+  serve::Subscription client_;
   std::string out_;
 };
 

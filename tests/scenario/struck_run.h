@@ -94,9 +94,10 @@ class StruckRun {
 
  private:
   [[nodiscard]] bool over() const { return daemon_.finished && daemon_.finished->state == RunState::done; }
-  [[nodiscard]] RunPlan plan() {
-    return *make_plan({.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
-                      daemon_.table().limits());
+  [[nodiscard]] daemon::plan::RunPlan plan() {
+    return *daemon::plan::make_plan(
+        {.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
+        daemon_.table().limits());
   }
   double pause() { return std::exponential_distribution<double>(1 / kMeanPause_s)(random_); }
   std::size_t pick(std::size_t n) { return random_() % n; }
@@ -151,14 +152,14 @@ class StruckRun {
     if (what == "terminate") return come_back([&] { daemon_.terminate(); });
     if (what == "stand still") return daemon_.stand_still(0.1 + 0.02 * static_cast<double>(pick(100)));
     if (what == "stand still for long") return daemon_.stand_still(static_cast<double>(2 + pick(20)));
-    if (what == "pause") return daemon_.tell(Request::pause);
-    if (what == "redo") return daemon_.tell(Request::redo);
+    if (what == "pause") return daemon_.tell(daemon::run::Request::pause);
+    if (what == "redo") return daemon_.tell(daemon::run::Request::redo);
     static constexpr std::array<double, 4> kSteps_s{-1, 1, -3600, 86'400};
     daemon_.wall_step_s += kSteps_s.at(pick(kSteps_s.size()));
   }
   template <class End>
   void come_back(const End& end) {
-    EarlierLife earlier{daemon_.started_utc(), {}, 0};
+    daemon::run::EarlierLife earlier{daemon_.started_utc(), {}, 0};
     earlier.instruments = daemon_.instruments;
     for (const Pose& pose : daemon_.poses.poses) {
       earlier.stored.insert(pose.number);
@@ -180,7 +181,7 @@ class StruckRun {
     if (daemon_.status->message.find("switch the controller off and on") != std::string::npos)
       daemon_.fault("power table for 1");
     daemon_.run(40);
-    daemon_.tell(Request::resume);
+    daemon_.tell(daemon::run::Request::resume);
   }
   void conclude() {
     SCOPED_TRACE(told_);
@@ -196,7 +197,7 @@ class StruckRun {
   bool stamped_, exchanges_;  ///< exchanges_: plugs, among what strikes
   VirtualDaemon daemon_;
   StreamJudge judge_;
-  RunPlan plan_;
+  daemon::plan::RunPlan plan_;
   std::string told_;
   int faults_{0};
 };

@@ -25,7 +25,7 @@ namespace mgtd::test {
 
 using namespace mgtd::daemon;
 
-class VirtualCore : protected CoreActions {
+class VirtualCore : protected daemon::core::CoreActions {
  public:
   rig::BenchRig rig;
   std::function<void()> on_step = [] {};
@@ -72,17 +72,17 @@ class VirtualCore : protected CoreActions {
   VirtualCore(const rig::Scenario& scenario, double step_s)
       : rig(scenario, kSwitchedOn_utc_s), step_s_(step_s) {}
 
-  [[nodiscard]] const DaemonCore& core() const { return *core_; }
-  [[nodiscard]] DaemonCore& core() { return *core_; }
-  [[nodiscard]] const Config& config() const { return config_; }
+  [[nodiscard]] const daemon::core::DaemonCore& core() const { return *core_; }
+  [[nodiscard]] daemon::core::DaemonCore& core() { return *core_; }
+  [[nodiscard]] const daemon::config::Config& config() const { return config_; }
   /// The program starts; one that ran before has died without a word, the instruments go on as they were.
   void start_program(const std::string& config_text, std::uint64_t first_seq = 0,
                      const std::optional<Gap>& before = {}) {
-    auto config = parse_config(config_text, "virtual.toml");
+    auto config = daemon::config::parse_config(config_text, "virtual.toml");
     if (!config) throw std::invalid_argument(config.error().lines.at(0));
     core_.reset();
     config_ = *std::move(config);
-    core_.emplace(config_, static_cast<CoreActions&>(*this));
+    core_.emplace(config_, static_cast<daemon::core::CoreActions&>(*this));
     ports_.clear();
     for (const Slot slot : core_->instruments().slots()) ports_.push_back({slot});
     core_->begin({"test", config_text, first_seq, before}, now());
@@ -146,8 +146,8 @@ class VirtualCore : protected CoreActions {
   }
 
   double step_s_;
-  Config config_;
-  std::optional<DaemonCore> core_;
+  daemon::config::Config config_;
+  std::optional<daemon::core::DaemonCore> core_;
   std::vector<Port> ports_;
   double next_tick_s_{0}, next_second_s_{0};
 };

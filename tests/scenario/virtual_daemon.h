@@ -24,30 +24,30 @@ class VirtualDaemon : public VirtualCore {
   }
 
   PoseTable poses;
-  std::optional<Finish> finished;
+  std::optional<daemon::run::Finish> finished;
   std::optional<RunStatus> status;
   std::vector<std::string> records;
   std::vector<std::string> notes;               ///< the warnings of the log
   std::vector<InstrumentIdentity> instruments;  ///< of the run, as its file keeps them
-  std::function<Result<Solution>(const PoseTable&)> solver = [](const PoseTable&) {
-    return Solution{true, "cal", {}, {}};
+  std::function<Result<daemon::run::Solution>(const PoseTable&)> solver = [](const PoseTable&) {
+    return daemon::run::Solution{true, "cal", {}, {}};
   };
   std::function<void(const EpochOrGap&)> on_item = [](const EpochOrGap&) {};  ///< of the stream
   std::uint64_t gaps{0};
 
   [[nodiscard]] WallTime started_utc() const { return started_utc_; }
-  [[nodiscard]] RunConfig run_config() {
-    RunConfig out = daemon::run_config(config(), table().limits());
+  [[nodiscard]] daemon::run::RunConfig run_config() {
+    daemon::run::RunConfig out = daemon::run::run_config(config(), table().limits());
     out.run_id = "virtual";
     return out;
   }
-  void start(RunPlan plan, std::optional<RunConfig> config = std::nullopt,
-             const std::optional<EarlierLife>& earlier = std::nullopt) {
+  void start(daemon::plan::RunPlan plan, std::optional<daemon::run::RunConfig> config = std::nullopt,
+             const std::optional<daemon::run::EarlierLife>& earlier = std::nullopt) {
     if (!earlier) started_utc_ = now().wall;
     finished.reset();
     core().run().begin(config ? *std::move(config) : run_config(), std::move(plan), now(), earlier);
   }
-  void tell(const Event& event) { core().run().feed(event, now()); }
+  void tell(const daemon::run::Event& event) { core().run().feed(event, now()); }
   /// The program ends in good order: the instruments hear its last words, the run is left as it is.
   void terminate() {
     core().abandon_run(now());
@@ -89,32 +89,35 @@ class VirtualDaemon : public VirtualCore {
     gaps += gap.to_seq - gap.from_seq + 1;
     on_item(gap);
   }
-  void say(const Remark& remark, Instant) override {
-    if (remark.level == Remark::Level::warning) notes.push_back(remark.topic + ": " + remark.text);
+  void say(const daemon::core::Remark& remark, Instant) override {
+    if (remark.level == daemon::core::Remark::Level::warning)
+      notes.push_back(remark.topic + ": " + remark.text);
   }
 
-  void carry_out(const Action& action, Stamp) override {
+  void carry_out(const daemon::run::Action& action, Stamp) override {
     std::visit([this](const auto& a) { act(a); }, action);
   }
   template <class OfTheCoreOrOfNoInterest>
   void act(const OfTheCoreOrOfNoInterest&) {}
-  void act(const StorePose& store) {
+  void act(const daemon::run::StorePose& store) {
     poses.poses.push_back(store.pose);
-    core().run().answer(PoseStored{store.pose.number, {}});
+    core().run().answer(daemon::run::PoseStored{store.pose.number, {}});
   }
-  void act(const StartSolve&) { core().run().answer(SolveDone{solver(poses)}); }
-  void act(const ProposeCalibration&) { core().run().answer(CalibrationProposed{}); }
-  void act(const PublishStatus& publish) { status = publish.status; }
-  void act(const Record& record) { records.push_back(record.what); }
-  void act(const Finish& finish) { finished = finish; }
-  void act(const StoreChecks& store) {
-    if (store.stage != kInstrumentsStage) return;
-    instruments = instruments_among(store.checks);
+  void act(const daemon::run::StartSolve&) { core().run().answer(daemon::run::SolveDone{solver(poses)}); }
+  void act(const daemon::run::ProposeCalibration&) {
+    core().run().answer(daemon::run::CalibrationProposed{});
+  }
+  void act(const daemon::run::PublishStatus& publish) { status = publish.status; }
+  void act(const daemon::run::Record& record) { records.push_back(record.what); }
+  void act(const daemon::run::Finish& finish) { finished = finish; }
+  void act(const daemon::run::StoreChecks& store) {
+    if (store.stage != daemon::acquire::kInstrumentsStage) return;
+    instruments = daemon::acquire::instruments_among(store.checks);
     run_instruments_.want(instruments);
   }
 
   std::pair<std::string, std::string> mistake_;
-  InstrumentWatch run_instruments_{kByRun};
+  daemon::acquire::InstrumentWatch run_instruments_{daemon::acquire::kByRun};
   WallTime started_utc_;
 };
 

@@ -28,14 +28,14 @@ class VirtualStream : public VirtualCore {
 
   using VirtualCore::config;
   [[nodiscard]] std::uint64_t next_seq() const { return pipeline().sampler().next_seq(); }
-  [[nodiscard]] const LivePipeline& pipeline() const { return core().pipeline(); }
+  [[nodiscard]] const daemon::acquire::LivePipeline& pipeline() const { return core().pipeline(); }
 
   /// The daemon starts; a life before ends as by a kill, the instruments go on as they were.
   void start(std::uint64_t first_seq = 0, const std::optional<Gap>& before = {}) {
     start_program(text_, first_seq, before);
     if (before) publish(*before);
   }
-  void use(std::shared_ptr<const calib::Calibration> calibration) {
+  void use(std::shared_ptr<const calib::calibration::Calibration> calibration) {
     core().use(std::move(calibration), now());
   }
   /// As long as the operator goes round with a magnet, the samples say that the rig is being calibrated.
@@ -55,8 +55,8 @@ class VirtualStream : public VirtualCore {
     const std::string line = encode(gap);
     on_line({RingRecord::Kind::gap, gap.from_seq, gap.to_seq, gap.at, line});
   }
-  void carry_out(const Action&, Stamp) override {}
-  void say(const Remark& remark, Instant) override { on_word(remark.topic, remark.text); }
+  void carry_out(const daemon::run::Action&, Stamp) override {}
+  void say(const daemon::core::Remark& remark, Instant) override { on_word(remark.topic, remark.text); }
 
   std::string text_;
   TensorEncoder encoder_;

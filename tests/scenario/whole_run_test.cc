@@ -19,42 +19,42 @@ using test::scenario_of;
 using test::VirtualDaemon;
 
 /// The truth under the paper's names, in the fit's units and order.
-calib::ParameterVector truth_of(const rig::SensorTruth& s) {
-  calib::ParameterVector p;
+calib::sensor::ParameterVector truth_of(const rig::SensorTruth& s) {
+  calib::sensor::ParameterVector p;
   p << to_rad(s.theta_deg), to_rad(s.phi_deg), to_rad(s.psi_deg), s.scale, s.offset_nT, to_rad(s.alpha_deg),
       to_rad(s.beta_deg), to_rad(s.gamma_deg);
   return p;
 }
 
 /// Fits like the daemon does and keeps the report.
-void fit_with(VirtualDaemon& daemon, std::optional<calib::FitReport>& report,
-              calib::FitOptions options = {}) {
-  daemon.solver = [&report, options](const PoseTable& poses) -> Result<Solution> {
-    auto fitted = calib::fit(poses, options);
+void fit_with(VirtualDaemon& daemon, std::optional<calib::fit::FitReport>& report,
+              calib::fit::FitOptions options = {}) {
+  daemon.solver = [&report, options](const PoseTable& poses) -> Result<daemon::run::Solution> {
+    auto fitted = calib::fit::method_choice::fit(poses, options);
     if (!fitted) return tl::unexpected(fitted.error());
     report = *fitted;
-    const calib::Calibration& c = fitted->calibration;
-    return Solution{c.accepted_by_checks, c.id, calib::fit_reasons(*fitted), c.checks};
+    const calib::calibration::Calibration& c = fitted->calibration;
+    return daemon::run::Solution{c.accepted_by_checks, c.id, calib::report::fit_reasons(*fitted), c.checks};
   };
 }
 
 /// Switches on, plans, runs to the end.
-void whole_run(VirtualDaemon& daemon, const PlanOptions& options) {
+void whole_run(VirtualDaemon& daemon, const daemon::plan::PlanOptions& options) {
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  const auto plan = make_plan(options, daemon.table().limits());
+  const auto plan = daemon::plan::make_plan(options, daemon.table().limits());
   ASSERT_TRUE(plan) << plan.error().text();
   daemon.start(*plan);
   ASSERT_TRUE(daemon.run(4 * 3600)) << daemon.status->message;
 }
 
 /// Error of each of the 48 parameters in units of its reported standard error.
-std::vector<double> errors_in_sd(const calib::Calibration& found, const rig::RigTruth& truth) {
+std::vector<double> errors_in_sd(const calib::calibration::Calibration& found, const rig::RigTruth& truth) {
   std::vector<double> z;
   for (int i = 0; i < kSensors; ++i) {
     const auto slot = static_cast<std::size_t>(i);
-    const calib::ParameterVector error = found.sensors[slot].parameters() - truth_of(truth[slot]);
-    for (int p = 0; p < calib::kSensorParameters; ++p) {
-      const int at = i * calib::kSensorParameters + p;
+    const calib::sensor::ParameterVector error = found.sensors[slot].parameters() - truth_of(truth[slot]);
+    for (int p = 0; p < calib::sensor::kSensorParameters; ++p) {
+      const int at = i * calib::sensor::kSensorParameters + p;
       z.push_back(error[p] / std::sqrt(found.covariance(at, at)));
     }
   }
@@ -70,7 +70,7 @@ double largest(const std::vector<double>& z) {
 TEST(WholeRun, Table6RigIsFoundWithinItsStandardErrors) {
   const auto scenario = scenario_of("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n");
   VirtualDaemon daemon(scenario);
-  std::optional<calib::FitReport> report;
+  std::optional<calib::fit::FitReport> report;
   fit_with(daemon, report);
   whole_run(daemon, {});
   ASSERT_TRUE(daemon.finished);
@@ -88,8 +88,9 @@ TEST(WholeRun, Table6RigIsFoundWithinItsStandardErrors) {
   RecordProperty("worst_error_in_sd", fmt::format("{:.2f}", worst));
   EXPECT_LT(worst, 4.5);
   // A planted error of six standard errors must be seen.
-  calib::Calibration planted = report->calibration;
-  planted.sensors[2].scale.y() += 6 * std::sqrt(planted.covariance(24 + calib::cy, 24 + calib::cy));
+  calib::calibration::Calibration planted = report->calibration;
+  planted.sensors[2].scale.y() +=
+      6 * std::sqrt(planted.covariance(24 + calib::sensor::cy, 24 + calib::sensor::cy));
   EXPECT_GT(largest(errors_in_sd(planted, scenario.truth)), 4.5 - 1.5);
 }
 
@@ -101,7 +102,7 @@ TEST(WholeRun, RandomRigsAreFoundWithinTheirStandardErrors) {
     const auto scenario =
         scenario_of(fmt::format("[rig]\nname = \"random\"\nparameters = \"random\"\nseed = {}\n", seed));
     VirtualDaemon daemon(scenario);
-    std::optional<calib::FitReport> report;
+    std::optional<calib::fit::FitReport> report;
     fit_with(daemon, report);
     whole_run(daemon, {.seed = static_cast<std::uint64_t>(seed)});
     ASSERT_TRUE(daemon.finished && report) << daemon.finished->message;
@@ -121,8 +122,8 @@ TEST(WholeRun, WorksWithoutAScalarReference) {
   const auto scenario = scenario_of(
       "[rig]\nname = \"no-scalar\"\nparameters = \"table6\"\nseed = 3\n[scalar]\npresent = false\n");
   VirtualDaemon daemon(scenario);
-  std::optional<calib::FitReport> report;
-  calib::FitOptions options;
+  std::optional<calib::fit::FitReport> report;
+  calib::fit::FitOptions options;
   options.field_nT = scenario.f_nT;
   fit_with(daemon, report, options);
   whole_run(daemon, {});
@@ -136,7 +137,7 @@ TEST(WholeRun, TableOfOneAxisEndsInARefusalThatSaysWhatToDo) {
   const auto scenario =
       scenario_of("[rig]\nname = \"flat\"\nparameters = \"table6\"\n[table]\ntilt_limit_deg = 0\n");
   VirtualDaemon daemon(scenario);
-  std::optional<calib::FitReport> report;
+  std::optional<calib::fit::FitReport> report;
   fit_with(daemon, report);
   whole_run(daemon, {.step_deg = 20, .random = 12, .revisits = 2});
   ASSERT_TRUE(daemon.finished);

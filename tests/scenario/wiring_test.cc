@@ -22,9 +22,9 @@ TEST(WiringInARun, MirroredAndTurnedSensorsAreNamedAfterTheFirstTurns) {
       scenario_of("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n"
                   "[s2]\nmounting = \"y -x z\"\n[s3]\nmounting = \"x -y z\"\n"));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  daemon.start(
-      *make_plan({.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
-                 daemon.table().limits()));
+  daemon.start(*daemon::plan::make_plan(
+      {.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
+      daemon.table().limits()));
   ASSERT_TRUE(daemon.run(600, [&] { return daemon.poses.poses.size() >= 5; })) << daemon.status->message;
   ASSERT_FALSE(daemon.finished) << daemon.finished->message;
   EXPECT_THAT(daemon.records,
@@ -37,7 +37,7 @@ TEST(MagnetOnTheRig, SwappedCablesAreNamed) {
   VirtualDaemon daemon(scenario_of(
       "[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n[sensors]\nwiring = [3, 2, 1, 4]\n"));
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  WiringProbe magnet(daemon.now().mono);
+  daemon::run::WiringProbe magnet(daemon.now().mono);
   daemon.on_item = [&](const EpochOrGap& item) {
     if (const auto* epoch = std::get_if<Epoch>(&item)) magnet.add(*epoch);
     magnet.advance(daemon.now().mono);

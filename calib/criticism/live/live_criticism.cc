@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 namespace {
 
 constexpr double kAlarm_log10 = -8;  // 10 000 looks a day at correlated data: far below one false alarm a day
@@ -55,7 +55,7 @@ LiveCriticism::Judges::Judges(const ClosurePrior& p)
       hour(kHourBlock_s, kHourBlocks, p),
       day(kDayBlock_s, kDayBlocks, p) {}
 
-LiveCriticism::LiveCriticism(const Calibration& calibration) {
+LiveCriticism::LiveCriticism(const calibration::Calibration& calibration) {
   if ((calibration.sample_noise_nT.array() <= 0).any()) return;
   judges_.emplace(closure_prior(calibration));
   finding_.state = LiveState::learning;
@@ -143,4 +143,4 @@ LiveState LiveCriticism::state() const {
   return judges_->hour.blocks().size() >= kLearned ? LiveState::ok : LiveState::learning;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

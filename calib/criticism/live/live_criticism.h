@@ -29,14 +29,14 @@
 /// Not judged: samples that are saturated or frozen, that lack an effect of the calibration, or whose field
 /// turns so fast that the skew bound lets it move by more than half the noise. An effect of the calibration
 /// whose coefficient is badly known widens what is stated for the sample but not what is stated here.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 
 class LiveCriticism {
  public:
   /// Nothing to judge by: state none.
   LiveCriticism() = default;
   /// None also where the calibration does not know its noise.
-  explicit LiveCriticism(const Calibration& calibration);
+  explicit LiveCriticism(const calibration::Calibration& calibration);
 
   /// True when the state changed. `T_degC`: of the heads, NaN where not measured.
   bool add(const TensorSample& sample, const std::array<double, kSensors>& T_degC);
@@ -72,4 +72,4 @@ class LiveCriticism {
   LiveFinding finding_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

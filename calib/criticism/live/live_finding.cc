@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 
 std::string_view to_string(LiveState state) {
   static constexpr std::array<std::string_view, 7> kNames{"none",        "learning",  "ok",    "suspect",
@@ -12,4 +12,4 @@ std::string_view to_string(LiveState state) {
   return kNames.at(static_cast<std::size_t>(state));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

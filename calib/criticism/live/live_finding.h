@@ -6,7 +6,7 @@
 #include <vector>
 
 /// The findings of live criticism, as values; calib/report/live_report.h has the sentences.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 
 enum class LiveState { none, learning, ok, suspect, near_source, exchanged, turned };
 /// As the status and the stream write it: "near source".
@@ -51,4 +51,4 @@ struct LiveFinding {
   std::optional<LargeClosure> large{};         ///< in state near_source; in state suspect it may be there too
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

@@ -14,7 +14,7 @@
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 namespace {
 
 constexpr std::size_t kLeastBlocks = 18;
@@ -66,7 +66,7 @@ Eigen::VectorXd centred(const Eigen::VectorXd& x) { return x.array() - x.mean();
 /// Directions in which the field moved, as columns of u centred and turned; none when it stood.
 Eigen::MatrixXd moved_directions(const Rows& r) {
   const Eigen::MatrixXd u = r.u.rowwise() - r.u.colwise().mean();
-  const PrincipalAxes axes = principal_axes(u.transpose() * u / static_cast<double>(r.n()));
+  const linear::PrincipalAxes axes = linear::principal_axes(u.transpose() * u / static_cast<double>(r.n()));
   std::vector<Eigen::Index> kept;
   for (Eigen::Index a = 0; a < 3; ++a) {
     if (axes.values[a] > kLeastSpread * kLeastSpread) kept.push_back(a);
@@ -82,7 +82,7 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 
 /// y less its regression on the columns.
 Eigen::MatrixXd residual(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& y) {
-  return y - columns * least_squares(columns, y);
+  return y - columns * linear::least_squares(columns, y);
 }
 
 struct Noise {
@@ -166,15 +166,15 @@ Following against(const Rows& r, const ClosurePrior& prior, const Eigen::VectorX
   for (Eigen::Index i = 0; i < 5; ++i) {
     for (Eigen::Index j = 0; j < 5; ++j) M.block<4, 4>(4 * i, 4 * j).diagonal().setConstant(S(i, j));
   }
-  M.topLeftCorner<16, 16>() += inverse_by_lu(P);
+  M.topLeftCorner<16, 16>() += linear::inverse_by_lu(P);
   const Eigen::MatrixXd g = r.c.transpose() * zw / variance;  // 4 x 5
-  const Eigen::MatrixXd V = inverse_by_lu(M);
+  const Eigen::MatrixXd V = linear::inverse_by_lu(M);
   const Eigen::VectorXd solution = V * Eigen::VectorXd(g.reshaped());
   const Eigen::Vector4d beta = solution.tail<4>();
   const Eigen::Matrix4d cov = V.bottomRightCorner<4, 4>();
-  out.log10_p = chi_square_log10_p(beta.dot(cov.llt().solve(beta)), 4);
+  out.log10_p = stats::chi_square_log10_p(beta.dot(cov.llt().solve(beta)), 4);
   const Eigen::Vector4d slope = r.unwhiten * beta;
-  const Eigen::Matrix4d slope_cov = propagated_covariance(r.unwhiten, cov);
+  const Eigen::Matrix4d slope_cov = linear::propagated_covariance(r.unwhiten, cov);
   const Eigen::Vector4d stated_sd =
       stated(prior.parameters, r.u.colwise().mean().transpose()).diagonal().cwiseSqrt();
   out.range = x.maxCoeff() - x.minCoeff();
@@ -200,7 +200,7 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
   Following out{.tested = true};
   const Eigen::MatrixXd constant = r.weighted(Eigen::VectorXd::Ones(r.n()));
   const Eigen::MatrixXd x = residual(constant, r.weighted(r.u * V)), y = residual(constant, r.c);
-  const Eigen::MatrixXd inverse = inverse_by_lu(x.transpose() * x);
+  const Eigen::MatrixXd inverse = linear::inverse_by_lu(x.transpose() * x);
   const Eigen::MatrixXd B = (inverse * x.transpose() * y).transpose();  // 4 x directions
   const Eigen::Index m = B.size();
   const ClosureErrors P = whitened(prior);
@@ -214,9 +214,9 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
       }
     }
   }
-  const auto by_noise = Cholesky::of_unscaled(cov);
+  const auto by_noise = linear::Cholesky::of_unscaled(cov);
   if (!by_noise) return {};
-  out.log10_p = chi_square_log10_p(by_noise->squared_length(B.reshaped()), static_cast<double>(m));
+  out.log10_p = stats::chi_square_log10_p(by_noise->squared_length(B.reshaped()), static_cast<double>(m));
   out.share = share_of(x, y, noise.median);
   out.event_share = event_share_of(y, noise.median);
   // Reported for the quantity that swings most, over the turn that was made.
@@ -259,7 +259,7 @@ WindowCriticism criticise(const std::deque<ClosureBlock>& blocks, const ClosureP
 double block_log10_p(const ClosureBlock& block, const ClosurePrior& prior, double noise_scale) {
   const Eigen::Matrix4d S =
       noise_scale / block.samples * prior.sample_noise + stated(prior.parameters, block.u);
-  return chi_square_log10_p(block.closure.dot(S.llt().solve(block.closure)), 4);
+  return stats::chi_square_log10_p(block.closure.dot(S.llt().solve(block.closure)), 4);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

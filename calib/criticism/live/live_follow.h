@@ -16,7 +16,7 @@
 ///     temperature, time   slope beta of c on x, W free within its prior: beta' Cov^-1 beta, chi-square of 4
 ///     attitude            slopes of c on the directions that the field took: against noise and prior,
 ///                         chi-square of 4 for each direction
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 
 struct WindowCriticism {
   std::array<Following, 3> follows;  ///< by Follows
@@ -29,4 +29,4 @@ struct WindowCriticism {
 /// block.
 [[nodiscard]] double block_log10_p(const ClosureBlock& block, const ClosurePrior& prior, double noise_scale);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

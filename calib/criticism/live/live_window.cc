@@ -11,39 +11,42 @@
 #include "calib/effects/effect_context.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 namespace {
 
 constexpr int kEmptyParts = 2;  // that a block may have
-using ParameterRows = Eigen::Matrix<double, 16, kArrayParameters>;
+using ParameterRows = Eigen::Matrix<double, 16, calibration::kArrayParameters>;
 
 /// dW/dp: closure at the four unit values of q, which it is linear in.
-ParameterRows closure_by_parameters(const Calibration& c) {
-  const auto rows = closure_rows(c.geometry);
+ParameterRows closure_by_parameters(const calibration::Calibration& c) {
+  const auto rows = calibration::closure_rows(c.geometry);
   const auto at = [&](const Eigen::Vector3d& b_P_nT) {
-    Eigen::Matrix<double, kChannels, kArrayParameters> d;
+    Eigen::Matrix<double, sensor::kChannels, calibration::kArrayParameters> d;
     d.setZero();
     for (int i = 0; i < kSensors; ++i) {
-      d.block<3, kSensorParameters>(3 * i, kSensorParameters * i) =
-          field_derivative(c.sensors[static_cast<std::size_t>(i)], b_P_nT);
+      d.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
+          calibration::field_derivative(c.sensors[static_cast<std::size_t>(i)], b_P_nT);
     }
-    return Eigen::Matrix<double, 4, kArrayParameters>(rows * d);
+    return Eigen::Matrix<double, 4, calibration::kArrayParameters>(rows * d);
   };
   const auto constant = at(Eigen::Vector3d::Zero());
   ParameterRows out;
   out.topRows<4>() = constant;
   for (int a = 0; a < 3; ++a)
-    out.middleRows<4>(4 + 4 * a) = at(kReferenceField_nT * Eigen::Vector3d::Unit(a)) - constant;
+    out.middleRows<4>(4 + 4 * a) = at(effects::kReferenceField_nT * Eigen::Vector3d::Unit(a)) - constant;
   return out;
 }
 
 }  // namespace
 
-ClosurePrior closure_prior(const Calibration& c) {
+ClosurePrior closure_prior(const calibration::Calibration& c) {
   const auto W = closure_by_parameters(c);
-  const auto rows = closure_rows(c.geometry);
-  return {propagated_covariance(rows, TensorPipeline(std::make_shared<const Calibration>(c)).sample_noise()),
-          propagated_covariance(W, c.covariance)};
+  const auto rows = calibration::closure_rows(c.geometry);
+  return {
+      linear::propagated_covariance(
+          rows,
+          calibration::TensorPipeline(std::make_shared<const calibration::Calibration>(c)).sample_noise()),
+      linear::propagated_covariance(W, c.covariance)};
 }
 
 LiveWindow::LiveWindow(double block_s, std::size_t blocks, const ClosurePrior& prior)
@@ -64,7 +67,7 @@ bool LiveWindow::add(const ClosureSample& s) {
   ++sums.n;
   sums.t_s += s.t_s;
   sums.closure += s.closure;
-  sums.u += s.b_P_nT / kReferenceField_nT;
+  sums.u += s.b_P_nT / effects::kReferenceField_nT;
   if (std::isfinite(s.T_degC)) {
     sums.T_degC += s.T_degC;
     ++sums.n_T;
@@ -102,4 +105,4 @@ bool LiveWindow::close() {
   return true;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

@@ -12,7 +12,7 @@
 ///
 /// An exact calibration of a uniform gradient has W = 0; errors dp of the parameters make a W that is linear
 /// in them, so the calibration states how large W may be.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 
 /// Of W by columns: 4 for the constant, 4 for each component of b.
 using ClosureErrors = Eigen::Matrix<double, 16, 16>;
@@ -23,7 +23,7 @@ struct ClosurePrior {
   ClosureErrors parameters;  ///< covariance of W by the 48 parameters; by coefficients of effects: not in it
 };
 /// Noise must be known (Calibration::sample_noise_nT).
-[[nodiscard]] ClosurePrior closure_prior(const Calibration& calibration);
+[[nodiscard]] ClosurePrior closure_prior(const calibration::Calibration& calibration);
 
 struct ClosureSample {
   double t_s{0};  ///< from any origin, not going back
@@ -71,4 +71,4 @@ class LiveWindow {
   std::deque<ClosureBlock> blocks_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

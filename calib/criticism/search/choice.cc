@@ -10,7 +10,7 @@
 #include "calib/fit/joint/joint_report.h"
 #include "calib/poses/pose_table.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using nlohmann::json;
@@ -20,7 +20,7 @@ const double kExcluded = 2 * std::log(1000);
 /// A family where another one acts, its number left open; where it usually acts when it cannot act there.
 std::string spec_of(const std::string& family, const std::string& where) {
   const std::string there = family + "@" + where;
-  return make_effect(there) ? there : family;
+  return effects::library::make_effect(there) ? there : family;
 }
 
 /// Everything that could stand in the place of `effect`, where a round of the search found it or one of its
@@ -44,46 +44,46 @@ bool named(const ExplainReport& before, const std::string& effect) {
 }
 
 /// dof ln(chi-square per degree of freedom, nT2) of a model: comparable also where the weights are estimated.
-std::optional<double> misfit(const PoseTable& table, const FitOptions& options) {
-  const auto joint = profiled_options(table, options);
+std::optional<double> misfit(const PoseTable& table, const fit::FitOptions& options) {
+  const auto joint = fit::joint::profiled_options(table, options);
   if (!joint) return std::nullopt;
-  const auto fit = fit_joint_at_size(table, *joint);
+  const auto fit = fit::joint::fit_joint_at_size(table, *joint);
   if (!fit || !(fit->dof > 0)) return std::nullopt;
   return fit->dof * std::log(std::pow(fit->noise_nT(), 2) * fit->chi2 / fit->dof);
 }
 
 /// The model with `spec` in the place of the effect called `name`.
-std::optional<FitOptions> exchanged(const FitOptions& options, const std::string& name,
-                                    const std::string& spec) {
-  auto alternative = make_effect(spec);
+std::optional<fit::FitOptions> exchanged(const fit::FitOptions& options, const std::string& name,
+                                         const std::string& spec) {
+  auto alternative = effects::library::make_effect(spec);
   if (!alternative) return std::nullopt;
-  FitOptions out = options;
-  for (EffectPtr& effect : out.effects)
+  fit::FitOptions out = options;
+  for (effects::EffectPtr& effect : out.effects)
     if (effect->name() == name) effect = *alternative;
   return out;
 }
 
 }  // namespace
 
-Choice choice_of(const ExplainReport& before, const PoseTable& table, const EffectPtr& effect) {
+Choice choice_of(const ExplainReport& before, const PoseTable& table, const effects::EffectPtr& effect) {
   const std::string name(effect->name());
   Choice out{.spec = effect->spec(),
              .finding = std::string(to_string(before.finding)),
              .alternatives = alternatives_of(before, name),
-             .data = data_hash(table)};
+             .data = poses::data_hash(table)};
   const bool something = before.finding != Finding::pass && before.finding != Finding::bad_data;
   const bool whole = before.finding == Finding::explained || before.finding == Finding::ambiguous;
   out.describes = something && !(whole && named(before, name));
   return out;
 }
 
-Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& options) {
-  if (choice.data == data_hash(table)) return choice;
+Choice on_these_poses(Choice choice, const PoseTable& table, const fit::FitOptions& options) {
+  if (choice.data == poses::data_hash(table)) return choice;
   if (choice.describes) {
     const auto now = explain(table, {.fit = options});
     choice.describes = !now || now->finding != Finding::pass;
   }
-  const auto own = EffectSpec::parse(choice.spec);
+  const auto own = effects::EffectSpec::parse(choice.spec);
   const auto chosen = choice.alternatives.empty() || !own ? std::nullopt : misfit(table, options);
   if (!chosen) return choice;
   std::erase_if(choice.alternatives, [&](const std::string& alternative) {
@@ -114,4 +114,4 @@ Choice choice_from_json(const json& object) {
   }
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

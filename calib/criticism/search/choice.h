@@ -14,7 +14,7 @@
 ///                                 more, by more than chance: dof ln(ratio of chi-square per dof) above
 ///                                 2 ln 1000
 ///     `describes` is cleared      when on other data nothing stands out beside the model
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct Choice {
   std::string spec{};     ///< of the effect, with the numbers that were searched
@@ -28,14 +28,15 @@ struct Choice {
 };
 
 /// Of an effect that is about to be added. `before`: what was said of the model without it.
-[[nodiscard]] Choice choice_of(const ExplainReport& before, const PoseTable& table, const EffectPtr& effect);
+[[nodiscard]] Choice choice_of(const ExplainReport& before, const PoseTable& table,
+                               const effects::EffectPtr& effect);
 
 /// What is left of the doubt on these poses. `options`: the model, with the effect in it. The same poses
 /// leave it as it was. An alternative that cannot be fitted here stays.
-[[nodiscard]] Choice on_these_poses(Choice choice, const PoseTable& table, const FitOptions& options);
+[[nodiscard]] Choice on_these_poses(Choice choice, const PoseTable& table, const fit::FitOptions& options);
 
 [[nodiscard]] nlohmann::json to_json(const Choice& choice);
 /// Empty (no spec) where the object is no choice: files of earlier versions have none.
 [[nodiscard]] Choice choice_from_json(const nlohmann::json& object);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

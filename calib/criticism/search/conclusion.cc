@@ -13,7 +13,7 @@
 #include "calib/fit/checks/check_limits.h"
 #include "calib/fit/joint/agreement.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// Of an excess of four of its own standard deviations or more: by chance a right law falls below this in one
@@ -25,15 +25,15 @@ constexpr double kRefit = 0.2;             ///< predicted and realised fall may 
 
 /// Poses with an observation that is left out, of all poses. Where a law accounts for them, explain() has
 /// taken them back.
-double contradicted(const JointFit& fit) {
+double contradicted(const fit::joint::JointFit& fit) {
   std::set<int> poses;
-  for (const OutlierNode& node : fit.outliers) poses.insert(node.pose);
+  for (const fit::OutlierNode& node : fit.outliers) poses.insert(node.pose);
   return static_cast<double>(poses.size()) / static_cast<double>(fit.problem.poses.size());
 }
 
 /// Why a single name that accounts for the data is not yet an explanation; nothing when it is.
 std::optional<ExplainNote> doubt(const Round& round, const Asked& before) {
-  const Candidate& a = round.added;
+  const tests::Candidate& a = round.added;
   const double spread = 4 * std::sqrt(2 * before.dof);
   if (before.reference.from_dwells() && before.reference.chi2 - before.dof > spread && a.share < kEnoughShare)
     return ExcessRemains{a.effect, a.share};
@@ -44,13 +44,15 @@ std::optional<ExplainNote> doubt(const Round& round, const Asked& before) {
 }
 
 /// The first of the named laws that leaves something on its own axes; nothing when none does.
-std::optional<ExplainNote> lack_of_fit_that_remains(const ExplainReport& report, const Criticism& last) {
+std::optional<ExplainNote> lack_of_fit_that_remains(const ExplainReport& report,
+                                                    const tests::Criticism& last) {
   for (const Round& round : report.rounds) {
-    for (const EffectPtr& effect : round.effects) {
-      const auto spec = EffectSpec::parse(effect->spec());
+    for (const effects::EffectPtr& effect : round.effects) {
+      const auto spec = effects::EffectSpec::parse(effect->spec());
       const std::string where = spec && spec->where ? spec->where->text() : round.added.where;
-      const double log10_p = local_lack_of_fit_log10_p(last, where);
-      if (log10_p < std::log10(kLackOfFitAlarm)) return LackOfFitRemains{round.added.effect, where, log10_p};
+      const double log10_p = tests::local_lack_of_fit_log10_p(last, where);
+      if (log10_p < std::log10(tests::kLackOfFitAlarm))
+        return LackOfFitRemains{round.added.effect, where, log10_p};
     }
   }
   return std::nullopt;
@@ -74,13 +76,14 @@ std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds) {
 
 /// One law on one axis with two values of its searched number.
 bool several_steps(const std::vector<Round>& rounds) {
-  std::vector<EffectSpec> seen;
+  std::vector<effects::EffectSpec> seen;
   for (const Round& round : rounds) {
-    for (const EffectPtr& effect : round.effects) {
-      const auto spec = EffectSpec::parse(effect->spec());
+    for (const effects::EffectPtr& effect : round.effects) {
+      const auto spec = effects::EffectSpec::parse(effect->spec());
       if (!spec) return true;
-      for (const EffectSpec& other : seen) {
-        const bool together = !spec->where || !other.where || share_an_axis(*spec->where, *other.where);
+      for (const effects::EffectSpec& other : seen) {
+        const bool together =
+            !spec->where || !other.where || effects::share_an_axis(*spec->where, *other.where);
         if (spec->name == other.name && together && spec->parameters != other.parameters) return true;
       }
       seen.push_back(*spec);
@@ -90,29 +93,30 @@ bool several_steps(const std::vector<Round>& rounds) {
 }
 
 /// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
-std::optional<ExplainNote> wrong_wiring(const JointFit& fit, double table_sd_rad) {
+std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double table_sd_rad) {
   std::vector<std::size_t> mirrored;
   for (std::size_t i = 0; i < fit.state.sensors.size(); ++i)
     if (fit.state.sensors[i].mounting.determinant() < 0) mirrored.push_back(i + 1);
   if (!mirrored.empty()) return SensorsMirrored{std::move(mirrored)};
-  const double limit = table_limit_rad(table_sd_rad);
+  const double limit = fit::checks::table_limit_rad(table_sd_rad);
   if (fit.table_sd_rad > limit) return TableAnglesContradict{fit.table_sd_rad, limit};
   return std::nullopt;
 }
 
 /// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
 /// or a few readings make it; empty when it is not so.
-std::optional<ExplainNote> residual_without_law(const JointFit& fit, const Criticism& last) {
+std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit,
+                                                const tests::Criticism& last) {
   if (!(fit.noise_inflation > 1) || last.noise.wandering.any()) return std::nullopt;
-  const Scatter scatter = scatter_of(fit);
-  const bool shapeless = !last.rejects() && fit.contradicting > kMaxBadPoses;
+  const fit::joint::Scatter scatter = fit::joint::scatter_of(fit);
+  const bool shapeless = !last.rejects() && fit.contradicting > fit::checks::kMaxBadPoses;
   if (!shapeless && !scatter.few_far_off()) return std::nullopt;
   return ResidualWithoutLaw{fit.noise_inflation, scatter.residual_nT, scatter.typical_nT, fit.contradicting};
 }
 
 }  // namespace
 
-Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
+Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,
                  std::vector<ExplainNote>& notes) {
   if (report.rounds.empty()) {
     auto why = residual_without_law(*report.fit, last);
@@ -140,14 +144,15 @@ Finding conclude(const ExplainReport& report, const Asked& first, const Criticis
   return Finding::partial;
 }
 
-bool bad_data(const JointFit& fit, const Criticism& c, double table_sd_rad, std::vector<ExplainNote>& notes) {
+bool bad_data(const fit::joint::JointFit& fit, const tests::Criticism& c, double table_sd_rad,
+              std::vector<ExplainNote>& notes) {
   if (auto why = wrong_wiring(fit, table_sd_rad)) {
     notes.push_back(*std::move(why));
     return true;
   }
-  if (table_is_rough(fit.table_sd_rad, table_sd_rad))
+  if (fit::checks::table_is_rough(fit.table_sd_rad, table_sd_rad))
     notes.emplace_back(TableAnglesRough{fit.table_sd_rad, table_sd_rad});
-  if (const double share = contradicted(fit); share > kMaxBadPoses) {
+  if (const double share = contradicted(fit); share > fit::checks::kMaxBadPoses) {
     notes.emplace_back(PosesContradict{share});
     return true;
   }
@@ -162,11 +167,11 @@ void share_what_fell(ExplainReport& report) {
   if (report.rounds.empty() || report.noise.reference.from_dwells()) return;
   const double left = std::pow(report.rounds.back().rms_after_nT / report.rounds.front().rms_before_nT, 2);
   const double unit = report.chi2 / report.dof, excess = report.chi2 * (1 - left);
-  const auto share = [&](Candidate& c) {
+  const auto share = [&](tests::Candidate& c) {
     c.share = excess > 0 ? std::clamp((c.fall - c.k * unit * left) / excess, 0.0, 1.0) : 0;
   };
-  for (Candidate& c : report.candidates) share(c);
+  for (tests::Candidate& c : report.candidates) share(c);
   share(report.rounds.front().added);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

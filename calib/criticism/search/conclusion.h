@@ -6,26 +6,26 @@
 #include "calib/criticism/tests/criticism.h"
 
 /// Draws one of the verdicts of explain.h from what a search found.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 /// The residual that was asked about, and its noise.
 struct Asked {
   double dof;
-  NoiseReference reference;
+  tests::NoiseReference reference;
 };
 
-[[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const Criticism& last,
+[[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,
                                std::vector<ExplainNote>& notes);
 
 /// Whether the data have a fault that no effect explains: wiring, poses that contradict all others, or noise
 /// that is stated wrongly. `notes` says which, and also whether the table is less accurate than the stated
 /// `table_sd_rad`.
-[[nodiscard]] bool bad_data(const JointFit& fit, const Criticism& criticism, double table_sd_rad,
-                            std::vector<ExplainNote>& notes);
+[[nodiscard]] bool bad_data(const fit::joint::JointFit& fit, const tests::Criticism& criticism,
+                            double table_sd_rad, std::vector<ExplainNote>& notes);
 
 /// Where the dwells do not say how large the noise is, the excess that the candidates share is what the
 /// rounds took away: the residual at their end stands for the noise. Nothing to share where nothing was
 /// added.
 void share_what_fell(ExplainReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

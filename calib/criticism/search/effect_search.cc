@@ -15,7 +15,7 @@
 #include "calib/design/next_measurement.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 constexpr double kHalf = 0.5;     ///< of the winner's d: a sketch of a memory fits so well at least
@@ -23,7 +23,7 @@ constexpr double kOnePose = 0.5;  ///< of the evidence
 
 /// Without the path of the table between its poses the equation of a memory is a sketch of it: a sketch that
 /// stands out by itself stays possible.
-void keep_memory_possible(const EffectSearch& search, const Criticism& c, Round& round) {
+void keep_memory_possible(const EffectSearch& search, const tests::Criticism& c, Round& round) {
   constexpr std::string_view kMemory = "axis.hysteresis";
   if (!search.table.path.empty() || round.added.effect == kMemory || search.slow) return;
   for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
@@ -35,25 +35,28 @@ void keep_memory_possible(const EffectSearch& search, const Criticism& c, Round&
 }
 
 /// How many of the effects that were given are still there; they stand first.
-std::size_t kept(const std::vector<EffectPtr>& given, const std::vector<EffectPtr>& model) {
+std::size_t kept(const std::vector<effects::EffectPtr>& given, const std::vector<effects::EffectPtr>& model) {
   std::size_t out = 0;
-  for (const EffectPtr& effect : model)
+  for (const effects::EffectPtr& effect : model)
     out += std::find(given.begin(), given.end(), effect) != given.end() ? 1U : 0U;
   return out;
 }
 
 /// A start for a wider model: coefficients that it shares with the narrower one as they were, the others
 /// zero.
-JointState widened(const std::vector<EffectPtr>& narrow, const JointState& state,
-                   const std::vector<EffectPtr>& wide) {
-  const auto count = [](const EffectPtr& e) { return static_cast<Eigen::Index>(e->coefficients().size()); };
+fit::joint::JointState widened(const std::vector<effects::EffectPtr>& narrow,
+                               const fit::joint::JointState& state,
+                               const std::vector<effects::EffectPtr>& wide) {
+  const auto count = [](const effects::EffectPtr& e) {
+    return static_cast<Eigen::Index>(e->coefficients().size());
+  };
   Eigen::Index size = 0, at = 0;
-  for (const EffectPtr& effect : wide) size += count(effect);
-  JointState out = state;
+  for (const effects::EffectPtr& effect : wide) size += count(effect);
+  fit::joint::JointState out = state;
   out.coefficients = Eigen::VectorXd::Zero(size);
-  for (const EffectPtr& effect : wide) {
+  for (const effects::EffectPtr& effect : wide) {
     Eigen::Index from = 0;
-    for (const EffectPtr& known : narrow) {
+    for (const effects::EffectPtr& known : narrow) {
       if (known == effect)
         out.coefficients.segment(at, count(effect)) = state.coefficients.segment(from, count(effect));
       from += count(known);
@@ -64,12 +67,12 @@ JointState widened(const std::vector<EffectPtr>& narrow, const JointState& state
 }
 
 /// A winner that became several effects is called after them.
-void name_places(const ForwardStep& step, Candidate& added) {
+void name_places(const ForwardStep& step, tests::Candidate& added) {
   if (step.added.size() == 1 && added.where.find("each") == std::string::npos) return;
   std::vector<std::string> specs, places;
-  for (const EffectPtr& effect : step.added) {
+  for (const effects::EffectPtr& effect : step.added) {
     specs.push_back(effect->spec());
-    const auto spec = EffectSpec::parse(specs.back());
+    const auto spec = effects::EffectSpec::parse(specs.back());
     if (spec && spec->where) places.push_back(spec->where->text());
   }
   added.spec = fmt::format("{}", fmt::join(specs, " + "));
@@ -77,31 +80,33 @@ void name_places(const ForwardStep& step, Candidate& added) {
 }
 
 /// Whether a winner of all axes came down to axes that are closed to names, or is seen most on one of them.
-bool on_closed_axes(const Candidate& winner, const ForwardStep& step, const std::set<std::string>& closed) {
+bool on_closed_axes(const tests::Candidate& winner, const ForwardStep& step,
+                    const std::set<std::string>& closed) {
   if (closed.empty() || winner.coefficients.empty()) return false;
   const bool each_axis = winner.where.find("each") != std::string::npos;
-  if (each_axis && closed.contains(place_of(*seen_most(winner)))) return true;
-  return std::all_of(step.added.begin(), step.added.end(), [&](const EffectPtr& effect) {
-    const auto spec = EffectSpec::parse(effect->spec());
+  if (each_axis && closed.contains(tests::place_of(*tests::seen_most(winner)))) return true;
+  return std::all_of(step.added.begin(), step.added.end(), [&](const effects::EffectPtr& effect) {
+    const auto spec = effects::EffectSpec::parse(effect->spec());
     return spec && spec->where && closed.contains(spec->where->text());
   });
 }
 
-std::size_t family_called(const Criticism& criticism, const std::string& name) {
-  const auto found = std::find_if(criticism.families.begin(), criticism.families.end(),
-                                  [&](const ScoredFamily& f) { return f.candidate_effect->name == name; });
+std::size_t family_called(const tests::Criticism& criticism, const std::string& name) {
+  const auto found =
+      std::find_if(criticism.families.begin(), criticism.families.end(),
+                   [&](const tests::ScoredFamily& f) { return f.candidate_effect->name == name; });
   return static_cast<std::size_t>(found - criticism.families.begin());
 }
 
-bool possible_in(const std::vector<Alternative>& alternatives, const std::string& effect) {
-  return std::any_of(alternatives.begin(), alternatives.end(), [&](const Alternative& alternative) {
+bool possible_in(const std::vector<tests::Alternative>& alternatives, const std::string& effect) {
+  return std::any_of(alternatives.begin(), alternatives.end(), [&](const tests::Alternative& alternative) {
     return alternative.possible && alternative.effect == effect;
   });
 }
 
 /// Marks the alternatives that a second look does not find possible any more.
-void exclude(const std::vector<Alternative>& again, Round& round) {
-  for (Alternative& alternative : round.added.alternatives) {
+void exclude(const std::vector<tests::Alternative>& again, Round& round) {
+  for (tests::Alternative& alternative : round.added.alternatives) {
     if (!alternative.possible || possible_in(again, alternative.effect)) continue;
     alternative.possible = false;
     std::erase(round.possible, alternative.effect);
@@ -111,11 +116,11 @@ void exclude(const std::vector<Alternative>& again, Round& round) {
 /// Adds family `f` and fits again. False when the fit with it fails. A `first_choice` gives way where a
 /// second look prefers one of its alternatives.
 bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_choice = true) {
-  const ScoredFamily& best = search.criticism.families[f];
-  Round round{.added = candidate_of(best, search.criticism, search.fit.noise_inflation)};
-  weigh_poses(search.fit, search.criticism.evidence_by_pose(f), round.added);
-  round.added.alternatives = alternatives_of(search.criticism.families, f, search.seed);
-  for (const Alternative& alternative : round.added.alternatives)
+  const tests::ScoredFamily& best = search.criticism.families[f];
+  Round round{.added = tests::candidate_of(best, search.criticism, search.fit.noise_inflation)};
+  tests::weigh_poses(search.fit, search.criticism.evidence_by_pose(f), round.added);
+  round.added.alternatives = tests::alternatives_of(search.criticism.families, f, search.seed);
+  for (const tests::Alternative& alternative : round.added.alternatives)
     if (alternative.possible) round.possible.push_back(alternative.effect);
   auto step = forward_step(search.joint.effects, best, search.criticism.residual);
   if (!step || on_closed_axes(round.added, *step, search.unknown)) {
@@ -124,11 +129,11 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   }
   name_places(*step, round.added);
   round.effects = step->added;
-  JointOptions wider = search.joint;
+  fit::joint::JointOptions wider = search.joint;
   wider.effects = std::move(step->model);
   wider.noise_inflation = search.fit.noise_inflation;
-  const JointState warm_start = widened(search.joint.effects, search.fit.state, wider.effects);
-  auto refit = fit_joint_at_size(search.table, wider, &warm_start);
+  const fit::joint::JointState warm_start = widened(search.joint.effects, search.fit.state, wider.effects);
+  auto refit = fit::joint::fit_joint_at_size(search.table, wider, &warm_start);
   if (!refit) {
     report.notes.emplace_back(FitWithEffectFailed{round.added.spec, refit.error().message});
     search.failed.insert(round.added.effect);
@@ -142,34 +147,34 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   if (again && !again->better) exclude(again->alternatives, round);
   keep_memory_possible(search, search.criticism, round);
   if (report.rounds.empty()) {
-    report.next = next_measurements(search.table, search.fit, search.joint, round.added).steps;
+    report.next = design::next_measurements(search.table, search.fit, search.joint, round.added).steps;
     report.candidates[f].alternatives = round.added.alternatives;
   }
   const double table_sd_rad = search.fit.table_sd_rad;
-  round.chi2_before = chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
+  round.chi2_before = tests::chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
   round.rms_before_nT = residual_of(search.fit);
   search.joint = std::move(wider);
   round.model = search.joint.effects;
   search.judge_anew(*refit);
-  round.fit = std::make_shared<const JointFit>(search.fit);
-  round.chi2_after = chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
+  round.fit = std::make_shared<const fit::joint::JointFit>(search.fit);
+  round.chi2_after = tests::chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
   round.rms_after_nT = residual_of(search.fit);
   report.rounds.push_back(std::move(round));
   return true;
 }
 
 /// Whether the evidence of a family is that of one pose; nothing where it is spread.
-std::optional<EvidenceOfOnePose> evidence_of_one_pose(const JointFit& fit, const Criticism& c,
-                                                      std::size_t f) {
-  Candidate weighed;
-  weigh_poses(fit, c.evidence_by_pose(f), weighed);
+std::optional<EvidenceOfOnePose> evidence_of_one_pose(const fit::joint::JointFit& fit,
+                                                      const tests::Criticism& c, std::size_t f) {
+  tests::Candidate weighed;
+  tests::weigh_poses(fit, c.evidence_by_pose(f), weighed);
   if (weighed.largest_pose <= kOnePose) return std::nullopt;
   return EvidenceOfOnePose{weighed.poses.front(), c.families[f].candidate_effect->name};
 }
 
 /// A size beyond what occurs is a sign that something else is there; but a law that leaves only noise is
 /// right whatever its size.
-bool accounts_for_all(const Candidate& candidate, const Criticism& criticism) {
+bool accounts_for_all(const tests::Candidate& candidate, const tests::Criticism& criticism) {
   constexpr double kNearlyAll = 0.9;
   constexpr double kMost = 0.6;  // of all chi-square, where the noise in it is not known
   if (!std::isnan(candidate.share)) return candidate.share >= kNearlyAll;
@@ -186,8 +191,8 @@ bool add_winner(EffectSearch& search, ExplainReport& report) {
       if (!search.one_pose) search.one_pose = std::move(one);
       continue;
     }
-    const Candidate c =
-        candidate_of(search.criticism.families[f], search.criticism, search.fit.noise_inflation);
+    const tests::Candidate c =
+        tests::candidate_of(search.criticism.families[f], search.criticism, search.fit.noise_inflation);
     if (!c.plausible && !accounts_for_all(c, search.criticism)) {
       search.absurd[c.effect] = c;
       continue;  // for now: beside what is still missing a size may be absurd that later is none
@@ -201,14 +206,16 @@ bool add_winner(EffectSearch& search, ExplainReport& report) {
 
 }  // namespace
 
-void EffectSearch::judge_anew(const JointFit& refit) {
-  const Rates rates = std::move(criticism.rates);
-  Judgement judged = judge(refit, candidate_effects, seed, &rates);
+void EffectSearch::judge_anew(const fit::joint::JointFit& refit) {
+  const tests::Rates rates = std::move(criticism.rates);
+  tests::Judgement judged = tests::judge(refit, candidate_effects, seed, &rates);
   fit = std::move(judged.fit);
   criticism = std::move(judged.criticism);
 }
 
-double residual_of(const JointFit& fit) { return pose_residuals(fit.problem, fit.state).residual_nT(); }
+double residual_of(const fit::joint::JointFit& fit) {
+  return fit::joint::pose_residuals(fit.problem, fit.state).residual_nT();
+}
 
 bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
   for (int round = 0; round < most && search.criticism.rejects_named(); ++round) {
@@ -220,4 +227,4 @@ bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
   return !report.rounds.empty();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -13,30 +13,30 @@
 
 /// The search for the effects that a model lacks, round by round: the best family is added, everything is
 /// fitted again, and what is left is judged anew.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct EffectSearch {
   const PoseTable& table;
-  JointOptions joint;
-  CandidateEffects candidate_effects;
+  fit::joint::JointOptions joint;
+  tests::CandidateEffects candidate_effects;
   std::uint64_t seed;
-  JointFit fit;                    ///< of `joint`, with the covariance of the noise in force
-  Criticism criticism;             ///< of `fit`
-  std::vector<EffectPtr> given{};  ///< the model that was asked about
-  std::set<std::string> failed{};  ///< effects that no fit settled with
+  fit::joint::JointFit fit;                 ///< of `joint`, with the covariance of the noise in force
+  tests::Criticism criticism;               ///< of `fit`
+  std::vector<effects::EffectPtr> given{};  ///< the model that was asked about
+  std::set<std::string> failed{};           ///< effects that no fit settled with
   /// Effects that would have needed a size beyond what occurs, and that size as last seen.
-  std::map<std::string, Candidate> absurd{};
+  std::map<std::string, tests::Candidate> absurd{};
   std::optional<EvidenceOfOnePose> one_pose{};  ///< of the first effect whose evidence is that of one pose
   std::set<std::string> unknown{};  ///< axes and sensors with a law of no library: closed to effects
   bool slow{false};                 ///< the residual follows time or temperature: no memory of a turn does
 
   /// Of a fit of `joint`; the rates of false alarms stay those that are known.
-  void judge_anew(const JointFit& refit);
+  void judge_anew(const fit::joint::JointFit& refit);
 };
 
-[[nodiscard]] double residual_of(const JointFit& fit);
+[[nodiscard]] double residual_of(const fit::joint::JointFit& fit);
 
 /// Adds what stands out, `most` rounds of it. False: nothing does but what rests on one pose.
 [[nodiscard]] bool add_rounds(int most, EffectSearch& search, ExplainReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

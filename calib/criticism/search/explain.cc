@@ -13,41 +13,41 @@
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/profile_search.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// Residual with a law and all readings, over the residual without those that the fit left out. Where the law
 /// is their cause, the two are one noise; where it is not, single readings far off make it many times larger.
 constexpr double kAsLittle = 1.5;
 
-std::vector<Detectable> detectable(const Criticism& c) {
-  std::vector<Detectable> out;
-  for (const ScoredFamily& f : c.families)
-    out.push_back(detectable_of(*f.candidate_effect, f.signatures.front()));
+std::vector<tests::Detectable> detectable(const tests::Criticism& c) {
+  std::vector<tests::Detectable> out;
+  for (const tests::ScoredFamily& f : c.families)
+    out.push_back(tests::detectable_of(*f.candidate_effect, f.signatures.front()));
   return out;
 }
 
 /// Fills what describes the model that was asked about.
-void describe(const JointFit& fit, const Criticism& c, ExplainReport& out) {
+void describe(const fit::joint::JointFit& fit, const tests::Criticism& c, ExplainReport& out) {
   out.noise = c.noise;
   out.noise_nT = fit.noise_nT();
   out.residual_nT = residual_of(fit);
-  out.chi2 = chi2_at_stated_noise(fit, c, fit.table_sd_rad), out.dof = c.dof;
+  out.chi2 = tests::chi2_at_stated_noise(fit, c, fit.table_sd_rad), out.dof = c.dof;
   out.omnibus_log10_p = c.omnibus_log10_p;
   out.families = c.rates.best;
   out.maps = c.maps;
   out.outliers = fit.outliers;
   out.untestable.insert(out.untestable.end(), c.untestable.begin(), c.untestable.end());
   for (std::size_t i = 0; i < c.families.size(); ++i) {
-    Candidate candidate = candidate_of(c.families[i], c, fit.noise_inflation);
-    if (i == 0) weigh_poses(fit, c.evidence_by_pose(0), candidate);
+    tests::Candidate candidate = tests::candidate_of(c.families[i], c, fit.noise_inflation);
+    if (i == 0) tests::weigh_poses(fit, c.evidence_by_pose(0), candidate);
     out.candidates.push_back(std::move(candidate));
   }
   out.detectable = detectable(c);
 }
 
 /// Of what still stands out at the end.
-void note_absurd_sizes(const EffectSearch& search, const Criticism& c, ExplainReport& report) {
+void note_absurd_sizes(const EffectSearch& search, const tests::Criticism& c, ExplainReport& report) {
   for (std::size_t f = 0; f < c.families.size() && c.rejects_named(f); ++f) {
     const auto found = search.absurd.find(c.families[f].candidate_effect->name);
     if (found == search.absurd.end()) continue;
@@ -67,7 +67,7 @@ void name(ExplainReport& report) {
 }
 
 /// No residual shows it.
-Untestable swapped_sensors() {
+tests::Untestable swapped_sensors() {
   return {
       "data.swapped-sensors",
       "two sensors whose cables are exchanged read the same uniform field through matrices that are free: "
@@ -87,11 +87,11 @@ bool memory_may_be_it(const EffectSearch& search, const ExplainReport& report) {
 
 /// Whether what the fit left out may be what a law does to some of the poses: a step, a current that is
 /// switched. One that does more than a hundredth of the field is no law of a working rig.
-bool may_be_a_law(const JointFit& fit) {
+bool may_be_a_law(const fit::joint::JointFit& fit) {
   constexpr double kPoses = 4, kOfField = 0.01;
   if (fit.contradicting * static_cast<double>(fit.problem.poses.size()) < kPoses) return false;
-  return std::all_of(fit.outliers.begin(), fit.outliers.end(), [&](const OutlierNode& node) {
-    const JointPose& pose = fit.problem.poses.at(node.place);
+  return std::all_of(fit.outliers.begin(), fit.outliers.end(), [&](const fit::OutlierNode& node) {
+    const fit::joint::JointPose& pose = fit.problem.poses.at(node.place);
     const double f_nT = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
     return node.unit != "nT" || std::abs(node.shift) < kOfField * f_nT;
   });
@@ -103,17 +103,17 @@ double left_nT(const ExplainReport& report) {
 }
 
 Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out) {
-  auto joint = profiled_options(table, options.fit);
+  auto joint = fit::joint::profiled_options(table, options.fit);
   if (!joint) return tl::unexpected(joint.error());
   joint->most_left_out = most_left_out;
-  CandidateEffects candidate_effects = options.candidate_effects
-                                           ? CandidateEffects{*options.candidate_effects, {}}
-                                           : library_candidates(table);
+  tests::CandidateEffects candidate_effects = options.candidate_effects
+                                                  ? tests::CandidateEffects{*options.candidate_effects, {}}
+                                                  : tests::library_candidates(table);
   candidate_effects.testable.insert(candidate_effects.testable.end(), options.also.begin(),
                                     options.also.end());
-  const auto fit = fit_joint_at_size(table, *joint);
+  const auto fit = fit::joint::fit_joint_at_size(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
-  Judgement judged = judge(*fit, candidate_effects, options.fit.seed);
+  tests::Judgement judged = tests::judge(*fit, candidate_effects, options.fit.seed);
   EffectSearch search{.table = table,
                       .joint = *joint,
                       .candidate_effects = std::move(candidate_effects),
@@ -121,17 +121,17 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
                       .fit = std::move(judged.fit),
                       .criticism = std::move(judged.criticism),
                       .given = joint->effects};
-  Criticism& criticism = search.criticism;
+  tests::Criticism& criticism = search.criticism;
   ExplainReport out;
   out.untestable = search.candidate_effects.untestable;
   out.untestable.push_back(swapped_sensors());
-  if (criticism.maps.empty()) look_at_maps(criticism);
-  out.fit = std::make_shared<const JointFit>(search.fit);
+  if (criticism.maps.empty()) tests::look_at_maps(criticism);
+  out.fit = std::make_shared<const fit::joint::JointFit>(search.fit);
   describe(search.fit, criticism, out);
   search.slow =
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
   const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
-  if (const auto exchange = exchange_in_run(table, options.fit.field_nT)) {
+  if (const auto exchange = tests::exchange_in_run(table, options.fit.field_nT)) {
     out.notes.emplace_back(SensorsExchanged{*exchange});
     out.finding = Finding::bad_data;
     return out;
@@ -142,8 +142,8 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     return out;
   }
   bool memory = memory_may_be_it(search, out);
-  for (int axis = 0; axis < kChannels; ++axis) {
-    if (criticism.maps.empty()) look_at_maps(criticism);
+  for (int axis = 0; axis < sensor::kChannels; ++axis) {
+    if (criticism.maps.empty()) tests::look_at_maps(criticism);
     const Surrogates found = find_surrogates(out, criticism, search.unknown);
     if (!found.any()) break;
     memory = memory || memory_may_be_it(search, out);
@@ -188,7 +188,7 @@ std::string_view to_string(Finding finding) {
 /// A law that accounts for what the fit left out outranks leaving it out: with all readings in, the law
 /// leaves no more than the fit without them does.
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
-  auto out = explained(table, options, JointOptions().most_left_out);
+  auto out = explained(table, options, fit::joint::JointOptions().most_left_out);
   if (!out || !may_be_a_law(*out->fit)) return out;
   auto with_all = explained(table, options, 0);
   const bool accounts =
@@ -197,4 +197,4 @@ Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& opti
   return accounts ? with_all : out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

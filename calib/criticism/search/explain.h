@@ -18,8 +18,8 @@
 ///     BAD-DATA   too many poses that contradict all others, or a residual smaller than its noise
 ///
 /// A name is a hypothesis about the cause; what is measured is that the residual behaves like it.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 [[nodiscard]] Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

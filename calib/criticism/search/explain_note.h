@@ -9,7 +9,7 @@
 #include "calib/criticism/tests/exchange_in_run.h"
 
 /// What explain() noticed beside its verdict, as values; report/explain_note_text.h has the sentences.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 // Of the data:
 struct SensorsMirrored {
@@ -35,7 +35,7 @@ struct ResidualWithoutLaw {
   double contradicting{0};               ///< share of all poses
 };
 struct SensorsExchanged {
-  ExchangeInRun exchange;
+  tests::ExchangeInRun exchange;
 };
 /// The run file does not hold how the table moved between poses, which a memory of the cores depends on.
 struct TablePathUnknown {};
@@ -66,10 +66,10 @@ struct FitWithEffectFailed {
   std::string spec, why;
 };
 struct SizeUnusual {
-  Candidate candidate;
+  tests::Candidate candidate;
 };
 struct SizeBeyondAll {
-  Candidate candidate;  ///< as last seen; it is not named
+  tests::Candidate candidate;  ///< as last seen; it is not named
 };
 struct LawOfNoLibrary {
   std::string where;
@@ -82,4 +82,4 @@ using ExplainNote =
                  LackOfFitRemains, SizeTooSmall, StepsFollowCurve, EvidenceOfOnePose, FitWithEffectFailed,
                  SizeUnusual, SizeBeyondAll, LawOfNoLibrary>;
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

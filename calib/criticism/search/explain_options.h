@@ -6,16 +6,16 @@
 #include "calib/criticism/tests/candidate_effect.h"
 #include "calib/fit/fit_options.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 /// Options of explain(): the model, and candidates beside or instead of the library.
 struct ExplainOptions {
-  FitOptions fit;  ///< method joint; its effects are the model that is asked about
+  fit::FitOptions fit;  ///< method joint; its effects are the model that is asked about
   int rounds{4};
   /// Candidates instead of the library.
-  std::optional<std::vector<CandidateEffect>> candidate_effects{};
+  std::optional<std::vector<tests::CandidateEffect>> candidate_effects{};
   /// Candidates beside the library: formulas of the user.
-  std::vector<CandidateEffect> also{};
+  std::vector<tests::CandidateEffect> also{};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -14,42 +14,43 @@
 #include "calib/fit/joint/joint_fit.h"
 
 /// The result of explain(), as values; see explain.h.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 enum class Finding { pass, explained, ambiguous, partial, unknown, bad_data };
 [[nodiscard]] std::string_view to_string(Finding finding);
 
 /// A step of the search: the winner, and what adding it did.
 struct Round {
-  Candidate added;
+  tests::Candidate added;
   std::vector<std::string> possible{};  ///< other effects that could stand in its place
   double chi2_before{0}, chi2_after{0};
   double rms_before_nT{0}, rms_after_nT{0};
-  std::vector<EffectPtr> effects{};       ///< that were added: one, or one for each of a few axes
-  std::vector<EffectPtr> model{};         ///< after it
-  std::shared_ptr<const JointFit> fit{};  ///< of that model; points into the pose table
+  std::vector<effects::EffectPtr> effects{};          ///< that were added: one, or one for each of a few axes
+  std::vector<effects::EffectPtr> model{};            ///< after it
+  std::shared_ptr<const fit::joint::JointFit> fit{};  ///< of that model; points into the pose table
 };
 
 struct ExplainReport {
   Finding finding{Finding::pass};
-  std::vector<Candidate> candidates{};  ///< of the model that was asked about, best first
+  std::vector<tests::Candidate> candidates{};  ///< of the model that was asked about, best first
   std::vector<std::string> named{};
   Finding left{Finding::pass};  ///< PASS, UNKNOWN or PARTIAL: what stands out after the last round
   std::vector<Round> rounds{};
-  std::vector<MapScore> maps{};       ///< of the model that was asked about
-  std::vector<MapScore> maps_left{};  ///< after the last round
-  NoiseModel noise;
+  std::vector<tests::MapScore> maps{};       ///< of the model that was asked about
+  std::vector<tests::MapScore> maps_left{};  ///< after the last round
+  tests::NoiseModel noise;
   double noise_nT{0}, residual_nT{0};
   double chi2{0}, dof{0};
   double omnibus_log10_p{0};
   double families{1};  ///< independent ones, by draws
-  std::vector<OutlierNode> outliers{};
-  std::vector<Detectable> detectable{};  ///< beside the model after the rounds
-  std::vector<Untestable> untestable{};
-  std::vector<NextMeasurement> next{};    ///< for the first name, best first
-  std::vector<ExplainNote> notes{};       ///< the same may stand there twice
-  std::vector<EffectPtr> model{};         ///< effects of the last fit
-  std::shared_ptr<const JointFit> fit{};  ///< of the model that was asked about; points into the pose table
+  std::vector<fit::OutlierNode> outliers{};
+  std::vector<tests::Detectable> detectable{};  ///< beside the model after the rounds
+  std::vector<tests::Untestable> untestable{};
+  std::vector<design::NextMeasurement> next{};  ///< for the first name, best first
+  std::vector<ExplainNote> notes{};             ///< the same may stand there twice
+  std::vector<effects::EffectPtr> model{};      ///< effects of the last fit
+  std::shared_ptr<const fit::joint::JointFit>
+      fit{};  ///< of the model that was asked about; points into the pose table
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -5,31 +5,32 @@
 #include <cmath>
 #include <string>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// Whether coefficients laid out as `whole` can be those laid out as `part`.
-bool holds(const Where& whole, const Where& part) {
-  if (whole == part || whole.scale == Where::Scale::each_axis) return true;
-  return whole.scale == Where::Scale::each_sensor &&
-         (part.scale == Where::Scale::sensor || part.scale == Where::Scale::all);
+bool holds(const effects::Where& whole, const effects::Where& part) {
+  if (whole == part || whole.scale == effects::Where::Scale::each_axis) return true;
+  return whole.scale == effects::Where::Scale::each_sensor &&
+         (part.scale == effects::Where::Scale::sensor || part.scale == effects::Where::Scale::all);
 }
 
-bool holds(const Effect& whole, const Effect& part) {
+bool holds(const effects::Effect& whole, const effects::Effect& part) {
   if (whole.name() != part.name()) return false;
-  const auto a = EffectSpec::parse(whole.spec()), b = EffectSpec::parse(part.spec());
+  const auto a = effects::EffectSpec::parse(whole.spec()), b = effects::EffectSpec::parse(part.spec());
   if (!a || !b || a->parameters != b->parameters) return false;
-  if (!a->where) return whole.level() != Level::axis;
+  if (!a->where) return whole.level() != effects::Level::axis;
   return b->where && holds(*a->where, *b->where);
 }
 
 /// The axis "s3.z" of a law is in the model with a number of its own.
-bool has_axis(const std::vector<EffectPtr>& model, const ScoredFamily& winner, const std::string& axis) {
+bool has_axis(const std::vector<effects::EffectPtr>& model, const tests::ScoredFamily& winner,
+              const std::string& axis) {
   if (winner.candidate_effect->parameter.empty()) return false;
-  return std::any_of(model.begin(), model.end(), [&](const EffectPtr& effect) {
+  return std::any_of(model.begin(), model.end(), [&](const effects::EffectPtr& effect) {
     if (effect->name() != winner.candidate_effect->name) return false;
     const auto& all = effect->coefficients();
-    return std::any_of(all.begin(), all.end(), [&](const Coefficient& c) { return c.name == axis; });
+    return std::any_of(all.begin(), all.end(), [&](const effects::Coefficient& c) { return c.name == axis; });
   });
 }
 
@@ -40,12 +41,12 @@ struct Pick {
 };
 
 /// The one axis and number with the largest score once `picked` are taken out.
-Pick next_pick(const ScoredFamily& winner, const std::vector<EffectPtr>& model, const Residual& residual,
-               const std::vector<Pick>& picked) {
+Pick next_pick(const tests::ScoredFamily& winner, const std::vector<effects::EffectPtr>& model,
+               const tests::Residual& residual, const std::vector<Pick>& picked) {
   constexpr double kOwn = 1e-6;  // of a squared length: less is what the others hold already
   Pick best;
   for (std::size_t h = 0; h < winner.candidate_effect->hypotheses.size(); ++h) {
-    const Hypothesis& axis = winner.candidate_effect->hypotheses[h];
+    const tests::Hypothesis& axis = winner.candidate_effect->hypotheses[h];
     if (axis.axes != 1 || axis.combine.cols() != 1 || has_axis(model, winner, axis.where)) continue;
     if (std::any_of(picked.begin(), picked.end(), [h](const Pick& p) { return p.hypothesis == h; })) continue;
     for (std::size_t v = 0; v < winner.signatures.size(); ++v) {
@@ -63,8 +64,8 @@ Pick next_pick(const ScoredFamily& winner, const std::vector<EffectPtr>& model, 
 }
 
 /// The few axes that make up the winner; empty where they are many or do not.
-std::vector<Pick> few_axes(const ScoredFamily& winner, const std::vector<EffectPtr>& model,
-                           const Residual& residual) {
+std::vector<Pick> few_axes(const tests::ScoredFamily& winner, const std::vector<effects::EffectPtr>& model,
+                           const tests::Residual& residual) {
   constexpr double kStandsOut = 20, kWorthwhile = 0.01;  // of the largest
   constexpr std::size_t kFew = 4;
   constexpr double kMost = 0.8;  // of the winner's score
@@ -82,13 +83,14 @@ std::vector<Pick> few_axes(const ScoredFamily& winner, const std::vector<EffectP
 
 }  // namespace
 
-Result<ForwardStep> forward_step(const std::vector<EffectPtr>& model, const ScoredFamily& winner,
-                                 const Residual& residual) {
+Result<ForwardStep> forward_step(const std::vector<effects::EffectPtr>& model,
+                                 const tests::ScoredFamily& winner, const tests::Residual& residual) {
   ForwardStep out;
-  const CandidateEffect& candidate_effect = *winner.candidate_effect;
+  const tests::CandidateEffect& candidate_effect = *winner.candidate_effect;
   const bool one_axis = winner.where().axes == 1;
   std::vector<Pick> picked;
-  if (winner.candidate_effect->level == Level::axis && !one_axis) picked = few_axes(winner, model, residual);
+  if (winner.candidate_effect->level == effects::Level::axis && !one_axis)
+    picked = few_axes(winner, model, residual);
   if (picked.empty()) {
     if (one_axis && has_axis(model, winner, winner.where().where)) {
       return fail(ErrorCode::refused,
@@ -96,7 +98,7 @@ Result<ForwardStep> forward_step(const std::vector<EffectPtr>& model, const Scor
     }
     const std::size_t variant = winner.winner().variant;
     auto added = candidate_effect.dipole_at
-                     ? Result<EffectPtr>(candidate_effect.variants[variant])
+                     ? Result<effects::EffectPtr>(candidate_effect.variants[variant])
                      : candidate_effect.make(&winner.where(), candidate_effect.values[variant]);
     if (!added) return tl::unexpected(added.error());
     out.added.push_back(*std::move(added));
@@ -107,13 +109,13 @@ Result<ForwardStep> forward_step(const std::vector<EffectPtr>& model, const Scor
     if (!added) return tl::unexpected(added.error());
     out.added.push_back(*std::move(added));
   }
-  for (const EffectPtr& effect : model) {
+  for (const effects::EffectPtr& effect : model) {
     if (std::none_of(out.added.begin(), out.added.end(),
-                     [&](const EffectPtr& added) { return holds(*added, *effect); }))
+                     [&](const effects::EffectPtr& added) { return holds(*added, *effect); }))
       out.model.push_back(effect);
   }
   out.model.insert(out.model.end(), out.added.begin(), out.added.end());
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -5,11 +5,12 @@
 #include "calib/criticism/tests/score.h"
 
 /// A forward step adds the winner of a round to the model.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct ForwardStep {
-  std::vector<EffectPtr> model;
-  std::vector<EffectPtr> added;  ///< the winner, or one effect for each of the few axes that make it up
+  std::vector<effects::EffectPtr> model;
+  std::vector<effects::EffectPtr>
+      added;  ///< the winner, or one effect for each of the few axes that make it up
 };
 
 /// A winner on several axes with one coefficient each is taken apart: the axis and the fixed number that
@@ -20,7 +21,8 @@ struct ForwardStep {
 /// winner's axes, "s3.z" in "each-axis". Everything else stays beside it; an axis that has the law with
 /// another number does not get it twice. Refuses what the library refuses, and a winner of which nothing is
 /// left.
-[[nodiscard]] Result<ForwardStep> forward_step(const std::vector<EffectPtr>& model,
-                                               const ScoredFamily& winner, const Residual& residual);
+[[nodiscard]] Result<ForwardStep> forward_step(const std::vector<effects::EffectPtr>& model,
+                                               const tests::ScoredFamily& winner,
+                                               const tests::Residual& residual);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

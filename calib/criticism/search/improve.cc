@@ -9,21 +9,24 @@
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// The simplified model, where the error on held-out poses does not rise; where that cannot be judged, the
 /// residual.
-void prune_unless_worse(const PoseTable& table, const FitOptions& options, const JointOptions& joint,
-                        const JointFit& last, FitOptions& best) {
-  JointOptions tidy = joint;
+void prune_unless_worse(const PoseTable& table, const fit::FitOptions& options,
+                        const fit::joint::JointOptions& joint, const fit::joint::JointFit& last,
+                        fit::FitOptions& best) {
+  fit::joint::JointOptions tidy = joint;
   tidy.effects = best.effects;
   tidy.noise_inflation = last.noise_inflation;
-  JointFit fit = last;
+  fit::joint::JointFit fit = last;
   prune(table, options.effects.size(), tidy, fit);
-  const auto before = left_out_nT(last), after = left_out_nT(fit);
+  const auto before = fit::joint::left_out_nT(last), after = fit::joint::left_out_nT(fit);
   if (before && (!after || *after > kHeldOutVeto * *before)) return;
-  const auto residual_nT = [](const JointFit& f) { return pose_residuals(f.problem, f.state).residual_nT(); };
+  const auto residual_nT = [](const fit::joint::JointFit& f) {
+    return fit::joint::pose_residuals(f.problem, f.state).residual_nT();
+  };
   if (!before && residual_nT(fit) > kHeldOutVeto * residual_nT(last)) return;
   best.effects = std::move(tidy.effects);
 }
@@ -44,18 +47,18 @@ ImproveStop stop_of(const ExplainReport& explained) {
 
 }  // namespace
 
-Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options) {
+Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& options) {
   const auto explained =
       explain(table, {.fit = options, .rounds = static_cast<int>(kImproveRounds), .candidate_effects = {}});
   if (!explained) return tl::unexpected(explained.error());
   ImproveReport out{
       .finding = explained->left, .stopped = stop_of(*explained), .notes = explained->notes, .fit = {}};
-  const JointOptions joint = joint_options(options);
-  std::shared_ptr<const JointFit> last = explained->fit;
-  std::optional<double> held_out = left_out_nT(*last);
-  FitOptions best = options;
+  const fit::joint::JointOptions joint = fit::joint::joint_options(options);
+  std::shared_ptr<const fit::joint::JointFit> last = explained->fit;
+  std::optional<double> held_out = fit::joint::left_out_nT(*last);
+  fit::FitOptions best = options;
   for (const Round& round : explained->rounds) {
-    const auto after = left_out_nT(*round.fit);
+    const auto after = fit::joint::left_out_nT(*round.fit);
     if (held_out && after && *after > kHeldOutVeto * *held_out) {
       out.stopped = ImproveStop::held_out_error_rises;
       out.refused = RefusedEffect{round.added.spec, *held_out, *after};
@@ -75,13 +78,13 @@ Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options)
     held_out = after;
     last = round.fit;
   }
-  const FitOptions found = best;
+  const fit::FitOptions found = best;
   if (!out.rounds.empty()) prune_unless_worse(table, options, joint, *last, best);
-  auto fitted = fit(table, best);
-  if (!fitted) fitted = fit(table, found);
+  auto fitted = fit::method_choice::fit(table, best);
+  if (!fitted) fitted = fit::method_choice::fit(table, found);
   if (!fitted) return tl::unexpected(fitted.error());
   out.fit = std::move(*fitted);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -9,10 +9,10 @@
 
 /// improve() repeats explain, add and fit, unattended, until nothing more is justified. Calibrated p-values
 /// decide what is added; the error on held-out poses is a veto, never a reason.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct ImproveRound {
-  Candidate added;
+  tests::Candidate added;
   std::vector<std::string> possible{};       ///< others that could stand in its place
   double rms_before_nT{0}, rms_after_nT{0};  ///< residual, as PoseResiduals tells it
   std::optional<double> held_out_before_nT{}, held_out_after_nT{};
@@ -45,9 +45,9 @@ struct ImproveReport {
   ImproveStop stopped{ImproveStop::nothing_stands_out};
   std::optional<RefusedEffect> refused{};  ///< with ImproveStop::held_out_error_rises
   std::vector<ExplainNote> notes{};        ///< of explain()
-  FitReport fit;                           ///< with everything that was added
+  fit::FitReport fit;                      ///< with everything that was added
 };
 
-[[nodiscard]] Result<ImproveReport> improve(const PoseTable& table, const FitOptions& options);
+[[nodiscard]] Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -11,7 +11,7 @@
 #include "calib/linear/ldlt.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 struct Fall {
@@ -20,31 +20,35 @@ struct Fall {
 };
 
 /// Of the score test: what chi-square would fall by if `effect` were in the model.
-Fall score_fall(const ModelStage& stage, const EffectPtr& effect) {
-  const Residual residual(stage.fit.problem, stage.fit.state,
-                          pose_correlation(stage.fit.problem, stage.fit.state));
-  const Signature s = signature_of(residual, effect_rows(stage.fit.problem, stage.fit.state, effect));
+Fall score_fall(const ModelStage& stage, const effects::EffectPtr& effect) {
+  const tests::Residual residual(stage.fit.problem, stage.fit.state,
+                                 tests::pose_correlation(stage.fit.problem, stage.fit.state));
+  const tests::Signature s =
+      tests::signature_of(residual, tests::effect_rows(stage.fit.problem, stage.fit.state, effect));
   const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
-  const OneStep step = one_step(s, Hypothesis{.combine = Eigen::MatrixXd::Identity(m, m), .names = {}});
+  const tests::OneStep step =
+      tests::one_step(s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(m, m), .names = {}});
   return {(step.basis.transpose() * s.by_residual).squaredNorm(), static_cast<int>(step.basis.cols())};
 }
 
 /// Of the Wald test: what chi-square would rise by if these coefficients were zero.
-double wald_rise(const JointFit& fit, Eigen::Index first, Eigen::Index count) {
+double wald_rise(const fit::joint::JointFit& fit, Eigen::Index first, Eigen::Index count) {
   const Eigen::VectorXd c = fit.state.coefficients.segment(first, count);
-  const Eigen::MatrixXd C = fit.covariance.block(kEffectSlot + first, kEffectSlot + first, count, count) /
-                            std::pow(fit.birge_ratio, 2);
-  return c.dot(solve_by_ldlt(C, c));
+  const Eigen::MatrixXd C =
+      fit.covariance.block(fit::joint::kEffectSlot + first, fit::joint::kEffectSlot + first, count, count) /
+      std::pow(fit.birge_ratio, 2);
+  return c.dot(linear::solve_by_ldlt(C, c));
 }
 
-std::vector<EffectCoefficient> coefficients_of(const JointFit& fit, std::size_t which, Eigen::Index& first) {
+std::vector<calibration::EffectCoefficient> coefficients_of(const fit::joint::JointFit& fit,
+                                                            std::size_t which, Eigen::Index& first) {
   first = 0;
   for (std::size_t i = 0; i < which; ++i)
     first += static_cast<Eigen::Index>(fit.problem.effects[i]->coefficients().size());
-  std::vector<EffectCoefficient> out;
+  std::vector<calibration::EffectCoefficient> out;
   Eigen::Index slot = first;
-  for (const Coefficient& c : fit.problem.effects[which]->coefficients()) {
-    const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
+  for (const effects::Coefficient& c : fit.problem.effects[which]->coefficients()) {
+    const double variance = fit.covariance(fit::joint::kEffectSlot + slot, fit::joint::kEffectSlot + slot);
     out.push_back({c.name, fit.state.coefficients[slot], std::sqrt(variance), c.unit});
     ++slot;
   }
@@ -52,16 +56,17 @@ std::vector<EffectCoefficient> coefficients_of(const JointFit& fit, std::size_t 
 }
 
 /// Chi-square of both with the correlation from pose to pose of the first.
-double chi2_of(const ModelStage& stage, const JointFit& fit) {
-  return Residual(fit.problem, fit.state, pose_correlation(stage.fit.problem, stage.fit.state)).chi2();
+double chi2_of(const ModelStage& stage, const fit::joint::JointFit& fit) {
+  return tests::Residual(fit.problem, fit.state, tests::pose_correlation(stage.fit.problem, stage.fit.state))
+      .chi2();
 }
 
-std::optional<double> residual_of(const std::optional<JointErrors>& errors) {
+std::optional<double> residual_of(const std::optional<fit::joint::JointErrors>& errors) {
   return errors ? std::optional(errors->residual_nT) : std::nullopt;
 }
 
 void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
-  for (const EffectPtr& effect : after.options.effects) out.model.push_back(effect->spec());
+  for (const effects::EffectPtr& effect : after.options.effects) out.model.push_back(effect->spec());
   out.chi2_before = before.fit.chi2, out.dof_before = before.fit.dof;
   out.chi2_after = after.fit.chi2, out.dof_after = after.fit.dof;
   out.rms_before_nT = before.errors.residual_nT, out.rms_after_nT = after.errors.residual_nT;
@@ -73,7 +78,7 @@ void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
   // A model that is far off in another way has its chi-square fall by thousands for nothing.
   out.birge_ratio = (out.adding ? after : before).fit.birge_ratio;
   const double fall = out.realised / (out.birge_ratio * out.birge_ratio);
-  out.log10_p = fall > 0 ? chi_square_log10_p(fall, std::max(1, out.k)) : 0;
+  out.log10_p = fall > 0 ? stats::chi_square_log10_p(fall, std::max(1, out.k)) : 0;
 }
 
 }  // namespace
@@ -87,20 +92,21 @@ std::vector<Veto> ModelChange::vetoes() const {
   return out;
 }
 
-Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options, const EffectPtr& effect) {
-  for (const EffectPtr& known : options.effects) {
-    if (!same_law_on_a_common_axis(*known, *effect)) continue;
+Result<ModelChange> add_effect(const PoseTable& table, const fit::FitOptions& options,
+                               const effects::EffectPtr& effect) {
+  for (const effects::EffectPtr& known : options.effects) {
+    if (!effects::same_law_on_a_common_axis(*known, *effect)) continue;
     return fail(ErrorCode::refused, "the model holds " + known->spec() + " already",
                 "drop it first, if it should act elsewhere");
   }
   const auto before = model_stage(table, options);
   if (!before) return tl::unexpected(before.error());
-  FitOptions wider = options;
+  fit::FitOptions wider = options;
   wider.effects = before->options.effects;
   wider.effects.push_back(effect);
   const auto after = model_stage(table, wider);
   if (!after) return tl::unexpected(after.error());
-  const EffectPtr& profiled = after->fit.problem.effects.back();
+  const effects::EffectPtr& profiled = after->fit.problem.effects.back();
   ModelChange out{.adding = true, .effect = std::string(effect->name()), .spec = profiled->spec()};
   const Fall fall = score_fall(*before, profiled);
   out.predicted = fall.chi2, out.k = fall.k;
@@ -113,15 +119,15 @@ Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options
   return out;
 }
 
-Result<ModelChange> drop_effect(const PoseTable& table, const FitOptions& options, std::size_t which) {
+Result<ModelChange> drop_effect(const PoseTable& table, const fit::FitOptions& options, std::size_t which) {
   const auto before = model_stage(table, options);
   if (!before) return tl::unexpected(before.error());
-  FitOptions narrower = options;
+  fit::FitOptions narrower = options;
   narrower.effects = before->options.effects;
   narrower.effects.erase(narrower.effects.begin() + static_cast<std::ptrdiff_t>(which));
   const auto after = model_stage(table, narrower);
   if (!after) return tl::unexpected(after.error());
-  const EffectPtr& effect = before->fit.problem.effects[which];
+  const effects::EffectPtr& effect = before->fit.problem.effects[which];
   ModelChange out{.adding = false, .effect = std::string(effect->name()), .spec = effect->spec()};
   Eigen::Index first = 0;
   out.coefficients = coefficients_of(before->fit, which, first);
@@ -134,4 +140,4 @@ Result<ModelChange> drop_effect(const PoseTable& table, const FitOptions& option
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -14,7 +14,7 @@
 ///
 /// The two agree while the effect is small against what it acts on; where they do not, the effect was not
 /// what it looked like.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 /// The tests that a change failed: not to be made unattended.
 enum class Veto {
@@ -26,12 +26,12 @@ inline constexpr double kVetoChance = 0.05, kVetoPrice = 100;
 
 struct ModelChange {
   bool adding{true};
-  std::string effect{};                           ///< of the family, or a user's name
-  std::string spec{};                             ///< with the numbers that were searched
-  std::vector<std::string> model{};               ///< specs, afterwards
-  std::vector<EffectCoefficient> coefficients{};  ///< of this effect, in the wider model
-  int k{0};                                       ///< coefficients that the poses can tell
-  double predicted{0}, realised{0};               ///< fall (adding) or rise (dropping) of chi-square
+  std::string effect{};                                        ///< of the family, or a user's name
+  std::string spec{};                                          ///< with the numbers that were searched
+  std::vector<std::string> model{};                            ///< specs, afterwards
+  std::vector<calibration::EffectCoefficient> coefficients{};  ///< of this effect, in the wider model
+  int k{0};                                                    ///< coefficients that the poses can tell
+  double predicted{0}, realised{0};  ///< fall (adding) or rise (dropping) of chi-square
   double log10_p{0};  ///< that chance alone makes so large a realised one, at the noise of the wider model
   double birge_ratio{1};  ///< of the wider model, where it is significantly above one
   double chi2_before{0}, chi2_after{0}, dof_before{0}, dof_after{0};
@@ -45,10 +45,10 @@ struct ModelChange {
 };
 
 /// `options`: the model as it is. Refuses what a fit refuses, and an effect that the model holds already.
-[[nodiscard]] Result<ModelChange> add_effect(const PoseTable& table, const FitOptions& options,
-                                             const EffectPtr& effect);
+[[nodiscard]] Result<ModelChange> add_effect(const PoseTable& table, const fit::FitOptions& options,
+                                             const effects::EffectPtr& effect);
 /// `which`: its place in options.effects.
-[[nodiscard]] Result<ModelChange> drop_effect(const PoseTable& table, const FitOptions& options,
+[[nodiscard]] Result<ModelChange> drop_effect(const PoseTable& table, const fit::FitOptions& options,
                                               std::size_t which);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

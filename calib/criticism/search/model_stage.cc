@@ -7,11 +7,11 @@
 
 #include "calib/fit/joint/joint_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// The poses of `to`, the same as those of `from`, take over what their observations weigh.
-void weigh_alike(const JointProblem& from, JointProblem& to) {
+void weigh_alike(const fit::joint::JointProblem& from, fit::joint::JointProblem& to) {
   for (std::size_t k = 0; k < to.poses.size(); ++k) {
     to.poses[k].weight = from.poses[k].weight;
     to.poses[k].attitude_weight = from.poses[k].attitude_weight;
@@ -21,49 +21,50 @@ void weigh_alike(const JointProblem& from, JointProblem& to) {
 
 }  // namespace
 
-Result<ModelStage> model_stage(const PoseTable& table, const FitOptions& options) {
-  auto joint = profiled_options(table, options);
+Result<ModelStage> model_stage(const PoseTable& table, const fit::FitOptions& options) {
+  auto joint = fit::joint::profiled_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
-  auto fit = fit_joint(table, *joint);
+  auto fit = fit::joint::fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
   ModelStage out{.options = *std::move(joint), .fit = std::move(*fit), .errors = {}};
-  out.errors = joint_errors(out.fit.problem, out.fit.state, FixedBlock::fitted);
-  out.held_out = held_out_errors(out.fit);
+  out.errors = fit::joint::joint_errors(out.fit.problem, out.fit.state, fit::joint::FixedBlock::fitted);
+  out.held_out = fit::joint::held_out_errors(out.fit);
   return out;
 }
 
-Result<JointFit> fit_under_same_weights(const PoseTable& table, const ModelStage& stage,
-                                        const std::vector<EffectPtr>& effects) {
-  JointOptions options = stage.options;
+Result<fit::joint::JointFit> fit_under_same_weights(const PoseTable& table, const ModelStage& stage,
+                                                    const std::vector<effects::EffectPtr>& effects) {
+  fit::joint::JointOptions options = stage.options;
   options.effects = effects;
-  auto problem = joint_problem(table, options);
+  auto problem = fit::joint::joint_problem(table, options);
   if (!problem) return tl::unexpected(problem.error());
-  fix_gauge(*problem, options);
+  fit::joint::fix_gauge(*problem, options);
   weigh_alike(stage.fit.problem, *problem);
-  JointState start =
-      joint_state(*problem, stage.fit.state.sensors, stage.fit.state.direction, stage.fit.state.f_nT);
-  auto solved = solve(*problem, std::move(start));
+  fit::joint::JointState start = fit::joint::joint_state(*problem, stage.fit.state.sensors,
+                                                         stage.fit.state.direction, stage.fit.state.f_nT);
+  auto solved = fit::joint::solve(*problem, std::move(start));
   if (!solved) return tl::unexpected(solved.error());
-  JointFit out = stage.fit;
+  fit::joint::JointFit out = stage.fit;
   out.problem = std::move(*problem);
   out.state = std::move(solved->state);
   out.chi2 = solved->reduced.cost.readings + solved->reduced.cost.scalar;
   return out;
 }
 
-VariancePrice variance_price(const JointFit& narrow, const JointFit& wide) {
+VariancePrice variance_price(const fit::joint::JointFit& narrow, const fit::joint::JointFit& wide) {
   VariancePrice out;
-  JointProblem same = narrow.problem;
+  fit::joint::JointProblem same = narrow.problem;
   weigh_alike(wide.problem, same);
-  const auto before = covariance_of(reduce(same, narrow.state, 0).S);
-  const auto after = covariance_of(reduce(wide.problem, wide.state, 0).S);
+  const auto before = fit::joint::covariance_of(fit::joint::reduce(same, narrow.state, 0).S);
+  const auto after = fit::joint::covariance_of(fit::joint::reduce(wide.problem, wide.state, 0).S);
   if (!before || !after) return out;
-  for (int i = 0; i < kSensorBlock; ++i) {
+  for (int i = 0; i < fit::joint::kSensorBlock; ++i) {
     const double sd_ratio = std::sqrt((*after)(i, i) / (*before)(i, i));
     if (!std::isfinite(sd_ratio) || sd_ratio <= out.sd_ratio) continue;
     out.sd_ratio = sd_ratio;
-    out.parameter = fmt::format("s{}.{}", i / kSensorParameters + 1,
-                                kParameterNames[static_cast<std::size_t>(i % kSensorParameters)]);
+    out.parameter =
+        fmt::format("s{}.{}", i / sensor::kSensorParameters + 1,
+                    sensor::kParameterNames[static_cast<std::size_t>(i % sensor::kSensorParameters)]);
   }
   return out;
 }
@@ -74,4 +75,4 @@ double tensor_rms(const Gradient& g) {
   return std::sqrt(sum / 6);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -13,16 +13,16 @@
 #include "calib/fit/joint/joint_report.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
-Result<const Candidate*> candidate_of(const ExplainReport& report, const std::string& effect) {
-  const std::string_view name = family_name(effect);
-  for (const Candidate& c : report.candidates)
+Result<const tests::Candidate*> candidate_of(const ExplainReport& report, const std::string& effect) {
+  const std::string_view name = effects::family_name(effect);
+  for (const tests::Candidate& c : report.candidates)
     if (c.effect == name) return &c;
-  for (const Untestable& u : report.untestable) {
+  for (const tests::Untestable& u : report.untestable) {
     if (u.effect != name) continue;
-    const EffectFamily* const family = find_family(name);
+    const effects::library::EffectFamily* const family = effects::library::find_family(name);
     return fail(ErrorCode::refused, fmt::format("{} cannot be tested on this run: {}", name, u.why),
                 family != nullptr && !family->experiment.empty() ? std::string(family->experiment)
                                                                  : "mgt effects " + std::string(name));
@@ -32,13 +32,13 @@ Result<const Candidate*> candidate_of(const ExplainReport& report, const std::st
 }
 
 /// As large as it was found, or as large as it must be to be seen.
-Candidate sized(const Candidate& found, bool& assumed) {
-  Candidate out = found;
-  assumed = found.d < kSeen;
+tests::Candidate sized(const tests::Candidate& found, bool& assumed) {
+  tests::Candidate out = found;
+  assumed = found.d < tests::kSeen;
   if (!assumed) return out;
   const double n = static_cast<double>(out.coefficients.size());
-  for (EffectCoefficient& c : out.coefficients)
-    c.value = found.d > 1 ? c.value * kSeen / found.d : c.sd * kSeen / std::sqrt(n);
+  for (calibration::EffectCoefficient& c : out.coefficients)
+    c.value = found.d > 1 ? c.value * tests::kSeen / found.d : c.sd * tests::kSeen / std::sqrt(n);
   return out;
 }
 
@@ -63,22 +63,23 @@ bool alike(const std::vector<Pose>& a, const std::vector<Pose>& b) {
          });
 }
 
-std::vector<Pose> added(const PoseTable& table, const Action& action, const JointFit& fit) {
-  const PoseTable whole = extended(table, action, fit.state.sensors);
+std::vector<Pose> added(const PoseTable& table, const design::Action& action,
+                        const fit::joint::JointFit& fit) {
+  const PoseTable whole = design::extended(table, action, fit.state.sensors);
   return {whole.poses.begin() + static_cast<std::ptrdiff_t>(table.poses.size()), whole.poses.end()};
 }
 
-std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<NextMeasurement>& found,
-                               const JointFit& fit) {
+std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<design::NextMeasurement>& found,
+                               const fit::joint::JointFit& fit) {
   std::vector<NextStep> out;
-  const std::vector<Pose> same = added(table, actions().front(), fit);
-  for (const NextMeasurement& m : found) {
-    const auto action =
-        std::find_if(actions().begin(), actions().end(), [&](const Action& a) { return a.text == m.action; });
-    if (action == actions().end()) continue;
+  const std::vector<Pose> same = added(table, design::actions().front(), fit);
+  for (const design::NextMeasurement& m : found) {
+    const auto action = std::find_if(design::actions().begin(), design::actions().end(),
+                                     [&](const design::Action& a) { return a.text == m.action; });
+    if (action == design::actions().end()) continue;
     NextStep step{.measurement = m, .poses = added(table, *action, fit)};
     // What the run has no column for cannot be changed, and would be more of the same.
-    if (action != actions().begin() && !action->moved && alike(step.poses, same)) continue;
+    if (action != design::actions().begin() && !action->moved && alike(step.poses, same)) continue;
     step.by_the_rig = !action->moved && by_the_rig(step.poses, same);
     out.push_back(std::move(step));
   }
@@ -86,21 +87,21 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<NextMea
 }
 
 /// The first round's winner, where something else could stand in its place.
-std::optional<Candidate> open_question(const ExplainReport& report) {
+std::optional<tests::Candidate> open_question(const ExplainReport& report) {
   if (report.rounds.empty()) return std::nullopt;
-  const Candidate& winner = report.rounds.front().added;
+  const tests::Candidate& winner = report.rounds.front().added;
   const bool open = std::any_of(winner.alternatives.begin(), winner.alternatives.end(),
-                                [](const Alternative& alternative) { return alternative.possible; });
+                                [](const tests::Alternative& alternative) { return alternative.possible; });
   return open ? std::optional(winner) : std::nullopt;
 }
 
 NothingToSettle nothing_to_settle(const ExplainReport& report) {
   if (report.rounds.empty()) return {};
-  const Candidate& winner = report.rounds.front().added;
+  const tests::Candidate& winner = report.rounds.front().added;
   return {winner.effect, winner.alternatives.empty() ? std::string() : winner.alternatives.front().effect};
 }
 
-Alternative against(const Candidate& alternative) {
+tests::Alternative against(const tests::Candidate& alternative) {
   return {
       .effect = alternative.effect, .where = alternative.where, .spec = alternative.spec, .possible = true};
 }
@@ -112,7 +113,7 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
   const auto explained = explain(table, options);
   if (!explained) return tl::unexpected(explained.error());
   NextReport out;
-  std::optional<Candidate> asked = open_question(*explained);
+  std::optional<tests::Candidate> asked = open_question(*explained);
   if (pair) {
     auto a = candidate_of(*explained, pair->first);
     if (!a) return tl::unexpected(a.error());
@@ -126,19 +127,20 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
     out.nothing_to_settle = nothing_to_settle(*explained);
     return out;
   }
-  const auto hardest = std::min_element(
-      asked->alternatives.begin(), asked->alternatives.end(), [](const Alternative& a, const Alternative& b) {
-        return std::pair(!a.possible, a.p_right) < std::pair(!b.possible, b.p_right);
-      });
+  const auto hardest =
+      std::min_element(asked->alternatives.begin(), asked->alternatives.end(),
+                       [](const tests::Alternative& a, const tests::Alternative& b) {
+                         return std::pair(!a.possible, a.p_right) < std::pair(!b.possible, b.p_right);
+                       });
   out.effect = asked->spec, out.alternative = hardest->spec, out.d = asked->d;
-  const JointOptions joint = joint_options(options.fit);
-  const auto fit = fit_joint(table, joint);
+  const fit::joint::JointOptions joint = fit::joint::joint_options(options.fit);
+  const auto fit = fit::joint::fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
-  const NextMenu found = next_measurements(table, *fit, joint, *asked);
+  const design::NextMenu found = design::next_measurements(table, *fit, joint, *asked);
   out.steps = steps_of(table, found.steps, *fit);
   out.none_helps = found.steps.empty();
   out.p_right_before = found.p_right_before;
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -9,10 +9,10 @@
 
 /// Finds which further measurement would tell two effects apart: a given pair, or the one that explain() left
 /// open.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct NextStep {
-  NextMeasurement measurement;
+  design::NextMeasurement measurement;
   bool by_the_rig{false};   ///< attitudes, approach and dwells are all it takes; no hand, heat or coil
   std::vector<Pose> poses;  ///< to be measured: attitude, set, sense, waits; no readings
 };
@@ -38,4 +38,4 @@ struct NextReport {
 [[nodiscard]] Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options,
                                          const std::optional<std::pair<std::string, std::string>>& pair);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

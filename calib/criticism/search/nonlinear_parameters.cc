@@ -10,7 +10,7 @@
 #include "calib/effects/library/library.h"
 #include "calib/linear/qr.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 constexpr int kSteps = 6;
@@ -21,25 +21,26 @@ constexpr double kDifference = 0.01;
 struct Number {
   std::size_t effect{0};
   Eigen::Index first{0};  ///< its coefficients among all
-  const Scan* scan{nullptr};
-  EffectSpec spec;
+  const effects::library::Scan* scan{nullptr};
+  effects::EffectSpec spec;
   double value{0};
 
-  [[nodiscard]] Result<EffectPtr> at(double x, const EffectContext& context) const {
-    EffectSpec out = spec;
+  [[nodiscard]] Result<effects::EffectPtr> at(double x, const effects::EffectContext& context) const {
+    effects::EffectSpec out = spec;
     out.set(scan->parameter, x);
-    return make_effect(out, context);
+    return effects::library::make_effect(out, context);
   }
 };
 
-std::vector<Number> numbers_of(const std::vector<EffectPtr>& effects, std::size_t given) {
+std::vector<Number> numbers_of(const std::vector<effects::EffectPtr>& effects, std::size_t given) {
   std::vector<Number> out;
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    const EffectFamily* family = find_family(effects[i]->name());
+    const effects::library::EffectFamily* family = effects::library::find_family(effects[i]->name());
     const auto own = static_cast<Eigen::Index>(effects[i]->coefficients().size());
-    const bool smooth = family != nullptr && family->scan && family->scan->range == Scan::Range::logarithmic;
-    if (auto spec = EffectSpec::parse(effects[i]->spec()); i >= given && smooth && spec) {
+    const bool smooth = family != nullptr && family->scan &&
+                        family->scan->range == effects::library::Scan::Range::logarithmic;
+    if (auto spec = effects::EffectSpec::parse(effects[i]->spec()); i >= given && smooth && spec) {
       const auto value = spec->number(family->scan->parameter, 0, 0, 1e9);
       if (value && *value > 0) out.push_back({i, first, &*family->scan, *std::move(spec), *value});
     }
@@ -49,44 +50,48 @@ std::vector<Number> numbers_of(const std::vector<EffectPtr>& effects, std::size_
 }
 
 /// What a change of a number, relative, does to the rows; empty where it cannot be asked.
-std::optional<Eigen::VectorXd> column(const JointFit& fit, const Number& n, const EffectContext& context) {
+std::optional<Eigen::VectorXd> column(const fit::joint::JointFit& fit, const Number& n,
+                                      const effects::EffectContext& context) {
   const auto up = n.at(n.value * (1 + kDifference), context),
              down = n.at(n.value * (1 - kDifference), context);
   if (!up || !down) return std::nullopt;
   const auto c =
       fit.state.coefficients.segment(n.first, static_cast<Eigen::Index>((*up)->coefficients().size()));
   const Eigen::MatrixXd rows =
-      effect_rows(fit.problem, fit.state, *up) - effect_rows(fit.problem, fit.state, *down);
+      tests::effect_rows(fit.problem, fit.state, *up) - tests::effect_rows(fit.problem, fit.state, *down);
   return Eigen::VectorXd(rows * c / (2 * kDifference));
 }
 
 /// Relative steps of the numbers; empty where the data do not tell them.
-std::optional<Eigen::VectorXd> steps(const JointFit& fit, const std::vector<Number>& numbers,
-                                     const EffectContext& context) {
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(fit.problem.poses.size()) * kPoseRows,
+std::optional<Eigen::VectorXd> steps(const fit::joint::JointFit& fit, const std::vector<Number>& numbers,
+                                     const effects::EffectContext& context) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(fit.problem.poses.size()) * tests::kPoseRows,
                        static_cast<Eigen::Index>(numbers.size()));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto one = column(fit, numbers[i], context);
     if (!one) return std::nullopt;
     rows.col(static_cast<Eigen::Index>(i)) = *one;
   }
-  const Residual residual(fit.problem, fit.state, 0);
+  const tests::Residual residual(fit.problem, fit.state, 0);
   const Eigen::MatrixXd z = residual.project(rows).projected;
-  const auto step = unique_least_squares(z, residual.value());
+  const auto step = linear::unique_least_squares(z, residual.value());
   if (!step) return std::nullopt;
   return Eigen::VectorXd(step->cwiseMax(-kLongest).cwiseMin(kLongest));
 }
 
 /// What the fit makes small, comparable where the weights are estimated.
-double size_of(const JointFit& fit) { return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0)); }
+double size_of(const fit::joint::JointFit& fit) {
+  return fit.noise_nT() * std::sqrt(fit.chi2 / std::max(fit.dof, 1.0));
+}
 
-bool step_once(const PoseTable& table, std::size_t given, JointOptions& options, JointFit& fit) {
+bool step_once(const PoseTable& table, std::size_t given, fit::joint::JointOptions& options,
+               fit::joint::JointFit& fit) {
   const std::vector<Number> numbers = numbers_of(options.effects, given);
-  const EffectContext context{.table = &table, .offset_nT = {}};
+  const effects::EffectContext context{.table = &table, .offset_nT = {}};
   if (numbers.empty()) return false;
   const auto step = steps(fit, numbers, context);
   if (!step || step->cwiseAbs().maxCoeff() < kSettled) return false;
-  JointOptions next = options;
+  fit::joint::JointOptions next = options;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const Number& n = numbers[i];
     const double value =
@@ -96,7 +101,7 @@ bool step_once(const PoseTable& table, std::size_t given, JointOptions& options,
     next.effects[n.effect] = *std::move(effect);
   }
   next.noise_inflation = fit.noise_inflation;
-  auto after = fit_joint_at_size(table, next, &fit.state);
+  auto after = fit::joint::fit_joint_at_size(table, next, &fit.state);
   if (!after || size_of(*after) >= size_of(fit)) return false;
   options.effects = std::move(next.effects);
   fit = *std::move(after);
@@ -105,10 +110,10 @@ bool step_once(const PoseTable& table, std::size_t given, JointOptions& options,
 
 }  // namespace
 
-void refine_nonlinear_parameters(const PoseTable& table, std::size_t given, JointOptions& options,
-                                 JointFit& fit) {
+void refine_nonlinear_parameters(const PoseTable& table, std::size_t given, fit::joint::JointOptions& options,
+                                 fit::joint::JointFit& fit) {
   for (int i = 0; i < kSteps && step_once(table, given, options, fit); ++i) {
   }
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -6,35 +6,36 @@
 
 #include "calib/criticism/tests/scan_refinement.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// Of the variance before over that after: from here on a second look can tell more than the first.
 constexpr double kMuchLess = 1.5;
 
 struct Narrow {
-  JointProblem problem;
-  JointState state;
+  fit::joint::JointProblem problem;
+  fit::joint::JointState state;
 };
 
 /// The model without the winner at the place where the fit with it ended, and with its weights.
-std::optional<Narrow> without_winner(const PoseTable& table, const JointOptions& options,
-                                     const JointFit& with) {
-  auto problem = joint_problem(table, options);
+std::optional<Narrow> without_winner(const PoseTable& table, const fit::joint::JointOptions& options,
+                                     const fit::joint::JointFit& with) {
+  auto problem = fit::joint::joint_problem(table, options);
   if (!problem || problem->poses.size() != with.problem.poses.size()) return std::nullopt;
-  fix_gauge(*problem, options);
+  fit::joint::fix_gauge(*problem, options);
   for (std::size_t k = 0; k < problem->poses.size(); ++k) {
     problem->poses[k].weight = with.problem.poses[k].weight;
     problem->poses[k].f_weight = with.problem.poses[k].f_weight;
     problem->poses[k].attitude_weight = with.problem.poses[k].attitude_weight;
   }
-  JointState state = joint_state(*problem, with.state.sensors, with.state.direction, with.state.f_nT);
+  fit::joint::JointState state =
+      fit::joint::joint_state(*problem, with.state.sensors, with.state.direction, with.state.f_nT);
   state.nuisances = with.state.nuisances;
   Eigen::Index at = 0;
-  for (const EffectPtr& effect : problem->effects) {
+  for (const effects::EffectPtr& effect : problem->effects) {
     const auto own = static_cast<Eigen::Index>(effect->coefficients().size());
     Eigen::Index from = 0;
-    for (const EffectPtr& known : with.problem.effects) {
+    for (const effects::EffectPtr& known : with.problem.effects) {
       if (known->spec() == effect->spec())
         state.coefficients.segment(at, own) = with.state.coefficients.segment(from, own);
       from += static_cast<Eigen::Index>(known->coefficients().size());
@@ -46,37 +47,39 @@ std::optional<Narrow> without_winner(const PoseTable& table, const JointOptions&
 
 }  // namespace
 
-std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions& narrow,
-                                      const Criticism& first, std::size_t winner,
-                                      const std::vector<Alternative>& alternatives, double noise_inflation,
-                                      const JointFit& with, std::uint64_t seed) {
+std::optional<SecondLook> second_look(const PoseTable& table, const fit::joint::JointOptions& narrow,
+                                      const tests::Criticism& first, std::size_t winner,
+                                      const std::vector<tests::Alternative>& alternatives,
+                                      double noise_inflation, const fit::joint::JointFit& with,
+                                      std::uint64_t seed) {
   const double after = std::max(1.0, with.chi2 / std::max(with.dof, 1.0));
   if (first.noise.reference.scale2 * noise_inflation * noise_inflation < kMuchLess * after)
     return std::nullopt;
   const auto at = without_winner(table, narrow, with);
   if (!at) return std::nullopt;
-  Residual residual(at->problem, at->state, 0);
+  tests::Residual residual(at->problem, at->state, 0);
   residual.measure_by(after);
-  const NoiseReference noise{};
-  std::vector<ScoredFamily> families;
+  const tests::NoiseReference noise{};
+  std::vector<tests::ScoredFamily> families;
   for (std::size_t f = 0; f < first.families.size(); ++f) {
-    const ScoredFamily& known = first.families[f];
+    const tests::ScoredFamily& known = first.families[f];
     const bool asked =
-        std::any_of(alternatives.begin(), alternatives.end(), [&](const Alternative& alternative) {
+        std::any_of(alternatives.begin(), alternatives.end(), [&](const tests::Alternative& alternative) {
           return alternative.possible && alternative.effect == known.candidate_effect->name;
         });
     if (f != winner && !asked) continue;
     // What the first look added to the family was made for its own residual, but is as good a start here.
-    ScoredFamily again{.candidate_effect = known.candidate_effect, .own = known.own};
-    for (const EffectPtr& variant : known.candidate_effect->variants) {
-      again.signatures.push_back(signature_of(residual, effect_rows(at->problem, at->state, variant)));
+    tests::ScoredFamily again{.candidate_effect = known.candidate_effect, .own = known.own};
+    for (const effects::EffectPtr& variant : known.candidate_effect->variants) {
+      again.signatures.push_back(
+          tests::signature_of(residual, tests::effect_rows(at->problem, at->state, variant)));
       again.score_last(noise);
     }
     if (!again.testable()) continue;
     again.asked = known.asked;
-    again.calibrated = best_of(std::min(0.0, again.priced), again.asked);
-    refine(at->problem, at->state, residual, noise, again);
-    refine_place(at->problem, at->state, residual, noise, again);
+    again.calibrated = tests::best_of(std::min(0.0, again.priced), again.asked);
+    tests::refine(at->problem, at->state, residual, noise, again);
+    tests::refine_place(at->problem, at->state, residual, noise, again);
     families.push_back(std::move(again));
   }
   const auto best = std::min_element(families.begin(), families.end(), [](const auto& a, const auto& b) {
@@ -86,9 +89,9 @@ std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions
   if (best == families.end()) return std::nullopt;
   if (best->candidate_effect->name != name)
     return SecondLook{.alternatives = {}, .better = best->candidate_effect->name};
-  return SecondLook{
-      .alternatives = alternatives_of(families, static_cast<std::size_t>(best - families.begin()), seed),
-      .better = {}};
+  return SecondLook{.alternatives = tests::alternatives_of(
+                        families, static_cast<std::size_t>(best - families.begin()), seed),
+                    .better = {}};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

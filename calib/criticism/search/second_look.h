@@ -13,19 +13,20 @@
 /// the readings tells apart. The fit with the winner says where calibration, attitudes and field really are
 /// and how large the noise is. There the winner is taken out again, without a new fit, and the residual,
 /// which now is the winner's signature and noise, is tested for which of the laws makes it.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct SecondLook {
-  std::vector<Alternative> alternatives{};  ///< of the winner, see alternatives.h
-  std::optional<std::string> better{};      ///< the effect that has the smallest p, when it is not the winner
+  std::vector<tests::Alternative> alternatives{};  ///< of the winner, see alternatives.h
+  std::optional<std::string> better{};  ///< the effect that has the smallest p, when it is not the winner
 };
 
 /// `first`: the judgement of the model without the winner, `winner` its family there; `narrow` that model,
 /// and `with` the fit that has the winner. Empty where that fit leaves as large a misfit as there was before.
-[[nodiscard]] std::optional<SecondLook> second_look(const PoseTable& table, const JointOptions& narrow,
-                                                    const Criticism& first, std::size_t winner,
-                                                    const std::vector<Alternative>& alternatives,
-                                                    double noise_inflation, const JointFit& with,
+[[nodiscard]] std::optional<SecondLook> second_look(const PoseTable& table,
+                                                    const fit::joint::JointOptions& narrow,
+                                                    const tests::Criticism& first, std::size_t winner,
+                                                    const std::vector<tests::Alternative>& alternatives,
+                                                    double noise_inflation, const fit::joint::JointFit& with,
                                                     std::uint64_t seed);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -13,7 +13,7 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 constexpr int kAlways = 3, kWithRemainder = 2;
@@ -48,9 +48,10 @@ int parts(const ExplainReport& report, const Rounds& rounds) {
 /// Axes that the effects of a round were put on one by one.
 std::set<std::string> axes_of(const Round& round) {
   std::set<std::string> out;
-  for (const EffectPtr& effect : round.effects) {
-    const auto spec = EffectSpec::parse(effect->spec());
-    if (spec && spec->where && spec->where->scale == Where::Scale::axis) out.insert(spec->where->text());
+  for (const effects::EffectPtr& effect : round.effects) {
+    const auto spec = effects::EffectSpec::parse(effect->spec());
+    if (spec && spec->where && spec->where->scale == effects::Where::Scale::axis)
+      out.insert(spec->where->text());
   }
   return out;
 }
@@ -58,9 +59,9 @@ std::set<std::string> axes_of(const Round& round) {
 /// Axes on which what a round added is seen, put there or as one of many.
 std::set<std::string> axes_seen_in(const Round& round) {
   std::set<std::string> out = axes_of(round);
-  for (const EffectCoefficient& c : round.added.coefficients) {
-    const auto where = Where::parse(place_of(c));
-    if (where && where->scale == Where::Scale::axis && std::abs(c.value) > kSeen * c.sd)
+  for (const calibration::EffectCoefficient& c : round.added.coefficients) {
+    const auto where = effects::Where::parse(tests::place_of(c));
+    if (where && where->scale == effects::Where::Scale::axis && std::abs(c.value) > kSeen * c.sd)
       out.insert(where->text());
   }
   return out;
@@ -69,13 +70,14 @@ std::set<std::string> axes_seen_in(const Round& round) {
 /// Sensors on which what a round added is seen.
 std::set<std::string> sensors_of(const Round& round) {
   std::set<std::string> out;
-  for (const EffectPtr& effect : round.effects) {
-    const auto spec = EffectSpec::parse(effect->spec());
-    if (spec && spec->where && spec->where->sensor >= 0) out.insert(sensor_name(spec->where->sensor));
+  for (const effects::EffectPtr& effect : round.effects) {
+    const auto spec = effects::EffectSpec::parse(effect->spec());
+    if (spec && spec->where && spec->where->sensor >= 0)
+      out.insert(effects::sensor_name(spec->where->sensor));
   }
-  for (const EffectCoefficient& c : round.added.coefficients) {
-    const auto where = Where::parse(c.name.substr(0, c.name.find('.')));
-    if (where && where->scale == Where::Scale::sensor && std::abs(c.value) > kSeen * c.sd)
+  for (const calibration::EffectCoefficient& c : round.added.coefficients) {
+    const auto where = effects::Where::parse(c.name.substr(0, c.name.find('.')));
+    if (where && where->scale == effects::Where::Scale::sensor && std::abs(c.value) > kSeen * c.sd)
       out.insert(where->text());
   }
   return out;
@@ -126,36 +128,37 @@ std::optional<std::size_t> lesser_part(const ExplainReport& report) {
 }
 
 /// Of all that is beyond the noise, the share on one axis or sensor.
-double share_on(const Criticism& last, const std::string& place) {
-  const auto where = Where::parse(place);
+double share_on(const tests::Criticism& last, const std::string& place) {
+  const auto where = effects::Where::parse(place);
   if (!where) return 0;
-  const AxisNoise ratio = pose_residuals(last.tested->problem, last.tested->state).noise_ratio;
+  const calibration::AxisNoise ratio =
+      fit::joint::pose_residuals(last.tested->problem, last.tested->state).noise_ratio;
   const auto excess = (ratio.array().square() - 1).max(0).eval();
   const double here = where->axis >= 0 ? excess(where->sensor, where->axis) : excess.row(where->sensor).sum();
   return here / std::max(excess.sum(), 1e-300);
 }
 
 /// Whether what is left is left on this axis or sensor, where it is enough to tell.
-bool left_here(const Criticism& last, const std::string& place) {
-  if (local_lack_of_fit_log10_p(last, place) >= std::log10(kLackOfFitAlarm)) return false;
+bool left_here(const tests::Criticism& last, const std::string& place) {
+  if (tests::local_lack_of_fit_log10_p(last, place) >= std::log10(tests::kLackOfFitAlarm)) return false;
   return !last.rejects_omnibus() || share_on(last, place) > kHere;
 }
 
-bool on_one_axis(const Criticism& last, const std::string& sensor) {
+bool on_one_axis(const tests::Criticism& last, const std::string& sensor) {
   return share_on(last, sensor + ".x") > kHere || share_on(last, sensor + ".y") > kHere ||
          share_on(last, sensor + ".z") > kHere;
 }
 
 /// The one axis on which what is left shows; empty where it is not one.
-std::string axis_left(const Criticism& last) {
+std::string axis_left(const tests::Criticism& last) {
   if (!last.rejects_map()) return {};
-  const auto where = Where::parse(last.maps.front().where);
-  return where && where->scale == Where::Scale::axis ? where->text() : std::string{};
+  const auto where = effects::Where::parse(last.maps.front().where);
+  return where && where->scale == effects::Where::Scale::axis ? where->text() : std::string{};
 }
 
 /// Surrogates on a whole sensor, the one with most of what is left; with `spread` only where no one axis of
 /// it holds most of that.
-Surrogates on_sensor(const ExplainReport& report, const Criticism& last, bool spread) {
+Surrogates on_sensor(const ExplainReport& report, const tests::Criticism& last, bool spread) {
   if (!much_is_left(report)) return {};
   Surrogates found;
   double most = 0;
@@ -174,7 +177,7 @@ Surrogates on_sensor(const ExplainReport& report, const Criticism& last, bool sp
 
 }  // namespace
 
-Surrogates find_surrogates(const ExplainReport& report, const Criticism& last,
+Surrogates find_surrogates(const ExplainReport& report, const tests::Criticism& last,
                            const std::set<std::string>& closed) {
   if (report.rounds.empty()) return {};
   if (auto found = on_sensor(report, last, true); found.any()) return found;
@@ -195,4 +198,4 @@ Surrogates find_surrogates(const ExplainReport& report, const Criticism& last,
   return first ? Surrogates{axis, *first} : Surrogates{};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

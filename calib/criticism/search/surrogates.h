@@ -17,7 +17,7 @@
 ///   - two on one sensor that leave more than a tenth of the misfit, most of it on this sensor: nothing is
 ///     then named at all, because what bends a sensor bends the others through the field of the pose;
 ///   - effects, wherever they act, after which most of the misfit is still there, on one axis.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct Surrogates {
   std::string where{};   ///< "s3.z" or "s3"; empty where there are none
@@ -28,7 +28,7 @@ struct Surrogates {
 
 /// In the rounds of `report`, after which `last` was found. What is left on an axis that is `closed` to names
 /// already is no sign against the other rounds.
-[[nodiscard]] Surrogates find_surrogates(const ExplainReport& report, const Criticism& last,
+[[nodiscard]] Surrogates find_surrogates(const ExplainReport& report, const tests::Criticism& last,
                                          const std::set<std::string>& closed);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

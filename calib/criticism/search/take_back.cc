@@ -7,14 +7,14 @@
 #include "calib/effects/where.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// What an axis, or each axis of a sensor, misfits becomes part of its noise.
-void loosen(const JointFit& fit, const std::string& place, JointOptions& options) {
-  const auto where = Where::parse(place);
+void loosen(const fit::joint::JointFit& fit, const std::string& place, fit::joint::JointOptions& options) {
+  const auto where = effects::Where::parse(place);
   if (!where) return;
-  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  const calibration::AxisNoise ratio = fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio;
   for (int axis = 0; axis < 3; ++axis) {
     if (!where->covers(where->sensor, axis)) continue;
     const double residual_nT = fit.pose_noise_nT(where->sensor, axis) * ratio(where->sensor, axis);
@@ -47,13 +47,13 @@ void take_back(const Surrogates& found, EffectSearch& search, ExplainReport& rep
   report.notes.emplace_back(LawOfNoLibrary{found.where, std::move(names)});
   search.joint.effects = found.first == 0 ? search.given : report.rounds[found.first - 1].model;
   report.rounds.resize(found.first);
-  auto before = fit_joint_at_size(search.table, search.joint);
+  auto before = fit::joint::fit_joint_at_size(search.table, search.joint);
   if (!before) return;
   for (const std::string& place : places) loosen(*before, place, search.joint);
-  const JointState warm_start = before->state;
-  before = fit_joint_at_size(search.table, search.joint, &warm_start);
+  const fit::joint::JointState warm_start = before->state;
+  before = fit::joint::fit_joint_at_size(search.table, search.joint, &warm_start);
   if (!before) return;
   search.judge_anew(*before);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -6,14 +6,14 @@
 
 #include "calib/calibration/tensor.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 struct ErrorLevel {
   double nT{0}, nT_per_m{0};
 };
 
-ErrorLevel level_of(const JointErrors& e) {
+ErrorLevel level_of(const fit::joint::JointErrors& e) {
   return {e.residual_nT, tensor_rms(e.summary.tensor_rmse_nT_per_m)};
 }
 
@@ -22,24 +22,24 @@ double beyond(double without, double with) {
 }
 
 Result<ErrorLevel> level_with(const PoseTable& table, const ModelStage& whole,
-                              const std::vector<EffectPtr>& effects) {
+                              const std::vector<effects::EffectPtr>& effects) {
   const auto fit = fit_under_same_weights(table, whole, effects);
   if (!fit) return tl::unexpected(fit.error());
-  return level_of(joint_errors(fit->problem, fit->state, FixedBlock::fitted));
+  return level_of(fit::joint::joint_errors(fit->problem, fit->state, fit::joint::FixedBlock::fitted));
 }
 
 /// Of the tensor when every corrected component has the noise of its pose means.
-double tensor_floor(const JointFit& fit) {
-  const auto rows = gradient_rows(fit.problem.geometry);
+double tensor_floor(const fit::joint::JointFit& fit) {
+  const auto rows = calibration::gradient_rows(fit.problem.geometry);
   double sum = 0;
-  for (int c = 0; c < kChannels; ++c)
+  for (int c = 0; c < sensor::kChannels; ++c)
     sum += rows.col(c).squaredNorm() * std::pow(fit.pose_noise_nT(c / 3, c % 3), 2);
   return std::sqrt(sum / 6);
 }
 
 }  // namespace
 
-Result<Waterfall> waterfall(const PoseTable& table, const FitOptions& options) {
+Result<Waterfall> waterfall(const PoseTable& table, const fit::FitOptions& options) {
   const auto whole = model_stage(table, options);
   if (!whole) return tl::unexpected(whole.error());
   const auto& effects = whole->options.effects;
@@ -53,7 +53,7 @@ Result<Waterfall> waterfall(const PoseTable& table, const FitOptions& options) {
                 .floor_nT = whole->fit.noise_nT(),
                 .floor_nT_per_m = tensor_floor(whole->fit)};
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    std::vector<EffectPtr> others = effects;
+    std::vector<effects::EffectPtr> others = effects;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const auto alone = level_with(table, *whole, {effects[i]});
     if (!alone) return tl::unexpected(alone.error());
@@ -71,4 +71,4 @@ Result<Waterfall> waterfall(const PoseTable& table, const FitOptions& options) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

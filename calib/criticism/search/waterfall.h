@@ -11,7 +11,7 @@
 /// Two orders: added first, to the twelve parameters of each sensor alone, and dropped last, from the whole
 /// model. They agree where effects have nothing in common; what two of them share counts in neither's
 /// "dropped last". Every fit has the weights of the whole model.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 
 struct WaterfallStep {
   std::string effect{}, spec{};
@@ -28,6 +28,6 @@ struct Waterfall {
   double floor_nT{0}, floor_nT_per_m{0};
 };
 
-[[nodiscard]] Result<Waterfall> waterfall(const PoseTable& table, const FitOptions& options);
+[[nodiscard]] Result<Waterfall> waterfall(const PoseTable& table, const fit::FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

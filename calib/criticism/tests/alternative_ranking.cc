@@ -8,7 +8,7 @@
 #include "calib/linear/normal_draws.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr double kHopeless = 0.25;  ///< of the winner's fall of chi-square
@@ -27,7 +27,8 @@ RankedAlternative ranked_alternative_of(const ScoredFamily& family, std::size_t 
                                         double S0) {
   const int alike = family.candidate_effect->hypotheses[score.hypothesis].alike;
   RankedAlternative out{.family = f, .score = &score};
-  out.price = S0 + 2 * std::log(10.0) * (chi_square_log10_p(S0, score.k) + std::log10(alike * family.asked));
+  out.price =
+      S0 + 2 * std::log(10.0) * (stats::chi_square_log10_p(S0, score.k) + std::log10(alike * family.asked));
   out.L = score.S - out.price;
   return out;
 }
@@ -78,7 +79,7 @@ AlternativeRanking::AlternativeRanking(const std::vector<ScoredFamily>& families
 void AlternativeRanking::draw(std::uint64_t seed, int draws) {
   Eigen::MatrixXd gram = U_.transpose() * U_;
   gram.diagonal().array() += kRankingJitter;
-  noise_ = normal_draws(gram, draws, seed);
+  noise_ = linear::normal_draws(gram, draws, seed);
 }
 
 double AlternativeRanking::deficit(const Eigen::VectorXd& best, std::size_t family) const {
@@ -106,4 +107,4 @@ double AlternativeRanking::behind(const RankedAlternative& truth) const {
   return static_cast<double>(noise_inflation) / static_cast<double>(noise_.cols() + 1);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -8,7 +8,7 @@
 
 /// Ranks on one scale all hypotheses that fit almost as well as the winner, and says how they would rank in
 /// other runs. alternatives.h defines the scale L.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct RankedAlternative {
   std::size_t family{0};
@@ -48,4 +48,4 @@ class AlternativeRanking {
   Eigen::MatrixXd noise_;  ///< columns of the space x draws
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -7,7 +7,7 @@
 
 #include "calib/criticism/tests/alternative_ranking.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
@@ -40,8 +40,8 @@ Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredF
   const Hypothesis& won = families[a.family].candidate_effect->hypotheses[a.score->hypothesis];
   if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
   // Of two fields of the site what a dipole has beyond its gradient is as exact as the gradient.
-  const bool exact = family.candidate_effect->level == Level::site &&
-                     families[a.family].candidate_effect->level == Level::site;
+  const bool exact = family.candidate_effect->level == effects::Level::site &&
+                     families[a.family].candidate_effect->level == effects::Level::site;
   out.form_only = !exact && out.alike > kAlike &&
                   family.candidate_effect->reads == families[a.family].candidate_effect->reads;
   out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
@@ -85,4 +85,4 @@ std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& famili
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

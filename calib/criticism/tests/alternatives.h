@@ -27,7 +27,7 @@
 /// pair: of square axes the two would differ by a constant. Laws that read different things differ by what
 /// was measured, and that decides: a gradient that was there from the first pose, against one that came after
 /// it.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Share of a signature, in squares, inside that of another effect from which the two count as one.
 inline constexpr double kAlike = 0.95;
@@ -55,4 +55,4 @@ struct Alternative {
 [[nodiscard]] std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& families,
                                                        std::size_t a, std::uint64_t seed);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

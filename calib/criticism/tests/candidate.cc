@@ -6,16 +6,16 @@
 #include <limits>
 #include <numeric>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr double kUnknownShare = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<EffectCoefficient> coefficients_of(const ScoredFamily& family) {
+std::vector<calibration::EffectCoefficient> coefficients_of(const ScoredFamily& family) {
   const Signature& s = family.signatures[family.winner().variant];
   const OneStep step = one_step(s, family.where());
-  const EffectPtr& effect = family.candidate_effect->variants[family.winner().variant];
-  std::vector<EffectCoefficient> out;
+  const effects::EffectPtr& effect = family.candidate_effect->variants[family.winner().variant];
+  std::vector<calibration::EffectCoefficient> out;
   for (Eigen::Index j = 0; j < step.value.size(); ++j) {
     Eigen::Index of = 0;
     family.where().combine.col(j).maxCoeff(&of);
@@ -51,7 +51,7 @@ Candidate candidate_of(const ScoredFamily& family, const Criticism& c, double no
   return out;
 }
 
-void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candidate& out) {
+void weigh_poses(const fit::joint::JointFit& fit, const std::vector<double>& by_pose, Candidate& out) {
   std::vector<std::size_t> order(by_pose.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return by_pose[a] > by_pose[b]; });
@@ -65,17 +65,19 @@ void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candid
   }
 }
 
-const EffectCoefficient* seen_most(const Candidate& candidate) {
-  const auto sigmas = [](const EffectCoefficient& c) { return std::abs(c.value) / std::max(c.sd, 1e-300); };
+const calibration::EffectCoefficient* seen_most(const Candidate& candidate) {
+  const auto sigmas = [](const calibration::EffectCoefficient& c) {
+    return std::abs(c.value) / std::max(c.sd, 1e-300);
+  };
   const auto found = std::max_element(candidate.coefficients.begin(), candidate.coefficients.end(),
                                       [&](const auto& a, const auto& b) { return sigmas(a) < sigmas(b); });
   return found == candidate.coefficients.end() ? nullptr : &*found;
 }
 
-std::string place_of(const EffectCoefficient& coefficient) {
+std::string place_of(const calibration::EffectCoefficient& coefficient) {
   const std::string& name = coefficient.name;
   const std::size_t sensor_end = name.find('.');
   return name.substr(0, sensor_end == std::string::npos ? sensor_end : name.find('.', sensor_end + 1));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

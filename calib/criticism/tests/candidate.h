@@ -8,7 +8,7 @@
 
 /// An effect that the model may lack, as reports show it: its size, its share of the excess, what else could
 /// stand in its place and the poses that carry its evidence.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct Candidate {
   std::string effect{}, where{};
@@ -18,7 +18,7 @@ struct Candidate {
   double d{0};        ///< sqrt(max(0, S - k)): its size in units of its own uncertainty
   double fall{0};     ///< S, predicted fall of chi-square
   double share{0};    ///< of the excess of chi-square over its degrees of freedom
-  std::vector<EffectCoefficient> coefficients{};
+  std::vector<calibration::EffectCoefficient> coefficients{};
   std::vector<Alternative> alternatives{};
   bool plausible{true};
   std::vector<int> poses{};  ///< numbers of those that carry half of the evidence
@@ -31,12 +31,12 @@ struct Candidate {
                                      double noise_inflation);
 
 /// Fills in the poses that carry half of the evidence, the heaviest first; `by_pose` by place in the fit.
-void weigh_poses(const JointFit& fit, const std::vector<double>& by_pose, Candidate& out);
+void weigh_poses(const fit::joint::JointFit& fit, const std::vector<double>& by_pose, Candidate& out);
 
 /// The coefficient that stands out most from its uncertainty; null where there is none.
-[[nodiscard]] const EffectCoefficient* seen_most(const Candidate& candidate);
+[[nodiscard]] const calibration::EffectCoefficient* seen_most(const Candidate& candidate);
 
 /// Where a coefficient acts: "s2.z" of "s2.z" and of "s2.z.squares", "s2" of "s2".
-[[nodiscard]] std::string place_of(const EffectCoefficient& coefficient);
+[[nodiscard]] std::string place_of(const calibration::EffectCoefficient& coefficient);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

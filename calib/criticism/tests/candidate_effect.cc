@@ -9,7 +9,7 @@
 
 #include "calib/effects/where.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// "s3.z.tau1" in parts; axis -1 for what belongs to no single axis.
@@ -46,19 +46,20 @@ Hypothesis summed(std::string where, int axes, int alike, Eigen::Index finest, c
   return out;
 }
 
-Hypothesis everything(const Effect& effect, std::string where) {
+Hypothesis everything(const effects::Effect& effect, std::string where) {
   const auto n = static_cast<Eigen::Index>(effect.coefficients().size());
   Hypothesis out{
       .where = std::move(where), .axes = 12, .combine = Eigen::MatrixXd::Identity(n, n), .names = {}};
-  for (const Coefficient& c : effect.coefficients()) out.names.push_back(c.name);
+  for (const effects::Coefficient& c : effect.coefficients()) out.names.push_back(c.name);
   return out;
 }
 
 /// An effect of site, table or platform as a whole and, where each sensor has coefficients of its own, sensor
 /// by sensor.
-std::vector<Hypothesis> whole_and_sensors(const Effect& effect) {
-  const bool site = effect.level() == Level::site || effect.level() == Level::reference;
-  std::vector<Hypothesis> out{everything(effect, site ? "site" : std::string(to_string(effect.level())))};
+std::vector<Hypothesis> whole_and_sensors(const effects::Effect& effect) {
+  const bool site = effect.level() == effects::Level::site || effect.level() == effects::Level::reference;
+  std::vector<Hypothesis> out{
+      everything(effect, site ? "site" : std::string(effects::to_string(effect.level())))};
   const auto& coefficients = effect.coefficients();
   const auto n = static_cast<Eigen::Index>(coefficients.size());
   std::array<Groups, 4> sensor;
@@ -76,8 +77,8 @@ std::vector<Hypothesis> whole_and_sensors(const Effect& effect) {
 
 }  // namespace
 
-std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
-  if (finest.level() != Level::axis) return whole_and_sensors(finest);
+std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest) {
+  if (finest.level() != effects::Level::axis) return whole_and_sensors(finest);
   std::vector<Hypothesis> out{everything(finest, "each-axis")};
   const auto& coefficients = finest.coefficients();
   const auto n = static_cast<Eigen::Index>(coefficients.size());
@@ -96,10 +97,11 @@ std::vector<Hypothesis> hypotheses_of(const Effect& finest) {
     axis[3 * s + static_cast<std::size_t>(p.axis)][name].push_back(i);
   }
   for (std::size_t a = 0; a < axis.size(); ++a) {
-    out.push_back(summed(channel_name(static_cast<int>(a)), 1, 12, n, axis[a]));
+    out.push_back(summed(sensor::channel_name(static_cast<int>(a)), 1, 12, n, axis[a]));
   }
-  const bool alike = std::all_of(coefficients.begin(), coefficients.end(),
-                                 [](const Coefficient& c) { return c.name.size() == 4 || c.name[4] == '.'; });
+  const bool alike = std::all_of(coefficients.begin(), coefficients.end(), [](const effects::Coefficient& c) {
+    return c.name.size() == 4 || c.name[4] == '.';
+  });
   if (!alike) return out;
   out.push_back(summed("each-sensor", 12, 1, n, sensors));
   for (std::size_t s = 0; s < sensor.size(); ++s)
@@ -112,11 +114,11 @@ std::string spec_of(const CandidateEffect& candidate_effect, const Hypothesis& h
                     std::size_t variant) {
   if (candidate_effect.dipole_at) return candidate_effect.variants[variant]->spec();
   std::string out = candidate_effect.name;
-  const auto where = Where::parse(hypothesis.where);
-  if (where && where->scale != Where::Scale::own) out += "@" + hypothesis.where;
+  const auto where = effects::Where::parse(hypothesis.where);
+  if (where && where->scale != effects::Where::Scale::own) out += "@" + hypothesis.where;
   if (variant < candidate_effect.values.size() && candidate_effect.values[variant])
     out += fmt::format(",{}={:.6g}", candidate_effect.parameter, *candidate_effect.values[variant]);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

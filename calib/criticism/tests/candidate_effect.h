@@ -11,7 +11,7 @@
 
 /// A candidate effect is a family of effects that is tested at several scales and, where it has a fixed
 /// number, at several values of it.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// One question: coefficients of the finest scale, combined. Column j of `combine` says which of them are
 /// one.
@@ -25,8 +25,9 @@ struct Hypothesis {
 
 struct CandidateEffect {
   std::string name{};
-  Level level{Level::axis};
-  std::vector<EffectPtr> variants{};  ///< finest scale; one, or one for each value of the fixed number
+  effects::Level level{effects::Level::axis};
+  std::vector<effects::EffectPtr>
+      variants{};  ///< finest scale; one, or one for each value of the fixed number
   /// Of the searched number, as many as variants; an empty one is the form without it.
   std::vector<std::optional<double>> values{};
   std::string parameter{};  ///< its name
@@ -35,12 +36,13 @@ struct CandidateEffect {
   std::string reads{};
   std::vector<Hypothesis> hypotheses{};
   /// The effect of one hypothesis, for the model; null: at its finest scale.
-  std::function<Result<EffectPtr>(const Hypothesis*, const std::optional<double>& value)> make{};
+  std::function<Result<effects::EffectPtr>(const Hypothesis*, const std::optional<double>& value)> make{};
   /// A value of the searched number between two others; empty where there is none. See scan_refinement.h.
   std::function<std::optional<double>(double lower, double upper)> between{};
   /// A dipole at a place (site frame, m), with the searched number of one of the variants: coefficients
   /// moment, then shift. Empty for a law that has none. See dipole_search.h.
-  std::function<Result<EffectPtr>(const Eigen::Vector3d& place_S_m, const std::optional<double>& value)>
+  std::function<Result<effects::EffectPtr>(const Eigen::Vector3d& place_S_m,
+                                           const std::optional<double>& value)>
       dipole_at{};
 };
 
@@ -55,14 +57,14 @@ struct CandidateEffects {
 };
 
 /// Hypotheses of an effect at its finest scale. Effects of the axes have coefficients "s3.z" or "s3.z.name".
-[[nodiscard]] std::vector<Hypothesis> hypotheses_of(const Effect& finest);
+[[nodiscard]] std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest);
 
 /// Every effect of the library on this run, less those called like one of `left_out`.
 [[nodiscard]] CandidateEffects library_candidates(const PoseTable& table,
-                                                  const std::vector<EffectPtr>& left_out = {});
+                                                  const std::vector<effects::EffectPtr>& left_out = {});
 
 /// The effect of a hypothesis, as `--with` reads it: "axis.offset.temperature@s3.z".
 [[nodiscard]] std::string spec_of(const CandidateEffect& candidate_effect, const Hypothesis& hypothesis,
                                   std::size_t variant);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -13,7 +13,7 @@
 #include "calib/linear/qr.h"
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr double kWorthTelling = 0.3;  ///< correlation
@@ -21,18 +21,18 @@ constexpr std::size_t kNamedAtMost = 5;
 
 /// Share of the length of `Z` that lies in the space of `B`, as a correlation; columns of Z counted alike.
 double correlation(const Eigen::MatrixXd& Z, const Eigen::MatrixXd& B) {
-  const Eigen::MatrixXd Q = column_space(B, B.colwise().norm(), kAbsorbed);
+  const Eigen::MatrixXd Q = linear::column_space(B, B.colwise().norm(), kAbsorbed);
   if (Q.cols() == 0) return 0;
   return std::sqrt((Q.transpose() * Z).squaredNorm() / Z.squaredNorm());
 }
 
-std::vector<Collinearity> alike(const JointFit& fit, const Residual& residual, const PoseTable& table,
-                                const Eigen::MatrixXd& Z) {
+std::vector<Collinearity> alike(const fit::joint::JointFit& fit, const Residual& residual,
+                                const PoseTable& table, const Eigen::MatrixXd& Z) {
   std::vector<Collinearity> out;
   const CandidateEffects library = library_candidates(table, fit.problem.effects);
   for (const CandidateEffect& candidate_effect : library.testable) {
     Collinearity r{.effect = candidate_effect.name};
-    for (const EffectPtr& variant : candidate_effect.variants) {
+    for (const effects::EffectPtr& variant : candidate_effect.variants) {
       const auto B = residual.project(effect_rows(fit.problem, fit.state, variant)).projected;
       r.correlation = std::max(r.correlation, correlation(Z, B));
     }
@@ -64,50 +64,50 @@ void tell_coefficients(const CandidateEffect& candidate_effect, const ScoredFami
 
 double FormulaExamination::d() const { return std::sqrt(std::max(0.0, S - rank)); }
 
-Result<CandidateEffect> formula_candidate(const EffectSpec& formula) {
-  const auto scan = open_scan(formula);
+Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula) {
+  const auto scan = effects::formula::open_scan(formula);
   CandidateEffect out{.name = formula.name};
-  const std::vector<double> values = scan ? scan_values(*scan) : std::vector<double>{0};
+  const std::vector<double> values = scan ? effects::formula::scan_values(*scan) : std::vector<double>{0};
   for (const double value : values) {
-    EffectSpec spec = formula;
+    effects::EffectSpec spec = formula;
     if (scan) spec.set(scan->parameter, value);
-    auto effect = make_formula(spec);
+    auto effect = effects::formula::make_formula(spec);
     if (!effect) return tl::unexpected(effect.error());
     out.variants.push_back(std::move(*effect));
     out.values.push_back(scan ? std::optional(value) : std::nullopt);
   }
-  const Effect& first = *out.variants.front();
+  const effects::Effect& first = *out.variants.front();
   out.level = first.level();
   if (scan) out.parameter = scan->parameter;
   out.typical = first.coefficients().front().typical;
   const auto n = static_cast<Eigen::Index>(first.coefficients().size());
-  const auto own = EffectSpec::parse(first.spec());
-  const bool whole = !own || !own->where || own->where->scale == Where::Scale::own;
-  Hypothesis everything{.where = whole ? std::string(to_string(out.level)) : own->where->text(),
+  const auto own = effects::EffectSpec::parse(first.spec());
+  const bool whole = !own || !own->where || own->where->scale == effects::Where::Scale::own;
+  Hypothesis everything{.where = whole ? std::string(effects::to_string(out.level)) : own->where->text(),
                         .axes = !whole && own->where->axis >= 0     ? 1
                                 : !whole && own->where->sensor >= 0 ? 3
                                                                     : 12,
                         .combine = Eigen::MatrixXd::Identity(n, n),
                         .names = {}};
-  for (const Coefficient& c : first.coefficients()) everything.names.push_back(c.name);
+  for (const effects::Coefficient& c : first.coefficients()) everything.names.push_back(c.name);
   out.hypotheses = {std::move(everything)};
   out.make = [formula, scan](const Hypothesis*, const std::optional<double>& value) {
-    EffectSpec spec = formula;
+    effects::EffectSpec spec = formula;
     if (scan && value) spec.set(scan->parameter, *value);
-    return make_formula(spec);
+    return effects::formula::make_formula(spec);
   };
   return out;
 }
 
-Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOptions& options,
-                                           const EffectSpec& formula) {
+Result<FormulaExamination> examine_formula(const PoseTable& table, const fit::FitOptions& options,
+                                           const effects::EffectSpec& formula) {
   const auto candidate_effect = formula_candidate(formula);
   if (!candidate_effect) return tl::unexpected(candidate_effect.error());
-  for (const EffectPtr& variant : candidate_effect->variants) {
+  for (const effects::EffectPtr& variant : candidate_effect->variants) {
     if (const auto ok = variant->check(table); !ok) return tl::unexpected(ok.error());
-    if (const auto ok = check_derivatives(*variant, table); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = effects::check_derivatives(*variant, table); !ok) return tl::unexpected(ok.error());
   }
-  const auto fit = fit_joint(table, joint_options(options));
+  const auto fit = fit::joint::fit_joint(table, fit::joint::joint_options(options));
   if (!fit) return tl::unexpected(fit.error());
   Residual residual(fit->problem, fit->state, pose_correlation(fit->problem, fit->state));
   const NoiseModel noise = noise_model(*fit, residual);
@@ -127,4 +127,4 @@ Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOpti
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

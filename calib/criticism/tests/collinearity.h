@@ -8,7 +8,7 @@
 
 /// Examines a user's formula on a run before it is used: how much of it the calibration absorbs, how large it
 /// would have to be to be seen, and with which known effects it is collinear.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct Collinearity {
   std::string effect{};
@@ -23,7 +23,7 @@ struct FormulaExamination {
   double absorbed{0};  ///< share of its signature, in squares, that calibration, attitude and field take up
   int k{0}, rank{0};   ///< coefficients, and how many of them the poses can tell
   double S{0}, log10_p{0};  ///< score test of this question alone, on this run
-  std::vector<EffectCoefficient> coefficients{};
+  std::vector<calibration::EffectCoefficient> coefficients{};
   double detectable{0};  ///< smallest value of its worst coefficient that is seen in 99 of 100 runs like this
   std::string unit{};
   std::vector<Collinearity> alike{};  ///< strongest first; at most five
@@ -34,10 +34,11 @@ struct FormulaExamination {
 
 /// `formula` on top of the model of `options`. Refuses what a fit refuses, and derivatives that are no
 /// derivatives (derivative_check.h).
-[[nodiscard]] Result<FormulaExamination> examine_formula(const PoseTable& table, const FitOptions& options,
-                                                         const EffectSpec& formula);
+[[nodiscard]] Result<FormulaExamination> examine_formula(const PoseTable& table,
+                                                         const fit::FitOptions& options,
+                                                         const effects::EffectSpec& formula);
 
 /// A formula as one of the candidates of explain(), at the scale it was given.
-[[nodiscard]] Result<CandidateEffect> formula_candidate(const EffectSpec& formula);
+[[nodiscard]] Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -16,7 +16,7 @@
 #include "calib/stats/chi_square.h"
 #include "calib/stats/f_distribution.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr std::size_t kBins = 8;
@@ -27,31 +27,33 @@ struct Covariate {
   std::vector<double> values;  ///< by pose; NaN where it is not known
 };
 
-std::vector<Covariate> covariates(const JointProblem& problem) {
+std::vector<Covariate> covariates(const fit::joint::JointProblem& problem) {
   std::vector<Covariate> out;
   const auto add = [&](std::string name, auto&& value) {
     Covariate c{std::move(name), {}};
     std::set<double> different;
-    for (const JointPose& pose : problem.poses) {
+    for (const fit::joint::JointPose& pose : problem.poses) {
       c.values.push_back(value(pose));
       if (std::isfinite(c.values.back())) different.insert(c.values.back());
     }
     if (different.size() > 1) out.push_back(std::move(c));
   };
-  add("time_h", [](const JointPose& p) { return p.t_h; });
-  add("azimuth_deg",
-      [](const JointPose& p) { return p.pose->azimuth_rad ? to_deg(*p.pose->azimuth_rad) : kNone; });
+  add("time_h", [](const fit::joint::JointPose& p) { return p.t_h; });
+  add("azimuth_deg", [](const fit::joint::JointPose& p) {
+    return p.pose->azimuth_rad ? to_deg(*p.pose->azimuth_rad) : kNone;
+  });
   for (std::size_t i = 0; i < kSensors; ++i) {
     add(fmt::format("s{}_T_degC", i + 1),
-        [i](const JointPose& p) { return p.pose->T_degC[i].value_or(kNone); });
+        [i](const fit::joint::JointPose& p) { return p.pose->T_degC[i].value_or(kNone); });
   }
-  add("mount",
-      [](const JointPose& p) { return p.pose->mount ? static_cast<double>(*p.pose->mount) : kNone; });
+  add("mount", [](const fit::joint::JointPose& p) {
+    return p.pose->mount ? static_cast<double>(*p.pose->mount) : kNone;
+  });
   std::set<std::string> columns;
-  for (const JointPose& pose : problem.poses)
+  for (const fit::joint::JointPose& pose : problem.poses)
     for (const auto& [name, value] : pose.pose->covariates) columns.insert(name);
   for (const std::string& column : columns) {
-    add(column, [&](const JointPose& p) {
+    add(column, [&](const fit::joint::JointPose& p) {
       const auto found = p.pose->covariates.find(column);
       return found == p.pose->covariates.end() ? kNone : found->second;
     });
@@ -110,7 +112,7 @@ double log10_p_of(const Eigen::VectorXd& values, const std::vector<std::vector<E
   }
   const double groups = static_cast<double>(bins.size());
   if (groups < 2 || n <= groups || !(within > 0)) return 0;
-  return f_log10_p(between / (groups - 1) / (within / (n - groups)), groups - 1, n - groups);
+  return stats::f_log10_p(between / (groups - 1) / (within / (n - groups)), groups - 1, n - groups);
 }
 
 struct Component {
@@ -155,21 +157,21 @@ struct Fields {
   Eigen::MatrixXd attitude_deg;        ///< 3 x P
 };
 
-Fields fields_of(const JointFit& fit) {
+Fields fields_of(const fit::joint::JointFit& fit) {
   const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
-  Fields out{Eigen::MatrixXd(kChannels, n), Eigen::MatrixXd(kChannels, n), Eigen::MatrixXd(kSensors, n),
-             Eigen::MatrixXd::Zero(3, n)};
-  const PoseModel model(fit.problem, fit.state);
-  PoseLinear linear;
+  Fields out{Eigen::MatrixXd(sensor::kChannels, n), Eigen::MatrixXd(sensor::kChannels, n),
+             Eigen::MatrixXd(kSensors, n), Eigen::MatrixXd::Zero(3, n)};
+  const fit::joint::PoseModel model(fit.problem, fit.state);
+  fit::joint::PoseLinear linear;
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto at = static_cast<std::size_t>(k);
-    const JointPose& pose = fit.problem.poses[at];
+    const fit::joint::JointPose& pose = fit.problem.poses[at];
     model.linearise(pose, fit.state.nuisances[at], linear);
-    const Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
+    const fit::joint::Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
     out.whitened.col(k) = fit.noise_inflation * pose.weight.cwiseProduct(e);
     const double field = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
     for (int i = 0; i < kSensors; ++i) {
-      const SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
+      const sensor::SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
       const Eigen::Vector3d b = s.correct(linear.y_nT.segment<3>(3 * i));
       const Eigen::Vector3d delta = s.R_PS() * (s.response().inverse() * e.segment<3>(3 * i));
       out.delta_nT.block<3, 1>(3 * i, k) = delta;
@@ -180,12 +182,12 @@ Fields fields_of(const JointFit& fit) {
   return out;
 }
 
-std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<Covariate>& all) {
+std::vector<ResidualChannel> channels_of(const fit::joint::JointFit& fit, const std::vector<Covariate>& all) {
   const Fields f = fields_of(fit);
   std::vector<Component> whitened, scalar, attitude, between, closure;
-  const Eigen::MatrixXd closures = closure_rows(fit.problem.geometry) * f.delta_nT;
-  for (int c = 0; c < kChannels; ++c) {
-    const std::string axis = channel_name(c);
+  const Eigen::MatrixXd closures = calibration::closure_rows(fit.problem.geometry) * f.delta_nT;
+  for (int c = 0; c < sensor::kChannels; ++c) {
+    const std::string axis = sensor::channel_name(c);
     whitened.push_back({axis, f.whitened.row(c)});
     Eigen::VectorXd d = f.delta_nT.row(c);
     for (int i = 0; i < kSensors; ++i) d -= f.delta_nT.row(3 * i + c % 3).transpose() / kSensors;
@@ -216,14 +218,14 @@ std::vector<ResidualChannel> channels_of(const JointFit& fit, const std::vector<
 
 }  // namespace
 
-Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
-  const auto joint = profiled_options(table, options);
+Result<Comparison> compare(const PoseTable& table, const fit::FitOptions& options) {
+  const auto joint = fit::joint::profiled_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
-  const auto fit = fit_joint_at_size(table, *joint);
+  const auto fit = fit::joint::fit_joint_at_size(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
   Criticism c = criticise(*fit, CandidateEffects{}, options.seed);
   look_at_maps(c);
-  const PoseResiduals residuals = pose_residuals(fit->problem, fit->state);
+  const fit::joint::PoseResiduals residuals = fit::joint::pose_residuals(fit->problem, fit->state);
   Comparison out{.noise = c.noise,
                  .noise_nT = fit->noise_nT(),
                  .residual_nT = residuals.residual_nT(),
@@ -233,7 +235,7 @@ Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
   if (c.noise.reference.known) {
     out.log10_p = c.omnibus_log10_p;
   } else if (c.noise.known && !c.noise.correlated()) {
-    out.log10_p = chi_square_log10_p(out.chi2, out.dof);
+    out.log10_p = stats::chi_square_log10_p(out.chi2, out.dof);
   }
 
   out.table_sd_deg = to_deg(fit->table_sd_rad);
@@ -246,4 +248,4 @@ Result<Comparison> compare(const PoseTable& table, const FitOptions& options) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

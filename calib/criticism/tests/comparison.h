@@ -12,7 +12,7 @@
 
 /// Compares model and measurement: how large the noise is, whether the model fits within it, and where it
 /// fails. It names no cause; explain.h does.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Means of a residual over equally filled bins of a covariate, against what chance makes of them.
 struct Dependence {
@@ -37,11 +37,13 @@ struct ResidualChannel {
 
 struct Comparison {
   NoiseModel noise;
-  double noise_nT{0};                             ///< of a pose mean
-  double residual_nT{0};                          ///< as PoseResiduals tells it
-  AxisNoise axis_noise_nT{AxisNoise::Zero()};     ///< of a pose mean as it was weighted
-  AxisNoise axis_residual_nT{AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
-  double chi2{0}, dof{0};                         ///< of readings, scalar reference and table angles together
+  double noise_nT{0};     ///< of a pose mean
+  double residual_nT{0};  ///< as PoseResiduals tells it
+  calibration::AxisNoise axis_noise_nT{
+      calibration::AxisNoise::Zero()};  ///< of a pose mean as it was weighted
+  calibration::AxisNoise axis_residual_nT{
+      calibration::AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
+  double chi2{0}, dof{0};               ///< of readings, scalar reference and table angles together
   /// Probability that the noise alone makes so large a residual; empty where the noise is not known.
   std::optional<double> log10_p{};
   double table_sd_deg{0};
@@ -49,10 +51,10 @@ struct Comparison {
   /// Covariates that order the poses as another one does, by name, with that one; only that one is shown.
   std::vector<std::pair<std::string, std::string>> alike{};
   std::vector<MapScore> maps{};
-  std::vector<OutlierNode> outliers{};
+  std::vector<fit::OutlierNode> outliers{};
   bool fits{true};  ///< no map and no size stands out: one clean run in three hundred fails
 };
 
-[[nodiscard]] Result<Comparison> compare(const PoseTable& table, const FitOptions& options);
+[[nodiscard]] Result<Comparison> compare(const PoseTable& table, const fit::FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

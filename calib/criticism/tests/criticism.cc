@@ -10,7 +10,7 @@
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// A residual larger than its noise, where that is known.
@@ -18,7 +18,7 @@ void judge_size(Criticism& out) {
   const NoiseReference& n = out.noise.reference;
   if (!n.known) return;
   if (std::isinf(n.nu)) {
-    out.omnibus_log10_p = chi_square_log10_p(n.chi2, out.dof);
+    out.omnibus_log10_p = stats::chi_square_log10_p(n.chi2, out.dof);
   } else if (out.noise.revisits) {
     out.omnibus_log10_p = out.noise.revisits->log10_p;
   }
@@ -26,21 +26,22 @@ void judge_size(Criticism& out) {
 
 /// A channel that scatters less than its noise. The scalar reference, whose uncertainty is often only a
 /// bound, says nothing here.
-void find_low_scatter(const JointFit& fit, Criticism& out) {
+void find_low_scatter(const fit::joint::JointFit& fit, Criticism& out) {
   if (!out.noise.reference.known) return;
-  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
+  const calibration::AxisNoise ratio = fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio;
   Eigen::Index sensor = 0, axis = 0;
   out.low_scatter_ratio = ratio.minCoeff(&sensor, &axis);
   out.low_scatter = fmt::format("s{}.{}", sensor + 1, "xyz"[axis]);
-  const double nu = out.dof / kChannels;
-  const double more = chi_square_p(std::pow(out.low_scatter_ratio, 2) * nu, nu);
-  out.low_scatter_log10_p = std::min(0.0, std::log10(kChannels * std::max(1 - more, 1e-300)));
+  const double nu = out.dof / sensor::kChannels;
+  const double more = stats::chi_square_p(std::pow(out.low_scatter_ratio, 2) * nu, nu);
+  out.low_scatter_log10_p = std::min(0.0, std::log10(sensor::kChannels * std::max(1 - more, 1e-300)));
 }
 
 /// The model holds this law: nothing of it is left to test.
-bool in_model(const JointProblem& problem, const CandidateEffect& candidate_effect) {
-  return std::any_of(problem.effects.begin(), problem.effects.end(),
-                     [&](const EffectPtr& effect) { return effect->name() == candidate_effect.name; });
+bool in_model(const fit::joint::JointProblem& problem, const CandidateEffect& candidate_effect) {
+  return std::any_of(problem.effects.begin(), problem.effects.end(), [&](const effects::EffectPtr& effect) {
+    return effect->name() == candidate_effect.name;
+  });
 }
 
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
@@ -68,7 +69,7 @@ double largest_S(const std::vector<ScoredFamily>& families) {
 /// Families that could still win with a better number. A dipole makes the gradient that is seen, once its
 /// place is known: it comes as near as site.gradient does. A dipole that came during the run is looked for
 /// where a step of the site is what stands out most.
-void refine_alternatives(const JointFit& fit, Criticism& out) {
+void refine_alternatives(const fit::joint::JointFit& fit, Criticism& out) {
   constexpr double kInReach = 0.6;  // of the largest score
   const double largest = largest_S(out.families);
   double of_gradient = 0;
@@ -89,9 +90,9 @@ void refine_alternatives(const JointFit& fit, Criticism& out) {
   }
 }
 
-Criticism tested(const JointFit& fit, Residual residual, const CandidateEffects& candidate_effects,
-                 std::uint64_t seed, const Rates* before) {
-  Criticism out{.residual = std::move(residual), .tested = std::make_shared<const JointFit>(fit)};
+Criticism tested(const fit::joint::JointFit& fit, Residual residual,
+                 const CandidateEffects& candidate_effects, std::uint64_t seed, const Rates* before) {
+  Criticism out{.residual = std::move(residual), .tested = std::make_shared<const fit::joint::JointFit>(fit)};
   out.noise = noise_model(fit, out.residual);
   out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
   out.residual.measure_by(out.noise.reference.scale2);
@@ -114,15 +115,15 @@ Criticism tested(const JointFit& fit, Residual residual, const CandidateEffects&
   return out;
 }
 
-Residual among_poses(const JointFit& fit) {
+Residual among_poses(const fit::joint::JointFit& fit) {
   return {fit.problem, fit.state, pose_correlation(fit.problem, fit.state)};
 }
 
 /// Channels whose residual is beyond their noise by more than chance makes it.
-int noisier_channels(const JointFit& fit) {
+int noisier_channels(const fit::joint::JointFit& fit) {
   constexpr double kSigmas = 3;
-  const AxisNoise ratio = pose_residuals(fit.problem, fit.state).noise_ratio;
-  const double chance = std::sqrt(2 * kChannels / std::max(fit.dof, 1.0));
+  const calibration::AxisNoise ratio = fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio;
+  const double chance = std::sqrt(2 * sensor::kChannels / std::max(fit.dof, 1.0));
   return static_cast<int>((ratio.array().square() > 1 + kSigmas * chance).count());
 }
 
@@ -132,26 +133,28 @@ bool contradicts_dwells(const Criticism& c) {
   constexpr double kHalf = 0.5;
   constexpr double kRevisitsAgree_log10_p = -3;
   constexpr double kUnequal = 40;  // chi-square with eleven degrees of freedom where all channels are alike
-  constexpr int kNoisier = kChannels / 2;  // fewer: something is with these few, and no noise of the dwells
+  constexpr int kNoisier =
+      sensor::kChannels / 2;  // fewer: something is with these few, and no noise of the dwells
   const NoiseReference& n = c.noise.reference;
   if (!n.from_dwells() || !c.rejects_omnibus()) return false;
   if (c.noise.revisits && c.noise.revisits->log10_p < kRevisitsAgree_log10_p) return false;
-  if (noisier_channels(*c.tested) < kNoisier || unequal_noise_evidence(*c.tested) > kUnequal) return false;
+  if (noisier_channels(*c.tested) < kNoisier || fit::joint::unequal_noise_evidence(*c.tested) > kUnequal)
+    return false;
   double largest = 0;
   for (const ScoredFamily& f : c.families) largest = std::max(largest, f.winner().S - f.winner().k);
   return largest < kHalf * (n.chi2 - n.dof);
 }
 
 /// The noise of each axis by what the fit left there, whatever the dwells say.
-JointFit weighed_by_residual(const JointFit& fit) {
+fit::joint::JointFit weighed_by_residual(const fit::joint::JointFit& fit) {
   constexpr int kRounds = 3;
-  JointFit out = fit;
+  fit::joint::JointFit out = fit;
   out.sample_noise_nT.reset();
   for (int i = 0; i < kRounds; ++i) {
-    const AxisNoise ratio = pose_residuals(out.problem, out.state).noise_ratio;
-    for (JointPose& pose : out.problem.poses)
-      for (int c = 0; c < kChannels; ++c) pose.weight[c] /= ratio(c / 3, c % 3);
-    refit_nuisances(out.problem, out.state);
+    const calibration::AxisNoise ratio = fit::joint::pose_residuals(out.problem, out.state).noise_ratio;
+    for (fit::joint::JointPose& pose : out.problem.poses)
+      for (int c = 0; c < sensor::kChannels; ++c) pose.weight[c] /= ratio(c / 3, c % 3);
+    fit::joint::refit_nuisances(out.problem, out.state);
   }
   return out;
 }
@@ -166,7 +169,7 @@ std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
   const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
   std::vector<double> out;
   for (Eigen::Index k = 0; k < residual.poses(); ++k)
-    out.push_back(product.segment<kChannels>(k * kChannels).sum());
+    out.push_back(product.segment<sensor::kChannels>(k * sensor::kChannels).sum());
   return out;
 }
 
@@ -178,38 +181,39 @@ bool Criticism::rejects_map() const {
 }
 bool Criticism::rejects_omnibus() const { return below(omnibus_log10_p, kOmnibusAlarm); }
 
-Criticism criticise(const JointFit& fit, const CandidateEffects& candidate_effects, std::uint64_t seed,
-                    const Rates* before) {
+Criticism criticise(const fit::joint::JointFit& fit, const CandidateEffects& candidate_effects,
+                    std::uint64_t seed, const Rates* before) {
   Criticism out = tested(fit, among_poses(fit), candidate_effects, seed, before);
   if (!contradicts_dwells(out)) return out;
   const double chi2 = out.chi2;
   const Rates rates = std::move(out.rates);
   const std::optional<PureError> revisits = out.noise.revisits;
-  const JointFit again = weighed_by_residual(fit);
+  const fit::joint::JointFit again = weighed_by_residual(fit);
   out = tested(again, among_poses(again), candidate_effects, seed, &rates);
   out.chi2 = chi2;
   out.noise.known = true;
   out.noise.revisits = revisits;
   out.noise.beyond_dwells =
-      std::sqrt(pose_residuals(fit.problem, fit.state).noise_ratio.array().square().mean());
+      std::sqrt(fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio.array().square().mean());
   return out;
 }
 
-Criticism criticise_against_walk(const JointFit& fit, const WanderingRates& nT_per_sqrt_h,
+Criticism criticise_against_walk(const fit::joint::JointFit& fit,
+                                 const fit::joint::WanderingRates& nT_per_sqrt_h,
                                  const CandidateEffects& candidate_effects, std::uint64_t seed,
                                  const Rates* before) {
   return tested(fit, Residual(fit.problem, fit.state, 0, nT_per_sqrt_h), candidate_effects, seed, before);
 }
 
-double chi2_at_stated_noise(const JointFit& fit, const Criticism& c, double table_sd_rad) {
+double chi2_at_stated_noise(const fit::joint::JointFit& fit, const Criticism& c, double table_sd_rad) {
   const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
   return (c.chi2 - fit.chi2_table) * fit.noise_inflation * fit.noise_inflation + fit.chi2_table * angles;
 }
 
 void look_at_maps(Criticism& criticism) {
-  const JointFit& fit = *criticism.tested;
+  const fit::joint::JointFit& fit = *criticism.tested;
   criticism.maps =
       score_maps(residual_maps(fit.problem, fit.state), criticism.residual, criticism.noise.reference);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -3,12 +3,13 @@
 
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 Detectable detectable_of(const CandidateEffect& candidate_effect, const Signature& s) {
   Detectable out{.effect = candidate_effect.name};
   for (const Hypothesis& h : candidate_effect.hypotheses) {
-    if (candidate_effect.level == Level::axis ? h.axes != 1 : &h != &candidate_effect.hypotheses.front())
+    if (candidate_effect.level == effects::Level::axis ? h.axes != 1
+                                                       : &h != &candidate_effect.hypotheses.front())
       continue;
     for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
       const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
@@ -24,4 +25,4 @@ Detectable detectable_of(const CandidateEffect& candidate_effect, const Signatur
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

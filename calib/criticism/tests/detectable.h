@@ -7,7 +7,7 @@
 /// The smallest size of an effect that a run would show. A coefficient with standard error s, everything else
 /// of the model free, is found at d = value / s = 8 in 99 of 100 runs and named right in nine cases of ten,
 /// with one chance in a hundred of a false alarm over the whole library.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 inline constexpr double kSeen = 8;
 
@@ -22,4 +22,4 @@ struct Detectable {
 /// coefficient leaves a trace.
 [[nodiscard]] Detectable detectable_of(const CandidateEffect& candidate_effect, const Signature& signature);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -9,7 +9,7 @@
 
 #include "calib/linear/ldlt.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr double kNearest_m = 0.3, kFarthest_m = 3;
@@ -30,8 +30,8 @@ struct DipolePlace {
 
 class DipoleSearch {
  public:
-  DipoleSearch(const JointProblem& problem, const JointState& state, const Residual& residual,
-               const DipoleAt& dipole)
+  DipoleSearch(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+               const Residual& residual, const DipoleAt& dipole)
       : problem_(problem), state_(state), residual_(residual), dipole_(dipole) {}
 
   [[nodiscard]] DipolePlace at(const Eigen::Vector3d& place_S_m) const {
@@ -64,7 +64,7 @@ class DipoleSearch {
     return out;
   }
 
-  [[nodiscard]] Signature both(const DipolePlace& place, const EffectPtr& effect) const {
+  [[nodiscard]] Signature both(const DipolePlace& place, const effects::EffectPtr& effect) const {
     Eigen::VectorXd c = Eigen::VectorXd::Zero(6);
     c.head<3>() = place.moment;
     return signature_of(residual_, effect_rows(problem_, state_, effect, c));
@@ -100,7 +100,7 @@ class DipoleSearch {
     g -= s.gram.leftCols<3>() * from.moment;
     const Eigen::VectorXd d = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd scaled =
-        solve_by_ldlt(d.asDiagonal() * M * d.asDiagonal(), Eigen::VectorXd(d.cwiseProduct(g)));
+        linear::solve_by_ldlt(d.asDiagonal() * M * d.asDiagonal(), Eigen::VectorXd(d.cwiseProduct(g)));
     Eigen::Vector3d step = d.cwiseProduct(scaled).tail<3>();
     if (!step.allFinite()) step.setZero();
     const double distance_m = from.at_S_m.norm(), longest_m = kLongest * distance_m;
@@ -109,16 +109,17 @@ class DipoleSearch {
     return to * (std::clamp(to.norm(), kNearest_m, kFarthest_m) / to.norm());
   }
 
-  const JointProblem& problem_;
-  const JointState& state_;
+  const fit::joint::JointProblem& problem_;
+  const fit::joint::JointState& state_;
   const Residual& residual_;
   const DipoleAt& dipole_;
 };
 
 }  // namespace
 
-std::optional<FoundDipole> find_dipole(const JointProblem& problem, const JointState& state,
-                                       const Residual& residual, const DipoleAt& dipole) {
+std::optional<FoundDipole> find_dipole(const fit::joint::JointProblem& problem,
+                                       const fit::joint::JointState& state, const Residual& residual,
+                                       const DipoleAt& dipole) {
   const DipoleSearch search(problem, state, residual, dipole);
   std::optional<DipolePlace> best;
   for (const DipolePlace& start : search.starts()) {
@@ -131,4 +132,4 @@ std::optional<FoundDipole> find_dipole(const JointProblem& problem, const JointS
   return FoundDipole{.effect = *effect, .signature = search.both(*best, *effect)};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

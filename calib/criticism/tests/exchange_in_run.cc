@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr std::size_t kFewest = 3, kFewestInAll = 24;  // poses on either side; nine numbers from all
@@ -123,10 +123,11 @@ std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table, std::option
   return out;
 }
 
-std::optional<Rearrangement> exchanged_since(const Calibration& before, const Calibration& now) {
+std::optional<Rearrangement> exchanged_since(const calibration::Calibration& before,
+                                             const calibration::Calibration& now) {
   constexpr double kAged_nT = 10, kAged = 2e-4, kOwn = 10;
   const auto apart = [&](std::size_t i, std::size_t j) {
-    const SensorModel &a = now.sensors[i], &b = before.sensors[j];
+    const sensor::SensorModel &a = now.sensors[i], &b = before.sensors[j];
     const Eigen::Vector3d skew(a.theta_rad - b.theta_rad, a.phi_rad - b.phi_rad, a.psi_rad - b.psi_rad);
     const double square = (skew / kAged).squaredNorm() + ((a.scale - b.scale) / kAged).squaredNorm() +
                           ((a.offset_nT - b.offset_nT) / kAged_nT).squaredNorm();
@@ -144,4 +145,4 @@ std::optional<Rearrangement> exchanged_since(const Calibration& before, const Ca
   return std::nullopt;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -19,7 +19,7 @@
 ///
 /// Does not see an exchange of all poses (the second question does), of sensors that are alike to some nT,
 /// nor one that was undone within the run.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct ExchangeInRun {
   Rearrangement what;
@@ -34,6 +34,7 @@ struct ExchangeInRun {
 /// Sensors of `now` that have each other's scales, angles between axes and offsets of `before`: those that
 /// come within ageing (10 nT, 2e-4 of scale and angle) of another one's and are ten times that from their
 /// own.
-[[nodiscard]] std::optional<Rearrangement> exchanged_since(const Calibration& before, const Calibration& now);
+[[nodiscard]] std::optional<Rearrangement> exchanged_since(const calibration::Calibration& before,
+                                                           const calibration::Calibration& now);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -11,7 +11,7 @@
 #include "calib/criticism/tests/wandering_alternative.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// Families that are asked: those that stood out first.
@@ -24,7 +24,7 @@ constexpr double kMild = 0.7;
 
 Eigen::MatrixXd rows_of(const WanderingAlternative& alternative, const ScoredFamily& family,
                         const Score& score) {
-  const EffectPtr& effect = family.candidate_effect->variants[score.variant];
+  const effects::EffectPtr& effect = family.candidate_effect->variants[score.variant];
   return effect_rows(alternative.problem(), alternative.state(), effect) *
          family.candidate_effect->hypotheses[score.hypothesis].combine;
 }
@@ -46,7 +46,7 @@ struct AgainstWalk {
   std::map<std::string, double> log10_p{};
   double least{0};
   bool passed{false};
-  WanderingEstimate beside{};
+  fit::joint::WanderingEstimate beside{};
 };
 
 /// log10 p of one question against the walk.
@@ -57,7 +57,7 @@ double against(const WanderingAlternative& alternative, const ScoredFamily& fami
   const Hypothesis& h = family.candidate_effect->hypotheses[score.hypothesis];
   const bool same_axis = h.axes == 1 && alternative.estimate().where == std::vector<std::string>{h.where};
   if (same_axis && instead > kClearlyBetter) return family.calibrated;
-  return best_of(std::min(0.0, chi_square_log10_p(std::max(R, 0.0), rank) + std::log10(h.alike)),
+  return best_of(std::min(0.0, stats::chi_square_log10_p(std::max(R, 0.0), rank) + std::log10(h.alike)),
                  family.asked);
 }
 
@@ -79,7 +79,7 @@ void ask(const WanderingAlternative& alternative, const Criticism& c, AgainstWal
 }
 
 /// Rates times the factor at which a deviance is smallest.
-WanderingRates at_least(WanderingRates rates, const auto& deviance) {
+fit::joint::WanderingRates at_least(fit::joint::WanderingRates rates, const auto& deviance) {
   constexpr double kFactor = 1.6;
   constexpr int kMost = 8;
   double least = deviance(rates);
@@ -96,30 +96,31 @@ WanderingRates at_least(WanderingRates rates, const auto& deviance) {
 
 /// Rates where the white noise is that of the weights, near given ones: those come from a few slow terms,
 /// beyond which a walk far above the noise looks white.
-WanderingRates beside_white(const JointFit& fit, const WanderingRates& rates) {
-  return at_least(rates, [&](const WanderingRates& at) {
+fit::joint::WanderingRates beside_white(const fit::joint::JointFit& fit,
+                                        const fit::joint::WanderingRates& rates) {
+  return at_least(rates, [&](const fit::joint::WanderingRates& at) {
     const Residual residual(fit.problem, fit.state, 0, at);
     return residual.dof() * std::log(residual.chi2()) + residual.whitener().log_det();
   });
 }
 
 /// At the stated noise, whatever noise_inflation the fit used: what inflated it is the walk.
-JointFit as_stated(const JointFit& fit) {
-  JointFit out = fit;
+fit::joint::JointFit as_stated(const fit::joint::JointFit& fit) {
+  fit::joint::JointFit out = fit;
   if (!(fit.noise_inflation > 1)) return out;
-  for (JointPose& pose : out.problem.poses)
+  for (fit::joint::JointPose& pose : out.problem.poses)
     pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
   out.noise_inflation = 1;
-  refit_nuisances(out.problem, out.state);
+  fit::joint::refit_nuisances(out.problem, out.state);
   return out;
 }
 
 /// The largest step from one pose to the next, in units of the noise of a pose mean.
-double step_over_noise(const JointFit& fit, const WanderingRates& nT_per_sqrt_h) {
+double step_over_noise(const fit::joint::JointFit& fit, const fit::joint::WanderingRates& nT_per_sqrt_h) {
   const auto& poses = fit.problem.poses;
-  Channels squares = Channels::Zero();
+  fit::joint::Channels squares = fit::joint::Channels::Zero();
   double from_h = poses.front().t_h, to_h = from_h;
-  for (const JointPose& pose : poses) {
+  for (const fit::joint::JointPose& pose : poses) {
     squares += pose.weight.cwiseAbs2();
     from_h = std::min(from_h, pose.t_h);
     to_h = std::max(to_h, pose.t_h);
@@ -140,7 +141,8 @@ void hold_against(const AgainstWalk& walk, Criticism& c) {
 
 /// The walk that the tests stand against, with a margin for what its rates are known to: sixteen terms tell a
 /// rate to a fifth, of twelve one is two such fifths too low, and a slow law is not to be named for that.
-WanderingRates with_margin(const WanderingRates& rates, const WanderingEstimate& found) {
+fit::joint::WanderingRates with_margin(const fit::joint::WanderingRates& rates,
+                                       const fit::joint::WanderingEstimate& found) {
   constexpr double kMargin = 2;  // standard deviations
   const auto wanders = found.nT_per_sqrt_h.array() > 0;
   const Eigen::ArrayXd margin =
@@ -149,18 +151,18 @@ WanderingRates with_margin(const WanderingRates& rates, const WanderingEstimate&
 }
 
 /// The readings' noise times a factor; scalar reference and table stay as good as they are.
-JointFit with_noise(const JointFit& stated, double factor) {
-  JointFit out = stated;
-  for (JointPose& pose : out.problem.poses) pose.weight /= factor;
-  refit_nuisances(out.problem, out.state);
+fit::joint::JointFit with_noise(const fit::joint::JointFit& stated, double factor) {
+  fit::joint::JointFit out = stated;
+  for (fit::joint::JointPose& pose : out.problem.poses) pose.weight /= factor;
+  fit::joint::refit_nuisances(out.problem, out.state);
   return out;
 }
 
 /// -2 ln L of readings whose noise is what the weights say, beside a walk.
-double deviance_of(const JointFit& fit, const WanderingRates& rates) {
+double deviance_of(const fit::joint::JointFit& fit, const fit::joint::WanderingRates& rates) {
   double log_variances = 0;
-  for (const JointPose& pose : fit.problem.poses)
-    for (int c = 0; c < kChannels; ++c)
+  for (const fit::joint::JointPose& pose : fit.problem.poses)
+    for (int c = 0; c < sensor::kChannels; ++c)
       if (pose.weight[c] > 0) log_variances -= 2 * std::log(pose.weight[c]);
   const Residual residual(fit.problem, fit.state, 0, rates);
   return residual.chi2() + residual.whitener().log_det() + log_variances;
@@ -168,8 +170,8 @@ double deviance_of(const JointFit& fit, const WanderingRates& rates) {
 
 /// What the tests stand against.
 struct Against {
-  JointFit fit;
-  WanderingRates rates;
+  fit::joint::JointFit fit;
+  fit::joint::WanderingRates rates;
   double factor{1};  ///< of the readings' noise over that of the dwells
 };
 
@@ -183,16 +185,16 @@ double largest_fall(const Criticism& c) {
 /// Beside the walk the white noise may be larger than the dwells say, as 1/f noise or correlated samples make
 /// it. It is taken for that where this describes the readings better than any law does, by `fall` in
 /// chi-square. Empty where the dwells stay what counts.
-std::optional<Against> beside_larger_noise(const JointFit& stated, const Against& dwells,
-                                           const WanderingEstimate& found, double fall) {
+std::optional<Against> beside_larger_noise(const fit::joint::JointFit& stated, const Against& dwells,
+                                           const fit::joint::WanderingEstimate& found, double fall) {
   constexpr double kStep = 1.25, kMost = 20;
   constexpr double kEnoughOdds = 20;  // of 2 ln of the odds
   double factor = 1, least = deviance_of(stated, dwells.rates) - std::max(fall, kEnoughOdds);
-  WanderingRates rates;
+  fit::joint::WanderingRates rates;
   for (double at = kStep; at < kMost; at *= kStep) {
-    const JointFit fit = with_noise(stated, at);
-    const auto deviance = [&](const WanderingRates& r) { return deviance_of(fit, r); };
-    const WanderingRates beside = at_least(found.nT_per_sqrt_h, deviance);
+    const fit::joint::JointFit fit = with_noise(stated, at);
+    const auto deviance = [&](const fit::joint::WanderingRates& r) { return deviance_of(fit, r); };
+    const fit::joint::WanderingRates beside = at_least(found.nT_per_sqrt_h, deviance);
     if (const double now = deviance(beside); now < least) {
       least = now, factor = at, rates = beside;
     } else if (factor > 1) {
@@ -204,11 +206,11 @@ std::optional<Against> beside_larger_noise(const JointFit& stated, const Against
 }
 
 /// The tests against a walk, and where it needs to be beside larger noise.
-Criticism judged_against_walk(const JointFit& stated, const WanderingEstimate& found,
+Criticism judged_against_walk(const fit::joint::JointFit& stated, const fit::joint::WanderingEstimate& found,
                               const CandidateEffects& candidate_effects, std::uint64_t seed,
                               const Rates& before) {
   Against against{stated, beside_white(stated, found.nT_per_sqrt_h)};
-  const auto tests = [&](const WanderingRates& rates) {
+  const auto tests = [&](const fit::joint::WanderingRates& rates) {
     Criticism out = criticise_against_walk(against.fit, rates, candidate_effects, seed, &before);
     if (!out.rejects_named()) look_at_maps(out);
     return out;
@@ -231,31 +233,33 @@ Criticism judged_against_walk(const JointFit& stated, const WanderingEstimate& f
 bool is_a_curve(const WanderingAlternative& alternative) {
   const std::vector<std::string>& all = alternative.estimate().where;
   if (all.size() != 1) return false;
-  const auto where = Where::parse(all.front());
-  return where && where->scale == Where::Scale::axis &&
+  const auto where = effects::Where::parse(all.front());
+  return where && where->scale == effects::Where::Scale::axis &&
          alternative.curve_instead(3 * where->sensor + where->axis) > 0;
 }
 
 }  // namespace
 
-Judgement judge(const JointFit& fit, const CandidateEffects& candidate_effects, std::uint64_t seed,
-                const Rates* before) {
+Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candidate_effects,
+                std::uint64_t seed, const Rates* before) {
   Judgement out{.fit = fit, .criticism = criticise(fit, candidate_effects, seed, before)};
   if (!out.criticism.rejects_named()) look_at_maps(out.criticism);
   std::optional<WanderingAlternative> alternative;
   if (out.criticism.rejects_named() || out.criticism.rejects_map())
     alternative.emplace(*out.criticism.tested);
-  WanderingEstimate found = alternative ? alternative->estimate() : WanderingEstimate{};
-  const JointFit& judged = *out.criticism.tested;
+  fit::joint::WanderingEstimate found =
+      alternative ? alternative->estimate() : fit::joint::WanderingEstimate{};
+  const fit::joint::JointFit& judged = *out.criticism.tested;
   if (found.any() &&
-      (found.evidence < kWanderingEvidence + unequal_noise_evidence(judged) || is_a_curve(*alternative)))
+      (found.evidence < fit::joint::kWanderingEvidence + fit::joint::unequal_noise_evidence(judged) ||
+       is_a_curve(*alternative)))
     found = {};
   if (!found.any()) return out;
   AgainstWalk walk;
-  const JointFit stated = as_stated(judged);
+  const fit::joint::JointFit stated = as_stated(judged);
   // A few slow terms do not tell a law from a walk that is far above the noise: a law then has to make it
   // vanish, or the tests stand against the walk as it was found without any law.
-  const auto mild = [&](const WanderingEstimate& w) {
+  const auto mild = [&](const fit::joint::WanderingEstimate& w) {
     return step_over_noise(stated, beside_white(stated, w.nT_per_sqrt_h)) < kMild;
   };
   ask(*alternative, out.criticism, walk);
@@ -266,7 +270,7 @@ Judgement judge(const JointFit& fit, const CandidateEffects& candidate_effects, 
   }
   if (!found.any()) return out;
   const bool asked = !walk.log10_p.empty();
-  if (auto covariance = covariance_with_wandering(out.fit, found))
+  if (auto covariance = fit::joint::covariance_with_wandering(out.fit, found))
     out.fit.covariance = *std::move(covariance);
   const Rates rates = std::move(out.criticism.rates);
   const double chi2 = out.criticism.chi2;
@@ -278,4 +282,4 @@ Judgement judge(const JointFit& fit, const CandidateEffects& candidate_effects, 
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -8,15 +8,15 @@
 /// offsets may wander (wandering_estimate.h). Each law that stood out is then tested against the walk
 /// (wandering_alternative.h), and only one that beats it can be named. The noise in force is what still
 /// wanders beside the best such law, or everything that wanders where there is none.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct Judgement {
-  JointFit fit;  ///< with the covariance of that noise
+  fit::joint::JointFit fit;  ///< with the covariance of that noise
   Criticism criticism;
 };
 
 /// `before` as in criticise().
-[[nodiscard]] Judgement judge(const JointFit& fit, const CandidateEffects& candidate_effects,
+[[nodiscard]] Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candidate_effects,
                               std::uint64_t seed, const Rates* before = nullptr);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

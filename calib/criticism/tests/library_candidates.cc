@@ -7,7 +7,7 @@
 #include "calib/effects/laws/site_step.h"
 #include "calib/effects/library/effect_family.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// Of a searched number no more values are tried at first: neighbours are alike, and what comes near the
@@ -15,34 +15,35 @@ namespace {
 constexpr std::size_t kVariants = 10, kInstants = 20;
 
 /// Values of the searched number; an empty one is the form without it.
-std::vector<std::optional<double>> variants(const EffectFamily& family, const EffectContext& context) {
+std::vector<std::optional<double>> variants(const effects::library::EffectFamily& family,
+                                            const effects::EffectContext& context) {
   if (!family.scan) return {std::nullopt};
-  const std::vector<double> all = scan_values(family, context);
+  const std::vector<double> all = effects::library::scan_values(family, context);
   std::vector<std::optional<double>> out;
   if (family.scan->optional) out.emplace_back(std::nullopt);
-  const bool instant = family.scan->range == Scan::Range::run;
+  const bool instant = family.scan->range == effects::library::Scan::Range::run;
   const std::size_t n = std::min(all.size(), instant ? kInstants : kVariants);
   for (std::size_t i = 0; i < n; ++i) out.emplace_back(all[n < 2 ? 0 : i * (all.size() - 1) / (n - 1)]);
   return out;
 }
 
 /// What a hypothesis is called in a spec; empty for an effect as a whole.
-std::optional<Where> where_of(const Hypothesis& hypothesis) {
-  const auto where = Where::parse(hypothesis.where);
-  if (!where || where->scale == Where::Scale::own) return std::nullopt;
+std::optional<effects::Where> where_of(const Hypothesis& hypothesis) {
+  const auto where = effects::Where::parse(hypothesis.where);
+  if (!where || where->scale == effects::Where::Scale::own) return std::nullopt;
   return *where;
 }
 
 /// Half-way between two values; of instants one that lies between poses.
-std::function<std::optional<double>(double, double)> between(const EffectFamily& family,
-                                                             const EffectContext& context) {
-  if (!family.scan || family.scan->range == Scan::Range::index) return {};
-  const Scan scan = *family.scan;
-  if (scan.range == Scan::Range::logarithmic)
+std::function<std::optional<double>(double, double)> between(const effects::library::EffectFamily& family,
+                                                             const effects::EffectContext& context) {
+  if (!family.scan || family.scan->range == effects::library::Scan::Range::index) return {};
+  const effects::library::Scan scan = *family.scan;
+  if (scan.range == effects::library::Scan::Range::logarithmic)
     return [](double lower, double upper) { return std::optional(std::sqrt(lower * upper)); };
-  if (scan.range == Scan::Range::linear)
+  if (scan.range == effects::library::Scan::Range::linear)
     return [](double lower, double upper) { return std::optional((lower + upper) / 2); };
-  return [gaps = run_gaps_h(context)](double lower, double upper) -> std::optional<double> {
+  return [gaps = effects::library::run_gaps_h(context)](double lower, double upper) -> std::optional<double> {
     const auto first = std::upper_bound(gaps.begin(), gaps.end(), lower);
     const auto last = std::lower_bound(first, gaps.end(), upper);
     if (first == last) return std::nullopt;
@@ -51,19 +52,21 @@ std::function<std::optional<double>(double, double)> between(const EffectFamily&
 }
 
 /// The form of a law of the site that is a dipole.
-decltype(CandidateEffect::dipole_at) dipole_of(const EffectFamily& family) {
-  if (family.name == SiteDipole::kName)
-    return [](const Eigen::Vector3d& place_S_m, const std::optional<double>&) -> Result<EffectPtr> {
-      return std::make_shared<const SiteDipole>(place_S_m);
+decltype(CandidateEffect::dipole_at) dipole_of(const effects::library::EffectFamily& family) {
+  if (family.name == effects::laws::SiteDipole::kName)
+    return [](const Eigen::Vector3d& place_S_m, const std::optional<double>&) -> Result<effects::EffectPtr> {
+      return std::make_shared<const effects::laws::SiteDipole>(place_S_m);
     };
-  if (family.name == SiteStep::kName)
-    return [](const Eigen::Vector3d& place_S_m, const std::optional<double>& ts_h) -> Result<EffectPtr> {
-      return std::make_shared<const SiteStepDipole>(ts_h.value_or(0), place_S_m);
+  if (family.name == effects::laws::SiteStep::kName)
+    return [](const Eigen::Vector3d& place_S_m,
+              const std::optional<double>& ts_h) -> Result<effects::EffectPtr> {
+      return std::make_shared<const effects::laws::SiteStepDipole>(ts_h.value_or(0), place_S_m);
     };
   return {};
 }
 
-CandidateEffect candidate_effect_of(const EffectFamily& family, const EffectContext& context) {
+CandidateEffect candidate_effect_of(const effects::library::EffectFamily& family,
+                                    const effects::EffectContext& context) {
   CandidateEffect out{.name = std::string(family.name),
                       .level = family.level,
                       .typical = family.typical,
@@ -71,7 +74,7 @@ CandidateEffect candidate_effect_of(const EffectFamily& family, const EffectCont
                       .reads = std::string(family.needs)};
   const auto values = variants(family, context);
   for (const auto& value : values) {
-    auto effect = make(family, std::nullopt, value, context);
+    auto effect = effects::library::make(family, std::nullopt, value, context);
     if (!effect) continue;
     out.variants.push_back(std::move(*effect));
     out.values.push_back(value);
@@ -79,14 +82,14 @@ CandidateEffect candidate_effect_of(const EffectFamily& family, const EffectCont
   if (family.scan) out.parameter = family.scan->parameter;
   if (!out.variants.empty()) out.hypotheses = hypotheses_of(*out.variants.front());
   out.make = [&family, context](const Hypothesis* h, const std::optional<double>& value) {
-    return make(family, h == nullptr ? std::nullopt : where_of(*h), value, context);
+    return effects::library::make(family, h == nullptr ? std::nullopt : where_of(*h), value, context);
   };
   out.between = between(family, context);
   out.dipole_at = dipole_of(family);
   return out;
 }
 
-bool by_temperature(const EffectFamily& family) {
+bool by_temperature(const effects::library::EffectFamily& family) {
   return family.name.find("temperature") != std::string_view::npos ||
          family.name.find("thermal") != std::string_view::npos;
 }
@@ -114,12 +117,12 @@ std::string without_name(std::string message, std::string_view name) {
 
 }  // namespace
 
-CandidateEffects library_candidates(const PoseTable& table, const std::vector<EffectPtr>& left_out) {
+CandidateEffects library_candidates(const PoseTable& table, const std::vector<effects::EffectPtr>& left_out) {
   CandidateEffects out;
-  const EffectContext context{.table = &table, .offset_nT = {}};
-  for (const EffectFamily& family : effect_families()) {
+  const effects::EffectContext context{.table = &table, .offset_nT = {}};
+  for (const effects::library::EffectFamily& family : effects::library::effect_families()) {
     if (std::any_of(left_out.begin(), left_out.end(),
-                    [&](const EffectPtr& e) { return e->name() == family.name; }))
+                    [&](const effects::EffectPtr& e) { return e->name() == family.name; }))
       continue;
     if (!family.untestable.empty()) {
       out.untestable.push_back({std::string(family.name), std::string(family.untestable)});
@@ -130,7 +133,7 @@ CandidateEffects library_candidates(const PoseTable& table, const std::vector<Ef
       out.untestable.push_back({std::string(family.name), "needs t_s"});
       continue;
     }
-    const auto effect = make(family, std::nullopt, values.front(), context);
+    const auto effect = effects::library::make(family, std::nullopt, values.front(), context);
     const auto ok = effect ? (*effect)->check(table) : tl::unexpected(effect.error());
     if (!ok) {
       std::string why = without_name(ok.error().message, family.name);
@@ -149,4 +152,4 @@ CandidateEffects library_candidates(const PoseTable& table, const std::vector<Ef
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -6,11 +6,11 @@
 
 #include "calib/effects/where.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 std::vector<std::size_t> channels_of(const std::string& where) {
-  const auto parsed = Where::parse(where);
+  const auto parsed = effects::Where::parse(where);
   if (!parsed || parsed->sensor < 0) return {};
   const auto first = static_cast<std::size_t>(3 * parsed->sensor);
   if (parsed->axis >= 0) return {first + static_cast<std::size_t>(parsed->axis)};
@@ -56,9 +56,10 @@ double local_lack_of_fit_log10_p(const Criticism& c, const std::string& where) {
   double smallest = 0;
   for (const std::size_t channel : channels)
     smallest = std::min(
-        {smallest, of_effects(c, axis_name(static_cast<int>(channel) / 3, static_cast<int>(channel) % 3)),
+        {smallest,
+         of_effects(c, effects::axis_name(static_cast<int>(channel) / 3, static_cast<int>(channel) % 3)),
          of_maps(c, channel)});
   return channels.empty() ? 0 : best_of(smallest, 2.0 * static_cast<double>(channels.size()));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

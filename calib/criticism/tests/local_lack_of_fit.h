@@ -8,7 +8,7 @@
 /// whether anything is wrong anywhere but whether this law is all there is where it acts: a wrong law that is
 /// similar leaves its difference from the right one just there. Few questions are asked, so that the
 /// difference shows even when it is too small for an alarm.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Probability that a correctly named effect is still reported as incomplete.
 inline constexpr double kLackOfFitAlarm = 0.01;
@@ -17,4 +17,4 @@ inline constexpr double kLackOfFitAlarm = 0.01;
 /// maps counted; 0 for what acts on more than one sensor.
 [[nodiscard]] double local_lack_of_fit_log10_p(const Criticism& criticism, const std::string& where);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

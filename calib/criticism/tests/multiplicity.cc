@@ -9,7 +9,7 @@
 #include "calib/linear/normal_draws.h"
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr int kDraws = 1000;
@@ -32,7 +32,7 @@ class Tail {
  public:
   explicit Tail(int k) {
     const double end = k + 80 + 10 * std::sqrt(k);
-    for (double S = 0; S <= end; S += kStep) values_.push_back(chi_square_log10_p(S, k));
+    for (double S = 0; S <= end; S += kStep) values_.push_back(stats::chi_square_log10_p(S, k));
   }
   [[nodiscard]] double operator()(double S) const {
     const double x = std::min(S / kStep, static_cast<double>(values_.size()) - 1.001);
@@ -78,7 +78,7 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
   gram.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
   gram.diagonal().array() += kJitter;
   gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
-  out.sums = normal_draws(gram, kDraws, seed);
+  out.sums = linear::normal_draws(gram, kDraws, seed);
   return out;
 }
 
@@ -162,4 +162,4 @@ bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates) {
   return all;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

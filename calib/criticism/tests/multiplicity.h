@@ -14,7 +14,7 @@
 /// If m independent questions were asked, -ln(1 - p_min) would be exponential with rate m. That rate is
 /// estimated from the draws' lower third (maximum likelihood with the rest censored), which fixes the 1 %
 /// point far better than counting draws below it, and p becomes 1 - (1 - p)^m.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Rates by the name of a family, and that of the best of all.
 struct Rates {
@@ -31,4 +31,4 @@ bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates);
 /// 1 - (1 - p)^m of logarithms.
 [[nodiscard]] double best_of(double log10_p, double m);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -10,10 +10,10 @@
 #include "calib/stats/chi_square.h"
 #include "calib/stats/f_distribution.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
-using Mixing = Eigen::Matrix<double, kChannels, kChannels>;
+using Mixing = Eigen::Matrix<double, sensor::kChannels, sensor::kChannels>;
 constexpr double kMaxRho = 0.95;
 /// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
 /// too large costs a little power. And the standard error of a median over that of a mean.
@@ -31,24 +31,25 @@ struct Fitted {
   Eigen::MatrixXd J;      ///< 12 P x fixed, the same of the fixed block
 };
 
-Fitted fitted(const JointProblem& problem, const JointState& state) {
+Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const LinearRows rows = linear_rows(problem, state);
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  Fitted out{
-      .e = Eigen::MatrixXd(kChannels, n), .M = {}, .J = Eigen::MatrixXd(kChannels * n, problem.fixed())};
+  Fitted out{.e = Eigen::MatrixXd(sensor::kChannels, n),
+             .M = {},
+             .J = Eigen::MatrixXd(sensor::kChannels * n, problem.fixed())};
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto N = rows.nuisance.middleRows<kPoseRows>(k * kPoseRows);
     const Eigen::Matrix4d H = N.transpose() * N;
     const Eigen::LLT<Eigen::Matrix4d> llt(H);
-    const auto top = N.topRows<kChannels>();
+    const auto top = N.topRows<sensor::kChannels>();
     const auto weight = problem.poses[static_cast<std::size_t>(k)].weight;
     Mixing there = Mixing::Zero();
     there.diagonal() = (weight.array() > 0).cast<double>();
     out.M.push_back(there - top * llt.solve(top.transpose()));
-    out.e.col(k) = rows.residual.segment<kChannels>(k * kPoseRows);
+    out.e.col(k) = rows.residual.segment<sensor::kChannels>(k * kPoseRows);
     const Eigen::MatrixXd block = rows.fixed.middleRows<kPoseRows>(k * kPoseRows);
-    out.J.middleRows<kChannels>(k * kChannels) =
-        block.topRows<kChannels>() - top * llt.solve(N.transpose() * block);
+    out.J.middleRows<sensor::kChannels>(k * sensor::kChannels) =
+        block.topRows<sensor::kChannels>() - top * llt.solve(N.transpose() * block);
   }
   return out;
 }
@@ -60,7 +61,7 @@ Eigen::MatrixXd leverages(const Fitted& f) {
   const Eigen::MatrixXd A = f.J * scale.asDiagonal();
   Eigen::MatrixXd G = A.transpose() * A;
   G.diagonal().array() += 1e-9;
-  return Cholesky::of_unscaled(G).value().whiten_rows(A);
+  return linear::Cholesky::of_unscaled(G).value().whiten_rows(A);
 }
 
 bool same_attitude(const Pose& a, const Pose& b) {
@@ -73,7 +74,7 @@ bool same_attitude(const Pose& a, const Pose& b) {
 }
 
 /// Each pose with the next visit to its attitude.
-std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const JointProblem& problem) {
+std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const fit::joint::JointProblem& problem) {
   std::vector<std::pair<Eigen::Index, Eigen::Index>> out;
   const auto n = problem.poses.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -112,18 +113,18 @@ struct LagOne {
   }
 };
 
-std::vector<LagOne> lag_one(const JointProblem& problem, const JointState& state) {
+std::vector<LagOne> lag_one(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const Fitted f = fitted(problem, state);
   const Eigen::MatrixXd hat = leverages(f);
   const auto order = order_in_time(problem);
-  std::vector<LagOne> out(kChannels);
-  for (int c = 0; c < kChannels; ++c) {
+  std::vector<LagOne> out(sensor::kChannels);
+  for (int c = 0; c < sensor::kChannels; ++c) {
     LagOne& x = out[static_cast<std::size_t>(c)];
     x.L.resize(static_cast<Eigen::Index>(order.size()), hat.cols());
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Eigen::Index k = order[i];
       const auto& M = f.M[static_cast<std::size_t>(k)];
-      x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * kChannels + c);
+      x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * sensor::kChannels + c);
       x.squares += f.e(c, k) * f.e(c, k);
       x.own += M.row(c).squaredNorm();
       if (i == 0) continue;
@@ -134,12 +135,12 @@ std::vector<LagOne> lag_one(const JointProblem& problem, const JointState& state
   return out;
 }
 
-double median_correlation(const JointProblem& problem, const JointState& state) {
+double median_correlation(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const std::vector<LagOne> channels = lag_one(problem, state);
   std::vector<double> seen;
   for (const LagOne& c : channels) seen.push_back(c.squares > 0 ? c.products / c.squares : 0);
   std::sort(seen.begin(), seen.end());
-  const double median = (seen[kChannels / 2 - 1] + seen[kChannels / 2]) / 2;
+  const double median = (seen[sensor::kChannels / 2 - 1] + seen[sensor::kChannels / 2]) / 2;
   // What would show as the median: the curve rises with rho, and a step of 0.05 is straight enough.
   double rho = 0, last = -1;
   for (double trial = 0; trial < kMaxRho + 1e-9; trial += 0.05) {
@@ -157,8 +158,9 @@ double median_correlation(const JointProblem& problem, const JointState& state) 
 
 /// Factors that bring the residuals of two visits, each in units of its own noise, to units in which the same
 /// misfit is the same number. Zero where one of them was left out; one where both weigh alike.
-std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels& v) {
-  const Channels length = (u.cwiseAbs2() + v.cwiseAbs2()).cwiseSqrt();
+std::pair<fit::joint::Channels, fit::joint::Channels> in_common_units(const fit::joint::Channels& u,
+                                                                      const fit::joint::Channels& v) {
+  const fit::joint::Channels length = (u.cwiseAbs2() + v.cwiseAbs2()).cwiseSqrt();
   const auto both = (u.array() > 0) && (v.array() > 0);
   const double root2 = std::sqrt(2.0);
   return {both.select(root2 * v.array() / length.array(), 0.0).matrix(),
@@ -167,24 +169,24 @@ std::pair<Channels, Channels> in_common_units(const Channels& u, const Channels&
 
 }  // namespace
 
-double pose_correlation(const JointProblem& problem, const JointState& state) {
+double pose_correlation(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const double rho = median_correlation(problem, state);
   if (rho <= kCorrelated) return rho;
-  const double values = kChannels * static_cast<double>(problem.poses.size());
+  const double values = sensor::kChannels * static_cast<double>(problem.poses.size());
   return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
 }
 
-std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof) {
+std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2, double dof) {
   const auto pairs = revisits(fit.problem);
   if (pairs.empty()) return std::nullopt;
   // At the stated noise, whatever noise_inflation the fit used: else the angles of the table, each with
   // its own error, pull at the attitudes.
-  JointProblem problem = fit.problem;
-  JointState state = fit.state;
+  fit::joint::JointProblem problem = fit.problem;
+  fit::joint::JointState state = fit.state;
   if (fit.noise_inflation > 1) {
-    for (JointPose& pose : problem.poses)
+    for (fit::joint::JointPose& pose : problem.poses)
       pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
-    refit_nuisances(problem, state);
+    fit::joint::refit_nuisances(problem, state);
   }
   const Fitted f = fitted(problem, state);
   PureError out{.pairs = static_cast<int>(pairs.size())};
@@ -203,13 +205,13 @@ std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof
                lack_of_fit_dof = dof - out.nu;
   if (lack_of_fit_dof > 0) {
     out.F = lack_of_fit / lack_of_fit_dof / out.ratio;
-    out.log10_p = f_log10_p(out.F, lack_of_fit_dof, out.nu);
+    out.log10_p = stats::f_log10_p(out.F, lack_of_fit_dof, out.nu);
     out.model_nT = fit.noise_nT() * std::sqrt(std::max(0.0, lack_of_fit / lack_of_fit_dof - out.ratio));
   }
   return out;
 }
 
-NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
+NoiseModel noise_model(const fit::joint::JointFit& fit, const Residual& residual) {
   NoiseModel out{.rho = residual.whitener().rho(),
                  .revisits = pure_error(fit, residual.chi2(), residual.dof()),
                  .reference = {.dof = residual.dof()}};
@@ -224,7 +226,7 @@ NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
   if (lasting) n.scale2 = residual.chi2() / residual.dof();
   if (n.known && out.revisits) {
     const PureError& p = *out.revisits;
-    if (chi_square_log10_p(p.ratio * p.nu, p.nu) < kContradicts_log10_p) {
+    if (stats::chi_square_log10_p(p.ratio * p.nu, p.nu) < kContradicts_log10_p) {
       n.scale2 = p.ratio;
       n.nu = p.nu;
     }
@@ -233,4 +235,4 @@ NoiseModel noise_model(const JointFit& fit, const Residual& residual) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -17,7 +17,7 @@
 ///                                     tr M_v M_v', both in nT where the two weigh differently, so that what
 ///                                     the model misses at that attitude drops out: eight combinations a pair
 ///                                     that neither attitude nor field strength moves
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Autocorrelation from pose to pose above which noise is not what a dwell shows of it.
 inline constexpr double kCorrelated = 0.2;
@@ -38,17 +38,18 @@ struct NoiseModel {
   /// Residual over the noise that the dwells tell, where it is larger and no law, no map and no revisit says
   /// that the model is at fault; else one.
   double beyond_dwells{1};
-  double quantisation_nT{0};      ///< step of the digitiser, where readings stand on its grid
-  WanderingEstimate wandering{};  ///< of the offsets, where the tests stand against it
+  double quantisation_nT{0};                  ///< step of the digitiser, where readings stand on its grid
+  fit::joint::WanderingEstimate wandering{};  ///< of the offsets, where the tests stand against it
 
   [[nodiscard]] bool correlated() const { return rho > kCorrelated; }
 };
 
 /// With a margin for its own uncertainty where it counts.
-[[nodiscard]] double pose_correlation(const JointProblem& problem, const JointState& state);
+[[nodiscard]] double pose_correlation(const fit::joint::JointProblem& problem,
+                                      const fit::joint::JointState& state);
 /// Empty without revisits.
-[[nodiscard]] std::optional<PureError> pure_error(const JointFit& fit, double chi2, double dof);
+[[nodiscard]] std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2, double dof);
 /// `residual` at the rho that is in force.
-[[nodiscard]] NoiseModel noise_model(const JointFit& fit, const Residual& residual);
+[[nodiscard]] NoiseModel noise_model(const fit::joint::JointFit& fit, const Residual& residual);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

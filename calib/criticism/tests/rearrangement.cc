@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr double kOthersAgree = 0.02, kStandsOut = 0.1;  // of the field
@@ -35,7 +35,8 @@ bool same(const Rearrangement& a, const Rearrangement& b) {
 
 }  // namespace
 
-std::vector<Rearrangement> exchanges_explaining(const TensorPipeline& pipeline, const Epoch& epoch) {
+std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipeline& pipeline,
+                                                const Epoch& epoch) {
   std::vector<Rearrangement> out;
   Rearrangement what;
   Epoch given = epoch;
@@ -50,8 +51,8 @@ std::vector<Rearrangement> exchanges_explaining(const TensorPipeline& pipeline, 
   return out;
 }
 
-std::vector<Rearrangement> turns_explaining(const TensorPipeline& pipeline, const Epoch& epoch) {
-  const FieldVector b_P_nT = pipeline.correct(epoch.y_nT);
+std::vector<Rearrangement> turns_explaining(const calibration::TensorPipeline& pipeline, const Epoch& epoch) {
+  const sensor::FieldVector b_P_nT = pipeline.correct(epoch.y_nT);
   std::vector<Rearrangement> out;
   for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -70,8 +71,8 @@ std::vector<Rearrangement> turns_explaining(const TensorPipeline& pipeline, cons
   return out;
 }
 
-RearrangementWatch::RearrangementWatch(const std::shared_ptr<const Calibration>& calibration)
-    : pipeline_(TensorPipeline(calibration)) {}
+RearrangementWatch::RearrangementWatch(const std::shared_ptr<const calibration::Calibration>& calibration)
+    : pipeline_(calibration::TensorPipeline(calibration)) {}
 
 void RearrangementWatch::add(const Epoch& epoch, std::optional<bool> beyond) {
   if (!pipeline_ || !beyond) return;
@@ -108,4 +109,4 @@ void RearrangementWatch::conclude(const Epoch& epoch) {
   finding_ = {possible_, pipeline_->apply(epoch).closure.chi2};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

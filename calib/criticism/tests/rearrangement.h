@@ -20,7 +20,7 @@
 ///
 /// Two exchanges can be told apart where the sensors differ, by some nT of offset for instance. A turn about
 /// the field itself changes nothing and is not seen; what one attitude leaves open, the next ones close.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct Rearrangement {
   std::array<std::size_t, kSensors> sensor{0, 1, 2, 3};  ///< whose readings come in each place
@@ -32,9 +32,10 @@ inline constexpr double kExplainedClosure_chi2 = 30;  ///< of four: once in 2e5 
 inline constexpr double kTurnAgreement = 0.05;        ///< of the field, as well as a hand turns
 
 /// All exchanges (23) and turns (4 x 23) that explain the readings of one epoch.
-[[nodiscard]] std::vector<Rearrangement> exchanges_explaining(const TensorPipeline& pipeline,
+[[nodiscard]] std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipeline& pipeline,
                                                               const Epoch& epoch);
-[[nodiscard]] std::vector<Rearrangement> turns_explaining(const TensorPipeline& pipeline, const Epoch& epoch);
+[[nodiscard]] std::vector<Rearrangement> turns_explaining(const calibration::TensorPipeline& pipeline,
+                                                          const Epoch& epoch);
 
 struct RearrangementFinding {
   std::vector<Rearrangement> possible;  ///< all of them exchanges, or all of them turns
@@ -47,7 +48,7 @@ struct RearrangementFinding {
 class RearrangementWatch {
  public:
   RearrangementWatch() = default;
-  explicit RearrangementWatch(const std::shared_ptr<const Calibration>& calibration);
+  explicit RearrangementWatch(const std::shared_ptr<const calibration::Calibration>& calibration);
 
   /// `beyond`: as LiveCriticism says of this sample; nothing where it was not judged.
   void add(const Epoch& epoch, std::optional<bool> beyond);
@@ -58,10 +59,10 @@ class RearrangementWatch {
   void explain(const Epoch& epoch);
   void conclude(const Epoch& epoch);
 
-  std::optional<TensorPipeline> pipeline_;
+  std::optional<calibration::TensorPipeline> pipeline_;
   std::vector<Rearrangement> possible_;  ///< explain all samples of those counted
   int explained_{0}, calm_{0};
   std::optional<RearrangementFinding> finding_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -5,7 +5,7 @@
 
 #include "calib/linear/qr.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// Columns shorter than this against their own length before elimination are rounding.
@@ -13,12 +13,12 @@ constexpr double kRankTolerance = 1e-9;
 
 }  // namespace
 
-Residual::Residual(const JointProblem& problem, const JointState& state, double rho,
-                   const WanderingRates& nT_per_sqrt_h)
+Residual::Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
+                   const fit::joint::WanderingRates& nT_per_sqrt_h)
     : Residual(problem, state, linear_rows(problem, state), rho, nT_per_sqrt_h) {}
 
-Residual::Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho,
-                   const WanderingRates& nT_per_sqrt_h)
+Residual::Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                   const LinearRows& rows, double rho, const fit::joint::WanderingRates& nT_per_sqrt_h)
     : whitener_(problem, rows.nuisance, rho, nT_per_sqrt_h),
       poses_(static_cast<Eigen::Index>(problem.poses.size())) {
   const PriorRows priors = prior_rows(problem, state);
@@ -30,7 +30,7 @@ Residual::Residual(const JointProblem& problem, const JointState& state, const L
   fixed << white.leftCols(p), priors.fixed;
   value_.resize(n + q);
   value_ << white.col(p), priors.residual;
-  basis_ = column_space(fixed, fixed.colwise().norm(), kRankTolerance);
+  basis_ = linear::column_space(fixed, fixed.colwise().norm(), kRankTolerance);
   value_ -= basis_ * (basis_.transpose() * value_);
   chi2_ = value_.squaredNorm();
   const auto constraints = (priors.fixed.rowwise().squaredNorm().array() > 0).count();
@@ -55,4 +55,4 @@ Residual::Columns Residual::project(const Eigen::MatrixXd& rows) const {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -8,12 +8,12 @@
 /// What a joint fit left over, ready for tests: nuisances, correlation between poses and every direction that
 /// the model's own parameters can take are out. Under the model the residual is unit normal in the space that
 /// is left, `dof` dimensions of it.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 class Residual {
  public:
-  Residual(const JointProblem& problem, const JointState& state, double rho,
-           const WanderingRates& nT_per_sqrt_h = WanderingRates::Zero());
+  Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
+           const fit::joint::WanderingRates& nT_per_sqrt_h = fit::joint::WanderingRates::Zero());
 
   /// Twelve rows a pose, then the priors.
   [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
@@ -36,8 +36,8 @@ class Residual {
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
  private:
-  Residual(const JointProblem& problem, const JointState& state, const LinearRows& rows, double rho,
-           const WanderingRates& nT_per_sqrt_h);
+  Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+           const LinearRows& rows, double rho, const fit::joint::WanderingRates& nT_per_sqrt_h);
 
   Whitener whitener_;
   Eigen::Index poses_;
@@ -47,4 +47,4 @@ class Residual {
   double unit_{1};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

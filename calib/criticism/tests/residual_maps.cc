@@ -11,13 +11,13 @@
 
 #include "calib/criticism/tests/site_maps.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// Values of the functions of a map at a pose for one channel; empty where the pose cannot feed it.
-using ChannelFunctions = std::function<std::vector<double>(const JointPose& pose, int channel)>;
+using ChannelFunctions = std::function<std::vector<double>(const fit::joint::JointPose& pose, int channel)>;
 /// The same for all channels of a sensor.
-using Functions = std::function<std::vector<double>(const JointPose& pose, int sensor)>;
+using Functions = std::function<std::vector<double>(const fit::joint::JointPose& pose, int sensor)>;
 
 Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Eigen::Index count,
                   Eigen::Index total) {
@@ -28,28 +28,32 @@ Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Ei
 }
 
 /// The functions free in each of the twelve channels.
-Map of_channels(const JointProblem& problem, std::string name, Eigen::Index m,
+Map of_channels(const fit::joint::JointProblem& problem, std::string name, Eigen::Index m,
                 const ChannelFunctions& functions) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
-  Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * kPoseRows, m * kChannels)};
+  Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * kPoseRows, m * sensor::kChannels)};
   for (Eigen::Index k = 0; k < poses; ++k) {
-    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
-    for (int c = 0; c < kChannels; ++c) {
+    const fit::joint::JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    for (int c = 0; c < sensor::kChannels; ++c) {
       const std::vector<double> values = functions(pose, c);
       for (std::size_t j = 0; j < values.size(); ++j)
         out.rows(k * kPoseRows + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
     }
   }
-  out.hypotheses.push_back(picked("all", kChannels, 1, 0, m * kChannels, m * kChannels));
-  for (int c = 0; c < kChannels; ++c) {
-    out.hypotheses.push_back(picked(channel_name(c), 1, kChannels, c * m, m, m * kChannels));
+  out.hypotheses.push_back(
+      picked("all", sensor::kChannels, 1, 0, m * sensor::kChannels, m * sensor::kChannels));
+  for (int c = 0; c < sensor::kChannels; ++c) {
+    out.hypotheses.push_back(
+        picked(sensor::channel_name(c), 1, sensor::kChannels, c * m, m, m * sensor::kChannels));
   }
   return out;
 }
 
-Map by_channel(const JointProblem& problem, std::string name, Eigen::Index m, const Functions& functions) {
-  return of_channels(problem, std::move(name), m,
-                     [&functions](const JointPose& pose, int c) { return functions(pose, c / 3); });
+Map by_channel(const fit::joint::JointProblem& problem, std::string name, Eigen::Index m,
+               const Functions& functions) {
+  return of_channels(problem, std::move(name), m, [&functions](const fit::joint::JointPose& pose, int c) {
+    return functions(pose, c / 3);
+  });
 }
 
 /// A covariate brought to [-1, 1] over the poses; not usable where it does not vary.
@@ -68,23 +72,24 @@ std::vector<double> powers(double x, int n) {
   return out;
 }
 
-void add_time(const JointProblem& problem, std::vector<Map>& out) {
+void add_time(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
   Range range;
-  for (const JointPose& pose : problem.poses) range.add(pose.t_h);
+  for (const fit::joint::JointPose& pose : problem.poses) range.add(pose.t_h);
   if (!range.varies()) return;
-  out.push_back(by_channel(problem, "time", kCosines, [range](const JointPose& pose, int) {
+  out.push_back(by_channel(problem, "time", kCosines, [range](const fit::joint::JointPose& pose, int) {
     std::vector<double> v;
     for (int j = 1; j <= kCosines; ++j) v.push_back(time_cosine(range.scaled(pose.t_h), j));
     return v;
   }));
 }
 
-void add_azimuth(const JointProblem& problem, std::vector<Map>& out) {
+void add_azimuth(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
   constexpr int kHarmonics = 4;
-  const bool any = std::any_of(problem.poses.begin(), problem.poses.end(),
-                               [](const JointPose& p) { return p.pose->azimuth_rad.has_value(); });
+  const bool any =
+      std::any_of(problem.poses.begin(), problem.poses.end(),
+                  [](const fit::joint::JointPose& p) { return p.pose->azimuth_rad.has_value(); });
   if (!any) return;
-  out.push_back(by_channel(problem, "azimuth", 2 * kHarmonics, [](const JointPose& pose, int) {
+  out.push_back(by_channel(problem, "azimuth", 2 * kHarmonics, [](const fit::joint::JointPose& pose, int) {
     std::vector<double> v;
     if (!pose.pose->azimuth_rad) return v;
     for (int j = 1; j <= kHarmonics; ++j) {
@@ -96,10 +101,11 @@ void add_azimuth(const JointProblem& problem, std::vector<Map>& out) {
 }
 
 /// Chebyshev polynomials of the axis' own part of the field.
-void add_own_reading(const JointProblem& problem, const JointState& state, std::vector<Map>& out) {
+void add_own_reading(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                     std::vector<Map>& out) {
   constexpr int kFirst = 2, kLast = 6;
-  out.push_back(
-      of_channels(problem, "own reading", kLast - kFirst + 1, [&state](const JointPose& pose, int c) {
+  out.push_back(of_channels(
+      problem, "own reading", kLast - kFirst + 1, [&state](const fit::joint::JointPose& pose, int c) {
         const auto s = static_cast<std::size_t>(c / 3);
         const Eigen::Vector3d u = (pose.y_nT.segment<3>(c - c % 3) - state.sensors[s].offset_nT).normalized();
         std::vector<double> v;
@@ -108,38 +114,40 @@ void add_own_reading(const JointProblem& problem, const JointState& state, std::
       }));
 }
 
-void add_direction(const JointProblem& problem, const JointState& state, std::vector<Map>& out) {
+void add_direction(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                   std::vector<Map>& out) {
   constexpr Eigen::Index kMonomials = 5 + 7 + 9;
-  out.push_back(by_channel(problem, "direction", kMonomials, [&state](const JointPose& pose, int i) {
-    const auto s = static_cast<std::size_t>(i);
-    const Eigen::Vector3d u = (pose.y_nT.segment<3>(3 * i) - state.sensors[s].offset_nT).normalized();
-    std::vector<double> v;
-    // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
-    for (int degree = 2; degree <= 4; ++degree) {
-      for (int z = 0; z <= 1; ++z) {
-        for (int x = 0; x <= degree - z; ++x)
-          v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
-      }
-    }
-    return v;
-  }));
+  out.push_back(
+      by_channel(problem, "direction", kMonomials, [&state](const fit::joint::JointPose& pose, int i) {
+        const auto s = static_cast<std::size_t>(i);
+        const Eigen::Vector3d u = (pose.y_nT.segment<3>(3 * i) - state.sensors[s].offset_nT).normalized();
+        std::vector<double> v;
+        // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
+        for (int degree = 2; degree <= 4; ++degree) {
+          for (int z = 0; z <= 1; ++z) {
+            for (int x = 0; x <= degree - z; ++x)
+              v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
+          }
+        }
+        return v;
+      }));
 }
 
-void add_temperature(const JointProblem& problem, std::vector<Map>& out) {
+void add_temperature(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
   Range range;
-  for (const JointPose& pose : problem.poses) {
+  for (const fit::joint::JointPose& pose : problem.poses) {
     for (const auto& T : pose.pose->T_degC)
       if (T) range.add(*T);
   }
   if (!range.varies()) return;
-  out.push_back(by_channel(problem, "temperature", 3, [range](const JointPose& pose, int i) {
+  out.push_back(by_channel(problem, "temperature", 3, [range](const fit::joint::JointPose& pose, int i) {
     const auto& T = pose.pose->T_degC[static_cast<std::size_t>(i)];
     return T ? powers(range.scaled(*T), 3) : std::vector<double>{};
   }));
 }
 
-void add_previous(const JointProblem& problem, std::vector<Map>& out) {
-  out.push_back(by_channel(problem, "previous pose", 3, [](const JointPose& pose, int i) {
+void add_previous(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
+  out.push_back(by_channel(problem, "previous pose", 3, [](const fit::joint::JointPose& pose, int i) {
     std::vector<double> v;
     if (pose.previous == nullptr) return v;
     const Eigen::Vector3d& y = pose.previous->y_nT[static_cast<std::size_t>(i)];
@@ -149,37 +157,38 @@ void add_previous(const JointProblem& problem, std::vector<Map>& out) {
   }));
 }
 
-void add_mount(const JointProblem& problem, std::vector<Map>& out) {
+void add_mount(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
   std::set<int> mounts;
-  for (const JointPose& pose : problem.poses)
+  for (const fit::joint::JointPose& pose : problem.poses)
     if (pose.pose->mount) mounts.insert(*pose.pose->mount);
   if (mounts.size() < 2) return;
   out.push_back(by_channel(problem, "mount", static_cast<Eigen::Index>(mounts.size()),
-                           [mounts](const JointPose& pose, int) {
+                           [mounts](const fit::joint::JointPose& pose, int) {
                              std::vector<double> v;
                              for (const int m : mounts) v.push_back(pose.pose->mount == m ? 1 : 0);
                              return v;
                            }));
 }
 
-void add_columns(const JointProblem& problem, std::vector<Map>& out) {
+void add_columns(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
   std::map<std::string, Range> columns;
-  for (const JointPose& pose : problem.poses) {
+  for (const fit::joint::JointPose& pose : problem.poses) {
     for (const auto& [name, value] : pose.pose->covariates) columns[name].add(value);
   }
   for (const auto& [name, range] : columns) {
     if (!range.varies()) continue;
-    out.push_back(by_channel(problem, name, 2, [name = name, range = range](const JointPose& pose, int) {
-      const auto found = pose.pose->covariates.find(name);
-      return found == pose.pose->covariates.end() ? std::vector<double>{}
-                                                  : powers(range.scaled(found->second), 2);
-    }));
+    out.push_back(
+        by_channel(problem, name, 2, [name = name, range = range](const fit::joint::JointPose& pose, int) {
+          const auto found = pose.pose->covariates.find(name);
+          return found == pose.pose->covariates.end() ? std::vector<double>{}
+                                                      : powers(range.scaled(found->second), 2);
+        }));
   }
 }
 
 }  // namespace
 
-std::vector<Map> residual_maps(const JointProblem& problem, const JointState& state) {
+std::vector<Map> residual_maps(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   std::vector<Map> out;
   add_time(problem, out);
   add_azimuth(problem, out);
@@ -192,7 +201,7 @@ std::vector<Map> residual_maps(const JointProblem& problem, const JointState& st
   for (SiteRows& site : site_map_rows(problem, state)) {
     const Eigen::Index m = site.rows.cols();
     out.push_back({.name = std::move(site.name), .rows = std::move(site.rows), .hypotheses = {}});
-    out.back().hypotheses.push_back(picked("site", kChannels, 1, 0, m, m));
+    out.back().hypotheses.push_back(picked("site", sensor::kChannels, 1, 0, m, m));
   }
   return out;
 }
@@ -211,7 +220,8 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
       if (k == 0) continue;
       const Eigen::VectorXd t = step.basis.transpose() * s.by_residual;
       const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
-      if (h.alike == kChannels) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
+      if (h.alike == sensor::kChannels)
+        best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
       if (log10_p >= best.log10_p) continue;
       best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
       best.fit = s.columns * (step.basis * t);
@@ -225,4 +235,4 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -18,7 +18,7 @@
 ///     mount           a level for each mounting    site field       8 cosines of time, 3 components
 ///     site gradient   8 cosines, 5 components      site map         gradient and curvature, constant
 ///     <column>        quadratic of every extra numeric column, a channel
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 struct Map {
   std::string name{};
@@ -27,19 +27,20 @@ struct Map {
 };
 
 /// Those that the poses can feed.
-[[nodiscard]] std::vector<Map> residual_maps(const JointProblem& problem, const JointState& state);
+[[nodiscard]] std::vector<Map> residual_maps(const fit::joint::JointProblem& problem,
+                                             const fit::joint::JointState& state);
 
 struct MapScore {
   std::string map{};
   std::string where{};  ///< of the hypothesis that shows it best
   double S{0};
   int k{0};
-  double log10_p{0};                           ///< of the map, its hypotheses counted
-  std::array<double, kChannels> by_channel{};  ///< log10 p of each channel alone; 0 where it has none
+  double log10_p{0};                                   ///< of the map, its hypotheses counted
+  std::array<double, sensor::kChannels> by_channel{};  ///< log10 p of each channel alone; 0 where it has none
   Eigen::VectorXd fit{};  ///< the residual that the map explains, rows as Residual::value()
 };
 
 [[nodiscard]] std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& residual,
                                                const NoiseReference& noise);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

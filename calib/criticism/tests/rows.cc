@@ -6,13 +6,14 @@
 
 #include "calib/fit/joint/joint_solver.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 Eigen::Index row_of(std::size_t pose) { return static_cast<Eigen::Index>(pose) * kPoseRows; }
 
-void fill_attitude(const JointPose& pose, const Nuisance& nuisance, Eigen::Index row, LinearRows& out) {
-  const Eigen::Index first = row + kChannels + 1;
+void fill_attitude(const fit::joint::JointPose& pose, const fit::joint::Nuisance& nuisance, Eigen::Index row,
+                   LinearRows& out) {
+  const Eigen::Index first = row + sensor::kChannels + 1;
   if (!pose.has_angles) {
     out.nuisance(first, 3) = 1;
     return;
@@ -23,85 +24,86 @@ void fill_attitude(const JointPose& pose, const Nuisance& nuisance, Eigen::Index
 
 }  // namespace
 
-LinearRows linear_rows(const JointProblem& problem, const JointState& state) {
+LinearRows linear_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const auto rows = row_of(problem.poses.size());
   LinearRows out{.residual = Eigen::VectorXd::Zero(rows),
                  .fixed = Eigen::MatrixXd::Zero(rows, problem.fixed()),
-                 .nuisance = Eigen::MatrixXd::Zero(rows, kNuisances)};
-  const PoseModel model(problem, state);
-  PoseBlocks b;
+                 .nuisance = Eigen::MatrixXd::Zero(rows, fit::joint::kNuisances)};
+  const fit::joint::PoseModel model(problem, state);
+  fit::joint::PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    const JointPose& pose = problem.poses[k];
+    const fit::joint::JointPose& pose = problem.poses[k];
     const Eigen::Index row = row_of(k);
-    assemble(problem, model, state, k, false, b);
-    out.residual.segment<kChannels>(row) = b.residual;
-    out.residual[row + kChannels] = b.scalar.residual;
-    out.nuisance.middleRows<kChannels>(row) = b.N;
-    out.nuisance.row(row + kChannels) = b.scalar.nuisance;
+    fit::joint::assemble(problem, model, state, k, false, b);
+    out.residual.segment<sensor::kChannels>(row) = b.residual;
+    out.residual[row + sensor::kChannels] = b.scalar.residual;
+    out.nuisance.middleRows<sensor::kChannels>(row) = b.N;
+    out.nuisance.row(row + sensor::kChannels) = b.scalar.nuisance;
     const auto w = pose.weight.asDiagonal();
     for (int i = 0; i < kSensors; ++i) {
-      out.fixed.block<3, kSensorParameters>(row + 3 * i, kSensorParameters * i) =
+      out.fixed.block<3, sensor::kSensorParameters>(row + 3 * i, sensor::kSensorParameters * i) =
           pose.weight.segment<3>(3 * i).asDiagonal() * b.linear.d_sensor.middleRows<3>(3 * i);
     }
     const Eigen::Index globals = b.linear.d_global.cols();
-    out.fixed.block(row, kSensorBlock, kChannels, globals) = w * b.linear.d_global;
-    out.fixed.block(row + kChannels, kSensorBlock, 1, globals) = b.scalar.global;
+    out.fixed.block(row, fit::joint::kSensorBlock, sensor::kChannels, globals) = w * b.linear.d_global;
+    out.fixed.block(row + sensor::kChannels, fit::joint::kSensorBlock, 1, globals) = b.scalar.global;
     fill_attitude(pose, state.nuisances[k], row, out);
   }
   return out;
 }
 
-Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state, const EffectPtr& effect) {
+Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                            const effects::EffectPtr& effect) {
   return effect_rows(problem, state, effect,
                      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect->coefficients().size())));
 }
 
-Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state, const EffectPtr& effect,
-                            const Eigen::VectorXd& coefficients) {
-  JointProblem wider;
+Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                            const effects::EffectPtr& effect, const Eigen::VectorXd& coefficients) {
+  fit::joint::JointProblem wider;
   wider.geometry = problem.geometry;
   wider.effects = problem.effects;
   wider.common_field = problem.common_field;
   wider.effects.push_back(effect);
   const Eigen::Index added = coefficients.size();
-  JointState at = state;
+  fit::joint::JointState at = state;
   at.coefficients.conservativeResize(state.coefficients.size() + added);
   at.coefficients.tail(added) = coefficients;
-  const PoseModel model(wider, at);
-  PoseLinear linear;
+  const fit::joint::PoseModel model(wider, at);
+  fit::joint::PoseLinear linear;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(row_of(problem.poses.size()), added);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    const JointPose& pose = problem.poses[k];
+    const fit::joint::JointPose& pose = problem.poses[k];
     if (!effect->missing(*pose.pose).empty()) continue;
     model.linearise(pose, state.nuisances[k], linear);
     const Eigen::Index row = row_of(k);
-    out.middleRows<kChannels>(row) = pose.weight.asDiagonal() * linear.d_global.rightCols(added);
-    out.row(row + kChannels) = pose.f_weight * linear.f_global.tail(added);
+    out.middleRows<sensor::kChannels>(row) = pose.weight.asDiagonal() * linear.d_global.rightCols(added);
+    out.row(row + sensor::kChannels) = pose.f_weight * linear.f_global.tail(added);
   }
   return out;
 }
 
-PriorRows prior_rows(const JointProblem& problem, const JointState& state) {
+PriorRows prior_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const Eigen::VectorXd x = state.fixed();
   const auto n = static_cast<Eigen::Index>(problem.priors.size());
   PriorRows out{.residual = Eigen::VectorXd::Zero(n + 2),
                 .fixed = Eigen::MatrixXd::Zero(n + 2, problem.fixed())};
   for (Eigen::Index i = 0; i < n; ++i) {
-    const LinearPrior& prior = problem.priors[static_cast<std::size_t>(i)];
+    const fit::joint::LinearPrior& prior = problem.priors[static_cast<std::size_t>(i)];
     out.residual[i] = prior.weight * (prior.target - prior.row.dot(x));
     out.fixed.row(i) = prior.weight * prior.row;
   }
   if (!problem.has_angles) return out;
   const double w = problem.direction_weight;
-  const Eigen::Matrix2d rows = inclination_declination_rows(state.direction);
+  const Eigen::Matrix2d rows = fit::joint::inclination_declination_rows(state.direction);
   const auto observe = [&](const std::optional<double>& known, double now, Eigen::Index i) {
     if (!known) return;
     out.residual[n + i] = w * std::remainder(*known - now, 2 * std::numbers::pi);
-    out.fixed.block<1, 2>(n + i, kSiteSlot) = w * rows.row(i);
+    out.fixed.block<1, 2>(n + i, fit::joint::kSiteSlot) = w * rows.row(i);
   };
-  observe(problem.known_inclination_rad, inclination_of(state.direction), 0);
-  observe(problem.known_declination_rad, declination_of(state.direction), 1);
+  observe(problem.known_inclination_rad, fit::joint::inclination_of(state.direction), 0);
+  observe(problem.known_declination_rad, fit::joint::declination_of(state.direction), 1);
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

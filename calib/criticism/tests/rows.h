@@ -8,9 +8,9 @@
 ///     0..11  readings     12  scalar reference     13..15  attitude (without table angles: the idle slot)
 ///
 /// An observation that was left out is a row of zeros. Nothing is eliminated here: see whitener.h.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
-inline constexpr int kPoseRows = kChannels + 4;
+inline constexpr int kPoseRows = sensor::kChannels + 4;
 
 struct LinearRows {
   Eigen::VectorXd residual;  ///< measured less predicted
@@ -18,20 +18,25 @@ struct LinearRows {
   Eigen::MatrixXd nuisance;  ///< by the pose's own four nuisances
 };
 
-[[nodiscard]] LinearRows linear_rows(const JointProblem& problem, const JointState& state);
+[[nodiscard]] LinearRows linear_rows(const fit::joint::JointProblem& problem,
+                                     const fit::joint::JointState& state);
 
 /// By the coefficients of an effect that is not in the model, at zero. Poses that cannot feed it get zeros.
-[[nodiscard]] Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state,
-                                          const EffectPtr& effect);
+[[nodiscard]] Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem,
+                                          const fit::joint::JointState& state,
+                                          const effects::EffectPtr& effect);
 /// The same at `coefficients`: the shift of a dipole shows only where it has a moment.
-[[nodiscard]] Eigen::MatrixXd effect_rows(const JointProblem& problem, const JointState& state,
-                                          const EffectPtr& effect, const Eigen::VectorXd& coefficients);
+[[nodiscard]] Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem,
+                                          const fit::joint::JointState& state,
+                                          const effects::EffectPtr& effect,
+                                          const Eigen::VectorXd& coefficients);
 
 /// The priors and gauge constraints of the fixed block, as rows.
 struct PriorRows {
   Eigen::VectorXd residual;
   Eigen::MatrixXd fixed;
 };
-[[nodiscard]] PriorRows prior_rows(const JointProblem& problem, const JointState& state);
+[[nodiscard]] PriorRows prior_rows(const fit::joint::JointProblem& problem,
+                                   const fit::joint::JointState& state);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

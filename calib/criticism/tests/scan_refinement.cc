@@ -6,7 +6,7 @@
 #include "calib/criticism/tests/dipole_search.h"
 #include "calib/criticism/tests/multiplicity.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr int kHalvings = 4;
@@ -29,7 +29,7 @@ CandidateEffect& widened(ScoredFamily& family) {
   return *wider;
 }
 
-void add_variant(const std::optional<double>& value, EffectPtr effect, Signature signature,
+void add_variant(const std::optional<double>& value, effects::EffectPtr effect, Signature signature,
                  const NoiseReference& noise, CandidateEffect& wider, ScoredFamily& family) {
   wider.values.push_back(value);
   wider.variants.push_back(std::move(effect));
@@ -39,8 +39,8 @@ void add_variant(const std::optional<double>& value, EffectPtr effect, Signature
 
 }  // namespace
 
-void refine(const JointProblem& problem, const JointState& state, const Residual& residual,
-            const NoiseReference& noise, ScoredFamily& family) {
+void refine(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+            const Residual& residual, const NoiseReference& noise, ScoredFamily& family) {
   if (!family.candidate_effect->between || !family.candidate_effect->values[family.winner().variant]) return;
   CandidateEffect& wider = widened(family);
   for (int i = 0; i < kHalvings; ++i) {
@@ -48,7 +48,7 @@ void refine(const JointProblem& problem, const JointState& state, const Residual
     for (const bool above : {false, true}) {
       const auto end = neighbour(wider, value, above);
       const auto tried = end ? wider.between(std::min(value, *end), std::max(value, *end)) : std::nullopt;
-      auto effect = tried ? wider.make(nullptr, tried) : Result<EffectPtr>(nullptr);
+      auto effect = tried ? wider.make(nullptr, tried) : Result<effects::EffectPtr>(nullptr);
       if (!effect || *effect == nullptr) continue;
       Signature signature = signature_of(residual, effect_rows(problem, state, *effect));
       add_variant(tried, *std::move(effect), std::move(signature), noise, wider, family);
@@ -57,8 +57,8 @@ void refine(const JointProblem& problem, const JointState& state, const Residual
   family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
 }
 
-void refine_place(const JointProblem& problem, const JointState& state, const Residual& residual,
-                  const NoiseReference& noise, ScoredFamily& family) {
+void refine_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                  const Residual& residual, const NoiseReference& noise, ScoredFamily& family) {
   if (!family.candidate_effect->dipole_at) return;
   CandidateEffect& wider = widened(family);
   const std::optional<double> value = wider.values[family.winner().variant];
@@ -72,4 +72,4 @@ void refine_place(const JointProblem& problem, const JointState& state, const Re
   family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

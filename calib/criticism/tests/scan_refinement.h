@@ -5,16 +5,16 @@
 /// A searched number between the values that were tried. An alarm is raised from those alone, because its
 /// chance is counted with them; a name is given with the number refined, because a law that is tried beside
 /// its true number falls behind others that have none.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Halves the distance to the neighbours of the winner a few times and adds what was tried to the family.
 /// Nothing happens to a family without a number that can be refined.
-void refine(const JointProblem& problem, const JointState& state, const Residual& residual,
-            const NoiseReference& noise, ScoredFamily& family);
+void refine(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+            const Residual& residual, const NoiseReference& noise, ScoredFamily& family);
 
 /// Adds the dipole at its best place to a family that has one. It is scored with moment and place as six
 /// numbers (dipole_search.h): every gradient is that of some dipole far away, and the sixth number must pay.
-void refine_place(const JointProblem& problem, const JointState& state, const Residual& residual,
-                  const NoiseReference& noise, ScoredFamily& family);
+void refine_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                  const Residual& residual, const NoiseReference& noise, ScoredFamily& family);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

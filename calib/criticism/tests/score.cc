@@ -6,16 +6,16 @@
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/f_distribution.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 double NoiseReference::log10_p(double S, int k, int axes) const {
-  if (known) return f_log10_p(S / k, k, nu);
+  if (known) return stats::f_log10_p(S / k, k, nu);
   // The noise of the channels concerned is what they have left once the effect is taken out.
-  const double own = by_channel ? dof * axes / kChannels : dof;
+  const double own = by_channel ? dof * axes / sensor::kChannels : dof;
   if (!(own > k)) return 0;  // nothing would be left to tell the noise from
   const double left = own * chi2 / dof - S;
-  if (!(left > 0)) return f_log10_p(1e12, k, own - k);
-  return f_log10_p(S / k / (left / (own - k)), k, own - k);
+  if (!(left > 0)) return stats::f_log10_p(1e12, k, own - k);
+  return stats::f_log10_p(S / k / (left / (own - k)), k, own - k);
 }
 
 Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows) {
@@ -38,7 +38,7 @@ OneStep one_step(const Signature& s, const Hypothesis& h) {
   const Eigen::VectorXd length = (T.cwiseAbs2().transpose() * s.norms.cwiseAbs2()).cwiseSqrt();
   const Eigen::VectorXd scale = (length.array() > 0).select(length.cwiseInverse(), 0.0);
   const Eigen::MatrixXd M = scale.asDiagonal() * (T.transpose() * s.gram * T) * scale.asDiagonal();
-  const SymmetricEigen eigen = symmetric_eigen(M);
+  const linear::SymmetricEigen eigen = linear::symmetric_eigen(M);
   const Eigen::VectorXd& values = eigen.values;
   const auto absorbed = (values.array() < kAbsorbed * kAbsorbed).count();
   const Eigen::Index rank = values.size() - absorbed;
@@ -87,10 +87,11 @@ void ScoredFamily::score_last(const NoiseReference& noise) {
   }
 }
 
-ScoredFamily score_family(const JointProblem& problem, const JointState& state, const Residual& residual,
-                          const NoiseReference& noise, const CandidateEffect& candidate_effect) {
+ScoredFamily score_family(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                          const Residual& residual, const NoiseReference& noise,
+                          const CandidateEffect& candidate_effect) {
   ScoredFamily out{.candidate_effect = &candidate_effect};
-  for (const EffectPtr& variant : candidate_effect.variants) {
+  for (const effects::EffectPtr& variant : candidate_effect.variants) {
     out.signatures.push_back(signature_of(residual, effect_rows(problem, state, variant)));
     out.score_last(noise);
   }
@@ -98,4 +99,4 @@ ScoredFamily score_family(const JointProblem& problem, const JointState& state, 
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -16,7 +16,7 @@
 /// is the fall of chi-square that adding the effect would bring, chi-square distributed with k degrees of
 /// freedom when it is absent. No refit. One-step coefficients are (z'z)^-1 z'r with covariance (z'z)^-1, the
 /// Cramer-Rao bound with calibration and nuisances free.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 /// Singular values below this share of a column's length before projection are rounding: absorbed.
 inline constexpr double kAbsorbed = 1e-6;
@@ -76,8 +76,8 @@ struct ScoredFamily {
 
 [[nodiscard]] Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows);
 [[nodiscard]] OneStep one_step(const Signature& signature, const Hypothesis& hypothesis);
-[[nodiscard]] ScoredFamily score_family(const JointProblem& problem, const JointState& state,
-                                        const Residual& residual, const NoiseReference& noise,
-                                        const CandidateEffect& candidate_effect);
+[[nodiscard]] ScoredFamily score_family(const fit::joint::JointProblem& problem,
+                                        const fit::joint::JointState& state, const Residual& residual,
+                                        const NoiseReference& noise, const CandidateEffect& candidate_effect);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

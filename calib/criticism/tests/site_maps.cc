@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <array>
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 constexpr std::array<int, 12> kIndices{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 
 /// Field of the site that is linear in its coefficients: `shape` gives the columns at a place, times a
 /// function of time.
-class SiteShape : public EffectOf<SiteShape> {
+class SiteShape : public effects::EffectOf<SiteShape> {
  public:
   enum class Kind { uniform, gradient, curvature };
   SiteShape(Kind kind, int cosine, double from_h, double to_h)
@@ -22,15 +22,19 @@ class SiteShape : public EffectOf<SiteShape> {
     for (int i = 0; i < n; ++i) coefficients_.push_back({.name = fmt::format("c{}", i), .unit = "nT"});
   }
   [[nodiscard]] std::string_view name() const override { return "site map"; }
-  [[nodiscard]] Level level() const override { return Level::site; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] effects::Level level() const override { return effects::Level::site; }
+  [[nodiscard]] const std::vector<effects::Coefficient>& coefficients() const override {
+    return coefficients_;
+  }
   [[nodiscard]] std::span<const int> at(int) const override {
     return std::span(kIndices).first(coefficients_.size());
   }
-  [[nodiscard]] std::string_view missing(const Pose& pose) const override { return missing_angle(pose); }
+  [[nodiscard]] std::string_view missing(const Pose& pose) const override {
+    return effects::missing_angle(pose);
+  }
 
   template <class S>
-  void equation(const Conditions& at, int, std::span<const S> x, std::span<const S> c,
+  void equation(const effects::Conditions& at, int, std::span<const S> x, std::span<const S> c,
                 std::span<S> out) const {
     const double f = cosine_ == 0 ? 1 : time_cosine(2 * (at.t_h - from_h_) / (to_h_ - from_h_) - 1, cosine_);
     if (kind_ == Kind::uniform) {
@@ -61,7 +65,7 @@ class SiteShape : public EffectOf<SiteShape> {
   Kind kind_;
   int cosine_;
   double from_h_, to_h_;
-  std::vector<Coefficient> coefficients_;
+  std::vector<effects::Coefficient> coefficients_;
 };
 
 Eigen::MatrixXd beside(const std::vector<Eigen::MatrixXd>& parts) {
@@ -78,12 +82,13 @@ Eigen::MatrixXd beside(const std::vector<Eigen::MatrixXd>& parts) {
 
 }  // namespace
 
-std::vector<SiteRows> site_map_rows(const JointProblem& problem, const JointState& state) {
+std::vector<SiteRows> site_map_rows(const fit::joint::JointProblem& problem,
+                                    const fit::joint::JointState& state) {
   std::vector<SiteRows> out;
   if (!problem.has_angles) return out;
   using Kind = SiteShape::Kind;
   double from_h = problem.poses.front().t_h, to_h = from_h;
-  for (const JointPose& pose : problem.poses) {
+  for (const fit::joint::JointPose& pose : problem.poses) {
     from_h = std::min(from_h, pose.t_h);
     to_h = std::max(to_h, pose.t_h);
   }
@@ -102,4 +107,4 @@ std::vector<SiteRows> site_map_rows(const JointProblem& problem, const JointStat
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -8,7 +8,7 @@
 #include "calib/criticism/tests/rows.h"
 
 /// Maps of the site: field and gradient that change smoothly with time, and the field's map to second degree.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 inline constexpr int kCosines = 8;
 /// The j-th of a basis of smooth functions over a run, u from -1 at its start to 1 at its end.
@@ -22,6 +22,7 @@ struct SiteRows {
 };
 
 /// Empty without table angles; those over time only where the poses have times.
-[[nodiscard]] std::vector<SiteRows> site_map_rows(const JointProblem& problem, const JointState& state);
+[[nodiscard]] std::vector<SiteRows> site_map_rows(const fit::joint::JointProblem& problem,
+                                                  const fit::joint::JointState& state);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -13,14 +13,14 @@
 ///
 /// is chi-square with the rank of the law where the offsets only wander. A test at the rates that were found
 /// without the law would be blind to a slow law, because those rates have taken it up already.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 class WanderingAlternative {
  public:
   /// Of a fit in which nothing wanders.
-  explicit WanderingAlternative(const JointFit& bare);
+  explicit WanderingAlternative(const fit::joint::JointFit& bare);
 
-  [[nodiscard]] const WanderingEstimate& estimate() const { return estimate_; }
+  [[nodiscard]] const fit::joint::WanderingEstimate& estimate() const { return estimate_; }
 
   struct Ratio {
     double R{0};
@@ -35,26 +35,27 @@ class WanderingAlternative {
   /// the walk there. A walk is largest where it is slowest; what oscillates is no walk.
   [[nodiscard]] double curve_instead(int channel) const;
   /// What still wanders where the law holds.
-  [[nodiscard]] WanderingEstimate beside(const Eigen::MatrixXd& rows) const;
+  [[nodiscard]] fit::joint::WanderingEstimate beside(const Eigen::MatrixXd& rows) const;
 
-  [[nodiscard]] const JointProblem& problem() const { return problem_; }
-  [[nodiscard]] const JointState& state() const { return state_; }
+  [[nodiscard]] const fit::joint::JointProblem& problem() const { return problem_; }
+  [[nodiscard]] const fit::joint::JointState& state() const { return state_; }
 
  private:
   /// Orthonormal, of the law's projected columns.
   [[nodiscard]] Eigen::MatrixXd basis_of(const Eigen::MatrixXd& rows) const;
   /// -2 ln of the maximum likelihood with a law, whose directions are out of `with`. The determinant does not
   /// know the law, the quadratic form does.
-  [[nodiscard]] double deviance_with(const SlowLikelihood& with, const Channels& theta) const;
+  [[nodiscard]] double deviance_with(const fit::joint::SlowLikelihood& with,
+                                     const fit::joint::Channels& theta) const;
 
-  JointProblem problem_;
-  JointState state_;
+  fit::joint::JointProblem problem_;
+  fit::joint::JointState state_;
   Residual residual_;     ///< nuisances and the model's own parameters out, poses uncorrelated
   Eigen::MatrixXd slow_;  ///< projected columns of the wandering
-  SlowLikelihood likelihood_;
-  WanderingEstimate estimate_;
-  Channels theta_;  ///< where the likelihood is largest without any law
+  fit::joint::SlowLikelihood likelihood_;
+  fit::joint::WanderingEstimate estimate_;
+  fit::joint::Channels theta_;  ///< where the likelihood is largest without any law
   double deviance_{0};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -7,7 +7,7 @@
 
 #include "calib/linear/qr.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 /// A walk begins at nothing, because the offset of the model is free.
@@ -25,7 +25,7 @@ double log_det_of(const Eigen::MatrixXd& triangle) {
 
 }  // namespace
 
-std::vector<Eigen::Index> order_in_time(const JointProblem& problem) {
+std::vector<Eigen::Index> order_in_time(const fit::joint::JointProblem& problem) {
   std::vector<Eigen::Index> order(problem.poses.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
@@ -34,21 +34,22 @@ std::vector<Eigen::Index> order_in_time(const JointProblem& problem) {
   return order;
 }
 
-Whitener::Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
-                   const WanderingRates& nT_per_sqrt_h)
+Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
+                   const fit::joint::WanderingRates& nT_per_sqrt_h)
     : rho_(rho), order_(order_in_time(problem)), steps_(order_.size()) {
-  for (int c = 0; c < kChannels; ++c)
+  for (int c = 0; c < sensor::kChannels; ++c)
     if (nT_per_sqrt_h[c] > 0) walking_.push_back(c);
   const auto W = static_cast<Eigen::Index>(walking_.size()), U = unknowns();
   const double fresh = 1 / std::sqrt(1 - rho * rho);
   /// What the readings of a pose, each times a factor, feel of its unknowns.
-  const auto felt = [&](Eigen::Index pose, const Eigen::Matrix<double, kChannels, 1>& factor) {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(kChannels, U);
+  const auto felt = [&](Eigen::Index pose, const Eigen::Matrix<double, sensor::kChannels, 1>& factor) {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(sensor::kChannels, U);
     for (Eigen::Index i = 0; i < W; ++i) {
       const int c = walking_[static_cast<std::size_t>(i)];
       out(c, i) = factor[c] * problem.poses[static_cast<std::size_t>(pose)].weight[c];
     }
-    out.rightCols<kNuisances>() = factor.asDiagonal() * nuisance.middleRows<kChannels>(pose * kPoseRows);
+    out.rightCols<fit::joint::kNuisances>() =
+        factor.asDiagonal() * nuisance.middleRows<sensor::kChannels>(pose * kPoseRows);
     return out;
   };
   Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(U, U);
@@ -57,7 +58,7 @@ Whitener::Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance,
     const auto& pose = problem.poses[static_cast<std::size_t>(order_[k])];
     step.now.setOnes();
     step.before.setZero();
-    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + kChannels, U), mine = last;
+    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + sensor::kChannels, U), mine = last;
     last.topRows(U) = carried;
     if (k > 0) {
       const auto& previous = problem.poses[static_cast<std::size_t>(order_[k - 1])];
@@ -65,7 +66,7 @@ Whitener::Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance,
         const auto both = (pose.weight.array() > 0 && previous.weight.array() > 0).cast<double>();
         step.now = 1 + both * (fresh - 1);
         step.before = -rho * fresh * both;
-        last.bottomRows<kChannels>() = felt(order_[k - 1], step.before);
+        last.bottomRows<sensor::kChannels>() = felt(order_[k - 1], step.before);
       }
       const double root_h = std::sqrt(std::max(0.0, pose.t_h - previous.t_h));
       for (Eigen::Index i = 0; i < W; ++i) {
@@ -77,14 +78,14 @@ Whitener::Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance,
     } else {
       for (Eigen::Index i = 0; i < W; ++i) mine(U + i, i) = 1 / kStart_nT;
     }
-    mine.bottomRows<kChannels>() = felt(order_[k], step.now);
-    step.first = triangularising_rotation(last);
+    mine.bottomRows<sensor::kChannels>() = felt(order_[k], step.now);
+    step.first = linear::triangularising_rotation(last);
     if (k > 0) log_det_ += log_det_of(step.first * last);
-    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + kChannels + kNuisances, U);
-    left.topRows(W + kChannels) = (step.first * mine).bottomRows(W + kChannels);
-    left.bottomRightCorner<kNuisances, kNuisances>() =
-        nuisance.middleRows<kNuisances>(order_[k] * kPoseRows + kChannels);
-    step.second = triangularising_rotation(left);
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + sensor::kChannels + fit::joint::kNuisances, U);
+    left.topRows(W + sensor::kChannels) = (step.first * mine).bottomRows(W + sensor::kChannels);
+    left.bottomRightCorner<fit::joint::kNuisances, fit::joint::kNuisances>() =
+        nuisance.middleRows<fit::joint::kNuisances>(order_[k] * kPoseRows + sensor::kChannels);
+    step.second = linear::triangularising_rotation(left);
     carried = (step.second * left).topRows(U);
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
     rank_ += static_cast<int>((pose.weight.array() > 0).count()) - (pose.f_weight > 0 ? 0 : 1);
@@ -92,27 +93,29 @@ Whitener::Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance,
 }
 
 Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& rows) const {
-  const Eigen::Index n = rows.cols(), U = unknowns(), W = U - kNuisances;
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * kChannels, n);
-  Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + W + kChannels, n), turned(in.rows(), n);
+  const Eigen::Index n = rows.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * sensor::kChannels, n);
+  Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + W + sensor::kChannels, n), turned(in.rows(), n);
   Eigen::MatrixXd left(W + kPoseRows, n), emitted(W + kPoseRows, n);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const Step& step = steps_[k];
     const Eigen::Index row = order_[k] * kPoseRows;
     in.middleRows(U, W).setZero();
-    in.bottomRows<kChannels>() = step.now.asDiagonal() * rows.middleRows<kChannels>(row);
+    in.bottomRows<sensor::kChannels>() = step.now.asDiagonal() * rows.middleRows<sensor::kChannels>(row);
     if (k > 0 && rho_ != 0) {
-      in.bottomRows<kChannels>() +=
-          step.before.asDiagonal() * rows.middleRows<kChannels>(order_[k - 1] * kPoseRows);
+      in.bottomRows<sensor::kChannels>() +=
+          step.before.asDiagonal() * rows.middleRows<sensor::kChannels>(order_[k - 1] * kPoseRows);
     }
     turned.noalias() = step.first * in;
-    left.topRows(W + kChannels) = turned.bottomRows(W + kChannels);
-    left.bottomRows<kNuisances>() = rows.middleRows<kNuisances>(row + kChannels);
+    left.topRows(W + sensor::kChannels) = turned.bottomRows(W + sensor::kChannels);
+    left.bottomRows<fit::joint::kNuisances>() =
+        rows.middleRows<fit::joint::kNuisances>(row + sensor::kChannels);
     emitted.noalias() = step.second * left;
     in.topRows(U) = emitted.topRows(U);
-    out.middleRows<kChannels>(order_[k] * kChannels) = emitted.bottomRows<kChannels>();
+    out.middleRows<sensor::kChannels>(order_[k] * sensor::kChannels) =
+        emitted.bottomRows<sensor::kChannels>();
   }
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

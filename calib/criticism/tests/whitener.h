@@ -17,13 +17,13 @@
 ///
 /// Beside it an offset may wander (wandering.h): o_k = o_(k-1) + a sqrt(t_k - t_(k-1)) e_k. Its value at each
 /// pose is one more unknown, and each step a row of its own; both are removed in the same way, exactly.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 
 class Whitener {
  public:
   /// `nuisance` as in LinearRows. Poses are taken in the order of their times.
-  Whitener(const JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
-           const WanderingRates& nT_per_sqrt_h = WanderingRates::Zero());
+  Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
+           const fit::joint::WanderingRates& nT_per_sqrt_h = fit::joint::WanderingRates::Zero());
 
   /// (16 P) x n rows in, (12 P) x n out, blocks of twelve in the order of the poses of the problem.
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& rows) const;
@@ -40,10 +40,11 @@ class Whitener {
  private:
   /// Unknowns of a pose: offsets that wander, then its nuisances.
   [[nodiscard]] Eigen::Index unknowns() const {
-    return static_cast<Eigen::Index>(walking_.size()) + kNuisances;
+    return static_cast<Eigen::Index>(walking_.size()) + fit::joint::kNuisances;
   }
   struct Step {
-    Eigen::Matrix<double, kChannels, 1> now, before;  ///< factors of this pose's readings and the last one's
+    Eigen::Matrix<double, sensor::kChannels, 1> now,
+        before;  ///< factors of this pose's readings and the last one's
     /// Rows carried over, steps of the walks and readings: takes out the unknowns of the pose before.
     Eigen::MatrixXd first;
     /// What is left, and scalar and attitude: takes out this pose's own.
@@ -58,6 +59,6 @@ class Whitener {
 };
 
 /// Poses by time, those of one time in the order of the table.
-[[nodiscard]] std::vector<Eigen::Index> order_in_time(const JointProblem& problem);
+[[nodiscard]] std::vector<Eigen::Index> order_in_time(const fit::joint::JointProblem& problem);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

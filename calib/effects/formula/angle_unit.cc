@@ -10,7 +10,7 @@
 
 #include "calib/effects/formula/expression.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 namespace {
 
 constexpr std::array<std::string_view, 3> kOfRadians{"sin", "cos", "tan"};
@@ -71,4 +71,4 @@ Result<void> check_angles(std::string_view expression) {
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

@@ -12,7 +12,7 @@
 #include <memory>
 #include <numbers>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 namespace {
 
 constexpr const char* kRemedy =
@@ -127,4 +127,4 @@ double Expression::operator()(std::span<const double> values) const {
   }
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

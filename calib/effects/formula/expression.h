@@ -10,7 +10,7 @@
 /// An arithmetic expression of named numbers (muParser): + - * / ^, comparisons, && || and ?:, sin cos tan
 /// of radians, sind cosd tand of degrees, asin acos atan sinh cosh tanh exp ln log2 log10 sqrt abs sign rint
 /// min max, pi. One value; no assignment, no text, no access to anything.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 
 class Expression {
  public:
@@ -35,4 +35,4 @@ class Expression {
 /// 1-based column of a name as a whole word; 1 when it is not there.
 [[nodiscard]] std::size_t column_of(std::string_view text, std::string_view name);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

@@ -12,7 +12,7 @@
 #include "calib/effects/laws/axis_effect.h"
 #include "proto/number.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 namespace {
 
 using Source = FormulaName::Source;
@@ -196,4 +196,4 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

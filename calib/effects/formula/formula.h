@@ -25,7 +25,7 @@
 ///     px, py, pz           site: place, m, from the centre of the array
 /// and any other column of the pose table. Coefficients must come in linearly: that is tried and refused
 /// otherwise. Derivatives by the field are central differences; see derivative_check.h.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 
 inline constexpr std::size_t kFormulaCoefficients = 3;
 
@@ -46,4 +46,4 @@ struct FormulaScan {
 /// there are.
 [[nodiscard]] Result<void> check_columns(const EffectSpec& spec, const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

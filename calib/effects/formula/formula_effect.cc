@@ -8,7 +8,7 @@
 
 #include "calib/effects/laws/axis_effect.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 namespace {
 
 using Source = FormulaName::Source;
@@ -27,8 +27,8 @@ std::size_t count_coefficients(const std::vector<FormulaName>& names) {
   return out;
 }
 
-AxisCoefficients per_axis(std::size_t count, const std::string& unit, double typical) {
-  AxisCoefficients out{.suffix = {}, .unit = unit, .typical = typical};
+laws::AxisCoefficients per_axis(std::size_t count, const std::string& unit, double typical) {
+  laws::AxisCoefficients out{.suffix = {}, .unit = unit, .typical = typical};
   for (auto& suffix : out.suffix) {
     for (std::size_t j = 0; j < count; ++j) suffix.push_back(count == 1 ? "" : fmt::format(".k{}", j + 1));
   }
@@ -72,7 +72,8 @@ std::string_view FormulaEffect::missing(const Pose& pose) const {
     if (n.source != Source::temperature) continue;
     for (int sensor = 0; sensor < kSensors; ++sensor) {
       if (!scale_.acts_on(sensor)) continue;
-      if (const std::string_view column = missing_temperature(pose, sensor); !column.empty()) return column;
+      if (const std::string_view column = laws::missing_temperature(pose, sensor); !column.empty())
+        return column;
     }
   }
   return {};
@@ -196,4 +197,4 @@ Result<void> FormulaEffect::check(const PoseTable& table) const {
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

@@ -12,7 +12,7 @@
 /// A user's formula as a term of the model: see formula.h. The derivative by a coefficient is exact (the term
 /// with that coefficient one and the others zero); those by the field and the place are central differences
 /// at two steps, extrapolated to none.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 
 inline constexpr std::size_t kFormulaNames = 24;
 
@@ -58,9 +58,9 @@ class FormulaEffect final : public Effect {
   bool implicit_{true};              ///< no coefficient in the text: the whole is multiplied by one
   std::vector<std::size_t> inputs_;  ///< that it uses
   bool uses_own_{false};
-  AxisScale scale_;
+  laws::AxisScale scale_;
   std::vector<Coefficient> coefficients_;
   std::vector<int> site_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

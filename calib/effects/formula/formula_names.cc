@@ -8,7 +8,7 @@
 #include "calib/effects/effect_context.h"
 #include "calib/poses/pose_columns.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 namespace {
 
 using Source = FormulaName::Source;
@@ -34,10 +34,10 @@ std::optional<std::size_t> coefficient_index(std::string_view name) {
 }
 
 /// Readings are what a formula explains; it cannot be made of them.
-const PoseColumn* format_column(const std::string& name) {
-  const auto& all = pose_columns();
+const poses::PoseColumn* format_column(const std::string& name) {
+  const auto& all = poses::pose_columns();
   const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const PoseColumn& c) { return c.name == name && !c.required; });
+                                  [&](const poses::PoseColumn& c) { return c.name == name && !c.required; });
   return found == all.end() ? nullptr : &*found;
 }
 
@@ -77,7 +77,7 @@ FormulaName formula_name(const std::string& name, Level level, const std::option
   } else if (const auto at = std::find(known.inputs.begin(), known.inputs.end(), name);
              at != known.inputs.end()) {
     out.source = Source::input, out.index = static_cast<std::size_t>(at - known.inputs.begin());
-  } else if (const PoseColumn* column = format_column(name)) {
+  } else if (const poses::PoseColumn* column = format_column(name)) {
     out.get = column->get;
   } else {
     out.get = [name](const Pose& pose) {
@@ -91,7 +91,7 @@ FormulaName formula_name(const std::string& name, Level level, const std::option
 std::vector<std::string> usable_columns(const PoseTable& table) {
   std::set<std::string> found;
   for (const Pose& pose : table.poses) {
-    for (const PoseColumn& column : pose_columns()) {
+    for (const poses::PoseColumn& column : poses::pose_columns()) {
       if (!column.required && !column.name.ends_with("_nT") && column.get(pose)) found.insert(column.name);
     }
     if (pose.f_nT) found.insert("f_nT");
@@ -100,4 +100,4 @@ std::vector<std::string> usable_columns(const PoseTable& table) {
   return {found.begin(), found.end()};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

@@ -9,7 +9,7 @@
 #include "calib/effects/effect_spec.h"
 
 /// What the names in a formula stand for: formula.h lists them.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 
 struct FormulaName {
   enum class Source {
@@ -38,4 +38,4 @@ struct FormulaName {
 /// Columns that a formula may name on these poses: those of the format that any pose has, and all others.
 [[nodiscard]] std::vector<std::string> usable_columns(const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

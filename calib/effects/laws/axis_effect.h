@@ -20,7 +20,7 @@
 ///     S shape(const Conditions&, int sensor, int axis, std::span<const S> v, int j) const;
 /// and, where it needs the run, Result<Law> on_run(const EffectContext&) const; where it has a memory,
 /// std::pair<Law, std::shared_ptr<LiveMemory>> live() const.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 template <class Law>
 class AxisEffect final : public EffectOf<AxisEffect<Law>> {
@@ -111,11 +111,11 @@ struct TemperatureLaw : PlainLaw {
 };
 /// A law that reads the time.
 struct TimeLaw : PlainLaw {
-  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
+  static std::string_view missing(const Pose& pose, int) { return poses::missing_time(pose); }
 };
 /// Of the sensor less T0; the pose has it.
 [[nodiscard]] inline double warmer_degC(const Conditions& at, int sensor) {
   return *at.pose.T_degC[static_cast<std::size_t>(sensor)] - kReferenceT_degC;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -11,7 +11,7 @@
 ///     axis.gain.temperature2   y += 1e-6 kappa2 (T - T0)^2 v    ppm/degC^2
 ///     axis.gain.drift          y += 1e-6 g (t - t0) v           ppm/h
 ///     axis.gain.step           y += 1e-6 g v [|v| > c]          ppm, c in nT
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 struct GainTemperature : TemperatureLaw {
   static constexpr std::string_view kName = "axis.gain.temperature";
@@ -53,8 +53,8 @@ struct GainStep {
   template <class S>
   S shape(const Conditions&, int, int axis, std::span<const S> v, int) const {
     const S& own = v[static_cast<std::size_t>(axis)];
-    return own * S(std::abs(value_of(own)) > c_nT.value_or(kDefault_nT) ? 1e-6 : 0.0);
+    return own * S(std::abs(sensor::value_of(own)) > c_nT.value_or(kDefault_nT) ? 1e-6 : 0.0);
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

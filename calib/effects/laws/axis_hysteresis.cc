@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/axis_hysteresis.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 
 constexpr double kKnown = 0.04;  // of w between lowest and highest: 2 % of the coefficient
@@ -81,4 +81,4 @@ Result<Hysteresis> Hysteresis::on_run(const EffectContext& context) const {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

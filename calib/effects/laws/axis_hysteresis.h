@@ -16,7 +16,7 @@
 /// ends is then missed. Where the readings before a pose are not known (an effect that is not bound to the
 /// run) the term is left out. On a stream every sample moves p; where it began is known once each axis has
 /// swung by 2w, whatever it was.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// The play at one pose before the pose's own field has moved it, by sensor and axis.
 using PlayState = std::array<Eigen::Vector3d, kSensors>;
@@ -74,4 +74,4 @@ struct Hysteresis {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -8,7 +8,7 @@
 ///     axis.cubic          y += c x^3
 ///     axis.transverse     y_a += tau1 (x_b^2 + x_c^2) + tau2 x_b x_c        b, c the other two axes
 ///     axis.zero-crossing  y += s sign(v)                                    nT
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 template <class S>
 [[nodiscard]] S in_F0(std::span<const S> v, int axis) {
@@ -54,9 +54,9 @@ struct ZeroCrossing : PlainLaw {
   static AxisCoefficients coefficients() { return one_per_axis("nT", 0.5); }
   template <class S>
   static S shape(const Conditions&, int, int axis, std::span<const S> v, int) {
-    const double own = value_of(v[static_cast<std::size_t>(axis)]);
+    const double own = sensor::value_of(v[static_cast<std::size_t>(axis)]);
     return S(own > 0 ? 1.0 : own < 0 ? -1.0 : 0.0);
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -11,7 +11,7 @@
 ///     axis.offset.temperature2   y += alpha2 (T - T0)^2      nT/degC^2
 ///     axis.offset.drift          y += delta (t - t0)         nT/h
 ///     axis.offset.step           y += s [t >= ts]            nT, ts in hours since the start of the run
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 struct OffsetTemperature : TemperatureLaw {
   static constexpr std::string_view kName = "axis.offset.temperature";
@@ -48,7 +48,7 @@ struct OffsetStep {
   static constexpr int kPerAxis = 1;
   std::optional<double> ts_h;  ///< not given: the middle of the run it is bound to
   static AxisCoefficients coefficients() { return one_per_axis("nT", 2); }
-  static std::string_view missing(const Pose& pose, int) { return missing_time(pose); }
+  static std::string_view missing(const Pose& pose, int) { return poses::missing_time(pose); }
   void parameters(EffectSpec& spec) const {
     if (ts_h) spec.set("ts", *ts_h);
   }
@@ -61,4 +61,4 @@ struct OffsetStep {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -10,7 +10,7 @@
 ///
 /// Six a sensor each: "s3.zx" is chi_zx.
 /// Axes never share a coefficient; at `all` the four sensors share six.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 template <int kPower>
 struct OrthogonalityLaw : TemperatureLaw {
@@ -34,4 +34,4 @@ struct OrthogonalityLaw : TemperatureLaw {
 using OrthogonalityTemperature = OrthogonalityLaw<1>;
 using OrthogonalityTemperature2 = OrthogonalityLaw<2>;
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

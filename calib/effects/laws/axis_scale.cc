@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 
 /// What the coefficients of an axis are called before their suffix; axes of one group share them.
@@ -45,4 +45,4 @@ AxisScale::AxisScale(const AxisCoefficients& law, const Where& where) {
   }
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -9,7 +9,7 @@
 #include "calib/effects/where.h"
 
 /// The coefficients of an effect of the axes, laid over one axis, one sensor, or all.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// What one axis has of a law.
 struct AxisCoefficients {
@@ -42,4 +42,4 @@ class AxisScale {
   std::array<std::array<int, 3>, kSensors> first_{};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 void LiveSettling::begin(double t_s, const SensorReadings& v_nT) {
   since_s_ = t_s;
@@ -100,4 +100,4 @@ Result<Settling> Settling::on_run(const EffectContext& context) const {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

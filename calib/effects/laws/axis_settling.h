@@ -19,7 +19,7 @@
 /// has come to rest at each pose; y += eta (z - x). Where the run kept the way of the table, z itself is
 /// followed, straight from point to point: x_prev is z at the stop, and exp(-s/tau) its mean over the dwell.
 /// On a stream z follows the samples and is known five time constants after the first.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// The slow part z of the readings on a stream.
 class LiveSettling final : public LiveMemory {
@@ -78,4 +78,4 @@ struct Settling {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -3,7 +3,7 @@
 
 #include "calib/effects/effect_spec.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 Result<Eigen::Vector3d> dipole_place_S_m(const EffectSpec& spec) {
   constexpr double kInsideArray_m = 0.05, kFarthest_m = 1000;
@@ -24,4 +24,4 @@ void set_dipole_place(const Eigen::Vector3d& place_S_m, EffectSpec& spec) {
   for (int i = 0; i < 3; ++i) spec.set(std::string(1, "xyz"[i]), place_S_m[i]);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

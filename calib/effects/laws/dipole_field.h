@@ -9,9 +9,11 @@
 
 /// The field of a point dipole, D(d) = 100 nT m^3/(A m^2) (3 (m u) u - m)/|d|^3, u = d/|d|, d from the dipole
 /// to the point (m), m its moment (A m^2). The factor is mu0/4 pi.
-namespace mgtd::calib {
-
+namespace mgtd::calib::effects {
 struct EffectSpec;
+}  // namespace mgtd::calib::effects
+
+namespace mgtd::calib::effects::laws {
 
 template <class S>
 [[nodiscard]] std::array<S, 3> dipole_field_nT(std::span<const S> m, const std::array<S, 3>& d) {
@@ -28,4 +30,4 @@ template <class S>
 /// The reverse.
 void set_dipole_place(const Eigen::Vector3d& place_S_m, EffectSpec& spec);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

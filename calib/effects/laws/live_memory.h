@@ -5,7 +5,7 @@
 /// A LiveMemory follows what the sensors saw so far, for effects with a memory that are removed from a
 /// stream: sample after sample, where run_memory.h has pose after pose. Until it has seen enough its state is
 /// unknown, and the effect says so (Effect::missing).
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class LiveMemory {
  public:
@@ -34,4 +34,4 @@ class LiveMemory {
   double last_s_{0};
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

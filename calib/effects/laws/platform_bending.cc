@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/platform_bending.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 
 constexpr double kPrior_deg = 0.1;
@@ -23,4 +23,4 @@ std::string_view ThermalBending::missing(const Pose& pose) const {
   return {};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

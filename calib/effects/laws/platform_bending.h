@@ -14,15 +14,15 @@
 /// A turn that all four sensors make together is a turn of the table: only its angles speak against it. One
 /// such turn nothing speaks against: S_i = 1 for all turns the array about the vertical, which is another
 /// declination of the field. A prior of 0.1 deg on each element of S holds it.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// exp[-omega]x b - b, exact for any omega and smooth at zero.
 template <class S>
 void turn_term(const std::array<S, 3>& w, std::span<const S> b, std::span<S> out) {
   using std::cos, std::sin, std::sqrt;
   const S t = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-  S first(1.0), second(0.5);  // sin|w|/|w| and (1 - cos|w|)/|w|^2
-  if (value_of(t) < 0.01) {   // series to 1e-16
+  S first(1.0), second(0.5);         // sin|w|/|w| and (1 - cos|w|)/|w|^2
+  if (sensor::value_of(t) < 0.01) {  // series to 1e-16
     first = S(1.0) - t * (S(1.0 / 6) - t * (S(1.0 / 120) - t * (S(1.0 / 5040) - t * S(1.0 / 362880))));
     second = S(0.5) - t * (S(1.0 / 24) - t * (S(1.0 / 720) - t * (S(1.0 / 40320) - t * S(1.0 / 3628800))));
   } else {
@@ -73,4 +73,4 @@ class ThermalBending final : public PlatformEffect<ThermalBending> {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

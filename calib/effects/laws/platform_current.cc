@@ -9,7 +9,7 @@
 
 #include "calib/effects/effect_spec.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 
 std::vector<std::string> names_of(const std::vector<std::string>& columns) {
@@ -88,4 +88,4 @@ double PlatformCurrent::above_mean_A(const Conditions& at, const std::string& co
   return mean == at.means->end() ? current : current - mean->second;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -12,7 +12,7 @@
 ///
 /// Currents are the columns that end in "_A" (all of the run, or those named: columns=motor_A/pump_A). At
 /// most three at once. A current that never changes is absorbed by the offsets and refused.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class PlatformCurrent final : public PlatformEffect<PlatformCurrent> {
  public:
@@ -42,4 +42,4 @@ class PlatformCurrent final : public PlatformEffect<PlatformCurrent> {
 /// Names of the covariates that end in "_A", over all poses, sorted.
 [[nodiscard]] std::vector<std::string> current_columns(const PoseTable& table);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -5,7 +5,7 @@
 #include "calib/effects/laws/platform_scale.h"
 
 /// What effects of the platform have in common: a vector or a matrix of coefficients of each sensor.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 template <class Self>
 class PlatformEffect : public EffectOf<Self> {
@@ -26,4 +26,4 @@ class PlatformEffect : public EffectOf<Self> {
   PlatformScale scale_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -3,7 +3,7 @@
 
 #include "calib/effects/effect_spec.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 PlatformScale::PlatformScale(const std::vector<std::string>& names, const char* unit, double typical,
                              const Where& where, double prior_sd)
@@ -22,4 +22,4 @@ std::string PlatformScale::spec(std::string_view name) const {
   return EffectSpec{.name = std::string(name), .where = where_, .parameters = {}}.text();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

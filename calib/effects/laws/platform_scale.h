@@ -10,7 +10,7 @@
 
 /// The coefficients of an effect that is a vector or a matrix of each sensor: the same list for every sensor,
 /// "s3.x", for one sensor or for the four.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class PlatformScale {
  public:
@@ -28,4 +28,4 @@ class PlatformScale {
   std::array<std::vector<int>, kSensors> at_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

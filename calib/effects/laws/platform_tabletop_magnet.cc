@@ -8,7 +8,7 @@
 
 #include "calib/effects/where.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 TabletopMagnet::TabletopMagnet(std::vector<int> mounts) : mounts_(std::move(mounts)) {
   for (std::size_t m = 1; m < mounts_.size(); ++m) {
@@ -55,4 +55,4 @@ std::span<const int> TabletopMagnet::active(const Conditions& at, int sensor) co
   return found == mounts.end() ? std::span<const int>() : std::span<const int>(found->second);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

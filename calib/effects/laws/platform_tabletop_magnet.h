@@ -12,7 +12,7 @@
 /// The table of poses knows the number of a mounting and not its rotation, so each mounting has a vector M
 /// d_i of its own for each sensor; that of the first mounting is part of the offsets: "m2.s3.x" is relative
 /// to it.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class TabletopMagnet final : public EffectOf<TabletopMagnet> {
  public:
@@ -41,4 +41,4 @@ class TabletopMagnet final : public EffectOf<TabletopMagnet> {
   std::array<std::map<int, std::vector<int>>, kSensors> of_mount_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

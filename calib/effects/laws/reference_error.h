@@ -9,7 +9,7 @@
 ///
 /// A constant error of the reference is a common error of all scale factors and no residual shows it. A
 /// reference that stands still beside the table has no heading of its own.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class ReferenceError final : public SiteEffect<ReferenceError> {
  public:
@@ -29,4 +29,4 @@ class ReferenceError final : public SiteEffect<ReferenceError> {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -8,13 +8,13 @@
 #include "calib/sensor/sensor_equations.h"
 #include "calib/sensor/sensor_start.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 
 constexpr int kElements = 10;  // of the rotation, and a constant
 
 Eigen::RowVectorXd elements(const TableAngles& a) {
-  const Eigen::Matrix3d R = table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
+  const Eigen::Matrix3d R = sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
   Eigen::RowVectorXd row(kElements);
   row << R.reshaped().transpose(), 1;
   return row;
@@ -28,7 +28,7 @@ std::optional<Eigen::MatrixXd> readings_by_angles(const PoseTable& table) {
   }
   if (known.size() <= kElements) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(known.size());
-  Eigen::MatrixXd A(n, kElements), y(n, kChannels);
+  Eigen::MatrixXd A(n, kElements), y(n, sensor::kChannels);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Pose& pose = *known[static_cast<std::size_t>(k)];
     A.row(k) = elements(*pose.angles());
@@ -46,7 +46,7 @@ SensorReadings offsets_of(const PoseTable& table) {
   for (std::size_t i = 0; i < kSensors; ++i) {
     Eigen::Matrix3Xd y(3, n);
     for (Eigen::Index k = 0; k < n; ++k) y.col(k) = table.poses[static_cast<std::size_t>(k)].y_nT[i];
-    const auto start = sensor_start(y, f);
+    const auto start = sensor::sensor_start(y, f);
     out[i] =
         start ? start->offset_nT : Eigen::Vector3d((y.rowwise().maxCoeff() + y.rowwise().minCoeff()) / 2);
   }
@@ -86,4 +86,4 @@ Result<std::vector<RememberedPose>> run_memory(const EffectContext& context) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

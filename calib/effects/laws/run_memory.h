@@ -16,7 +16,7 @@
 ///
 /// Offsets are those of the context, else of each sensor by itself (sensor_start.h): good to some nT, which
 /// is 1e-4 of the field that a memory is about.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// What Effect::missing says of a pose that is not in the run an effect is bound to.
 inline constexpr std::string_view kNoMemory = "the readings before";
@@ -33,4 +33,4 @@ struct RememberedPose {
 /// In the order of the run. Refuses a context without poses.
 [[nodiscard]] Result<std::vector<RememberedPose>> run_memory(const EffectContext& context);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -6,7 +6,7 @@
 ///
 ///     B_i += 1/2 H_ijk x_j x_k      nT/m^2, H symmetric in all indices and traceless: seven numbers
 ///     Hxzz = -(Hxxx + Hxyy), Hyzz = -(Hxxy + Hyyy), Hzzz = -(Hxxz + Hyyz)     no currents, no divergence
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class SiteCurvature final : public SiteEffect<SiteCurvature> {
  public:
@@ -26,4 +26,4 @@ class SiteCurvature final : public SiteEffect<SiteCurvature> {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

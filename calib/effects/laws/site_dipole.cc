@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/site_dipole.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 Eigen::Vector3d dipole_place_S_m(int place) {
   constexpr int kDirections = 26, kMiddle = 13;
@@ -25,4 +25,4 @@ std::string SiteDipole::spec() const {
   return out.text();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -15,7 +15,7 @@
 /// Coefficients: moment m (A m^2) and shift (m) from the place it is started at, which is one of a grid
 /// (`place`) or given (`x`, `y`, `z`). The shift has a prior of half a metre: without a moment nothing else
 /// holds it.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// Places to start from: 26 directions at 0.6 m and at 1.2 m from the centre of the array.
 inline constexpr int kDipolePlaces = 52;
@@ -43,4 +43,4 @@ class SiteDipole final : public SiteEffect<SiteDipole> {
   Eigen::Vector3d start_S_m_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

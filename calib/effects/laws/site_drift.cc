@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 FieldDrift::FieldDrift(std::optional<double> hours) : hours_(hours) {
   constexpr double kPrior_nT = 200;
@@ -20,7 +20,7 @@ std::string FieldDrift::spec() const {
 
 Result<std::shared_ptr<const Effect>> FieldDrift::bound(const EffectContext& context) const {
   if (hours_ || context.table == nullptr) return std::shared_ptr<const Effect>();
-  const RunTime time = RunTime::of(*context.table);
+  const poses::RunTime time = poses::RunTime::of(*context.table);
   double last = 0;
   for (const Pose& pose : context.table->poses) last = std::max(last, time.hours(pose));
   if (!(last > 0)) {
@@ -40,4 +40,4 @@ std::string GradientDrift::spec() const {
   return out.text();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

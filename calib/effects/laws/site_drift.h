@@ -15,7 +15,7 @@
 ///
 /// With a scalar reference the part of field-drift along the field is measured pose by pose and has nothing
 /// left to tell; a prior of 200 nT on each coefficient holds it.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class FieldDrift final : public SiteEffect<FieldDrift> {
  public:
@@ -27,7 +27,7 @@ class FieldDrift final : public SiteEffect<FieldDrift> {
   [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
   [[nodiscard]] std::string_view missing(const Pose& pose) const override {
     const auto angle = missing_angle(pose);
-    return angle.empty() ? missing_time(pose) : angle;
+    return angle.empty() ? poses::missing_time(pose) : angle;
   }
 
   template <class S>
@@ -51,7 +51,7 @@ class GradientDrift final : public SiteEffect<GradientDrift> {
   [[nodiscard]] std::string spec() const override;
   [[nodiscard]] std::string_view missing(const Pose& pose) const override {
     const auto angle = missing_angle(pose);
-    return angle.empty() ? missing_time(pose) : angle;
+    return angle.empty() ? poses::missing_time(pose) : angle;
   }
 
   template <class S>
@@ -67,4 +67,4 @@ class GradientDrift final : public SiteEffect<GradientDrift> {
   std::optional<double> ts_h_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -4,7 +4,7 @@
 
 /// What effects of the site and of the scalar reference have in common: coefficients of the whole array, and
 /// the need of the attitude.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 template <class Self>
 class SiteEffect : public EffectOf<Self> {
@@ -27,4 +27,4 @@ class SiteEffect : public EffectOf<Self> {
   std::vector<int> all_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 constexpr double kTypical_nT_per_m = 20;  // geology and buildings within tens of metres
 constexpr std::array<int, 5> kAll{0, 1, 2, 3, 4};
@@ -17,4 +17,4 @@ SiteGradient::SiteGradient() {
 
 std::span<const int> SiteGradient::at(int) const { return kAll; }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -8,7 +8,7 @@
 ///     coefficients Gxx, Gyy, Gxy, Gxz, Gyz in nT/m;  Gzz = -(Gxx + Gyy)
 ///
 /// Constant in time. Needs the attitude, hence the table angles, of every pose it acts on.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class SiteGradient final : public EffectOf<SiteGradient> {
  public:
@@ -30,4 +30,4 @@ class SiteGradient final : public EffectOf<SiteGradient> {
   std::vector<Coefficient> coefficients_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -4,12 +4,12 @@
 #include "calib/effects/laws/axis_offset.h"
 #include "calib/poses/run_time.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 namespace {
 
 std::string_view missing_angle_or_time(const Pose& pose) {
   const auto angle = missing_angle(pose);
-  return angle.empty() ? missing_time(pose) : angle;
+  return angle.empty() ? poses::missing_time(pose) : angle;
 }
 
 }  // namespace
@@ -50,4 +50,4 @@ std::string SiteStepDipole::spec() const {
 
 std::string_view SiteStepDipole::missing(const Pose& pose) const { return missing_angle_or_time(pose); }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

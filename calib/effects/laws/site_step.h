@@ -18,7 +18,7 @@
 /// Every pose has a field strength of its own where a scalar reference follows it, so the part of dB along
 /// the field is absorbed there and only the change of direction is determined; a prior of 1000 nT holds what
 /// is absorbed. A source that leaves again before the run ends is no step.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 class SiteStep final : public SiteEffect<SiteStep> {
  public:
@@ -68,4 +68,4 @@ class SiteStepDipole final : public SiteEffect<SiteStepDipole> {
   Eigen::Vector3d start_S_m_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/table_effects.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 Result<void> Backlash::check(const PoseTable& table) const {
   constexpr std::size_t kOneOf = 10;
@@ -13,4 +13,4 @@ Result<void> Backlash::check(const PoseTable& table) const {
   return kOneOf * without <= table.poses.size() ? Result<void>{} : Effect::check(table);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

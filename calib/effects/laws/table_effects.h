@@ -13,7 +13,7 @@
 ///
 /// Of the four numbers of a general wobble (cos and sin about X and Y) the other two turn the array on the
 /// table by a fixed rotation, which is part of the alignment of the sensors.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::laws {
 
 /// The common part: a name, coefficients that act on the array as a whole.
 template <class Self>
@@ -94,4 +94,4 @@ class Wobble final : public TableEffect<Wobble> {
   }
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::laws

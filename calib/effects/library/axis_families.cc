@@ -3,13 +3,15 @@
 #include "calib/effects/laws/axis_offset.h"
 #include "calib/effects/library/family_parts.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 Result<EffectPtr> offset_step(const EffectSpec& spec) {
-  return axis_with(spec, "ts", &OffsetStep::ts_h, -1e6, 1e6);
+  return axis_with(spec, "ts", &laws::OffsetStep::ts_h, -1e6, 1e6);
 }
-Result<EffectPtr> gain_step(const EffectSpec& spec) { return axis_with(spec, "c", &GainStep::c_nT, 0, 1e6); }
+Result<EffectPtr> gain_step(const EffectSpec& spec) {
+  return axis_with(spec, "c", &laws::GainStep::c_nT, 0, 1e6);
+}
 
 constexpr Scan kStepTime{
     .parameter = "ts", .unit = "h", .from = 0, .to = 1, .steps = 40, .range = Scan::Range::run};
@@ -59,7 +61,7 @@ constexpr std::array kAxisFamilies{
         .confusions = kOffsetTemperatureConfusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &plain_axis<OffsetTemperature>},
+        .from_spec = &plain_axis<laws::OffsetTemperature>},
     EffectFamily{
         .name = "axis.offset.temperature2",
         .level = Level::axis,
@@ -78,7 +80,7 @@ constexpr std::array kAxisFamilies{
         .confusions = kOffsetTemperature2Confusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &plain_axis<OffsetTemperature2>},
+        .from_spec = &plain_axis<laws::OffsetTemperature2>},
     EffectFamily{.name = "axis.offset.drift",
                  .level = Level::axis,
                  .title = "offset drifts with time",
@@ -95,7 +97,7 @@ constexpr std::array kAxisFamilies{
                  .confusions = kOffsetDriftConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<OffsetDrift>},
+                 .from_spec = &plain_axis<laws::OffsetDrift>},
     EffectFamily{.name = "axis.offset.step",
                  .level = Level::axis,
                  .title = "offset jumped",
@@ -129,7 +131,7 @@ constexpr std::array kAxisFamilies{
                  .confusions = kGainTemperatureConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<GainTemperature>},
+                 .from_spec = &plain_axis<laws::GainTemperature>},
     EffectFamily{.name = "axis.gain.temperature2",
                  .level = Level::axis,
                  .title = "scale factor bends with temperature",
@@ -146,7 +148,7 @@ constexpr std::array kAxisFamilies{
                  .confusions = kGainTemperature2Confusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<GainTemperature2>},
+                 .from_spec = &plain_axis<laws::GainTemperature2>},
     EffectFamily{
         .name = "axis.gain.drift",
         .level = Level::axis,
@@ -164,7 +166,7 @@ constexpr std::array kAxisFamilies{
         .confusions = kGainDriftConfusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &plain_axis<GainDrift>},
+        .from_spec = &plain_axis<laws::GainDrift>},
     EffectFamily{.name = "axis.gain.step",
                  .level = Level::axis,
                  .title = "scale factor changes at a reading",
@@ -188,4 +190,4 @@ constexpr std::array kAxisFamilies{
 
 std::span<const EffectFamily> axis_families() { return kAxisFamilies; }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -6,7 +6,7 @@
 
 #include "calib/poses/run_time.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 std::vector<double> run_values(const Scan& scan, const EffectContext& context) {
@@ -45,7 +45,7 @@ const EffectFamily* find_family(std::string_view name) {
 std::vector<double> run_gaps_h(const EffectContext& context) {
   std::vector<double> t, out;
   if (context.table == nullptr) return out;
-  const RunTime time = RunTime::of(*context.table);
+  const poses::RunTime time = poses::RunTime::of(*context.table);
   for (const Pose& pose : context.table->poses) t.push_back(time.hours(pose));
   std::sort(t.begin(), t.end());
   for (std::size_t k = kStepPoses; k + kStepPoses <= t.size(); ++k) {
@@ -74,4 +74,4 @@ Result<EffectPtr> make(const EffectFamily& family, std::optional<Where> where, s
   return make_effect(spec, context);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

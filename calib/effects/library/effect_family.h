@@ -11,7 +11,7 @@
 
 /// The library of effects as data: what each family is, how large it is in practice, how it can be told
 /// apart, and how to make it. One source for the program, its pages and its tests.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 /// A fixed number of an effect that a score test tries one after the other, because the effect is not linear
 /// in it. A fit that has the effect in its model estimates it too (calib/fit/joint/profile_search.h).
@@ -80,4 +80,4 @@ inline constexpr std::size_t kStepPoses = 3;
 [[nodiscard]] Result<EffectPtr> make(const EffectFamily& family, std::optional<Where> where,
                                      std::optional<double> scan, const EffectContext& context);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 constexpr std::size_t kWidth = 100, kIndent = 14;
@@ -129,4 +129,4 @@ nlohmann::json effects_json(std::span<const EffectFamily> families) {
   return {{"schema", "mgt.effects/1"}, {"effects", std::move(list)}};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

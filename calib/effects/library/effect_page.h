@@ -6,7 +6,7 @@
 #include "calib/effects/library/effect_family.h"
 
 /// The library as an operator reads it.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 /// One line for each effect, by level.
 [[nodiscard]] std::string effect_list();
@@ -15,4 +15,4 @@ namespace mgtd::calib {
 /// {"schema":"mgt.effects/1", "effects":[...]}, of all or of one.
 [[nodiscard]] nlohmann::json effects_json(std::span<const EffectFamily> families);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

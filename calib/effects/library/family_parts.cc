@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 Result<Where> where_of(const EffectSpec& spec, std::span<const Where::Scale> scales) {
   if (!spec.where) return Where{.scale = scales.front()};
@@ -20,4 +20,4 @@ Result<Where> where_of(const EffectSpec& spec, std::span<const Where::Scale> sca
                           : "leave the part after '@' out");
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

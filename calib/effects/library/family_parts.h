@@ -6,7 +6,7 @@
 #include "calib/effects/library/effect_family.h"
 
 /// What the descriptions of the families are put together from.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 /// Scales of an effect of the axes, and of one that is a vector or a rotation of each sensor.
 inline constexpr std::array kAxisScales{Where::Scale::each_axis, Where::Scale::axis,
@@ -23,7 +23,7 @@ template <class Law>
   if (const auto ok = spec.only({}); !ok) return tl::unexpected(ok.error());
   const auto where = where_of(spec, kAxisScales);
   if (!where) return tl::unexpected(where.error());
-  return std::make_shared<const AxisEffect<Law>>(Law{}, *where);
+  return std::make_shared<const laws::AxisEffect<Law>>(Law{}, *where);
 }
 
 /// One whose law has one number, set through `member`.
@@ -37,7 +37,7 @@ template <class Law>
   const auto value = spec.number(parameter, 0, lowest, highest);
   if (!value) return tl::unexpected(value.error());
   if (spec.find(parameter) != nullptr) law.*member = *value;
-  return std::make_shared<const AxisEffect<Law>>(std::move(law), *where);
+  return std::make_shared<const laws::AxisEffect<Law>>(std::move(law), *where);
 }
 
 /// An effect of its own place without parameters.
@@ -48,4 +48,4 @@ template <class E>
   return std::make_shared<const E>();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -7,7 +7,7 @@
 #include "calib/effects/formula/formula.h"
 #include "calib/effects/library/effect_family.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 std::vector<std::string_view> effect_names() {
   std::vector<std::string_view> names;
@@ -16,7 +16,7 @@ std::vector<std::string_view> effect_names() {
 }
 
 Result<EffectPtr> make_effect(const EffectSpec& spec) {
-  if (is_formula(spec)) return make_formula(spec);
+  if (formula::is_formula(spec)) return formula::make_formula(spec);
   if (const EffectFamily* family = find_family(spec.name)) return family->from_spec(spec);
   return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", spec.name),
               fmt::format("known effects: {}", fmt::join(effect_names(), ", ")));
@@ -47,4 +47,4 @@ Result<std::vector<EffectPtr>> bound_to_run(const std::vector<EffectPtr>& effect
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -8,7 +8,7 @@
 #include "calib/effects/effect_spec.h"
 
 /// The effects that can be put in the model by name (`--with`). What they are: effect_family.h.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 /// Names that make_effect knows, in the order they are listed to the user.
 [[nodiscard]] std::vector<std::string_view> effect_names();
@@ -23,4 +23,4 @@ namespace mgtd::calib {
 [[nodiscard]] Result<std::vector<EffectPtr>> bound_to_run(const std::vector<EffectPtr>& effects,
                                                           const EffectContext& context);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -5,14 +5,14 @@
 #include "calib/effects/laws/axis_settling.h"
 #include "calib/effects/library/family_parts.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 Result<EffectPtr> hysteresis(const EffectSpec& spec) {
-  return axis_with(spec, "w", &Hysteresis::w, 0.001, 2);
+  return axis_with(spec, "w", &laws::Hysteresis::w, 0.001, 2);
 }
 Result<EffectPtr> settling(const EffectSpec& spec) {
-  return axis_with(spec, "tau", &Settling::tau_s, 0.01, 1e5);
+  return axis_with(spec, "tau", &laws::Settling::tau_s, 0.01, 1e5);
 }
 
 constexpr std::array kOrthogonalityConfusions{
@@ -57,7 +57,7 @@ constexpr std::array kNonlinearityFamilies{
                  .confusions = kOrthogonalityConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<OrthogonalityTemperature>},
+                 .from_spec = &plain_axis<laws::OrthogonalityTemperature>},
     EffectFamily{.name = "axis.orthogonality.temperature2",
                  .level = Level::axis,
                  .title = "the angles between the axes bend with temperature",
@@ -74,7 +74,7 @@ constexpr std::array kNonlinearityFamilies{
                  .confusions = kOrthogonality2Confusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<OrthogonalityTemperature2>},
+                 .from_spec = &plain_axis<laws::OrthogonalityTemperature2>},
     EffectFamily{.name = "axis.quadratic",
                  .level = Level::axis,
                  .title = "even nonlinearity of an axis",
@@ -91,7 +91,7 @@ constexpr std::array kNonlinearityFamilies{
                  .confusions = kQuadraticConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<Quadratic>},
+                 .from_spec = &plain_axis<laws::Quadratic>},
     EffectFamily{.name = "axis.cubic",
                  .level = Level::axis,
                  .title = "odd nonlinearity of an axis",
@@ -108,7 +108,7 @@ constexpr std::array kNonlinearityFamilies{
                  .confusions = kCubicConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<Cubic>},
+                 .from_spec = &plain_axis<laws::Cubic>},
     EffectFamily{
         .name = "axis.transverse",
         .level = Level::axis,
@@ -126,7 +126,7 @@ constexpr std::array kNonlinearityFamilies{
         .confusions = kTransverseConfusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &plain_axis<Transverse>},
+        .from_spec = &plain_axis<laws::Transverse>},
     EffectFamily{.name = "axis.zero-crossing",
                  .level = Level::axis,
                  .title = "step where the reading changes its sign",
@@ -143,7 +143,7 @@ constexpr std::array kNonlinearityFamilies{
                  .confusions = kZeroCrossingConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain_axis<ZeroCrossing>},
+                 .from_spec = &plain_axis<laws::ZeroCrossing>},
     EffectFamily{
         .name = "axis.hysteresis",
         .level = Level::axis,
@@ -201,4 +201,4 @@ constexpr std::array kNonlinearityFamilies{
 
 std::span<const EffectFamily> nonlinearity_families() { return kNonlinearityFamilies; }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -6,7 +6,7 @@
 #include "calib/effects/library/effect_family.h"
 #include "calib/sensor/geometry.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 Result<void> absorbed(std::string_view name) {
   const EffectFamily* family = find_family(name);
@@ -16,7 +16,7 @@ Result<void> absorbed(std::string_view name) {
 
 Crosstalk::Crosstalk(double baseline_m) : baseline_m_(baseline_m) {
   constexpr double kCubicCentimetre_m3 = 1e-6;
-  const auto r = Geometry{baseline_m}.positions_P_m();
+  const auto r = sensor::Geometry{baseline_m}.positions_P_m();
   for (std::size_t i = 0; i < kSensors; ++i) {
     coefficients_.push_back({.name = sensor_name(static_cast<int>(i)), .unit = "cm^3", .typical = 3});
     for (std::size_t j = 0; j < kSensors; ++j) {
@@ -31,4 +31,4 @@ Crosstalk::Crosstalk(double baseline_m) : baseline_m_(baseline_m) {
 
 std::string Crosstalk::spec() const { return fmt::format("{},baseline={}", name(), baseline_m_); }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -11,12 +11,12 @@
 ///     platform.crosstalk   b_i += sum_j D_ij kappa_j b_i     cm^3      part of the matrices
 ///
 /// with D_ij = (3 n n' - 1)/r^3, and b_j = b_i as far as the field is uniform.
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 
 /// Refuses, whatever the poses.
 [[nodiscard]] Result<void> absorbed(std::string_view name);
 
-class HardIron final : public PlatformEffect<HardIron> {
+class HardIron final : public laws::PlatformEffect<HardIron> {
  public:
   static constexpr std::string_view kName = "platform.hard-iron";
   HardIron() : PlatformEffect({{"x", "y", "z"}, "nT", 100, {.scale = Where::Scale::own}}) {}
@@ -28,7 +28,7 @@ class HardIron final : public PlatformEffect<HardIron> {
   }
 };
 
-class SoftIron final : public PlatformEffect<SoftIron> {
+class SoftIron final : public laws::PlatformEffect<SoftIron> {
  public:
   static constexpr std::string_view kName = "platform.soft-iron";
   SoftIron()
@@ -75,4 +75,4 @@ class Crosstalk final : public EffectOf<Crosstalk> {
   std::array<std::array<Eigen::Matrix3d, kSensors>, kSensors> coupling_;  ///< per cm^3
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -6,7 +6,7 @@
 #include "calib/effects/library/platform_absorbed.h"
 #include "proto/number.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 std::vector<std::string> parts_of(std::string_view list) {
@@ -25,11 +25,11 @@ Result<EffectPtr> current(const EffectSpec& spec) {
   if (!where) return tl::unexpected(where.error());
   std::vector<std::string> columns;
   if (const std::string* list = spec.find("columns")) columns = parts_of(*list);
-  if (columns.size() > PlatformCurrent::kMaxColumns) {
+  if (columns.size() > laws::PlatformCurrent::kMaxColumns) {
     return fail(ErrorCode::usage, "platform.current: at most three columns at once",
                 "name those that change most: columns=motor_A/pump_A");
   }
-  return std::make_shared<const PlatformCurrent>(std::move(columns), *where);
+  return std::make_shared<const laws::PlatformCurrent>(std::move(columns), *where);
 }
 
 Result<EffectPtr> tabletop_magnet(const EffectSpec& spec) {
@@ -46,7 +46,7 @@ Result<EffectPtr> tabletop_magnet(const EffectSpec& spec) {
       mounts.push_back(static_cast<int>(*mount));
     }
   }
-  return std::make_shared<const TabletopMagnet>(std::move(mounts));
+  return std::make_shared<const laws::TabletopMagnet>(std::move(mounts));
 }
 
 template <class E>
@@ -119,7 +119,7 @@ constexpr std::array kPlatformFamilies{
         .confusions = kFlexureConfusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &bending<Flexure>},
+        .from_spec = &bending<laws::Flexure>},
     EffectFamily{.name = "platform.thermal-bending",
                  .level = Level::platform,
                  .title = "the cross bends as it warms",
@@ -136,7 +136,7 @@ constexpr std::array kPlatformFamilies{
                  .confusions = kThermalConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &bending<ThermalBending>},
+                 .from_spec = &bending<laws::ThermalBending>},
     EffectFamily{
         .name = "platform.tabletop-magnet",
         .level = Level::platform,
@@ -221,4 +221,4 @@ constexpr std::array kPlatformFamilies{
 
 std::span<const EffectFamily> platform_families() { return kPlatformFamilies; }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -7,21 +7,21 @@
 #include "calib/effects/laws/site_step.h"
 #include "calib/effects/library/family_parts.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 Result<EffectPtr> dipole(const EffectSpec& spec) {
   if (const auto ok = spec.only({"place", "x", "y", "z"}); !ok) return tl::unexpected(ok.error());
   if (const auto where = where_of(spec, kOwnScale); !where) return tl::unexpected(where.error());
   if (spec.find("place") != nullptr) {
-    const auto place = spec.number("place", 0, 0, kDipolePlaces - 1);
+    const auto place = spec.number("place", 0, 0, laws::kDipolePlaces - 1);
     if (!place) return tl::unexpected(place.error());
-    return std::make_shared<const SiteDipole>(dipole_place_S_m(static_cast<int>(*place)));
+    return std::make_shared<const laws::SiteDipole>(laws::dipole_place_S_m(static_cast<int>(*place)));
   }
-  if (spec.parameters.empty()) return std::make_shared<const SiteDipole>(std::nullopt);
-  const auto at = dipole_place_S_m(spec);
+  if (spec.parameters.empty()) return std::make_shared<const laws::SiteDipole>(std::nullopt);
+  const auto at = laws::dipole_place_S_m(spec);
   if (!at) return tl::unexpected(at.error());
-  return std::make_shared<const SiteDipole>(*at);
+  return std::make_shared<const laws::SiteDipole>(*at);
 }
 
 Result<EffectPtr> step(const EffectSpec& spec) {
@@ -30,10 +30,11 @@ Result<EffectPtr> step(const EffectSpec& spec) {
   const auto ts_h = spec.number("ts", 0, -1e6, 1e6);
   if (!ts_h) return tl::unexpected(ts_h.error());
   if (spec.find("x") == nullptr && spec.find("y") == nullptr && spec.find("z") == nullptr)
-    return std::make_shared<const SiteStep>(spec.find("ts") != nullptr ? std::optional(*ts_h) : std::nullopt);
-  const auto at = dipole_place_S_m(spec);
+    return std::make_shared<const laws::SiteStep>(spec.find("ts") != nullptr ? std::optional(*ts_h)
+                                                                             : std::nullopt);
+  const auto at = laws::dipole_place_S_m(spec);
   if (!at) return tl::unexpected(at.error());
-  return std::make_shared<const SiteStepDipole>(*ts_h, *at);
+  return std::make_shared<const laws::SiteStepDipole>(*ts_h, *at);
 }
 
 /// An effect with one optional number.
@@ -46,10 +47,10 @@ Result<EffectPtr> with_optional(const EffectSpec& spec, std::string_view paramet
   return std::make_shared<const E>(spec.find(parameter) != nullptr ? std::optional(*value) : std::nullopt);
 }
 Result<EffectPtr> field_drift(const EffectSpec& spec) {
-  return with_optional<FieldDrift>(spec, "hours", 1e-6);
+  return with_optional<laws::FieldDrift>(spec, "hours", 1e-6);
 }
 Result<EffectPtr> gradient_drift(const EffectSpec& spec) {
-  return with_optional<GradientDrift>(spec, "ts", -1e6);
+  return with_optional<laws::GradientDrift>(spec, "ts", -1e6);
 }
 
 constexpr std::array kGradientConfusions{
@@ -89,7 +90,7 @@ constexpr std::array kSiteFamilies{
                  .confusions = kGradientConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain<SiteGradient>},
+                 .from_spec = &plain<laws::SiteGradient>},
     EffectFamily{.name = "site.curvature",
                  .level = Level::site,
                  .title = "the gradient of the site changes over the cross",
@@ -106,7 +107,7 @@ constexpr std::array kSiteFamilies{
                  .confusions = kCurvatureConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain<SiteCurvature>},
+                 .from_spec = &plain<laws::SiteCurvature>},
     EffectFamily{
         .name = "site.dipole",
         .level = Level::site,
@@ -122,8 +123,8 @@ constexpr std::array kSiteFamilies{
         .scan = Scan{.parameter = "place",
                      .unit = "",
                      .from = 0,
-                     .to = kDipolePlaces - 1,
-                     .steps = kDipolePlaces,
+                     .to = laws::kDipolePlaces - 1,
+                     .steps = laws::kDipolePlaces,
                      .range = Scan::Range::index},
         .needs = "azimuth_deg",
         .signature = "like a gradient with a curvature; strongest in the sensor that passes nearest",
@@ -212,11 +213,11 @@ constexpr std::array kSiteFamilies{
         .confusions = kReferenceConfusions,
         .untestable = {},
         .experiment = "a second scalar reference, read side by side",
-        .from_spec = &plain<ReferenceError>},
+        .from_spec = &plain<laws::ReferenceError>},
 };
 
 }  // namespace
 
 std::span<const EffectFamily> site_families() { return kSiteFamilies; }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

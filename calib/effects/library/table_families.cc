@@ -2,7 +2,7 @@
 #include "calib/effects/laws/table_effects.h"
 #include "calib/effects/library/family_parts.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 constexpr std::array kEccentricityConfusions{
@@ -32,7 +32,7 @@ constexpr std::array kTableFamilies{
                  .confusions = kEccentricityConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain<Eccentricity>},
+                 .from_spec = &plain<laws::Eccentricity>},
     EffectFamily{
         .name = "table.angle-scale",
         .level = Level::table,
@@ -50,7 +50,7 @@ constexpr std::array kTableFamilies{
         .confusions = kScaleConfusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &plain<AngleScale>},
+        .from_spec = &plain<laws::AngleScale>},
     EffectFamily{.name = "table.backlash",
                  .level = Level::table,
                  .title = "the table stops short by the side it comes from",
@@ -67,7 +67,7 @@ constexpr std::array kTableFamilies{
                  .confusions = kBacklashConfusions,
                  .untestable = {},
                  .experiment = {},
-                 .from_spec = &plain<Backlash>},
+                 .from_spec = &plain<laws::Backlash>},
     EffectFamily{
         .name = "table.wobble",
         .level = Level::table,
@@ -87,11 +87,11 @@ constexpr std::array kTableFamilies{
         .confusions = kWobbleConfusions,
         .untestable = {},
         .experiment = {},
-        .from_spec = &plain<Wobble>},
+        .from_spec = &plain<laws::Wobble>},
 };
 
 }  // namespace
 
 std::span<const EffectFamily> table_families() { return kTableFamilies; }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 double table_limit_rad(double stated_table_sd_rad) {
   return std::clamp(kMaxTableSigmas * stated_table_sd_rad, kByHand_rad, kMaxTable_rad);
@@ -13,4 +13,4 @@ bool table_is_rough(double estimated_rad, double stated_rad) {
   return estimated_rad > kMaxTableSigmas * stated_rad;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

@@ -4,7 +4,7 @@
 
 /// Limits of the checks of a calibration, in SI units and radians. No flag changes them: a calibration that
 /// was accepted means the same everywhere.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 /// Scale factors of an axis. A fluxgate is built to parts in a thousand; a factor of two is another sensor,
 /// range or unit.
@@ -56,4 +56,4 @@ inline constexpr double kMaxMoved = 1;
 /// Whether the table angles are so much less accurate than the operator stated that the report says so.
 [[nodiscard]] bool table_is_rough(double estimated_rad, double stated_rad);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

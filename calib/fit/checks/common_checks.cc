@@ -9,25 +9,25 @@
 
 #include "calib/fit/checks/check_limits.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 namespace {
 
 Check check(std::string name, bool passed, std::string measured, std::string limit, std::string remedy) {
   return {std::move(name), passed, std::move(measured), std::move(limit), std::move(remedy)};
 }
 
-Check scale_check(const Calibration& c) {
+Check scale_check(const calibration::Calibration& c) {
   double low = 1e9, high = 0;
-  for (const SensorModel& s : c.sensors)
+  for (const sensor::SensorModel& s : c.sensors)
     low = std::min(low, s.scale.minCoeff()), high = std::max(high, s.scale.maxCoeff());
   return check("scale factors", low >= kMinScale && high <= kMaxScale,
                fmt::format("{:.4f} to {:.4f}", low, high), fmt::format("{} to {}", kMinScale, kMaxScale),
                "check the volts-to-nT profile of the sensor and the total field");
 }
 
-Check angle_check(const Calibration& c) {
+Check angle_check(const calibration::Calibration& c) {
   double worst = 0;
-  for (const SensorModel& s : c.sensors)
+  for (const sensor::SensorModel& s : c.sensors)
     worst = std::max({worst, std::abs(s.theta_rad), std::abs(s.phi_rad), std::abs(s.psi_rad)});
   return check("non-orthogonality", worst <= kMaxNonOrthogonality_rad,
                fmt::format("{:.3f} deg at most", to_deg(worst)),
@@ -35,9 +35,9 @@ Check angle_check(const Calibration& c) {
                "an axis is dead or wired twice: look at the raw readings of that sensor");
 }
 
-Check determinant_check(const Calibration& c) {
+Check determinant_check(const calibration::Calibration& c) {
   double low = 1e9, high = 0;
-  for (const SensorModel& s : c.sensors) {
+  for (const sensor::SensorModel& s : c.sensors) {
     const double d = std::abs(s.response().determinant());
     low = std::min(low, d), high = std::max(high, d);
   }
@@ -69,8 +69,8 @@ Check bad_poses_check(const FitReport& r) {
 }
 
 std::vector<Check> common_checks(const FitReport& report) {
-  const Calibration& c = report.calibration;
+  const calibration::Calibration& c = report.calibration;
   return {scale_check(c), angle_check(c), determinant_check(c), residual_check(report)};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

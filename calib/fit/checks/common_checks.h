@@ -4,7 +4,7 @@
 
 #include "calib/fit/fit_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 /// The checks that every method has to pass: scale factors, non-orthogonality, volume and total field.
 [[nodiscard]] std::vector<Check> common_checks(const FitReport& report);
@@ -12,4 +12,4 @@ namespace mgtd::calib {
 /// Whether so many poses contradict the others that none can be trusted.
 [[nodiscard]] Check bad_poses_check(const FitReport& report);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

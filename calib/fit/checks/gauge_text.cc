@@ -7,7 +7,7 @@
 #include "calib/fit/joint/joint_findings.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
   switch (origin.gauge) {
@@ -28,28 +28,29 @@ std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
   return {};
 }
 
-std::string gauge_text(const Gauge& gauge, double table_sd_rad,
+std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
                        const std::array<double, 3>& rotation_sd_rad) {
   std::string text;
-  if (gauge.angles == AngleCoverage::none) {
+  if (gauge.angles == joint::AngleCoverage::none) {
     text =
         "no table angles: mean alpha = mean beta = mean gamma = 0 of the four sensors, relative to their "
         "mountings; the "
         "common rotation against the platform is unknown";
   } else {
-    const bool convention = gauge.angles == AngleCoverage::one_axis && !gauge.declination_known;
+    const bool convention = gauge.angles == joint::AngleCoverage::one_axis && !gauge.declination_known;
     text = fmt::format(
         "{} (table angles to {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, "
         "{:.2g} about Y",
-        gauge.angles == AngleCoverage::full ? "platform frame is the table frame"
-                                            : "platform by the table's one axis",
+        gauge.angles == joint::AngleCoverage::full ? "platform frame is the table frame"
+                                                   : "platform by the table's one axis",
         to_deg(table_sd_rad), to_deg(rotation_sd_rad[0]), to_deg(rotation_sd_rad[1]));
     text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
                        : fmt::format(", {:.2g} about Z", to_deg(rotation_sd_rad[2]));
     if (gauge.declination_known) text += "; declination as given";
   }
   if (!gauge.scale_known)
-    text += fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}", kScaleIsFree);
+    text += fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}",
+                        calibration::kScaleIsFree);
   return text;
 }
 
@@ -60,4 +61,4 @@ std::string gauge_text(const FitReport& report) {
                                : std::string();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

@@ -7,13 +7,13 @@
 #include "calib/fit/joint/joint_setup.h"
 
 /// What holds the freedoms that the poses leave, in words: the text `gauge` of a calibration.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 [[nodiscard]] std::string gauge_text(const FitReport& report);
 [[nodiscard]] std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad);
 /// `table_sd_rad`: of the table angles, estimated; `rotation_sd_rad`: of the common rotation about X, Y and
 /// Z.
-[[nodiscard]] std::string gauge_text(const Gauge& gauge, double table_sd_rad,
+[[nodiscard]] std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
                                      const std::array<double, 3>& rotation_sd_rad);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

@@ -8,9 +8,9 @@
 
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
-std::string to_text(const WeakDirection& weak) {
+std::string to_text(const joint::WeakDirection& weak) {
   return fmt::format("{}{}", fmt::join(weak.parameters, " with "), weak.others ? " and others" : "");
 }
 
@@ -18,7 +18,7 @@ std::string weak_sd_text(double sd_nT) {
   return std::isfinite(sd_nT) ? fmt::format("{:.0f} nT of field", sd_nT) : "not at all";
 }
 
-std::string to_text(const FieldCoverage& coverage) {
+std::string to_text(const joint::FieldCoverage& coverage) {
   constexpr double kAlongAnAxis = 0.95;  // cosine
   const Eigen::Vector3d& axis = coverage.axis_P;
   Eigen::Index nearest = 0;
@@ -41,4 +41,4 @@ std::string to_text(const std::vector<TableAngles>& poses) {
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

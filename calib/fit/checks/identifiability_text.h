@@ -6,17 +6,17 @@
 #include "calib/fit/joint/identifiability.h"
 
 /// What the poses do not determine, in words.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 /// "s1 offset z with s1 scale z"
-[[nodiscard]] std::string to_text(const WeakDirection& weak);
+[[nodiscard]] std::string to_text(const joint::WeakDirection& weak);
 /// "50 nT of field", "not at all": how well such a direction is known.
 [[nodiscard]] std::string weak_sd_text(double sd_nT);
 /// "seen from the rig the field stays between 20 and 90 deg from platform +Z"
-[[nodiscard]] std::string to_text(const FieldCoverage& coverage);
+[[nodiscard]] std::string to_text(const joint::FieldCoverage& coverage);
 /// "azimuth 90, pitch -45, roll 0 deg"
 [[nodiscard]] std::string to_text(const TableAngles& angles);
 /// The same for several, with semicolons between them.
 [[nodiscard]] std::string to_text(const std::vector<TableAngles>& poses);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

@@ -14,15 +14,15 @@
 #include "calib/fit/checks/mirrored_text.h"
 #include "calib/fit/joint/joint_findings.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 namespace {
 
 std::string sd_text(double sd_nT) {
   return std::isfinite(sd_nT) ? fmt::format("{:.0f} nT", sd_nT) : "unlimited";
 }
 
-Check coverage_check(const FitReport& r, const Identifiability& known) {
-  const double limit = kUnusable * r.site.f_nT;
+Check coverage_check(const FitReport& r, const joint::Identifiability& known) {
+  const double limit = joint::kUnusable * r.site.f_nT;
   const bool passed = known.worst_nT() <= limit;
   return {"coverage", passed,
           known.weak.empty()
@@ -32,7 +32,7 @@ Check coverage_check(const FitReport& r, const Identifiability& known) {
           sd_text(limit), known.add.empty() ? std::string() : "add poses: " + to_text(known.add)};
 }
 
-Check condition_check(const Identifiability& known) {
+Check condition_check(const joint::Identifiability& known) {
   return {
       "condition", known.condition <= kMaxCondition,
       fmt::format("{:.2g} between the best and the worst known combination of parameters", known.condition),
@@ -48,7 +48,7 @@ Check mounting_check(const FitReport& r) {
   std::size_t which = 0;
   std::vector<std::size_t> mirrored;
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const SensorModel& s = r.calibration.sensors[i];
+    const sensor::SensorModel& s = r.calibration.sensors[i];
     const Eigen::Matrix3d turn = s.R_PS() * s.mounting.transpose();
     const double angle = std::acos(std::clamp((turn.trace() - 1) / 2, -1.0, 1.0));
     if (angle > worst) worst = angle, which = i;
@@ -87,7 +87,7 @@ Check direction_check(const char* name, double found, double sd, double given, d
           "value"};
 }
 
-Check agreement_check(const Agreement& a) {
+Check agreement_check(const joint::Agreement& a) {
   const bool tails = a.scatter.few_far_off();
   const bool unseen = a.poses >= kEnoughPoses && a.held_out_nT && *a.held_out_nT > kMaxHeldOut * a.fitted_nT;
   const bool moved = a.moved > kMaxMoved;
@@ -101,7 +101,7 @@ Check agreement_check(const Agreement& a) {
                          : std::string("; no pose moves it by more than its noise");
   return {"agreement", !tails && !unseen && !moved, std::move(measured),
           fmt::format("rms {} times the median's, poses left out {} times, one pose {} standard deviation",
-                      kMaxTails, kMaxHeldOut, kMaxMoved),
+                      joint::kMaxTails, kMaxHeldOut, kMaxMoved),
           moved ? fmt::format("the calibration rests on pose {}: measure it again", a.pose)
           : tails
               ? std::string("a few readings are far off and bend the others: look at the largest residuals")
@@ -112,7 +112,7 @@ Check agreement_check(const Agreement& a) {
 }  // namespace
 
 std::vector<Check> joint_checks(const FitReport& r, const FitOptions& options) {
-  const Identifiability& known = r.joint->known;
+  const joint::Identifiability& known = r.joint->known;
   std::vector<Check> out = common_checks(r);
   out.push_back(coverage_check(r, known));
   out.push_back(condition_check(known));
@@ -134,4 +134,4 @@ std::vector<Check> joint_checks(const FitReport& r, const FitOptions& options) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

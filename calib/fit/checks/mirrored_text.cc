@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 std::string mirrored_text(const std::vector<std::size_t>& sensors) {
   return fmt::format("sensor {} mirrored: left-handed axes, two leads are swapped or one is inverted",
@@ -12,4 +12,4 @@ std::string mirrored_text(const std::vector<std::size_t>& sensors) {
                                          : fmt::format("{} are", fmt::join(sensors, ", ")));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 
 /// Says which sensors, by number, are mirrored and what that means.
 [[nodiscard]] std::string mirrored_text(const std::vector<std::size_t>& sensors);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

@@ -10,7 +10,7 @@
 #include "calib/fit/checks/common_checks.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::checks {
 namespace {
 
 Check table_check(const AzimuthOrigin& origin, const FitOptions& options) {
@@ -56,4 +56,4 @@ std::vector<Check> two_step_checks(const FitReport& report, const FitOptions& op
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::checks

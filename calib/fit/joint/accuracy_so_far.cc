@@ -6,7 +6,7 @@
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 double AccuracySoFar::worst_nT_per_m() const {
   const Gradient& g = tensor_sd_nT_per_m;
@@ -28,4 +28,4 @@ Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& 
       std::move(fit->state)};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -4,7 +4,7 @@
 #include "calib/fit/joint/joint_fit.h"
 
 /// Says during a run how accurate a calibration from the poses measured so far would be.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct AccuracySoFar {
   int poses{0};
@@ -20,4 +20,4 @@ struct AccuracySoFar {
 [[nodiscard]] Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,
                                                     const JointState* warm_start);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -8,7 +8,7 @@
 #include "calib/linear/cholesky.h"
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// In variance, of what the noise of the pose does on average: below, it is the design and not the reading.
@@ -30,7 +30,7 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
     Eigen::MatrixXd others = S - own.S;
     for (Eigen::Index i = 0; i < S.rows(); ++i)
       if (S(i, i) == 1 && own.S(i, i) == 1) others(i, i) = 1;  // held slots stay held
-    const auto information = Cholesky::of(others);
+    const auto information = linear::Cholesky::of(others);
     if (!information) continue;
     const double moved = information->squared_length(own.g * (fit.noise_inflation / fit.birge_ratio));
     const double by_noise = information->solve(own.S).trace();
@@ -48,7 +48,7 @@ Scatter scatter_of(const JointFit& fit) {
   Scatter out;
   const PoseResiduals residuals = pose_residuals(fit.problem, fit.state);
   double squares = 0, count = 0, typical = 0;
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     std::vector<double> misfits;
     for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
       const double t = residuals.t(c, static_cast<Eigen::Index>(k));
@@ -58,7 +58,7 @@ Scatter scatter_of(const JointFit& fit) {
     for (const double x : misfits) squares += x * x, ++count;
     const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
     std::nth_element(misfits.begin(), middle, misfits.end());
-    typical += std::pow(kMadToSd * *middle, 2) / kChannels;
+    typical += std::pow(stats::kMadToSd * *middle, 2) / sensor::kChannels;
   }
   out.residual_nT = std::sqrt(squares / std::max(1.0, count));
   out.typical_nT = std::sqrt(typical);
@@ -75,4 +75,4 @@ Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double>
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

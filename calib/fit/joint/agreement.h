@@ -8,7 +8,7 @@
 /// Whether the readings that a joint fit kept agree with each other. A gross reading that bends the
 /// calibration towards itself shows in one of three places: a few residuals far above most, one pose on which
 /// the result rests, or poses that were left out and are missed by more than those that were fitted.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Ratio of the residual's rms to the rms that its median implies, above which a few readings are far off.
 /// Noise with heavy tails (Student's t with three degrees of freedom) reaches 1.6, a smooth law that the
@@ -38,4 +38,4 @@ struct Agreement {
 
 [[nodiscard]] Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

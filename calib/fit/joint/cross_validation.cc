@@ -4,7 +4,7 @@
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/linear/cholesky.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 struct Fold {
@@ -36,7 +36,7 @@ std::optional<double> left_out_nT(const JointFit& fit) {
     Eigen::MatrixXd S = all.S - fold.share.S;
     for (Eigen::Index i = 0; i < S.rows(); ++i)
       if (all.S(i, i) == 1 && fold.share.S(i, i) == 1) S(i, i) = 1;
-    const auto information = Cholesky::of(S);
+    const auto information = linear::Cholesky::of(S);
     if (!information) return std::nullopt;
     JointState moved = fold.state.moved(information->solve(Eigen::VectorXd(all.g - fold.share.g)));
     refit_nuisances(fold.problem, moved);
@@ -46,4 +46,4 @@ std::optional<double> left_out_nT(const JointFit& fit) {
   return sums.readings > 0 ? std::optional(sums.unseen_nT()) : std::nullopt;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -4,7 +4,7 @@
 
 #include "calib/fit/joint/joint_fit.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Residual (PoseResiduals::unseen_nT) on poses that were left out, nT: ten folds contiguous in time, the
 /// fixed block fitted to the others, each left-out pose with its own best field and attitude.
@@ -14,4 +14,4 @@ namespace mgtd::calib {
 /// where held_out_errors() fits ten times. Empty where a fold cannot be left out.
 [[nodiscard]] std::optional<double> left_out_nT(const JointFit& fit);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -11,7 +11,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// A fluxgate shows the field to a factor of three, whatever its offset; a wrong unit is a thousand away.
@@ -158,4 +158,4 @@ Result<void> check_turned_together(const std::array<Eigen::Matrix3Xd, kSensorCou
       "the table were mixed up, or whether the sensors were turned one by one");
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

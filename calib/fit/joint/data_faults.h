@@ -10,7 +10,7 @@
 /// Finds faults of the data that a fit could only mistake for something else; they are looked for before a
 /// fit is tried. All errors are `bad_input`. Medians over the poses decide, so that single gross readings do
 /// not.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Readings and total field in units a thousand (uT, pT) or a million (mT) times apart. `f_nT`: the field
 /// where the poses have none of their own. Where no field is known at all, it is found from the readings and
@@ -28,4 +28,4 @@ namespace mgtd::calib {
     const std::array<Eigen::Matrix3Xd, static_cast<std::size_t>(kSensors)>& b_nT,
     const std::array<Eigen::Matrix3d, static_cast<std::size_t>(kSensors)>& to_first);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr double kSettled = 0.01;  ///< relative change of a noise estimate that no longer matters
@@ -53,11 +53,11 @@ void settle(FitNoise& noise, JointProblem& problem, JointState& state) {
   }
 }
 
-AxisNoise assumed_noise(const JointProblem& problem) {
-  Eigen::Array<double, kChannels, 1> squares = Eigen::Array<double, kChannels, 1>::Zero();
-  Eigen::Array<double, kChannels, 1> count = squares;
+calibration::AxisNoise assumed_noise(const JointProblem& problem) {
+  Eigen::Array<double, sensor::kChannels, 1> squares = Eigen::Array<double, sensor::kChannels, 1>::Zero();
+  Eigen::Array<double, sensor::kChannels, 1> count = squares;
   for (const JointPose& pose : problem.poses) {
-    for (int c = 0; c < kChannels; ++c) {
+    for (int c = 0; c < sensor::kChannels; ++c) {
       if (!(pose.weight[c] > 0)) continue;
       squares[c] += 1 / (pose.weight[c] * pose.weight[c]);
       ++count[c];
@@ -66,4 +66,4 @@ AxisNoise assumed_noise(const JointProblem& problem) {
   return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(kSensors, 3);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -8,14 +8,15 @@
 
 /// The noise that weighs a joint fit, estimated with it: of the readings from the spreads within the dwells,
 /// else from the residuals; of the table's angles always from what they had to be corrected by.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Estimates do not go below: 0.1 pT.
 inline constexpr double kNoiseFloor_nT = 1e-4;
 
 struct FitNoise {
-  AxisNoise pose_nT{AxisNoise::Constant(kStartNoise_nT)};  ///< of a pose mean, where no dwell tells it
-  std::optional<AxisNoise> sample_nT{};                    ///< of a sample, where the dwells do
+  calibration::AxisNoise pose_nT{
+      calibration::AxisNoise::Constant(kStartNoise_nT)};  ///< of a pose mean, where no dwell tells it
+  std::optional<calibration::AxisNoise> sample_nT{};      ///< of a sample, where the dwells do
   double table_sd_rad{0};
   double noise_inflation{1};  ///< JointOptions::noise_inflation
   /// Beside the dwells' own, nT^2: of the digitiser's step, and what JointOptions adds.
@@ -32,6 +33,6 @@ struct FitNoise {
 void settle(FitNoise& noise, JointProblem& problem, JointState& state);
 
 /// Noise of a pose mean as it was weighted, rms over the poses.
-[[nodiscard]] AxisNoise assumed_noise(const JointProblem& problem);
+[[nodiscard]] calibration::AxisNoise assumed_noise(const JointProblem& problem);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

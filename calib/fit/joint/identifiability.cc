@@ -15,7 +15,7 @@
 #include "calib/sensor/sensor_equations.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr int kMaxWeak = 6, kMaxAdd = 6;
@@ -24,12 +24,12 @@ constexpr double kNamedShare = 0.8;  ///< of a direction's square that its descr
 /// nT of corrected field per unit of each slot.
 Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
   Eigen::VectorXd d = Eigen::VectorXd::Constant(problem.fixed(), f_nT);
-  for (int i = 0; i < kSensors; ++i) d.segment<3>(kSensorParameters * i + ix).setOnes();
+  for (int i = 0; i < kSensors; ++i) d.segment<3>(sensor::kSensorParameters * i + sensor::ix).setOnes();
   d[kFieldSlot] = 1;
   int slot = kEffectSlot;
-  for (const EffectPtr& effect : problem.effects) {
+  for (const effects::EffectPtr& effect : problem.effects) {
     // An effect of its typical size counts as ten nanotesla: what makes it worth a place in the model.
-    for (const Coefficient& c : effect->coefficients()) d[slot++] = 10 / c.typical;
+    for (const effects::Coefficient& c : effect->coefficients()) d[slot++] = 10 / c.typical;
   }
   return d;
 }
@@ -39,27 +39,27 @@ Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
 Eigen::MatrixXd common_rotation(const JointProblem& problem, const Eigen::VectorXd& d) {
   Eigen::MatrixXd q = Eigen::MatrixXd::Zero(problem.fixed(), 5);
   for (int i = 0; i < kSensors; ++i) {
-    for (int j = 0; j < 3; ++j) q(kSensorParameters * i + alpha + j, j) = d[alpha];
+    for (int j = 0; j < 3; ++j) q(sensor::kSensorParameters * i + sensor::alpha + j, j) = d[sensor::alpha];
   }
   q(kSiteSlot, 3) = q(kSiteSlot + 1, 4) = 1;
-  return orthonormal(q);
+  return linear::orthonormal(q);
 }
 
 /// What a slot is called: sensor by sensor for a parameter's index alone, `all` for the four together.
 std::string slot_name(const JointProblem& problem, int slot, bool all) {
-  static constexpr std::array<const char*, kSensorParameters> kWords{
+  static constexpr std::array<const char*, sensor::kSensorParameters> kWords{
       "angle theta (x-y)", "angle phi (x-z)", "angle psi (y-z)", "scale x",    "scale y",   "scale z",
       "offset x",          "offset y",        "offset z",        "tilt alpha", "tilt beta", "turn gamma"};
   if (slot < kSensorBlock) {
-    const char* word = kWords[static_cast<std::size_t>(slot % kSensorParameters)];
+    const char* word = kWords[static_cast<std::size_t>(slot % sensor::kSensorParameters)];
     return all ? fmt::format("{} of all sensors", word)
-               : fmt::format("s{} {}", slot / kSensorParameters + 1, word);
+               : fmt::format("s{} {}", slot / sensor::kSensorParameters + 1, word);
   }
   if (slot < kFieldSlot) return "direction of the site's field";
   if (slot == kFieldSlot) return "strength of the field";
   int at = kEffectSlot;
-  for (const EffectPtr& effect : problem.effects) {
-    for (const Coefficient& c : effect->coefficients()) {
+  for (const effects::EffectPtr& effect : problem.effects) {
+    for (const effects::Coefficient& c : effect->coefficients()) {
       if (at++ == slot) return fmt::format("{} {}", effect->name(), c.name);
     }
   }
@@ -75,12 +75,14 @@ struct NamedShare {
 /// four.
 std::vector<NamedShare> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
   std::vector<NamedShare> out;
-  for (int p = 0; p < kSensorParameters; ++p) {
+  for (int p = 0; p < sensor::kSensorParameters; ++p) {
     Eigen::Vector4d share;
-    for (int i = 0; i < kSensors; ++i) share[i] = v[kSensorParameters * i + p] * v[kSensorParameters * i + p];
+    for (int i = 0; i < kSensors; ++i)
+      share[i] = v[sensor::kSensorParameters * i + p] * v[sensor::kSensorParameters * i + p];
     Eigen::Index most = 0;
     const bool one = share.maxCoeff(&most) > kNamedShare * share.sum();
-    out.push_back({slot_name(problem, kSensorParameters * static_cast<int>(most) + p, !one), share.sum()});
+    out.push_back(
+        {slot_name(problem, sensor::kSensorParameters * static_cast<int>(most) + p, !one), share.sum()});
   }
   for (int slot = kSensorBlock; slot < v.size(); ++slot)
     out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
@@ -114,7 +116,7 @@ FieldCoverage field_coverage(const JointProblem& problem, const JointState& stat
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& b : directions) mean += b / static_cast<double>(directions.size());
   for (const Eigen::Vector3d& b : directions) scatter += (b - mean) * (b - mean).transpose();
-  Eigen::Vector3d axis = principal_axes(scatter).vectors.col(0);
+  Eigen::Vector3d axis = linear::principal_axes(scatter).vectors.col(0);
   if (axis.dot(mean) < 0) axis = -axis;
   FieldCoverage out{.axis_P = axis, .least_rad = std::numbers::pi, .most_rad = 0};
   for (const Eigen::Vector3d& b : directions) {
@@ -141,7 +143,7 @@ std::vector<TableAngles> best_additions(const JointProblem& problem, const Joint
   std::vector<TableAngles> out;
   while (!offers.empty() && static_cast<int>(out.size()) < kMaxAdd) {
     const Eigen::MatrixXd x =
-        solve_by_ldlt(information, weak);  // C w: rate of the variances with information
+        linear::solve_by_ldlt(information, weak);  // C w: rate of the variances with information
     std::size_t best = 0;
     double best_gain = -1;
     for (std::size_t c = 0; c < offers.size(); ++c) {
@@ -186,7 +188,7 @@ Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& st
   recorded.pitch_rad = angles.pitch_rad;
   recorded.roll_rad = angles.roll_rad;
   pose.pose = &recorded;
-  pose.T = table_rotation(angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0.0, 0.0);
+  pose.T = sensor::table_rotation(angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0.0, 0.0);
   pose.has_angles = problem.has_angles;
   pose.weight.setConstant(problem.poses.front().weight.maxCoeff());
   one.poses = {pose};
@@ -208,7 +210,7 @@ Identifiability identifiability(const JointProblem& problem, const JointState& s
   // The common rotation is made known, so that only what matters for the tensor can be weak.
   const Eigen::MatrixXd rotation = common_rotation(problem, d);
   information += information.diagonal().maxCoeff() * rotation * rotation.transpose();
-  const SymmetricEigen eigen = symmetric_eigen(information);
+  const linear::SymmetricEigen eigen = linear::symmetric_eigen(information);
   Identifiability out;
   const double rounding = 1e-14 * eigen.values.tail<1>()[0];
   const double least = eigen.values[0];
@@ -230,4 +232,4 @@ Identifiability identifiability(const JointProblem& problem, const JointState& s
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -11,7 +11,7 @@
 /// The information matrix is put into nanotesla at the mean field (offsets as they are, scale factors and
 /// angles times F), the common rotation is taken out (it turns the platform frame and leaves the tensor of a
 /// uniform field alone), and the eigenvectors with the least information are described.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct WeakDirection {
   double sd_nT{0};  ///< of the corrected field along it; infinite when nothing is known
@@ -53,4 +53,4 @@ struct Identifiability {
 [[nodiscard]] Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& state,
                                              const TableAngles& angles, double f_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

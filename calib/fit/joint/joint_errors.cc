@@ -8,7 +8,7 @@
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 struct ErrorSums {
@@ -31,16 +31,16 @@ struct ErrorSums {
 };
 
 void add(const JointProblem& problem, const JointState& state, ErrorSums& sums) {
-  const ArrayModel array(state.sensors, problem.geometry, problem.effects, state.coefficients);
-  const auto rows = gradient_rows(problem.geometry);
+  const calibration::ArrayModel array(state.sensors, problem.geometry, problem.effects, state.coefficients);
+  const auto rows = calibration::gradient_rows(problem.geometry);
   const Counted counts = counted(problem);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const JointPose& pose = problem.poses[k];
     const Nuisance& x = state.nuisances[k];
-    const Conditions at = pose.conditions();
+    const effects::Conditions at = pose.conditions();
     std::optional<Eigen::Matrix3d> R;
-    if (pose.has_angles) R = turn_by<double>(x.head<3>()) * array.attitude(at);
-    FieldVector b = array.correct(at, pose.y_nT, R);
+    if (pose.has_angles) R = sensor::turn_by<double>(x.head<3>()) * array.attitude(at);
+    sensor::FieldVector b = array.correct(at, pose.y_nT, R);
     if (R) b -= array.site_field(at, *R);
     const double f = problem.common_field ? state.f_nT : pose.f_nT;
     const auto at_pose = static_cast<Eigen::Index>(k);
@@ -116,4 +116,4 @@ std::optional<JointErrors> held_out_errors(const JointFit& fit) {
   return sums.errors(FixedBlock::frozen);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

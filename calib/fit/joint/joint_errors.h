@@ -7,7 +7,7 @@
 #include "calib/fit/joint/joint_fit.h"
 
 /// How far corrected readings are from what they should be, in the sample and out of it.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct JointErrors {
   /// |b| against each pose's own F, and the tensor; effects of the site taken out of both. A sensor one of
@@ -32,4 +32,4 @@ enum class FixedBlock { fitted, frozen };
 /// cannot be fitted without its poses.
 [[nodiscard]] std::optional<JointErrors> held_out_errors(const JointFit& fit);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

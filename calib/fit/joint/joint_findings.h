@@ -9,7 +9,7 @@
 #include "calib/fit/quantisation.h"
 
 /// What only a joint fit finds out, as values: part of FitReport.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct JointFindings {
   Gauge gauge;
@@ -21,4 +21,4 @@ struct JointFindings {
   Quantisation quantisation;                       ///< the weights of the fit contain it
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

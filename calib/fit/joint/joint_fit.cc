@@ -8,7 +8,7 @@
 #include "calib/linear/cholesky.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Residual over noise: above the first the noise is inflated, below the second no longer; the third is where
@@ -60,10 +60,10 @@ Eigen::MatrixXd widened_information(const JointFit& fit) {
 std::array<double, 3> common_rotation_sd(const Eigen::MatrixXd& covariance) {
   const auto sd = [&](int parameter) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(covariance.rows());
-    for (int i = 0; i < kSensors; ++i) row[kSensorParameters * i + parameter] = 1.0 / kSensors;
-    return std::sqrt(propagated_variance(row, covariance));
+    for (int i = 0; i < kSensors; ++i) row[sensor::kSensorParameters * i + parameter] = 1.0 / kSensors;
+    return std::sqrt(linear::propagated_variance(row, covariance));
   };
-  return {sd(alpha), sd(beta), sd(gamma)};
+  return {sd(sensor::alpha), sd(sensor::beta), sd(sensor::gamma)};
 }
 
 Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* warm_start,
@@ -161,7 +161,7 @@ Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& o
 }
 
 Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {
-  const auto information = Cholesky::of(S);
+  const auto information = linear::Cholesky::of(S);
   if (!information) {
     return fail(ErrorCode::refused, "the poses leave at least one combination of parameters undetermined",
                 "turn the rig about a second and a third axis");
@@ -169,4 +169,4 @@ Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {
   return information->inverse();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

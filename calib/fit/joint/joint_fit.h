@@ -18,16 +18,16 @@
 /// that agree with each other (consensus.h), so that up to a third of gross poses of any size hide nothing.
 /// Trivial solutions cannot win: residuals are those of raw readings, in nT, and a sensor whose gain
 /// collapses or explodes is refused by its determinant. Does not decide whether a calibration is acceptable.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct JointFit {
   JointProblem problem;  ///< final weights; points into the pose table
   JointState state;
   /// Of the fixed block, gauge constraints included; the noise of the readings inflated by `birge_ratio`.
   Eigen::MatrixXd covariance;
-  AxisNoise pose_noise_nT{AxisNoise::Zero()};
-  std::optional<AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
-  Quantisation quantisation;                 ///< in the weights, where they come from the dwells
+  calibration::AxisNoise pose_noise_nT{calibration::AxisNoise::Zero()};
+  std::optional<calibration::AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
+  Quantisation quantisation;                              ///< in the weights, where they come from the dwells
   double noise_inflation{1};  ///< JointOptions::noise_inflation: in the weights, not in what follows
   double table_sd_rad{0};     ///< estimated; 0 without angles
   double chi2{0}, dof{0};     ///< readings and scalar reference
@@ -62,4 +62,4 @@ inline constexpr std::size_t kFewestPoses = 12;
 /// (S)^-1 of the information of the fixed block; refuses when it is not positive definite.
 [[nodiscard]] Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

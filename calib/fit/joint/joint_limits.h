@@ -2,7 +2,7 @@
 #pragma once
 
 /// Where the iterations of a joint fit stop. Falls are of chi-square, without unit; no flag changes them.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Steps of one solution. A fit that the poses determine needs fewer than twenty.
 inline constexpr int kMaxIterations = 200;
@@ -25,4 +25,4 @@ inline constexpr double kSlowFall = 1e-2, kRelativeSlowFall = 1e-6;
 /// Rounds of solving, estimating the noise and leaving readings out: nearly all runs settle within six.
 inline constexpr int kMaxWeighingRounds = 30;
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

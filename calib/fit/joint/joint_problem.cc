@@ -7,18 +7,19 @@
 #include "calib/fit/orientation.h"
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 int JointProblem::coefficients() const {
   std::size_t sum = 0;
-  for (const EffectPtr& effect : effects) sum += effect->coefficients().size();
+  for (const effects::EffectPtr& effect : effects) sum += effect->coefficients().size();
   return static_cast<int>(sum);
 }
 
 Eigen::VectorXd JointState::fixed() const {
   Eigen::VectorXd x(kEffectSlot + coefficients.size());
   for (std::size_t i = 0; i < kSensors; ++i) {
-    x.segment<kSensorParameters>(static_cast<int>(i) * kSensorParameters) = sensors[i].parameters();
+    x.segment<sensor::kSensorParameters>(static_cast<int>(i) * sensor::kSensorParameters) =
+        sensors[i].parameters();
   }
   x.segment<2>(kSiteSlot).setZero();
   x[kFieldSlot] = f_nT;
@@ -31,10 +32,12 @@ namespace {
 /// The sensor's angles after a step, to first order the sum. The step is taken on the rotation group, so that
 /// a turn common to all sensors stays one however long it is: poses whose attitude is weakly known follow it
 /// at no cost.
-void turn(const SensorModel& from, const Eigen::Vector3d& step, SensorModel& to) {
-  const Eigen::Matrix3d z = rotation_z(from.gamma_rad), zy = z * rotation_y(from.beta_rad);
-  const Vector3<double> w = step[2] * Eigen::Vector3d::UnitZ() + step[1] * z.col(1) + step[0] * zy.col(0);
-  const Eigen::Vector3d angles = angles_of(turn_by<double>(w) * zy * rotation_x(from.alpha_rad));
+void turn(const sensor::SensorModel& from, const Eigen::Vector3d& step, sensor::SensorModel& to) {
+  const Eigen::Matrix3d z = sensor::rotation_z(from.gamma_rad), zy = z * sensor::rotation_y(from.beta_rad);
+  const sensor::Vector3<double> w =
+      step[2] * Eigen::Vector3d::UnitZ() + step[1] * z.col(1) + step[0] * zy.col(0);
+  const Eigen::Vector3d angles =
+      angles_of(sensor::turn_by<double>(w) * zy * sensor::rotation_x(from.alpha_rad));
   to.alpha_rad = angles[0], to.beta_rad = angles[1], to.gamma_rad = angles[2];
 }
 
@@ -43,8 +46,10 @@ void turn(const SensorModel& from, const Eigen::Vector3d& step, SensorModel& to)
 JointState JointState::moved(const Eigen::VectorXd& step) const {
   JointState next = *this;
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const auto part = step.segment<kSensorParameters>(static_cast<int>(i) * kSensorParameters);
-    next.sensors[i] = SensorModel::from_parameters(sensors[i].parameters() + part, sensors[i].mounting);
+    const auto part =
+        step.segment<sensor::kSensorParameters>(static_cast<int>(i) * sensor::kSensorParameters);
+    next.sensors[i] =
+        sensor::SensorModel::from_parameters(sensors[i].parameters() + part, sensors[i].mounting);
     turn(sensors[i], part.tail<3>(), next.sensors[i]);
   }
   next.direction = (direction + tangents(direction) * step.segment<2>(kSiteSlot)).normalized();
@@ -77,4 +82,4 @@ Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n) {
   return t;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

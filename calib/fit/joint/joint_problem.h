@@ -22,15 +22,15 @@
 /// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of
 /// effects) and four nuisances a pose: w_k (3) and F_k where B(0) = F_k n; or, for a pose without table
 /// angles, the field b_k (3) itself in the platform frame and one idle slot.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 inline constexpr int kNuisances = 4;
-inline constexpr int kSensorBlock = kSensors * kSensorParameters;
+inline constexpr int kSensorBlock = kSensors * sensor::kSensorParameters;
 /// Slots of the fixed block after the sensors: two tangents of n, F, then the effects.
 inline constexpr int kSiteSlot = kSensorBlock, kFieldSlot = kSiteSlot + 2, kEffectSlot = kFieldSlot + 1;
 inline constexpr int kGlobals = kEffectSlot - kSensorBlock;  ///< of every model; effects come behind
 
-using Channels = Eigen::Matrix<double, kChannels, 1>;
+using Channels = Eigen::Matrix<double, sensor::kChannels, 1>;
 using Nuisance = Eigen::Matrix<double, kNuisances, 1>;
 
 /// Weight of an attitude that is not believed: 30 degrees, enough to keep the turn about the field defined.
@@ -46,9 +46,9 @@ struct JointPose {
   bool has_angles{false};
   Eigen::Matrix3d T{Eigen::Matrix3d::Identity()};  ///< table rotation at the recorded angles
   double attitude_weight{0};                       ///< 1/rad, of each component of w_k
-  const CovariateMeans* means{nullptr};            ///< those of the problem
+  const effects::CovariateMeans* means{nullptr};   ///< those of the problem
 
-  [[nodiscard]] Conditions conditions() const { return {*pose, t_h, previous, means}; }
+  [[nodiscard]] effects::Conditions conditions() const { return {*pose, t_h, previous, means}; }
 };
 
 /// A Gaussian observation of a linear form of the fixed block: row' x = target.
@@ -59,9 +59,9 @@ struct LinearPrior {
 };
 
 struct JointProblem {
-  Geometry geometry;
-  std::vector<EffectPtr> effects;
-  std::shared_ptr<const CovariateMeans> means;  ///< over the poses that are fitted
+  sensor::Geometry geometry;
+  std::vector<effects::EffectPtr> effects;
+  std::shared_ptr<const effects::CovariateMeans> means;  ///< over the poses that are fitted
   std::vector<JointPose> poses;
   bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
   bool has_angles{false};           ///< at least one pose has table angles
@@ -76,7 +76,7 @@ struct JointProblem {
 };
 
 struct JointState {
-  std::array<SensorModel, kSensors> sensors;
+  std::array<sensor::SensorModel, kSensors> sensors;
   Eigen::Vector3d direction{0, 0, 1};  ///< n, unit vector in the site frame
   double f_nT{0};                      ///< F, used with common_field
   Eigen::VectorXd coefficients;
@@ -98,4 +98,4 @@ struct JointState {
 /// Two orthonormal tangents of the unit sphere at n, columns.
 [[nodiscard]] Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -6,7 +6,7 @@
 
 #include "calib/fit/joint/joint_solver.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Poses eliminated per rank update: enough for a blocked product, small enough for the cache.
@@ -75,17 +75,17 @@ struct Felt {
 void add_fixed(const PoseBlocks& b, const JointPose& pose, Felt& felt, Reduced& out) {
   for (int i = 0; i < kSensors; ++i) {
     const auto w = pose.weight.segment<3>(3 * i).asDiagonal();
-    const Eigen::Matrix<double, 3, kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
+    const Eigen::Matrix<double, 3, sensor::kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
     const Eigen::Vector3d r = b.residual.segment<3>(3 * i);
-    const int at = kSensorParameters * i;
+    const int at = sensor::kSensorParameters * i;
     // lazyProduct: these are too small for blocking to pay.
-    out.S.block<kSensorParameters, kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
-    out.g.segment<kSensorParameters>(at) += A.transpose().lazyProduct(r);
+    out.S.block<sensor::kSensorParameters, sensor::kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
+    out.g.segment<sensor::kSensorParameters>(at) += A.transpose().lazyProduct(r);
     felt.take(b.linear, pose.weight, i);
     for (std::size_t j = 0; j < felt.slots.size(); ++j) {
       const Eigen::Vector3d column = felt.rows.col(static_cast<Eigen::Index>(j));
       const Eigen::Index slot = felt.slots[j];
-      out.S.row(slot).segment<kSensorParameters>(at) += column.transpose().lazyProduct(A);
+      out.S.row(slot).segment<sensor::kSensorParameters>(at) += column.transpose().lazyProduct(A);
       for (std::size_t k = j; k < felt.slots.size(); ++k)
         out.S(felt.slots[k], slot) += column.dot(felt.rows.col(static_cast<Eigen::Index>(k)));
       out.g[slot] += column.dot(r);
@@ -129,10 +129,10 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   for (int i = 0; i < kSensors; ++i) {
     const Eigen::Matrix<double, 3, kNuisances> wN =
         pose.weight.segment<3>(3 * i).asDiagonal() * out.N.middleRows<3>(3 * i);
-    out.U.middleRows<kSensorParameters>(kSensorParameters * i) =
+    out.U.middleRows<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
         out.linear.d_sensor.middleRows<3>(3 * i).transpose().lazyProduct(wN);
   }
-  const Eigen::Matrix<double, kChannels, kNuisances> wN = pose.weight.asDiagonal() * out.N;
+  const Eigen::Matrix<double, sensor::kChannels, kNuisances> wN = pose.weight.asDiagonal() * out.N;
   out.U.bottomRows(globals) = out.linear.d_global.transpose().lazyProduct(wN);
   out.U.bottomRows(globals) += out.scalar.global.transpose().lazyProduct(out.scalar.nuisance);
 }
@@ -173,4 +173,4 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

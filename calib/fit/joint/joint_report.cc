@@ -16,7 +16,7 @@
 #include "calib/fit/two_step/two_step.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Mean strength of the field over the poses.
@@ -36,7 +36,8 @@ SiteField site_of(const JointFit& fit) {
                 .declination_sd_rad = kUnknown};
   if (!fit.problem.has_angles) return out;
   const Eigen::Matrix2d rows = inclination_declination_rows(fit.state.direction);
-  const Eigen::Matrix2d C = propagated_covariance(rows, fit.covariance.block<2, 2>(kSiteSlot, kSiteSlot));
+  const Eigen::Matrix2d C =
+      linear::propagated_covariance(rows, fit.covariance.block<2, 2>(kSiteSlot, kSiteSlot));
   out.inclination_rad = inclination_of(fit.state.direction);
   out.declination_rad = declination_of(fit.state.direction);
   out.inclination_sd_rad = std::sqrt(C(0, 0));
@@ -64,7 +65,7 @@ void compare_methods(const Readings& readings, const FitOptions& options, const 
   FieldTable b = raw_fields(readings);
   const Readings kept = readings.subset(untouched(fit));
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const auto step1 = scalar_calibration(kept.y_nT[i], kept.f_nT);
+    const auto step1 = sensor::scalar_calibration(kept.y_nT[i], kept.f_nT);
     if (!step1) continue;  // the row then shows this sensor as it was read
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         fit.state.sensors[i].mounting * step1->correct(readings.y_nT[i]);
@@ -73,7 +74,7 @@ void compare_methods(const Readings& readings, const FitOptions& options, const 
   FitOptions other = options;
   for (const Method method : {Method::two_step, Method::simplified}) {
     other.method = method;
-    const auto fitted = two_step(kept, other);
+    const auto fitted = two_step::two_step(kept, other);
     if (!fitted) continue;
     auto& row = method == Method::two_step ? report.two_step : report.simplified;
     row = errors(corrected_fields(readings, fitted->sensors));
@@ -127,22 +128,24 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
 }
 
 /// What an effect does to the corrected components, rms over the poses.
-decltype(CalibratedEffect::size_nT) size_of(const JointFit& fit, const EffectPtr& effect, int first) {
+decltype(calibration::CalibratedEffect::size_nT) size_of(const JointFit& fit,
+                                                         const effects::EffectPtr& effect, int first) {
   const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
-  const ArrayModel alone(fit.state.sensors, fit.problem.geometry, {effect},
-                         fit.state.coefficients.segment(first, m));
-  const ArrayModel none(fit.state.sensors, fit.problem.geometry, {}, {});
-  FieldVector squares = FieldVector::Zero();
+  const calibration::ArrayModel alone(fit.state.sensors, fit.problem.geometry, {effect},
+                                      fit.state.coefficients.segment(first, m));
+  const calibration::ArrayModel none(fit.state.sensors, fit.problem.geometry, {}, {});
+  sensor::FieldVector squares = sensor::FieldVector::Zero();
   for (const JointPose& pose : fit.problem.poses) {
-    const Conditions at = pose.conditions();
+    const effects::Conditions at = pose.conditions();
     std::optional<Eigen::Matrix3d> R;
     if (pose.has_angles) R = pose.T;
-    FieldVector change = alone.correct(at, pose.y_nT, R) - none.correct(at, pose.y_nT, R);
+    sensor::FieldVector change = alone.correct(at, pose.y_nT, R) - none.correct(at, pose.y_nT, R);
     if (R) change -= alone.site_field(at, *R);
     squares += change.cwiseAbs2();
   }
-  decltype(CalibratedEffect::size_nT) out{};
-  FieldVector::Map(out.data()) = (squares / static_cast<double>(fit.problem.poses.size())).cwiseSqrt();
+  decltype(calibration::CalibratedEffect::size_nT) out{};
+  sensor::FieldVector::Map(out.data()) =
+      (squares / static_cast<double>(fit.problem.poses.size())).cwiseSqrt();
   return out;
 }
 
@@ -169,18 +172,18 @@ Result<JointOptions> profiled_options(const PoseTable& table, const FitOptions& 
   return out;
 }
 
-void fill_calibration(const JointFit& fit, Calibration& c) {
+void fill_calibration(const JointFit& fit, calibration::Calibration& c) {
   c.sensors = fit.state.sensors;
-  c.covariance = fit.covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
+  c.covariance = fit.covariance.topLeftCorner<calibration::kArrayParameters, calibration::kArrayParameters>();
   c.pose_noise_nT = fit.pose_noise_nT * fit.birge_ratio;
   const auto m = fit.state.coefficients.size();
-  c.effect_covariance.resize(m, kArrayParameters + m);
-  c.effect_covariance << fit.covariance.block(kEffectSlot, 0, m, kArrayParameters),
+  c.effect_covariance.resize(m, calibration::kArrayParameters + m);
+  c.effect_covariance << fit.covariance.block(kEffectSlot, 0, m, calibration::kArrayParameters),
       fit.covariance.bottomRightCorner(m, m);
   int slot = 0;
-  for (const EffectPtr& effect : fit.problem.effects) {
-    CalibratedEffect out{effect->spec(), {}, size_of(fit, effect, slot)};
-    for (const Coefficient& coefficient : effect->coefficients()) {
+  for (const effects::EffectPtr& effect : fit.problem.effects) {
+    calibration::CalibratedEffect out{effect->spec(), {}, size_of(fit, effect, slot)};
+    for (const effects::Coefficient& coefficient : effect->coefficients()) {
       const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
       out.coefficients.push_back(
           {coefficient.name, fit.state.coefficients[slot], std::sqrt(variance), coefficient.unit});
@@ -224,4 +227,4 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   return report;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

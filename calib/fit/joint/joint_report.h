@@ -3,7 +3,7 @@
 #include "calib/fit/fit_report.h"
 #include "calib/fit/joint/joint_fit.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// A fit by joint maximum likelihood: everything that the two-step method reports, the effects, the outlier
 /// nodes, and what the poses do not determine. The calibration has no gauge text, no checks and no seal yet.
@@ -15,6 +15,6 @@ namespace mgtd::calib {
 [[nodiscard]] Result<JointOptions> profiled_options(const PoseTable& table, const FitOptions& options);
 
 /// The 48 parameters, the effects, their covariance and the noise of a fit, into a calibration.
-void fill_calibration(const JointFit& fit, Calibration& calibration);
+void fill_calibration(const JointFit& fit, calibration::Calibration& calibration);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -10,7 +10,7 @@
 #include "calib/poses/run_time.h"
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// A reference cannot be better than its last digit, and the weights stay finite.
@@ -18,7 +18,8 @@ constexpr double kMinFieldSd_nT = 1e-3;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
 constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
 
-JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field, const RunTime& time) {
+JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field,
+                     const poses::RunTime& time) {
   JointPose out;
   out.pose = &pose;
   out.t_h = time.hours(pose);
@@ -34,7 +35,7 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   }
   if (const auto angles = pose.angles()) {
     out.has_angles = true;
-    out.T = table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
+    out.T = sensor::table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
     out.attitude_weight = 1 / options.table_sd_rad;
   }
   return out;
@@ -45,7 +46,7 @@ LinearPrior mean_of(const JointProblem& problem, std::initializer_list<int> para
   LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = weight};
   const double share = 1.0 / (kSensors * static_cast<double>(parameters.size()));
   for (int i = 0; i < kSensors; ++i) {
-    for (const int p : parameters) prior.row[kSensorParameters * i + p] = share;
+    for (const int p : parameters) prior.row[sensor::kSensorParameters * i + p] = share;
   }
   return prior;
 }
@@ -58,8 +59,8 @@ LinearPrior about_slot(const JointProblem& problem, int slot, double target, dou
 
 void add_coefficient_priors(JointProblem& problem) {
   int slot = kEffectSlot;
-  for (const EffectPtr& effect : problem.effects) {
-    for (const Coefficient& c : effect->coefficients()) {
+  for (const effects::EffectPtr& effect : problem.effects) {
+    for (const effects::Coefficient& c : effect->coefficients()) {
       if (c.prior_sd > 0) problem.priors.push_back(about_slot(problem, slot, 0, c.prior_sd));
       ++slot;
     }
@@ -72,10 +73,10 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   JointProblem problem;
   problem.geometry = options.geometry;
   problem.stop = options.stop;
-  auto effects = bound_to_run(options.effects, {.table = &table, .offset_nT = {}});
+  auto effects = effects::library::bound_to_run(options.effects, {.table = &table, .offset_nT = {}});
   if (!effects) return tl::unexpected(effects.error());
   problem.effects = std::move(*effects);
-  for (const EffectPtr& effect : problem.effects) {
+  for (const effects::EffectPtr& effect : problem.effects) {
     if (const auto ok = effect->check(table); !ok) return tl::unexpected(ok.error());
   }
   const auto fitted = [use](const Pose& pose) { return (pose.set == "check") == (use == PoseUse::check); };
@@ -92,8 +93,8 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
                 "give f_nT for every pose, or give the field of the others with --field");
   }
   problem.common_field = with_f == 0;
-  problem.means = std::make_shared<const CovariateMeans>(covariate_means(table));
-  const RunTime time = RunTime::of(table);
+  problem.means = std::make_shared<const effects::CovariateMeans>(effects::covariate_means(table));
+  const poses::RunTime time = poses::RunTime::of(table);
   const Pose* previous = nullptr;
   for (const Pose& pose : table.poses) {
     if (fitted(pose)) {
@@ -121,15 +122,15 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
     problem.direction_weight = 1 / options.table_sd_rad;
   }
   if (gauge.angles == AngleCoverage::none) {
-    for (const int p : {alpha, beta, gamma})
+    for (const int p : {sensor::alpha, sensor::beta, sensor::gamma})
       problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
     gauge.constraints += 3;
   } else if (gauge.angles == AngleCoverage::one_axis && !gauge.declination_known) {
-    problem.priors.push_back(mean_of(problem, {gamma}, 0, kAngleConstraint));
+    problem.priors.push_back(mean_of(problem, {sensor::gamma}, 0, kAngleConstraint));
     gauge.constraints += 1;
   }
   if (!gauge.scale_known) {
-    problem.priors.push_back(mean_of(problem, {cx, cy, cz}, 1, kScaleConstraint));
+    problem.priors.push_back(mean_of(problem, {sensor::cx, sensor::cy, sensor::cz}, 1, kScaleConstraint));
     gauge.constraints += 1;
   } else if (problem.common_field) {
     problem.priors.push_back(about_slot(problem, kFieldSlot, *options.field_nT,
@@ -153,4 +154,4 @@ double start_field_nT(const JointProblem& problem, const JointOptions& options) 
   return std::sqrt(sum / static_cast<double>(problem.poses.size()));
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -12,11 +12,11 @@
 
 /// From a pose table to the joint problem: which poses take part, what each observation weighs, which gauge
 /// holds.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct JointOptions {
-  Geometry geometry;
-  std::vector<EffectPtr> effects;
+  sensor::Geometry geometry;
+  std::vector<effects::EffectPtr> effects;
   std::optional<double> field_nT;  ///< known field where no scalar reference is in the data
   /// Of field_nT; without it the field is taken as exact within kCommonFieldSpread_nT.
   std::optional<double> field_sd_nT;
@@ -56,11 +56,11 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
 
 /// Noise of one sample per axis, pooled over the dwells; empty unless every axis has a spread and every pose
 /// a count.
-[[nodiscard]] std::optional<AxisNoise> sample_noise(const PoseTable& table);
+[[nodiscard]] std::optional<calibration::AxisNoise> sample_noise(const PoseTable& table);
 /// Sets the reading weights: `sample` noise by each pose's effective count, or `pose_mean` noise for all
 /// alike. Keeps zero weights.
-void weight_by_samples(JointProblem& problem, const AxisNoise& sample);
-void weight_by_pose(JointProblem& problem, const AxisNoise& pose_mean);
+void weight_by_samples(JointProblem& problem, const calibration::AxisNoise& sample);
+void weight_by_pose(JointProblem& problem, const calibration::AxisNoise& pose_mean);
 /// Adds a variance to that of every reading, by channel.
 void add_variance(JointProblem& problem, const Channels& nT2);
 
@@ -68,4 +68,4 @@ void add_variance(JointProblem& problem, const Channels& nT2);
 /// variation.
 [[nodiscard]] double start_field_nT(const JointProblem& problem, const JointOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

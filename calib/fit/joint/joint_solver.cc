@@ -7,7 +7,7 @@
 
 #include "calib/linear/cholesky.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Each pose's own step, given the step of the fixed block: its residuals move by J_f step first.
@@ -20,8 +20,8 @@ void move_nuisances(const JointProblem& problem, const JointState& from, const E
     const auto globals = step.tail(b.linear.d_global.cols());
     Channels moved = b.linear.d_global.lazyProduct(globals);
     for (int i = 0; i < kSensors; ++i) {
-      moved.segment<3>(3 * i) +=
-          b.linear.d_sensor.middleRows<3>(3 * i) * step.segment<kSensorParameters>(kSensorParameters * i);
+      moved.segment<3>(3 * i) += b.linear.d_sensor.middleRows<3>(3 * i) *
+                                 step.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i);
     }
     b.g -= b.N.transpose() * problem.poses[k].weight.cwiseProduct(moved);
     b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
@@ -40,7 +40,7 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
   for (; best.iterations < kMaxIterations; ++best.iterations) {
     if (problem.stop.stop_requested()) return fail(ErrorCode::state, "the fit was stopped");
     if (best.iterations == kMaxIterations - kSlowIterations) before = best.reduced.cost.total();
-    if (const auto information = Cholesky::of(best.reduced.S)) {
+    if (const auto information = linear::Cholesky::of(best.reduced.S)) {
       const Eigen::VectorXd step = information->solve(best.reduced.g);
       const double decrease = best.reduced.predicted_decrease + step.dot(best.reduced.g);
       if (decrease < enough + kRelativeDecrease * best.reduced.cost.total()) {
@@ -98,4 +98,4 @@ void refit_nuisances(const JointProblem& problem, JointState& state) {
   }
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

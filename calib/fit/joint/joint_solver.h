@@ -12,7 +12,7 @@
 /// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block of 51 + m and a 4x4 block per
 /// pose. Each pose is eliminated as it is met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear
 /// in the poses and nothing per pose is kept but its four nuisances.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Chi-squares, kept apart: readings and scalar reference decide about the model, attitude about the table.
 struct JointCost {
@@ -33,10 +33,10 @@ struct PoseBlocks {
   PoseLinear linear;
   Channels residual;  ///< w (measured - predicted)
   ScalarRow scalar;
-  Eigen::Matrix<double, kChannels, kNuisances> N;       ///< w dy/d(nuisances)
-  Eigen::Matrix<double, kNuisances, kNuisances> H;      ///< of the nuisances
-  Nuisance g;                                           ///< descent direction times H: J_n' w^2 (y - y(x))
-  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;  ///< fixed by nuisances
+  Eigen::Matrix<double, sensor::kChannels, kNuisances> N;  ///< w dy/d(nuisances)
+  Eigen::Matrix<double, kNuisances, kNuisances> H;         ///< of the nuisances
+  Nuisance g;                                              ///< descent direction times H: J_n' w^2 (y - y(x))
+  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;     ///< fixed by nuisances
   JointCost cost;
 };
 
@@ -68,4 +68,4 @@ struct JointSolution {
 /// Best nuisances for a fixed block that stays as it is: what a new pose says about its own field.
 void refit_nuisances(const JointProblem& problem, JointState& state);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

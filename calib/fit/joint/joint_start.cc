@@ -18,14 +18,14 @@
 #include "calib/sensor/sensor_start.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Relative turns within this of one axis leave the origin of the turn about it undecided.
 const double kOneAxis = std::sin(to_rad(1.0));
 
 struct Aligned {
-  std::array<ScalarCalibration, kSensorCount> alone;
+  std::array<sensor::ScalarCalibration, kSensorCount> alone;
   /// Sensor frame to the frame of sensor 1, reflections allowed.
   std::array<Eigen::Matrix3d, kSensorCount> to_first;
   std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
@@ -42,7 +42,7 @@ Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
 Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
   Eigen::VectorXd f = Eigen::VectorXd::Constant(poses, f_nT);
-  Eigen::Matrix<double, kChannels, Eigen::Dynamic> y(kChannels, poses);
+  Eigen::Matrix<double, sensor::kChannels, Eigen::Dynamic> y(sensor::kChannels, poses);
   for (Eigen::Index k = 0; k < poses; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
     y.col(k) = pose.y_nT;
@@ -53,7 +53,7 @@ Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
   Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, poses);
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     const Eigen::Matrix3Xd own = y.middleRows<3>(3 * static_cast<int>(i));
-    const auto fitted = sensor_start(own, f);
+    const auto fitted = sensor::sensor_start(own, f);
     if (!fitted) {
       return fail(fitted.error().code, fmt::format("sensor {}: {}", i + 1, fitted.error().message),
                   fitted.error().remedy);
@@ -144,7 +144,7 @@ TurnAxis turn_axis(const JointProblem& problem) {
     turns.push_back(q.vec());
     scatter += q.vec() * q.vec().transpose();
   }
-  out.axis_P = principal_axes(scatter).vectors.col(2);
+  out.axis_P = linear::principal_axes(scatter).vectors.col(2);
   for (const Eigen::Vector3d& t : turns)
     out.off_axis = std::max(out.off_axis, (t - t.dot(out.axis_P) * out.axis_P).norm());
   return out;
@@ -190,7 +190,7 @@ AngleCoverage angle_coverage(const JointProblem& problem) {
   return turn.off_axis < kOneAxis ? AngleCoverage::one_axis : AngleCoverage::full;
 }
 
-JointState joint_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
+JointState joint_state(const JointProblem& problem, const std::array<sensor::SensorModel, kSensors>& sensors,
                        const Eigen::Vector3d& direction, double f_nT) {
   JointState state{.sensors = sensors,
                    .direction = direction,
@@ -219,7 +219,7 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   const double hand = handedness(*aligned);
   for (Eigen::Vector3d& u : aligned->u) u *= hand;
   const Placement p = best_placement(problem, aligned->u);
-  std::array<SensorModel, kSensors> sensors;
+  std::array<sensor::SensorModel, kSensors> sensors;
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     sensors[i] =
         sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
@@ -227,17 +227,17 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   return joint_state(problem, sensors, p.n, f_nT);
 }
 
-PlacedState placed_state(const JointProblem& problem, const std::array<SensorModel, kSensors>& sensors,
-                         double f_nT) {
+PlacedState placed_state(const JointProblem& problem,
+                         const std::array<sensor::SensorModel, kSensors>& sensors, double f_nT) {
   std::vector<Eigen::Vector3d> u(problem.poses.size(), Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < u.size(); ++k) {
     for (std::size_t i = 0; i < kSensorCount; ++i)
       u[k] += sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / kSensors;
   }
   const Placement p = best_placement(problem, u);
-  std::array<SensorModel, kSensors> placed = sensors;
-  for (SensorModel& sensor : placed) sensor = turned(sensor, p.Q);
+  std::array<sensor::SensorModel, kSensors> placed = sensors;
+  for (sensor::SensorModel& sensor : placed) sensor = turned(sensor, p.Q);
   return {joint_state(problem, placed, p.n, f_nT), p.Q};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

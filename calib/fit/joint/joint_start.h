@@ -11,7 +11,7 @@
 ///      taken as right-handed.
 /// Without table angles, or with angles about one axis only, the freedom that is left is spent on turning
 /// sensor 1 upright.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// How much of the common rotation the table angles decide.
 enum class AngleCoverage { none, one_axis, full };
@@ -23,7 +23,7 @@ enum class AngleCoverage { none, one_axis, full };
 
 /// A state around given sensors (a two-step result, an earlier calibration, another fold's fit).
 [[nodiscard]] JointState joint_state(const JointProblem& problem,
-                                     const std::array<SensorModel, kSensors>& sensors,
+                                     const std::array<sensor::SensorModel, kSensors>& sensors,
                                      const Eigen::Vector3d& direction, double f_nT);
 
 /// The same around sensors of an earlier calibration that may stand turned on the table since: they are
@@ -33,6 +33,6 @@ struct PlacedState {
   Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
 };
 [[nodiscard]] PlacedState placed_state(const JointProblem& problem,
-                                       const std::array<SensorModel, kSensors>& sensors, double f_nT);
+                                       const std::array<sensor::SensorModel, kSensors>& sensors, double f_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

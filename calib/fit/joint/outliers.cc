@@ -8,7 +8,7 @@
 
 #include "calib/fit/joint/reading_cause.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr double kTakeBack = 0.75;  ///< of the limits: what is left out comes back below
@@ -21,7 +21,7 @@ constexpr int kBadNeighbours = 7;
 /// limit and the limit must be fewer than kInTheGap of those beyond it.
 constexpr double kFew = 0.05, kNear = 0.6, kInTheGap = 0.2;
 
-constexpr unsigned long kAllReadings = (1UL << static_cast<unsigned>(kChannels)) - 1;
+constexpr unsigned long kAllReadings = (1UL << static_cast<unsigned>(sensor::kChannels)) - 1;
 bool disturbed(const Rows& rows) { return (rows.to_ulong() & kAllReadings) == kAllReadings; }
 /// The sensor that is left out as a whole; -1 where none or more than one is.
 int whole_sensor(const Rows& rows) {
@@ -60,7 +60,7 @@ void Outliers::leave_out(JointProblem& problem) {
     if (left_out_[k].none()) continue;
     JointPose& pose = problem.poses[k];
     weight_[k] = {pose.weight, pose.f_weight, pose.attitude_weight};
-    for (std::size_t c = 0; c < kChannels; ++c)
+    for (std::size_t c = 0; c < sensor::kChannels; ++c)
       if (left_out_[k][c]) pose.weight[static_cast<Eigen::Index>(c)] = 0;
     if (left_out_[k][kScalarRow]) pose.f_weight = 0;
     if (left_out_[k][kAttitudeRow]) pose.attitude_weight = kLooseAttitude_per_rad;
@@ -91,7 +91,7 @@ void Outliers::fill_stretches() {
 /// A reading at the end of the range is wrong by an unknown amount, small ones too.
 void Outliers::fill_saturated(const JointProblem& problem) {
   constexpr int kCaught = 2;
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     const auto row = static_cast<std::size_t>(c);
     const std::vector<std::size_t> stop = at_the_stop(problem, c);
     const auto caught =
@@ -115,7 +115,7 @@ std::vector<Rows> Outliers::blamed(const JointProblem& whole, const JointState& 
 bool Outliers::spare_tails(const PoseResiduals& residuals, const std::vector<Rows>& found,
                            BlameLimits& limits) {
   const auto before = tails_;
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     const auto row = static_cast<std::size_t>(c);
     double lost = 0, near = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -133,7 +133,7 @@ bool Outliers::spare_tails(const PoseResiduals& residuals, const std::vector<Row
 
 /// No reading of these axes stands out any more.
 void Outliers::widen_tails(const PoseResiduals& residuals, BlameLimits& limits) const {
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     if (!tails_[static_cast<std::size_t>(c)]) continue;
     limits.spread[c] = std::max(limits.spread[c], static_cast<double>(residuals.t.row(c).maxCoeff()));
   }
@@ -190,7 +190,7 @@ OutlierNode Outliers::node(const JointProblem& whole, const JointState& state, s
     out.unit = "deg";
     out.shift = to_deg(2 * std::atan(state.nuisances[k].head<3>().norm() / 2));
   } else {
-    out.where = channel_name(row);
+    out.where = sensor::channel_name(row);
     out.shift = pose.y_nT[row] - linear.y_nT[row];
     out.cause = cause_of(whole, k, row);
   }
@@ -225,16 +225,16 @@ std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const Join
       // Its own best field: the table alone does not place the readings to better than its angles.
       alone.poses.front().weight = weight_[k].readings;
       refit_nuisances(alone, at);
-      together("pose", 0, kChannels);
+      together("pose", 0, sensor::kChannels);
     } else if (sensor >= 0) {
       together(fmt::format("s{}", sensor + 1), 3 * sensor, 3);
     }
     for (int row = 0; row < kObservations; ++row) {
-      const bool covered = row < kChannels && (disturbed(rows) || sensor >= 0);
+      const bool covered = row < sensor::kChannels && (disturbed(rows) || sensor >= 0);
       if (rows[static_cast<std::size_t>(row)] && !covered) out.push_back(node(problem, state, k, row));
     }
   }
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -13,7 +13,7 @@
 /// A law that the model misses is not cured by leaving out where it is largest: limits go by the spread of
 /// each axis over all poses, and an axis that loses many readings keeps them all where no gap parts them from
 /// the others.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// The set of observations left out.
 class Outliers {
@@ -51,13 +51,13 @@ class Outliers {
   void fill_saturated(const JointProblem& problem);
 
   double most_;
-  std::vector<Rows> left_out_;    ///< by pose
-  std::vector<Weights> weight_;   ///< of every pose, before anything was left out
-  std::vector<int> changed_;      ///< how often the judgement of the pose did
-  std::vector<double> sigmas_;    ///< worst misfit of the pose when it was judged
-  std::bitset<kChannels> tails_;  ///< channels whose misfit has no gap: a law, not gross readings
+  std::vector<Rows> left_out_;            ///< by pose
+  std::vector<Weights> weight_;           ///< of every pose, before anything was left out
+  std::vector<int> changed_;              ///< how often the judgement of the pose did
+  std::vector<double> sigmas_;            ///< worst misfit of the pose when it was judged
+  std::bitset<sensor::kChannels> tails_;  ///< channels whose misfit has no gap: a law, not gross readings
   double too_many_{0};
   int given_up_{0};  ///< how often there were too many
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -9,7 +9,7 @@
 
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Robust spreads of a single observation: one false alarm in 10^8 Gaussian observations.
@@ -38,7 +38,7 @@ double limit_of(const std::vector<double>& roots, double gaussian) {
   std::vector<double> values = roots;
   const double centre = median(values);
   for (double& x : values) x = std::abs(x - centre);
-  const double spread = kMadToSd * median(values);
+  const double spread = stats::kMadToSd * median(values);
   if (!std::isfinite(spread)) return gaussian;
   const double limit = std::max(gaussian, centre + kAboveMedian * spread), low = centre + kLow * spread;
   const auto above = [&](double x) {
@@ -70,7 +70,7 @@ BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows
       if (is_out(k, row)) values.push_back(kBeyond);
       if (residuals.t(row, k) > 0) values.push_back(residuals.t(row, k));
     }
-    const double spread = kMadToSd * median(values);
+    const double spread = stats::kMadToSd * median(values);
     if ((spread > 1 || (spread > 0 && spread < kOverstated)) && std::isfinite(spread))
       out.spread[row] = spread;
   }
@@ -110,7 +110,7 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
   constexpr double kSettled = 1e-6;
   JointPose& pose = alone_.poses.front();
   pose = whole_;
-  for (int c = 0; c < kChannels; ++c)
+  for (int c = 0; c < sensor::kChannels; ++c)
     if (out[static_cast<std::size_t>(c)]) pose.weight[c] = 0;
   if (out[kScalarRow]) pose.f_weight = 0;
   for (int i = 0; i < kSteps; ++i) {
@@ -128,7 +128,7 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
     const double free = 1 - H.matrixL().solve(row.transpose()).squaredNorm();
     return free > 1e-6 ? std::abs(residual) / std::sqrt(free) : 0;
   };
-  for (int c = 0; c < kChannels; ++c)
+  for (int c = 0; c < sensor::kChannels; ++c)
     if (pose.weight[c] > 0) trial.t[c] = whitened(blocks_.residual[c], blocks_.N.row(c));
   if (pose.f_weight > 0) trial.t[kScalarRow] = whitened(blocks_.scalar.residual, blocks_.scalar.nuisance);
   return trial;
@@ -155,7 +155,7 @@ Rows PoseBlame::readings_of(double limit) {
   };
   Candidate single, sensor;
   std::vector<Candidate> singles;
-  const int last = problem_.common_field ? kChannels : kChannels + 1;
+  const int last = problem_.common_field ? sensor::kChannels : sensor::kChannels + 1;
   for (int row = 0; row < last; ++row) {
     Candidate one;
     consider(one, Rows().set(static_cast<std::size_t>(row)));
@@ -178,23 +178,23 @@ Rows PoseBlame::readings_of(double limit) {
     }
   }
   if (pair.agrees) return pair.rows;
-  return Rows((1U << static_cast<unsigned>(kChannels)) - 1);
+  return Rows((1U << static_cast<unsigned>(sensor::kChannels)) - 1);
 }
 
 Rows PoseBlame::of(std::size_t k, double strictness) {
   whole_ = problem_.poses[k];
-  whole_.weight.array() /= limits_.spread.head<kChannels>();
+  whole_.weight.array() /= limits_.spread.head<sensor::kChannels>();
   whole_.f_weight /= limits_.spread[kScalarRow];
   const double attitude_weight = whole_.attitude_weight / limits_.spread[kAttitudeRow];
   // The readings are judged without the table, which may be wrong by more than any of them.
   whole_.attitude_weight = std::min(whole_.attitude_weight, kLooseAttitude_per_rad);
   at_.nuisances.front() = state_.nuisances[k];
   Rows out = readings_of(strictness);
-  if (whole_.has_angles && !(out.count() >= kChannels)) {
+  if (whole_.has_angles && !(out.count() >= sensor::kChannels)) {
     const Trial rest = without(out);
     out[kAttitudeRow] = rest.nuisance.head<3>().norm() * attitude_weight > strictness * kSingle;
   }
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

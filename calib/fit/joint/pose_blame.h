@@ -9,7 +9,7 @@
 
 /// Finds which observations of one pose a calibration contradicts: the fewest without which the others of the
 /// pose agree with it.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 using Rows = std::bitset<kObservations>;  ///< readings, scalar, attitude
 
@@ -58,4 +58,4 @@ class PoseBlame {
   JointPose whole_;  ///< the pose at hand with everything in, weights in spreads
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -5,11 +5,13 @@
 
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Parameters that act through the gain, in the order of SensorGain::d_gain.
-constexpr std::array<int, 9> kGainParameters{theta, phi, psi, cx, cy, cz, alpha, beta, gamma};
+constexpr std::array<int, 9> kGainParameters{sensor::theta, sensor::phi,  sensor::psi,
+                                             sensor::cx,    sensor::cy,   sensor::cz,
+                                             sensor::alpha, sensor::beta, sensor::gamma};
 
 Eigen::Matrix3d values(const auto& m) {
   return m.unaryExpr([](const auto& x) { return x.v; }).template cast<double>();
@@ -40,11 +42,11 @@ struct PoseModel::Field {
 
 PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
     : state_(state),
-      table_(problem.effects, Level::table),
-      site_(problem.effects, Level::site),
-      platform_(problem.effects, Level::platform),
-      axis_(problem.effects, Level::axis),
-      reference_(problem.effects, Level::reference),
+      table_(problem.effects, effects::Level::table),
+      site_(problem.effects, effects::Level::site),
+      platform_(problem.effects, effects::Level::platform),
+      axis_(problem.effects, effects::Level::axis),
+      reference_(problem.effects, effects::Level::reference),
       positions_P_m_(problem.geometry.positions_P_m()),
       tangents_(tangents(state.direction)),
       globals_(kGlobals + problem.coefficients()),
@@ -52,13 +54,15 @@ PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
   for (std::size_t i = 0; i < kSensors; ++i) gains_[i] = gain_of(state.sensors[i]);
 }
 
-PoseModel::SensorGain PoseModel::gain_of(const SensorModel& sensor) {
-  using D = Dual<9>;
-  const ParameterVector p = sensor.parameters();
+PoseModel::SensorGain PoseModel::gain_of(const sensor::SensorModel& sensor) {
+  using D = sensor::Dual<9>;
+  const sensor::ParameterVector p = sensor.parameters();
   std::array<D, 9> x;
   for (std::size_t j = 0; j < x.size(); ++j) x[j] = D::variable(p[kGainParameters[j]], static_cast<int>(j));
-  const Matrix3<D> turn = turn_z(x[8]) * turn_y(x[7]) * turn_x(x[6]) * sensor.mounting.cast<D>();
-  const Matrix3<D> gain = response_matrix<D>(x[0], x[1], x[2], {x[3], x[4], x[5]}) * turn.transpose();
+  const sensor::Matrix3<D> turn =
+      sensor::turn_z(x[8]) * sensor::turn_y(x[7]) * sensor::turn_x(x[6]) * sensor.mounting.cast<D>();
+  const sensor::Matrix3<D> gain =
+      sensor::response_matrix<D>(x[0], x[1], x[2], {x[3], x[4], x[5]}) * turn.transpose();
   SensorGain out{.gain = values(gain), .d_gain = {}};
   for (std::size_t j = 0; j < x.size(); ++j) out.d_gain[j] = derivatives(gain, static_cast<int>(j));
   return out;
@@ -71,22 +75,22 @@ void PoseModel::set_attitude(const JointPose& pose, const Nuisance& nuisance, At
     return;
   }
   a.f_nT = nuisance[3];
-  using W = Dual<3>;
-  const Matrix3<W> error =
-      turn_by<W>({W::variable(nuisance[0], 0), W::variable(nuisance[1], 1), W::variable(nuisance[2], 2)});
+  using W = sensor::Dual<3>;
+  const sensor::Matrix3<W> error = sensor::turn_by<W>(
+      {W::variable(nuisance[0], 0), W::variable(nuisance[1], 1), W::variable(nuisance[2], 2)});
   const Eigen::Matrix3d E = values(error);
   Eigen::Matrix3d T = pose.T;
   if (!table_.empty()) {
     const TableAngles angles = *pose.pose->angles();
     const std::array<double, 5> in{angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0, 0};
-    const TermSum terms = table_.sum(pose.conditions(), 0, in, state_.coefficients);
+    const effects::TermSum terms = table_.sum(pose.conditions(), 0, in, state_.coefficients);
     a.state_d_coefficient = terms.d_coefficient;
-    using S = Dual<5>;
+    using S = sensor::Dual<5>;
     std::array<S, 5> s;
     for (std::size_t j = 0; j < s.size(); ++j) {
       s[j] = S::variable(in[j] + terms.value[static_cast<int>(j)], static_cast<int>(j));
     }
-    const Matrix3<S> table = table_rotation(s[0], s[1], s[2], s[3], s[4]);
+    const sensor::Matrix3<S> table = sensor::table_rotation(s[0], s[1], s[2], s[3], s[4]);
     T = values(table);
     for (int j = 0; j < 5; ++j) a.dR[static_cast<std::size_t>(3 + j)] = E * derivatives(table, j);
   }
@@ -124,7 +128,8 @@ void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, F
   Eigen::Matrix3d dB_dx = Eigen::Matrix3d::Zero();
   if (!site_.empty()) {
     const Eigen::Vector3d x_S_m = a.R.transpose() * r_P_m;
-    const TermSum terms = site_.sum(pose.conditions(), sensor, {x_S_m.data(), 3}, state_.coefficients);
+    const effects::TermSum terms =
+        site_.sum(pose.conditions(), sensor, {x_S_m.data(), 3}, state_.coefficients);
     B_S += terms.value;
     dB_dx = terms.d_input;
     field.d_global.rightCols(globals_ - kGlobals) += a.R * terms.d_coefficient;
@@ -138,7 +143,8 @@ void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int senso
   Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
   in.head<3>() = field.b_P_nT;
   if (a.known) in.tail<3>() = a.R.col(2);
-  const TermSum terms = platform_.sum(pose.conditions(), sensor, {in.data(), 6}, state_.coefficients);
+  const effects::TermSum terms =
+      platform_.sum(pose.conditions(), sensor, {in.data(), 6}, state_.coefficients);
   const Eigen::Matrix3d by_b = Eigen::Matrix3d::Identity() + terms.d_input.leftCols<3>();
   const Eigen::Matrix3d by_g = terms.d_input.rightCols<3>();
   field.b_P_nT += terms.value;
@@ -171,7 +177,7 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
   Eigen::Matrix<double, 3, Eigen::Dynamic> d_coefficient;
   if (!site_.empty()) {
     const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    const TermSum terms = site_.sum(pose.conditions(), 0, {centre.data(), 3}, state_.coefficients);
+    const effects::TermSum terms = site_.sum(pose.conditions(), 0, {centre.data(), 3}, state_.coefficients);
     B_S += terms.value;
     d_coefficient = terms.d_coefficient;
   }
@@ -189,7 +195,7 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
 Eigen::RowVector3d PoseModel::reference_terms(const JointPose& pose, const Attitude& a,
                                               const Eigen::Vector3d& B_S, PoseLinear& out) const {
   const Eigen::Vector3d u_S = B_S.normalized(), u_P = a.R * u_S;
-  const TermSum terms = reference_.sum(pose.conditions(), 0, {u_P.data(), 3}, state_.coefficients);
+  const effects::TermSum terms = reference_.sum(pose.conditions(), 0, {u_P.data(), 3}, state_.coefficients);
   const Eigen::RowVector3d by_u = terms.d_input;
   out.f_nT += terms.value[0];
   out.f_global.tail(globals_ - kGlobals) += terms.d_coefficient;
@@ -215,7 +221,8 @@ void PoseModel::read(const JointPose& pose, int sensor, const Field& field, Pose
   out.d_nuisance.middleRows<3>(row) = g.gain * field.d_nuisance;
   out.d_global.middleRows<3>(row).noalias() = g.gain * field.d_global;
   if (!axis_.empty()) {
-    const TermSum terms = axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients);
+    const effects::TermSum terms =
+        axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients);
     const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
     out.y_nT.segment<3>(row) += terms.value;
     d_sensor = (by_v * d_sensor).eval();
@@ -223,11 +230,11 @@ void PoseModel::read(const JointPose& pose, int sensor, const Field& field, Pose
     out.d_global.middleRows<3>(row) = (by_v * out.d_global.middleRows<3>(row)).eval();
     out.d_global.middleRows<3>(row).rightCols(globals_ - kGlobals) += terms.d_coefficient;
   }
-  d_sensor.middleCols<3>(ix).setIdentity();
+  d_sensor.middleCols<3>(sensor::ix).setIdentity();
 }
 
 void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const {
-  out.d_global.resize(kChannels, globals_);
+  out.d_global.resize(sensor::kChannels, globals_);
   Attitude a;
   set_attitude(pose, nuisance, a);
   scalar_field(pose, a, out);
@@ -242,4 +249,4 @@ void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseL
   }
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

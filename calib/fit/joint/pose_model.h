@@ -8,15 +8,16 @@
 
 /// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform,
 /// sensor, axis.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct PoseLinear {
   Channels y_nT;  ///< predicted readings
   /// Rows of sensor i by the parameters of sensor i.
-  Eigen::Matrix<double, kChannels, kSensorParameters> d_sensor;
-  Eigen::Matrix<double, kChannels, kNuisances> d_nuisance;
-  Eigen::Matrix<double, kChannels, Eigen::Dynamic> d_global;  ///< by slots kSiteSlot .. of the fixed block
-  double f_nT{0};                                             ///< predicted |B(0)|
+  Eigen::Matrix<double, sensor::kChannels, sensor::kSensorParameters> d_sensor;
+  Eigen::Matrix<double, sensor::kChannels, kNuisances> d_nuisance;
+  Eigen::Matrix<double, sensor::kChannels, Eigen::Dynamic>
+      d_global;    ///< by slots kSiteSlot .. of the fixed block
+  double f_nT{0};  ///< predicted |B(0)|
   Eigen::Matrix<double, 1, kNuisances> f_nuisance;
   Eigen::RowVectorXd f_global;
 };
@@ -35,7 +36,7 @@ class PoseModel {
     Eigen::Matrix3d gain;                   ///< C A R'
     std::array<Eigen::Matrix3d, 9> d_gain;  ///< by theta, phi, psi, cx, cy, cz, alpha, beta, gamma
   };
-  [[nodiscard]] static SensorGain gain_of(const SensorModel& sensor);
+  [[nodiscard]] static SensorGain gain_of(const sensor::SensorModel& sensor);
   void set_attitude(const JointPose& pose, const Nuisance& nuisance, Attitude& a) const;
   void add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, const Eigen::Matrix3d& dB_dx,
                         const Eigen::Vector3d& r_P_m, Field& field) const;
@@ -47,7 +48,7 @@ class PoseModel {
   void read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const;
 
   const JointState& state_;
-  LevelTerms table_, site_, platform_, axis_, reference_;
+  effects::LevelTerms table_, site_, platform_, axis_, reference_;
   std::array<SensorGain, kSensors> gains_;
   std::array<Eigen::Vector3d, kSensors> positions_P_m_;
   Eigen::Matrix<double, 3, 2> tangents_;
@@ -55,4 +56,4 @@ class PoseModel {
   bool common_field_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Share of an observation's freedom below which it has no residual of its own.
@@ -17,14 +17,14 @@ double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const Eigen::LLT
 }
 
 struct NoiseSums {
-  AxisNoise squares{AxisNoise::Zero()}, freedom{AxisNoise::Zero()};
+  calibration::AxisNoise squares{calibration::AxisNoise::Zero()}, freedom{calibration::AxisNoise::Zero()};
   double attitude_squares{0}, attitude_trace{0};
   int attitudes{0};
 };
 
 void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::LLT<Eigen::Matrix4d>& H,
                       Eigen::Index k, NoiseSums& sums, PoseResiduals& out) {
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     if (!(pose.weight[c] > 0)) continue;
     const double free = freedom(b.N.row(c), H);
     sums.squares(c / 3, c % 3) += b.residual[c] * b.residual[c];
@@ -86,8 +86,8 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   }
   // Each reading is an affine form of the field: four unknowns of the fixed block a channel, and its share of
   // effects.
-  const double fitted = 4.0 + problem.coefficients() / double{kChannels};
-  out.fitted = kChannels * fitted;
+  const double fitted = 4.0 + problem.coefficients() / double{sensor::kChannels};
+  out.fitted = sensor::kChannels * fitted;
   for (int i = 0; i < kSensors; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double free = sums.freedom(i, a) - fitted;
@@ -99,4 +99,4 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

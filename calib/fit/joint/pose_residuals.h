@@ -4,17 +4,18 @@
 #include "calib/fit/joint/joint_solver.h"
 
 /// What the residuals of a solved joint problem say about its noise and its table.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Observations of one pose in whitened units: 12 readings, scalar, attitude.
-inline constexpr int kObservations = kChannels + 2, kScalarRow = kChannels, kAttitudeRow = kChannels + 1;
+inline constexpr int kObservations = sensor::kChannels + 2, kScalarRow = sensor::kChannels,
+                     kAttitudeRow = sensor::kChannels + 1;
 
 struct PoseResiduals {
   /// |residual| over its own standard deviation, by observation and pose; 0 where left out.
   Eigen::Matrix<float, kObservations, Eigen::Dynamic> t;
-  AxisNoise noise_ratio;       ///< rms residual over assumed noise, per axis, freedom accounted for
-  double table_ratio{1};       ///< the same of the attitude errors
-  double attitude_freedom{0};  ///< observations of attitude less what was fitted to them
+  calibration::AxisNoise noise_ratio;  ///< rms residual over assumed noise, per axis, freedom accounted for
+  double table_ratio{1};               ///< the same of the attitude errors
+  double attitude_freedom{0};          ///< observations of attitude less what was fitted to them
   int readings{0}, scalars{0};
 
   double squares_nT2{0};  ///< of reading less prediction, summed over all readings
@@ -31,4 +32,4 @@ struct PoseResiduals {
 
 [[nodiscard]] PoseResiduals pose_residuals(const JointProblem& problem, const JointState& state);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

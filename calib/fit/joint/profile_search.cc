@@ -13,7 +13,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/linear/ldlt.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 /// Of the chi-square: what a solution may miss while values are compared.
@@ -22,16 +22,16 @@ constexpr double kEnough = 1e-3;
 /// A number that an effect's spec leaves open, and what is tried for it.
 struct OpenNumber {
   std::string parameter;
-  Scan::Range range{Scan::Range::linear};
+  effects::library::Scan::Range range{effects::library::Scan::Range::linear};
   std::vector<double> values;
 };
 
-std::optional<OpenNumber> open_number(const Effect& effect, const EffectContext& context) {
-  const auto spec = EffectSpec::parse(effect.spec());
+std::optional<OpenNumber> open_number(const effects::Effect& effect, const effects::EffectContext& context) {
+  const auto spec = effects::EffectSpec::parse(effect.spec());
   if (!spec) return std::nullopt;
-  if (const auto scan = open_scan(*spec))
-    return OpenNumber{scan->parameter, Scan::Range::linear, scan_values(*scan)};
-  const EffectFamily* family = find_family(effect.name());
+  if (const auto scan = effects::formula::open_scan(*spec))
+    return OpenNumber{scan->parameter, effects::library::Scan::Range::linear, scan_values(*scan)};
+  const effects::library::EffectFamily* family = effects::library::find_family(effect.name());
   if (family == nullptr || !family->scan || family->scan->optional || !spec->parameters.empty())
     return std::nullopt;
   return OpenNumber{std::string(family->scan->parameter), family->scan->range, scan_values(*family, context)};
@@ -79,29 +79,29 @@ Result<Fitted> fit_around(const PoseTable& table, const JointOptions& options, s
 /// One searched effect of a fitted problem.
 class Search {
  public:
-  Search(Fitted fitted, const EffectContext& context, std::size_t slot, OpenNumber number)
+  Search(Fitted fitted, const effects::EffectContext& context, std::size_t slot, OpenNumber number)
       : problem_(std::move(fitted.problem)),
         state_(std::move(fitted.state)),
         context_(context),
         slot_(slot),
         number_(std::move(number)),
-        spec_(*EffectSpec::parse(problem_.effects[slot]->spec())) {}
+        spec_(*effects::EffectSpec::parse(problem_.effects[slot]->spec())) {}
 
   /// The effect with the value that leaves the least; null when none could be fitted.
-  EffectPtr best() {
+  effects::EffectPtr best() {
     std::vector<double> grid = number_.values;
-    if (number_.range == Scan::Range::index) grid = promising(std::move(grid));
+    if (number_.range == effects::library::Scan::Range::index) grid = promising(std::move(grid));
     std::size_t at = 0;
     for (std::size_t i = 0; i < grid.size(); ++i) {
       if (const double cost = cost_of(grid[i]); cost < best_cost_) best_cost_ = cost, at = i;
     }
     if (!std::isfinite(best_cost_)) return nullptr;
     double value = grid[at];
-    const Scan::Range range = number_.range;
-    if (range == Scan::Range::linear || range == Scan::Range::logarithmic)
+    const effects::library::Scan::Range range = number_.range;
+    if (range == effects::library::Scan::Range::linear || range == effects::library::Scan::Range::logarithmic)
       value = refine(grid[at > 0 ? at - 1 : 0], grid[std::min(at + 1, grid.size() - 1)], value);
-    if (range == Scan::Range::run) {
-      for (const double t : run_gaps_h(context_)) {
+    if (range == effects::library::Scan::Range::run) {
+      for (const double t : effects::library::run_gaps_h(context_)) {
         if (t <= grid[at > 0 ? at - 1 : 0] || t >= grid[std::min(at + 1, grid.size() - 1)]) continue;
         if (const double cost = cost_of(t); cost < best_cost_) best_cost_ = cost, value = t;
       }
@@ -110,10 +110,10 @@ class Search {
   }
 
  private:
-  [[nodiscard]] EffectPtr effect_at(double value) const {
-    EffectSpec spec = spec_;
+  [[nodiscard]] effects::EffectPtr effect_at(double value) const {
+    effects::EffectSpec spec = spec_;
     spec.set(number_.parameter, value);
-    auto effect = make_effect(spec, context_);
+    auto effect = effects::library::make_effect(spec, context_);
     return effect ? *effect : nullptr;
   }
 
@@ -122,7 +122,7 @@ class Search {
     constexpr std::size_t kTried = 3;
     std::vector<std::pair<double, double>> ranked;
     for (const double value : values) {
-      if (const EffectPtr effect = effect_at(value)) {
+      if (const effects::EffectPtr effect = effect_at(value)) {
         problem_.effects[slot_] = effect;
         ranked.emplace_back(-predicted_fall(), value);
       }
@@ -137,11 +137,11 @@ class Search {
     const Reduced reduced = reduce(problem_, state_, 0);
     const Eigen::VectorXd d = reduced.S.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd g = d.cwiseProduct(reduced.g);
-    return g.dot(solve_by_ldlt(d.asDiagonal() * reduced.S * d.asDiagonal(), g));
+    return g.dot(linear::solve_by_ldlt(d.asDiagonal() * reduced.S * d.asDiagonal(), g));
   }
 
   double cost_of(double value) {
-    const EffectPtr effect = effect_at(value);
+    const effects::EffectPtr effect = effect_at(value);
     if (!effect) return std::numeric_limits<double>::infinity();
     problem_.effects[slot_] = effect;
     const auto solution = solve(problem_, state_, kEnough);
@@ -170,10 +170,10 @@ class Search {
 
   JointProblem problem_;
   JointState state_;
-  const EffectContext& context_;
+  const effects::EffectContext& context_;
   std::size_t slot_;
   OpenNumber number_;
-  EffectSpec spec_;
+  effects::EffectSpec spec_;
   double best_cost_{std::numeric_limits<double>::infinity()};
 };
 
@@ -192,7 +192,8 @@ bool bring_back(JointProblem& problem) {
 }
 
 /// What a model leaves, each reading that its fit leaves out counted as five standard deviations.
-double price_of(const PoseTable& table, JointOptions options, std::size_t slot, const EffectPtr& effect) {
+double price_of(const PoseTable& table, JointOptions options, std::size_t slot,
+                const effects::EffectPtr& effect) {
   constexpr double kLeftOut = 25;
   if (!effect) return std::numeric_limits<double>::infinity();
   options.effects[slot] = effect;
@@ -202,21 +203,22 @@ double price_of(const PoseTable& table, JointOptions options, std::size_t slot, 
 }
 
 /// The effect in `slot` with its number; null when none could be fitted.
-EffectPtr searched(const PoseTable& table, const JointOptions& options, Fitted fitted,
-                   const EffectContext& context, std::size_t slot, const OpenNumber& number) {
+effects::EffectPtr searched(const PoseTable& table, const JointOptions& options, Fitted fitted,
+                            const effects::EffectContext& context, std::size_t slot,
+                            const OpenNumber& number) {
   Fitted all = fitted;
-  EffectPtr best = Search(std::move(fitted), context, slot, number).best();
+  effects::EffectPtr best = Search(std::move(fitted), context, slot, number).best();
   // Beside a wrong moment the fit leaves out the poses between it and the right one, which alone tell.
-  if (number.range != Scan::Range::run || !bring_back(all.problem)) return best;
-  EffectPtr other = Search(std::move(all), context, slot, number).best();
+  if (number.range != effects::library::Scan::Range::run || !bring_back(all.problem)) return best;
+  effects::EffectPtr other = Search(std::move(all), context, slot, number).best();
   const bool better = price_of(table, options, slot, other) < price_of(table, options, slot, best);
   return better ? other : best;
 }
 
 }  // namespace
 
-Result<std::vector<EffectPtr>> profile_search(const PoseTable& table, const JointOptions& options) {
-  const EffectContext context{.table = &table, .offset_nT = {}};
+Result<std::vector<effects::EffectPtr>> profile_search(const PoseTable& table, const JointOptions& options) {
+  const effects::EffectContext context{.table = &table, .offset_nT = {}};
   JointOptions profiled = options;
   std::vector<std::pair<std::size_t, OpenNumber>> open;
   for (std::size_t i = 0; i < options.effects.size(); ++i) {
@@ -227,14 +229,14 @@ Result<std::vector<EffectPtr>> profile_search(const PoseTable& table, const Join
     for (const auto& [slot, number] : open) {
       JointOptions others = profiled;
       others.effects[slot] = options.effects[slot];
-      auto fitted =
-          number.range == Scan::Range::index ? fit_around(table, others, slot) : fit_with(table, others);
+      auto fitted = number.range == effects::library::Scan::Range::index ? fit_around(table, others, slot)
+                                                                         : fit_with(table, others);
       if (!fitted) return tl::unexpected(fitted.error());
-      if (EffectPtr best = searched(table, others, std::move(*fitted), context, slot, number))
+      if (effects::EffectPtr best = searched(table, others, std::move(*fitted), context, slot, number))
         profiled.effects[slot] = std::move(best);
     }
   }
   return profiled.effects;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

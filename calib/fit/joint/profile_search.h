@@ -13,10 +13,10 @@
 /// Several searched effects take turns, twice. A time is also searched with the readings that the first fit
 /// left out back in: the value counts whose fit leaves least, each reading left out as five standard
 /// deviations.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// The effects of `options` with their numbers. Refuses what a fit refuses.
-[[nodiscard]] Result<std::vector<EffectPtr>> profile_search(const PoseTable& table,
-                                                            const JointOptions& options);
+[[nodiscard]] Result<std::vector<effects::EffectPtr>> profile_search(const PoseTable& table,
+                                                                     const JointOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 std::vector<std::size_t> at_the_stop(const JointProblem& problem, int channel) {
   constexpr std::size_t kShared = 3;
@@ -34,4 +34,4 @@ std::string cause_of(const JointProblem& problem, std::size_t pose, int channel)
   return same(pose + 1) || (pose > 0 && same(pose - 1)) ? "stuck" : "";
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

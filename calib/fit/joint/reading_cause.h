@@ -7,7 +7,7 @@
 
 /// Finds from the digits alone why a reading contradicts the others (saturated, stuck): a mean over a dwell
 /// never repeats by chance.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Poses in which this channel reads its largest, or its smallest, value, where three or more share it to the
 /// last digit: the end of the digitiser's range, or of the feedback. Where the two ends differ in sign alone
@@ -17,4 +17,4 @@ namespace mgtd::calib {
 /// "saturated", "stuck" (the same value as in the pose before or after), or empty.
 [[nodiscard]] std::string cause_of(const JointProblem& problem, std::size_t pose, int channel);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -11,7 +11,7 @@
 #include "calib/fit/consensus.h"
 #include "calib/stats/probability.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 Result<void> plausible(const JointState& state) {
@@ -82,7 +82,7 @@ struct AllReadings {
 
 AllReadings all_readings(const JointProblem& problem, double f_nT) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  AllReadings out{ReadingTable(kChannels, n), Eigen::VectorXd::Constant(n, f_nT)};
+  AllReadings out{ReadingTable(sensor::kChannels, n), Eigen::VectorXd::Constant(n, f_nT)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
     out.y_nT.col(k) = pose.y_nT;
@@ -124,7 +124,7 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
 double cost(const JointProblem& problem, const RobustFit& fit) {
   constexpr double kLeftOut = 3 * 3 / 2.0;
   double sum = 0;
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     std::vector<double> misfits;
     double squares = 0, left_out = 0;
     for (std::size_t k = 0; k < problem.poses.size(); ++k) {
@@ -139,7 +139,7 @@ double cost(const JointProblem& problem, const RobustFit& fit) {
     }
     const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
     std::nth_element(misfits.begin(), middle, misfits.end());
-    const double spread = std::max(kMadToSd * *middle, kNoiseFloor_nT);
+    const double spread = std::max(stats::kMadToSd * *middle, kNoiseFloor_nT);
     sum += static_cast<double>(misfits.size()) * std::log(spread) + squares / (2 * spread * spread) +
            kLeftOut * left_out;
   }
@@ -173,4 +173,4 @@ Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, do
   return *std::move(agreed);
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -9,7 +9,7 @@
 /// It starts from all poses; where that, or the readings alone, show that some poses are far from the others,
 /// it starts once more from the poses that agree with each other (consensus.h), and keeps the more likely
 /// result.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 struct RobustFit {
   JointSolution solution;
@@ -30,4 +30,4 @@ struct RobustFit {
 [[nodiscard]] Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start,
                                                 const FitNoise& noise, double most_left_out, bool& unsettled);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -7,17 +7,18 @@
 #include "calib/fit/joint/pose_model.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
-Gradient calibration_tensor_sd(const std::array<SensorModel, kSensors>& sensors, const Geometry& geometry,
-                               const Eigen::MatrixXd& covariance, double f_nT) {
+Gradient calibration_tensor_sd(const std::array<sensor::SensorModel, kSensors>& sensors,
+                               const sensor::Geometry& geometry, const Eigen::MatrixXd& covariance,
+                               double f_nT) {
   JointProblem problem;
   problem.geometry = geometry;
   JointState state;
   state.sensors = sensors;
   const PoseModel model(problem, state);
   const JointPose anywhere;  // without table angles: the field itself is given
-  const auto rows = gradient_rows(geometry);
+  const auto rows = calibration::gradient_rows(geometry);
   PoseLinear linear;
   Eigen::Matrix<double, 6, 1> variance = Eigen::Matrix<double, 6, 1>::Zero();
   for (int direction = 0; direction < 6; ++direction) {
@@ -26,15 +27,15 @@ Gradient calibration_tensor_sd(const std::array<SensorModel, kSensors>& sensors,
     model.linearise(anywhere, b, linear);
     Eigen::Matrix<double, 6, kSensorBlock> J;
     for (int i = 0; i < kSensors; ++i) {
-      const SensorModel& sensor = sensors[static_cast<std::size_t>(i)];
+      const sensor::SensorModel& sensor = sensors[static_cast<std::size_t>(i)];
       const Eigen::Matrix3d gain = sensor.R_PS() * sensor.response().inverse();
-      J.middleCols<kSensorParameters>(kSensorParameters * i) =
+      J.middleCols<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
           rows.middleCols<3>(3 * i) * gain * linear.d_sensor.middleRows<3>(3 * i);
     }
-    variance += propagated_variances(J, covariance.topLeftCorner<kSensorBlock, kSensorBlock>()) / 6;
+    variance += linear::propagated_variances(J, covariance.topLeftCorner<kSensorBlock, kSensorBlock>()) / 6;
   }
   const Eigen::Matrix<double, 6, 1> sd = variance.cwiseMax(0).cwiseSqrt();
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

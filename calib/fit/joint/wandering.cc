@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 Eigen::Matrix<double, kWanderingTerms, 1> WanderingTerms::at(double t_h) const {
   const double turn = std::numbers::pi * (t_h - from_h_) / length_h_;
@@ -14,4 +14,4 @@ Eigen::Matrix<double, kWanderingTerms, 1> WanderingTerms::at(double t_h) const {
   });
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

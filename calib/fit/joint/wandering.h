@@ -13,10 +13,10 @@
 ///
 /// The first kWanderingTerms tell how fast an offset wanders. Rates in nT per root hour, times in hours. It
 /// is noise: no calibration holds it.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 inline constexpr int kWanderingTerms = 16;
-using WanderingRates = Eigen::Matrix<double, kChannels, 1>;
+using WanderingRates = Eigen::Matrix<double, sensor::kChannels, 1>;
 
 /// The terms of a walk of 1 nT per root hour over one run.
 class WanderingTerms {
@@ -34,4 +34,4 @@ class WanderingTerms {
   double from_h_, length_h_;
 };
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

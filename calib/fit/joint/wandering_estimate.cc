@@ -12,7 +12,7 @@
 #include "calib/linear/cholesky.h"
 #include "calib/linear/symmetric_eigen.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr int kJ = kWanderingTerms;
@@ -26,7 +26,7 @@ constexpr int kPerDecade = 4;
 /// Columns of the channels that wander.
 std::vector<Eigen::Index> active(const Channels& theta) {
   std::vector<Eigen::Index> out;
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     for (int j = 0; theta[c] > 0 && j < kJ; ++j) out.push_back(c * kJ + j);
   }
   return out;
@@ -40,18 +40,18 @@ Eigen::VectorXd roots_of(const Channels& theta, const std::vector<Eigen::Index>&
 }
 
 /// I + D G D; it is positive definite, because G has no negative eigenvalue but for rounding.
-Cholesky decomposed(const SlowSums& s, const std::vector<Eigen::Index>& columns,
-                    const Eigen::VectorXd& root) {
+linear::Cholesky decomposed(const SlowSums& s, const std::vector<Eigen::Index>& columns,
+                            const Eigen::VectorXd& root) {
   Eigen::MatrixXd M = root.asDiagonal() * s.gram(columns, columns) * root.asDiagonal();
   M.diagonal().array() += 1;
-  return Cholesky::of_unscaled(M).value();
+  return linear::Cholesky::of_unscaled(M).value();
 }
 
 /// Everything about one theta: B = I + D G D with D = sqrt(theta), over the active columns.
 struct At {
   std::vector<Eigen::Index> columns;
   Eigen::VectorXd root;
-  Cholesky B;
+  linear::Cholesky B;
   double Q;             ///< r' V^-1 r
   Eigen::VectorXd sol;  ///< B^-1 D h
 
@@ -84,10 +84,11 @@ struct Place {
 
 std::vector<Place> places() {
   std::vector<Place> out{{"all", {}, 0}};
-  for (int c = 0; c < kChannels; ++c) out.front().channels.push_back(c);
+  for (int c = 0; c < sensor::kChannels; ++c) out.front().channels.push_back(c);
   for (int i = 0; i < kSensors; ++i)
     out.push_back({fmt::format("s{}", i + 1), {3 * i, 3 * i + 1, 3 * i + 2}, 2 * std::log(kSensors)});
-  for (int c = 0; c < kChannels; ++c) out.push_back({channel_name(c), {c}, 2 * std::log(kChannels)});
+  for (int c = 0; c < sensor::kChannels; ++c)
+    out.push_back({sensor::channel_name(c), {c}, 2 * std::log(sensor::kChannels)});
   return out;
 }
 
@@ -100,7 +101,7 @@ Asked ask(const SlowSums& s, const Place& place) {
   std::vector<Eigen::Index> columns;
   for (const int c : place.channels)
     for (int j = 0; j < kJ; ++j) columns.push_back(c * kJ + j);
-  const SymmetricEigen eigen = symmetric_eigen(s.gram(columns, columns));
+  const linear::SymmetricEigen eigen = linear::symmetric_eigen(s.gram(columns, columns));
   const Eigen::ArrayXd mu = eigen.values.array().max(0);
   const Eigen::ArrayXd b2 = (eigen.vectors.transpose() * s.by_residual(columns)).array().square();
   if (!(mu.maxCoeff() > 0)) return {};
@@ -155,16 +156,17 @@ struct SlowEquations {
 
 /// Rows of the readings by the fixed block, weighted, of one pose.
 Eigen::MatrixXd fixed_rows(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(kChannels, problem.fixed());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(sensor::kChannels, problem.fixed());
   for (int i = 0; i < kSensors; ++i)
-    out.block<3, kSensorParameters>(3 * i, kSensorParameters * i) = b.linear.d_sensor.middleRows<3>(3 * i);
+    out.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
+        b.linear.d_sensor.middleRows<3>(3 * i);
   out.rightCols(b.linear.d_global.cols()) = b.linear.d_global;
   return pose.weight.asDiagonal() * out;
 }
 
 SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
                              const WanderingTerms& terms) {
-  constexpr Eigen::Index m = kChannels * kJ;
+  constexpr Eigen::Index m = sensor::kChannels * kJ;
   SlowEquations out{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
                     .gram = Eigen::MatrixXd::Zero(m, m),
                     .by_residual = Eigen::VectorXd::Zero(m)};
@@ -174,15 +176,15 @@ SlowEquations slow_equations(const JointProblem& problem, const JointState& stat
     const JointPose& pose = problem.poses[k];
     assemble(problem, model, state, k, true, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);
-    const Eigen::Matrix<double, kNuisances, kChannels> solved = H.solve(b.N.transpose());
+    const Eigen::Matrix<double, kNuisances, sensor::kChannels> solved = H.solve(b.N.transpose());
     // What a reading of a channel, moved by its standard deviation, does once the nuisances have followed.
     const auto w = pose.weight.asDiagonal();
-    const Eigen::Matrix<double, kChannels, kChannels> M =
-        w * (Eigen::Matrix<double, kChannels, kChannels>::Identity() - b.N * solved) * w;
+    const Eigen::Matrix<double, sensor::kChannels, sensor::kChannels> M =
+        w * (Eigen::Matrix<double, sensor::kChannels, sensor::kChannels>::Identity() - b.N * solved) * w;
     const Eigen::MatrixXd X = (fixed_rows(problem, pose, b).transpose() - b.U * solved) * w;
     const Channels r = w * (b.residual - solved.transpose() * b.g);
     const auto at = terms.at(pose.t_h);
-    for (int c = 0; c < kChannels; ++c) {
+    for (int c = 0; c < sensor::kChannels; ++c) {
       out.by_fixed.middleCols<kJ>(c * kJ) += X.col(c) * at.transpose();
       out.by_residual.segment<kJ>(c * kJ) += r[c] * at;
       for (int d = 0; d <= c; ++d) out.gram.block<kJ, kJ>(c * kJ, d * kJ) += M(c, d) * at * at.transpose();
@@ -213,7 +215,7 @@ SlowSums slow_sums(const JointFit& fit) {
   if (!terms.any()) return {};
   const Reduced all = reduce(fit.problem, fit.state, 0);
   const SlowEquations slow = slow_equations(fit.problem, fit.state, terms);
-  const auto information = Cholesky::of(all.S);
+  const auto information = linear::Cholesky::of(all.S);
   if (!information) return {};
   const Eigen::MatrixXd X = information->whiten(slow.by_fixed);
   const Eigen::VectorXd y = information->whiten(all.g);
@@ -246,7 +248,7 @@ void SlowLikelihood::climb(Channels& theta, int steps) const {
       squares[c] += std::pow(at.sol[k] / at.root[k], 2);
       trace[c] += (1 - inverse[k]) / (at.root[k] * at.root[k]);
     }
-    for (int c = 0; c < kChannels; ++c)
+    for (int c = 0; c < sensor::kChannels; ++c)
       if (theta[c] > 0 && trace[c] > 0) theta[c] *= std::sqrt(squares[c] / sigma2 / trace[c]);
   }
 }
@@ -262,7 +264,7 @@ WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
   const double sigma2 = likelihood.noise_variance(theta);
   out.nT_per_sqrt_h = (theta * sigma2).cwiseSqrt();
   out.noise_scale2 = sigma2;
-  for (int c = 0; c < kChannels; ++c) {
+  for (int c = 0; c < sensor::kChannels; ++c) {
     if (!(theta[c] > 0)) continue;
     double freedom = 0;
     for (int j = 0; j < kJ; ++j) {
@@ -292,8 +294,8 @@ std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, co
   Eigen::MatrixXd errors = *inverse * slow_equations(fit.problem, fit.state, terms).by_fixed;
   Eigen::MatrixXd out = w.noise_scale2 * *inverse;
   const auto at_end = terms.at(terms.to_h());
-  for (int c = 0; c < kChannels; ++c) {
-    const int offset = kSensorParameters * (c / 3) + ix + c % 3;
+  for (int c = 0; c < sensor::kChannels; ++c) {
+    const int offset = sensor::kSensorParameters * (c / 3) + sensor::ix + c % 3;
     errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
     errors.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];
     out(offset, offset) += std::pow(w.nT_per_sqrt_h[c], 2) * (terms.variance_at_end() - at_end.squaredNorm());
@@ -301,4 +303,4 @@ std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, co
   return Eigen::MatrixXd(out + errors * errors.transpose());
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

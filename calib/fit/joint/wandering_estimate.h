@@ -18,7 +18,7 @@
 ///
 /// A law that the model lacks and that follows time makes an offset wander too. This says how well a walk
 /// describes the residual, never that nothing better does: see criticism/wandering_alternative.h.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 
 /// Sums of the linearised fit, one column per channel and term, for rates of 1 nT per root hour.
 struct SlowSums {
@@ -83,4 +83,4 @@ inline constexpr double kWanderingEvidence = 9.2;
 /// What wanders in a fit and is worth saying: estimate_wandering() against unequal_noise_evidence().
 [[nodiscard]] WanderingEstimate wandering_of(const JointFit& fit);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

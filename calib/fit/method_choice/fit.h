@@ -3,7 +3,7 @@
 #include "calib/fit/fit_report.h"
 
 /// From a pose table to a calibration and everything an operator must know about it.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::method_choice {
 
 /// Refuses (ErrorCode::refused), with what was measured and what to do: too few poses, poses about one axis
 /// only; the two-step also: no field known, no or too few "standard" poses, field along platform Z or at
@@ -12,4 +12,4 @@ namespace mgtd::calib {
 /// calibration.accepted_by_checks.
 [[nodiscard]] Result<FitReport> fit(const PoseTable& table, const FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::method_choice

@@ -11,7 +11,7 @@
 #include "calib/fit/consensus.h"
 #include "calib/fit/error_summary.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
 using Distances = Eigen::Array<double, kSensors, Eigen::Dynamic>;
@@ -35,7 +35,7 @@ Distances distances(const FieldTable& b_nT) {
 
 AgreeingReadings agreeing_readings(const Readings& readings) {
   AgreeingReadings out{readings, {}};
-  ReadingTable y(kChannels, readings.poses());
+  ReadingTable y(sensor::kChannels, readings.poses());
   for (int i = 0; i < kSensors; ++i) y.middleRows<3>(3 * i) = readings.y_nT[static_cast<std::size_t>(i)];
   if (!looks_spoilt(y)) return out;
   const auto agreeing = agreeing_poses(y, readings.f_nT);
@@ -70,4 +70,4 @@ std::vector<OutlierNode> left_out_nodes(const Readings& readings, const Agreeing
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

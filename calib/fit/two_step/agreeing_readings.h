@@ -8,7 +8,7 @@
 
 /// The poses that the two-step method is given: where the readings look spoilt, those that agree with each
 /// other (consensus.h). It leaves out whole poses, whatever of them is wrong.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 
 struct AgreeingReadings {
   Readings kept;
@@ -22,4 +22,4 @@ struct AgreeingReadings {
                                                       const AgreeingReadings& agreeing,
                                                       const TwoStep& fitted);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

@@ -8,7 +8,7 @@
 #include "calib/fit/orientation.h"
 #include "calib/sensor/sensor_model.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
 /// A pose counts as tilted when its turn leaves Z by more than this.
@@ -36,7 +36,7 @@ std::vector<Tilted> tilted_poses(const Readings& readings, const Alignment& alig
 
 /// Sum of cosines between measured and predicted fields when the true origin is D.
 double agreement(const std::vector<Tilted>& poses, const Eigen::Vector3d& site, double declination) {
-  const Eigen::Matrix3d S = rotation_z(-declination);
+  const Eigen::Matrix3d S = sensor::rotation_z(-declination);
   const Eigen::Vector3d turned = S * site;
   double sum = 0;
   for (const Tilted& pose : poses) sum += (S * pose.b_P).dot(pose.T * turned);
@@ -69,7 +69,7 @@ double best_declination(const std::vector<Tilted>& poses, const Eigen::Vector3d&
 double mean_gamma_declination(const Alignment& alignment) {
   double sine = 0, cosine = 0;
   for (const Eigen::Matrix3d& R : alignment.R_PS) {
-    const SensorModel sensor = sensor_from(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), R);
+    const sensor::SensorModel sensor = sensor_from(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), R);
     sine += std::sin(sensor.gamma_rad);
     cosine += std::cos(sensor.gamma_rad);
   }
@@ -80,7 +80,8 @@ double mean_gamma_declination(const Alignment& alignment) {
 }  // namespace
 
 Eigen::Matrix3d table_rotation(const TableAngles& angles) {
-  return rotation_z(angles.azimuth_rad) * rotation_y(angles.pitch_rad) * rotation_x(angles.roll_rad);
+  return sensor::rotation_z(angles.azimuth_rad) * sensor::rotation_y(angles.pitch_rad) *
+         sensor::rotation_x(angles.roll_rad);
 }
 
 bool is_tilted(const std::optional<TableAngles>& angles) {
@@ -110,7 +111,7 @@ AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignmen
 }
 
 void turn_to(Alignment& alignment, double declination_rad) {
-  for (Eigen::Matrix3d& R : alignment.R_PS) R = rotation_z(-declination_rad) * R;
+  for (Eigen::Matrix3d& R : alignment.R_PS) R = sensor::rotation_z(-declination_rad) * R;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

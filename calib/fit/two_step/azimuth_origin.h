@@ -12,7 +12,7 @@
 ///   - found from poses that tilt: their table angles T_k say where the field was, T_k B_site = b_k,
 ///   - set so that the mean gamma of the four sensors is zero.
 /// The tensor of a uniform field does not depend on it.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 
 /// `alignment` has D = 0.
 [[nodiscard]] AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignment,
@@ -28,4 +28,4 @@ void turn_to(Alignment& alignment, double declination_rad);
 /// The angles are known and turn the platform away from Z by two degrees or more.
 [[nodiscard]] bool is_tilted(const std::optional<TableAngles>& angles);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

@@ -9,13 +9,13 @@
 #include "calib/linear/inverse.h"
 #include "calib/linear/propagation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
-constexpr int kScalar = 9;                     ///< parameters of step 1
-constexpr int kSine = kArrayParameters;        ///< slot of the sine of the inclination
-constexpr int kOrigin = kArrayParameters + 1;  ///< slot of the declination
-constexpr int kSlots = kArrayParameters + 2;
+constexpr int kScalar = 9;                                  ///< parameters of step 1
+constexpr int kSine = calibration::kArrayParameters;        ///< slot of the sine of the inclination
+constexpr int kOrigin = calibration::kArrayParameters + 1;  ///< slot of the declination
+constexpr int kSlots = calibration::kArrayParameters + 2;
 
 /// Per sensor nine of step 1 and three of the turn w, then the two of the site. First only what reaches a
 /// slot directly; what comes through step 1 or through w is added at the end, by one matrix.
@@ -24,7 +24,7 @@ using Mixing = Eigen::Matrix<double, kSlots, kSlots>;
 using ScalarRow = Eigen::Matrix<double, 1, kScalar>;
 using ScalarDerivative = Eigen::Matrix<double, 3, kScalar>;
 
-constexpr int slot_of(std::size_t sensor) { return static_cast<int>(sensor) * kSensorParameters; }
+constexpr int slot_of(std::size_t sensor) { return static_cast<int>(sensor) * sensor::kSensorParameters; }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
@@ -34,7 +34,8 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 
 /// d(T B)/d(azimuth, pitch, roll) at b = T B.
 Eigen::Matrix3d table_derivative(const TableAngles& angles, const Eigen::Vector3d& b_P) {
-  const Eigen::Matrix3d Rz = rotation_z(angles.azimuth_rad), RzRy = Rz * rotation_y(angles.pitch_rad);
+  const Eigen::Matrix3d Rz = sensor::rotation_z(angles.azimuth_rad),
+                        RzRy = Rz * sensor::rotation_y(angles.pitch_rad);
   Eigen::Matrix3d d;
   d << -Eigen::Vector3d::UnitZ().cross(b_P), -Rz.col(1).cross(b_P), -RzRy.col(0).cross(b_P);
   return d;
@@ -43,7 +44,7 @@ Eigen::Matrix3d table_derivative(const TableAngles& angles, const Eigen::Vector3
 class Propagation {
  public:
   Propagation(const Readings& readings, const FitOptions& options, const TwoStep& fitted,
-              const AxisNoise& noise);
+              const calibration::AxisNoise& noise);
   [[nodiscard]] Influence result();
 
  private:
@@ -52,7 +53,7 @@ class Propagation {
   void add_pose(Eigen::Index k);
   void add_readings(Eigen::Index k, std::size_t i);
   [[nodiscard]] ScalarDerivative derivative(std::size_t i, Eigen::Index k) const {
-    return field_derivative(fitted_.sensors[i], b_[i].col(k)).leftCols<kScalar>();
+    return calibration::field_derivative(fitted_.sensors[i], b_[i].col(k)).leftCols<kScalar>();
   }
   /// What an error db of the field seen by sensor i at pose k does directly: rows of w_i, sine, origin.
   struct FieldRows {
@@ -66,7 +67,7 @@ class Propagation {
   const Readings& readings_;
   const FitOptions& options_;
   const TwoStep& fitted_;
-  const AxisNoise& noise_;
+  const calibration::AxisNoise& noise_;
   double f_nT_;
   Eigen::Vector3d site_;  ///< unit field at zero angles
   std::array<Eigen::Matrix3d, kSensorCount> gain_;
@@ -82,7 +83,7 @@ class Propagation {
 };
 
 Propagation::Propagation(const Readings& readings, const FitOptions& options, const TwoStep& fitted,
-                         const AxisNoise& noise)
+                         const calibration::AxisNoise& noise)
     : readings_(readings),
       options_(options),
       fitted_(fitted),
@@ -106,7 +107,7 @@ Propagation::Propagation(const Readings& readings, const FitOptions& options, co
 }
 
 void Propagation::prepare_sensor(std::size_t i) {
-  const SensorModel& sensor = fitted_.sensors[i];
+  const sensor::SensorModel& sensor = fitted_.sensors[i];
   const Eigen::Index n = readings_.poses();
   gain_[i] = sensor.R_PS() * sensor.response().inverse();
   b_[i] = gain_[i] * (readings_.y_nT[i].colwise() - sensor.offset_nT);
@@ -123,7 +124,7 @@ void Propagation::prepare_sensor(std::size_t i) {
   const Eigen::Matrix<double, kScalar, 1> size = J.rowwise().norm().cwiseInverse();
   J = size.asDiagonal() * J;
   const Eigen::Matrix<double, kScalar, kScalar> normal = J * J.transpose();
-  weight_[i] = -(size.asDiagonal() * (inverse_by_lu(normal) * J));
+  weight_[i] = -(size.asDiagonal() * (linear::inverse_by_lu(normal) * J));
   m_[i] = scatter.inverse() * m_[i];
 }
 
@@ -162,16 +163,17 @@ Propagation::FieldRows Propagation::rows_of(std::size_t i, Eigen::Index k) const
 void Propagation::add_readings(Eigen::Index k, std::size_t i) {
   const FieldRows rows = rows_of(i, k);
   const Eigen::Matrix3d by_axis = gain_[i] * noise_.row(static_cast<Eigen::Index>(i)).asDiagonal();
-  Eigen::Matrix<double, kSensorParameters + 2, 3> a;
+  Eigen::Matrix<double, sensor::kSensorParameters + 2, 3> a;
   a.topRows<kScalar>() = weight_[i].col(k) * (b_[i].col(k).normalized().transpose() * by_axis);
   a.middleRows<3>(kScalar) = rows.turn * by_axis;
-  a.row(kSensorParameters) = rows.sine * by_axis;
-  a.row(kSensorParameters + 1) = rows.origin * by_axis;
-  const Eigen::Matrix<double, kSensorParameters + 2, kSensorParameters + 2> c = a * a.transpose();
+  a.row(sensor::kSensorParameters) = rows.sine * by_axis;
+  a.row(sensor::kSensorParameters + 1) = rows.origin * by_axis;
+  const Eigen::Matrix<double, sensor::kSensorParameters + 2, sensor::kSensorParameters + 2> c =
+      a * a.transpose();
   const int at = slot_of(i);
-  direct_.block<kSensorParameters, kSensorParameters>(at, at) += c.topLeftCorner<12, 12>();
-  direct_.block<kSensorParameters, 2>(at, kSine) += c.topRightCorner<12, 2>();
-  direct_.block<2, kSensorParameters>(kSine, at) += c.bottomLeftCorner<2, 12>();
+  direct_.block<sensor::kSensorParameters, sensor::kSensorParameters>(at, at) += c.topLeftCorner<12, 12>();
+  direct_.block<sensor::kSensorParameters, 2>(at, kSine) += c.topRightCorner<12, 2>();
+  direct_.block<2, sensor::kSensorParameters>(kSine, at) += c.bottomLeftCorner<2, 12>();
   direct_.block<2, 2>(kSine, kSine) += c.bottomRightCorner<2, 2>();
 }
 
@@ -211,7 +213,7 @@ Mixing Propagation::origin_from_all() const {
   // gamma answers to a turn about z by -1 in every sensor: the origin takes up the mean.
   out.row(kOrigin).setZero();
   for (std::size_t i = 0; i < kSensorCount; ++i) {
-    const Eigen::Matrix3d to_angles = turn_axes(fitted_.sensors[i]).inverse();
+    const Eigen::Matrix3d to_angles = calibration::turn_axes(fitted_.sensors[i]).inverse();
     out.block<1, 3>(kOrigin, slot_of(i) + kScalar) = to_angles.row(2) / kSensors;
   }
   return out;
@@ -220,7 +222,7 @@ Mixing Propagation::origin_from_all() const {
 Mixing Propagation::angles_from_turns() const {
   Mixing out = Mixing::Identity();
   for (std::size_t i = 0; i < kSensorCount; ++i) {
-    const Eigen::Matrix3d to_angles = turn_axes(fitted_.sensors[i]).inverse();
+    const Eigen::Matrix3d to_angles = calibration::turn_axes(fitted_.sensors[i]).inverse();
     const int at = slot_of(i) + kScalar;
     out.block<3, 3>(at, at) = to_angles;
     out.block<3, 1>(at, kOrigin) = to_angles.col(2);
@@ -232,9 +234,9 @@ Influence Propagation::result() {
   for (Eigen::Index k = 0; k < readings_.poses(); ++k) add_pose(k);
   direct_ += options_.field_sd_nT * options_.field_sd_nT * common_field_ * common_field_.transpose();
   const Mixing all = angles_from_turns() * origin_from_all() * through_step1_;
-  const Mixing covariance = propagated_covariance(all, direct_);
+  const Mixing covariance = linear::propagated_covariance(all, direct_);
   Influence out;
-  out.covariance = covariance.topLeftCorner<kArrayParameters, kArrayParameters>();
+  out.covariance = covariance.topLeftCorner<calibration::kArrayParameters, calibration::kArrayParameters>();
   out.covariance = 0.5 * (out.covariance + out.covariance.transpose()).eval();
   out.inclination_sd_rad = std::sqrt(covariance(kSine, kSine)) / std::hypot(site_[0], site_[1]);
   out.declination_sd_rad = std::sqrt(covariance(kOrigin, kOrigin));
@@ -244,8 +246,8 @@ Influence Propagation::result() {
 }  // namespace
 
 Influence influence(const Readings& readings, const FitOptions& options, const TwoStep& fitted,
-                    const AxisNoise& pose_noise_nT) {
+                    const calibration::AxisNoise& pose_noise_nT) {
   return Propagation(readings, options, fitted, pose_noise_nT).result();
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

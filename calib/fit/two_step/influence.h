@@ -14,15 +14,15 @@
 /// of every pose. The table's errors are common to the four sensors, so are those of F: the covariance says
 /// so. A field given by the operator is one error common to all poses. Not covered: the bias of the
 /// simplified method, effects that are not in the model, errors of a given declination.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 
 struct Influence {
-  ArrayCovariance covariance;  ///< of the parameters
+  calibration::ArrayCovariance covariance;  ///< of the parameters
   double inclination_sd_rad{0}, declination_sd_rad{0};
 };
 
 /// `pose_noise_nT`: standard deviation of a pose mean, per axis.
 [[nodiscard]] Influence influence(const Readings& readings, const FitOptions& options, const TwoStep& fitted,
-                                  const AxisNoise& pose_noise_nT);
+                                  const calibration::AxisNoise& pose_noise_nT);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

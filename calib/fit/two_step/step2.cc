@@ -10,7 +10,7 @@
 #include "calib/linear/symmetric_eigen.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
 constexpr std::size_t kMinStandard = 5;
@@ -72,7 +72,7 @@ struct Rows {
 
 Rows rows_of(const Eigen::Matrix3Xd& P, const Eigen::VectorXd& azimuth_rad) {
   const Eigen::Matrix3d normal = P * P.transpose();
-  const Eigen::Vector3d e = principal_axes(normal).values;
+  const Eigen::Vector3d e = linear::principal_axes(normal).values;
   const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
   const Eigen::Vector3d u = solver.solve(P.rowwise().sum());
   Rows rows;
@@ -131,4 +131,4 @@ Result<Alignment> align(const Readings& readings, const std::array<Eigen::Matrix
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

@@ -19,7 +19,7 @@
 /// to the four (the sign of Bz) and chosen by the majority, by a known inclination, or by the poses that
 /// tilt. Here D = 0: the origin of the azimuth is a common turn of all sensors, found elsewhere
 /// (azimuth_origin.h).
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 
 struct Alignment {
   std::array<Eigen::Matrix3d, kSensors> R_PS;  ///< nearest orthogonal matrices; determinant -1: mirrored
@@ -39,4 +39,4 @@ struct Alignment {
 /// The orthogonal matrix nearest to M (Frobenius), determinant of either sign.
 [[nodiscard]] Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& M);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

@@ -8,7 +8,7 @@
 
 #include "calib/fit/orientation.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
 /// An alignment that contradicts the angles of the tilted poses by more than this has the wrong sign of Bz.
@@ -52,7 +52,8 @@ Eigen::Vector3d TwoStep::site_direction() const {
 Result<TwoStep> two_step(const Readings& readings, const FitOptions& options) {
   TwoStep out;
   std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
-  const auto step1 = options.method == Method::simplified ? simplified_calibration : scalar_calibration;
+  const auto step1 =
+      options.method == Method::simplified ? sensor::simplified_calibration : sensor::scalar_calibration;
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     auto fitted = step1(readings.y_nT[i], readings.f_nT);
     if (!fitted) {
@@ -73,4 +74,4 @@ Result<TwoStep> two_step(const Readings& readings, const FitOptions& options) {
   return out;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

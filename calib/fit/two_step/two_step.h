@@ -8,13 +8,13 @@
 #include "calib/sensor/step1.h"
 
 /// Both steps: the estimate alone, without its uncertainty.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 
 struct TwoStep {
-  std::array<ScalarCalibration, kSensors> step1;
+  std::array<sensor::ScalarCalibration, kSensors> step1;
   Alignment alignment;  ///< in the gauge of `origin`
   AzimuthOrigin origin;
-  std::array<SensorModel, kSensors> sensors;
+  std::array<sensor::SensorModel, kSensors> sensors;
 
   /// Unit vector of the field in the platform frame at zero table angles.
   [[nodiscard]] Eigen::Vector3d site_direction() const;
@@ -23,4 +23,4 @@ struct TwoStep {
 /// `options.method` decides about step 1 only. Refusals name the sensor.
 [[nodiscard]] Result<TwoStep> two_step(const Readings& readings, const FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

@@ -12,7 +12,7 @@
 #include "calib/fit/two_step/influence.h"
 #include "calib/fit/two_step/two_step.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
 std::vector<Eigen::Index> where(Eigen::Index n, auto keep) {
@@ -41,23 +41,23 @@ Readings half_of(const Readings& readings, std::size_t parity) {
 }
 
 /// Step 1 is common to both halves, as in the paper's Table 5; only step 2 sees half of the standard set.
-Result<std::array<SensorModel, kSensors>> from_half(const Readings& readings, std::size_t parity,
-                                                    const TwoStep& whole) {
+Result<std::array<sensor::SensorModel, kSensors>> from_half(const Readings& readings, std::size_t parity,
+                                                            const TwoStep& whole) {
   const Readings half = half_of(readings, parity);
   std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
   for (std::size_t i = 0; i < kSensorCount; ++i) b_S_nT[i] = whole.step1[i].correct(half.y_nT[i]);
   auto alignment = align(half, b_S_nT, whole.alignment.bz_nT > 0 ? 1.0 : -1.0);
   if (!alignment) return tl::unexpected(alignment.error());
   turn_to(*alignment, whole.origin.declination_rad);
-  std::array<SensorModel, kSensors> out;
+  std::array<sensor::SensorModel, kSensors> out;
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     out[i] = sensor_from(whole.step1[i].K, whole.step1[i].offset_nT, alignment->R_PS[i]);
   }
   return out;
 }
 
-double largest_angle_difference(const std::array<SensorModel, kSensors>& a,
-                                const std::array<SensorModel, kSensors>& b) {
+double largest_angle_difference(const std::array<sensor::SensorModel, kSensors>& a,
+                                const std::array<sensor::SensorModel, kSensors>& b) {
   double mean_gamma = 0, worst = 0;
   for (std::size_t i = 0; i < kSensorCount; ++i) mean_gamma += (a[i].gamma_rad - b[i].gamma_rad) / kSensors;
   for (std::size_t i = 0; i < kSensorCount; ++i) {
@@ -69,7 +69,7 @@ double largest_angle_difference(const std::array<SensorModel, kSensors>& a,
 }
 
 std::optional<HalvesComparison> compare_halves(const Readings& readings, const TwoStep& whole,
-                                               const Geometry& geometry) {
+                                               const sensor::Geometry& geometry) {
   const auto odd = from_half(readings, 1, whole), even = from_half(readings, 0, whole);
   if (!odd || !even) return std::nullopt;
   return HalvesComparison{summarise(corrected_fields(readings, *odd), readings.f_nT, geometry),
@@ -79,7 +79,7 @@ std::optional<HalvesComparison> compare_halves(const Readings& readings, const T
 
 /// Every pose corrected by a fit that has not seen it.
 std::optional<ErrorSummary> hold_out(const Readings& readings, const FitOptions& options,
-                                     const Geometry& geometry) {
+                                     const sensor::Geometry& geometry) {
   FieldTable b(3 * kSensors, readings.poses());
   const Eigen::Index n = readings.poses();
   for (Eigen::Index fold = 0; fold < kFolds; ++fold) {
@@ -94,8 +94,9 @@ std::optional<ErrorSummary> hold_out(const Readings& readings, const FitOptions&
 
 /// Noise of a pose mean for the standard errors: what the spreads say, or what the residual says where it is
 /// larger by more than chance (three standard deviations of a variance).
-AxisNoise effective_noise(const Readings& readings, const TwoStep& fitted, const ErrorSummary& step1) {
-  AxisNoise noise = readings.pose_noise_nT;
+calibration::AxisNoise effective_noise(const Readings& readings, const TwoStep& fitted,
+                                       const ErrorSummary& step1) {
+  calibration::AxisNoise noise = readings.pose_noise_nT;
   const auto n = static_cast<double>(readings.poses());
   const double dof = std::max(1.0, n - 9);
   const double by_chance = 1 + 3 * std::sqrt(2 / dof);
@@ -113,10 +114,10 @@ AxisNoise effective_noise(const Readings& readings, const TwoStep& fitted, const
   return noise;
 }
 
-double rms(const AxisNoise& noise) { return std::sqrt(noise.array().square().mean()); }
+double rms(const calibration::AxisNoise& noise) { return std::sqrt(noise.array().square().mean()); }
 
 /// Step 1 only: sensors orthogonal and to scale, their frames left as they stand.
-ErrorSummary after_step1(const Readings& readings, const TwoStep& fitted, const Geometry& geometry) {
+ErrorSummary after_step1(const Readings& readings, const TwoStep& fitted, const sensor::Geometry& geometry) {
   FieldTable b(3 * kSensors, readings.poses());
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
@@ -127,8 +128,8 @@ ErrorSummary after_step1(const Readings& readings, const TwoStep& fitted, const 
 
 void fill_uncertainty(FitReport& report, const Readings& readings, const FitOptions& options,
                       const TwoStep& fitted) {
-  Calibration& c = report.calibration;
-  const AxisNoise effective = effective_noise(readings, fitted, report.after_step1);
+  calibration::Calibration& c = report.calibration;
+  const calibration::AxisNoise effective = effective_noise(readings, fitted, report.after_step1);
   c.pose_noise_nT = (readings.pose_noise_nT.array() > 0).select(readings.pose_noise_nT, effective);
   report.noise_nT = rms(c.pose_noise_nT);
   report.noise_known = (readings.pose_noise_nT.array() > 0).all();
@@ -159,7 +160,7 @@ Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& opti
   const auto fitted = two_step(*readings, options);
   if (!fitted) return tl::unexpected(fitted.error());
   FitReport report;
-  Calibration& c = report.calibration;
+  calibration::Calibration& c = report.calibration;
   c = calibration_frame(table, *readings, options);
   c.sensors = fitted->sensors;
   report.before = summarise(raw_fields(*readings), readings->f_nT, c.geometry);
@@ -184,4 +185,4 @@ Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& opti
   return report;
 }
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

@@ -2,10 +2,10 @@
 #pragma once
 #include "calib/fit/fit_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 
 /// A fit by the simplified or the two-step method. The calibration has no gauge text, no checks and no seal
 /// yet.
 [[nodiscard]] Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& options);
 
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step

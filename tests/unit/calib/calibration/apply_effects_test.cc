@@ -7,7 +7,7 @@
 #include "proto/units.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 using ::testing::HasSubstr;
@@ -17,9 +17,9 @@ TEST(ApplyEffects, EffectsOfTheSiteStayUnlessRemoved) {
   testing::Simulation sim{.table_sd_rad = to_rad(0.05)};
   sim.G_nT_per_m = testing::gradient_50();
   PoseTable table = testing::simulate(sim, 36, 121, 3);
-  FitOptions options;
-  options.effects = {*make_effect("site.gradient")};
-  const auto report = fit(table, options);
+  fit::FitOptions options;
+  options.effects = {*effects::library::make_effect("site.gradient")};
+  const auto report = fit::method_choice::fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
   Calibration c = report->calibration;
   c.sample_noise_nT.setConstant(1);
@@ -46,4 +46,4 @@ TEST(ApplyEffects, EffectsOfTheSiteStayUnlessRemoved) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -6,7 +6,7 @@
 #include "proto/units.h"
 #include "tests/support/paper_rigs.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 using ::testing::HasSubstr;
@@ -16,13 +16,13 @@ using ::testing::StartsWith;
 Calibration true_calibration(const testing::RigTruth& rig) {
   Calibration c;
   for (std::size_t i = 0; i < rig.size(); ++i) {
-    ParameterVector p;
-    for (int k = 0; k < kSensorParameters; ++k) {
-      const bool is_angle = k <= psi || k >= alpha;
+    sensor::ParameterVector p;
+    for (int k = 0; k < sensor::kSensorParameters; ++k) {
+      const bool is_angle = k <= sensor::psi || k >= sensor::alpha;
       const double shown = rig.at(i).at(static_cast<std::size_t>(k));
       p[k] = is_angle ? to_rad(shown) : shown;
     }
-    c.sensors.at(i) = SensorModel::from_parameters(p);
+    c.sensors.at(i) = sensor::SensorModel::from_parameters(p);
   }
   c.seal();
   return c;
@@ -68,4 +68,4 @@ TEST(Apply, UncertaintyStandsBesideItWhereTheNoiseIsKnown) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -7,7 +7,7 @@
 #include <random>
 #include <regex>
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 using ::testing::HasSubstr;
@@ -17,10 +17,10 @@ Calibration random_calibration(std::uint64_t seed) {
   std::normal_distribution<double> normal;
   Calibration c;
   c.method = "two-step";
-  for (SensorModel& sensor : c.sensors) {
-    ParameterVector p;
+  for (sensor::SensorModel& sensor : c.sensors) {
+    sensor::ParameterVector p;
     for (double& value : p) value = normal(random);
-    sensor = SensorModel::from_parameters(p);
+    sensor = sensor::SensorModel::from_parameters(p);
   }
   c.sensors[2].mounting << 0, -1, 0, 0, 0, 1, -1, 0, 0;
   ArrayCovariance half;
@@ -162,4 +162,4 @@ TEST(CalibrationJson, EveryKeyMayBeWrong) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

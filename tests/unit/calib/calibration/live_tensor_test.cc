@@ -9,7 +9,7 @@
 #include "calib/effects/laws/axis_settling.h"
 #include "calib/effects/library/library.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
 using ::testing::ElementsAre;
@@ -26,8 +26,9 @@ std::shared_ptr<const Calibration> with(const std::vector<std::pair<std::string,
   for (const auto& [spec, value] : effects) {
     CalibratedEffect e{spec, {}, {}};
     e.size_nT.fill(4);
-    const EffectPtr effect = *make_effect(spec);
-    for (const Coefficient& k : effect->coefficients()) e.coefficients.push_back({k.name, value, 0, k.unit});
+    const effects::EffectPtr effect = *effects::library::make_effect(spec);
+    for (const effects::Coefficient& k : effect->coefficients())
+      e.coefficients.push_back({k.name, value, 0, k.unit});
     c.effects.push_back(std::move(e));
   }
   Eigen::Index m = 0;
@@ -50,7 +51,7 @@ const Eigen::Vector3d kField(20'000, 3'000, 40'000);
 TEST(LiveTensor, RemovesWhatTheLiveThermometerAndTheClockSay) {
   LiveTensor live(with({{"axis.offset.temperature@s3.z", 2.0}, {"axis.offset.drift@s1.x", 10.0}}));
   Epoch e = epoch(1800, kField, 23);
-  e.y_nT[2].z() += 2.0 * (23 - kReferenceT_degC);
+  e.y_nT[2].z() += 2.0 * (23 - effects::kReferenceT_degC);
   e.y_nT[0].x() += 10.0 * 0.5;
   const TensorSample s = live.apply(e);
   EXPECT_NEAR(s.g_nT_per_m.xx, 0, 1e-9);
@@ -76,7 +77,7 @@ TEST(LiveTensor, WhatIsNotMeasuredIsLeftOutAndSaysSo) {
 
 TEST(LiveTensor, AGradientOfTheSiteStaysIn) {
   LiveTensor live(with({{"site.gradient", 50.0}, {"axis.offset.temperature@s3.z", 2.0}}));
-  Epoch e = epoch(1, kField, kReferenceT_degC);
+  Epoch e = epoch(1, kField, effects::kReferenceT_degC);
   e.y_nT[0].x() += 10;
   EXPECT_NEAR(live.apply(e).g_nT_per_m.xx, 25, 1e-9);
 }
@@ -89,7 +90,7 @@ TEST(LiveTensor, HysteresisFollowsThePathOnceItIsKnown) {
   double p = 0.37, t = 0;  // where it began is unknown to the daemon
   const auto at = [&](double x) {
     p = std::max(x - w, std::min(x + w, p));
-    Eigen::Vector3d v = x * kReferenceField_nT * Eigen::Vector3d::Ones();
+    Eigen::Vector3d v = x * effects::kReferenceField_nT * Eigen::Vector3d::Ones();
     Epoch e = epoch(t += 0.02, v);
     e.y_nT[2].x() += h * (p - x) / w;
     return live.apply(e);
@@ -116,7 +117,7 @@ TEST(LiveTensor, SettlingFollowsAfterFiveTimeConstants) {
   double z = 0.1, t = 0;
   const auto at = [&](double x) {
     z = x + (z - x) * std::exp(-0.02 / tau);
-    Eigen::Vector3d v = x * kReferenceField_nT * Eigen::Vector3d::Ones();
+    Eigen::Vector3d v = x * effects::kReferenceField_nT * Eigen::Vector3d::Ones();
     Epoch e = epoch(t += 0.02, v);
     e.y_nT[2].x() += eta * (z - x);
     return live.apply(e);
@@ -134,7 +135,7 @@ TEST(LiveTensor, SettlingFollowsAfterFiveTimeConstants) {
 TEST(LiveTensor, StandardDeviationsFollowATurn) {
   const auto sensitive = [] {
     Calibration c = *with({{"axis.offset.temperature@s3.z", 2.0}});
-    c.covariance(alpha, alpha) = 1e-6;  // 50 nT at right angles to the field, none along it
+    c.covariance(sensor::alpha, sensor::alpha) = 1e-6;  // 50 nT at right angles to the field, none along it
     c.seal();
     return std::make_shared<const Calibration>(c);
   }();
@@ -148,4 +149,4 @@ TEST(LiveTensor, StandardDeviationsFollowATurn) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -5,11 +5,12 @@
 
 #include <random>
 
-namespace mgtd::calib {
+namespace mgtd::calib::calibration {
 namespace {
 
-FieldVector linear_field(const Eigen::Vector3d& B, const Eigen::Matrix3d& G, const Geometry& geometry) {
-  FieldVector b;
+sensor::FieldVector linear_field(const Eigen::Vector3d& B, const Eigen::Matrix3d& G,
+                                 const sensor::Geometry& geometry) {
+  sensor::FieldVector b;
   const auto r = geometry.positions_P_m();
   for (std::size_t i = 0; i < r.size(); ++i) b.segment<3>(3 * static_cast<Eigen::Index>(i)) = B + G * r[i];
   return b;
@@ -22,7 +23,7 @@ Eigen::Matrix3d source_free_gradient() {
 }
 
 TEST(Tensor, ALinearFieldIsFoundExactlyAndCloses) {
-  const Geometry geometry;
+  const sensor::Geometry geometry;
   const Eigen::Vector3d B{20'000, -3'000, 45'000};
   const auto got = field_and_gradient(linear_field(B, source_free_gradient(), geometry), geometry);
   constexpr double kRounding = 1e-10 / 0.4 * 5;  // one bit of 50 000 nT over the baseline
@@ -38,21 +39,21 @@ TEST(Tensor, ALinearFieldIsFoundExactlyAndCloses) {
 }
 
 TEST(Tensor, ACurlOrAnOddSensorDoesNotClose) {
-  const Geometry geometry;
+  const sensor::Geometry geometry;
   Eigen::Matrix3d G = source_free_gradient();
   G(0, 1) += 10;  // no longer a gradient
   EXPECT_NEAR(field_and_gradient(linear_field({1, 2, 3}, G, geometry), geometry).closure.curl_nT_per_m, 10,
               1e-10);
-  FieldVector b = linear_field({1, 2, 3}, source_free_gradient(), geometry);
+  sensor::FieldVector b = linear_field({1, 2, 3}, source_free_gradient(), geometry);
   b[4] += 8;  // sensor 2, y
   EXPECT_NEAR(field_and_gradient(b, geometry).closure.center_nT[1], -4, 1e-10);
 }
 
 TEST(Tensor, RowsSayTheSameAsTheArithmetic) {
-  const Geometry geometry{.baseline_m = 0.5};
+  const sensor::Geometry geometry{.baseline_m = 0.5};
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, 100);
-  FieldVector b;
+  sensor::FieldVector b;
   for (double& value : b) value = normal(random);
   const auto got = field_and_gradient(b, geometry);
   const Eigen::Matrix<double, 6, 1> g = gradient_rows(geometry) * b;
@@ -73,9 +74,9 @@ Calibration some_calibration() {
   Calibration c;
   for (int i = 0; i < kSensors; ++i) {
     const double s = 0.01 * (i + 1);
-    ParameterVector p;
+    sensor::ParameterVector p;
     p << s, -2 * s, 1.5 * s, 1 + s, 1 - s, 1 + 2 * s, 100 * s, -5000 * s, 300, -s, 2 * s, 3 * s;
-    c.sensors[static_cast<std::size_t>(i)] = SensorModel::from_parameters(p);
+    c.sensors[static_cast<std::size_t>(i)] = sensor::SensorModel::from_parameters(p);
   }
   c.sample_noise_nT.setConstant(0.3);
   c.id = "ctest";
@@ -94,7 +95,7 @@ TEST(TensorPipeline, AUniformFieldGivesNoGradientAndItsCalibrationIsNamed) {
 }
 
 TEST(TensorPipeline, WithoutACalibrationTheSampleSaysSo) {
-  const TensorSample sample = TensorPipeline(Geometry{}).apply(Epoch{});
+  const TensorSample sample = TensorPipeline(sensor::Geometry{}).apply(Epoch{});
   EXPECT_TRUE(sample.flags.has(Flag::uncalibrated));
   EXPECT_EQ(sample.calibration_id, nullptr);
   EXPECT_TRUE(std::isnan(sample.g_sd_nT_per_m.xx));
@@ -107,8 +108,8 @@ TEST(TensorPipeline, StandardDeviationsAreThoseOfManySamples) {
   std::normal_distribution<double> normal;
   Eigen::Matrix<double, kArrayParameters, 1> sd;
   for (int i = 0; i < kSensors; ++i) {
-    sd.segment<kSensorParameters>(i * kSensorParameters) << 1e-5, 1e-5, 1e-5, 1e-5, 1e-5, 1e-5, 0.3, 0.3, 0.3,
-        2e-5, 2e-5, 2e-5;
+    sd.segment<sensor::kSensorParameters>(i * sensor::kSensorParameters) << 1e-5, 1e-5, 1e-5, 1e-5, 1e-5,
+        1e-5, 0.3, 0.3, 0.3, 2e-5, 2e-5, 2e-5;
   }
   truth.covariance = sd.array().square().matrix().asDiagonal();
   const Eigen::Vector3d b{18'000, 4'000, 46'000};
@@ -119,9 +120,9 @@ TEST(TensorPipeline, StandardDeviationsAreThoseOfManySamples) {
     auto wrong = std::make_shared<Calibration>(truth);
     Epoch epoch = epoch_of(truth, b);
     for (std::size_t i = 0; i < kSensors; ++i) {
-      ParameterVector p = truth.sensors[i].parameters();
-      for (int k = 0; k < kSensorParameters; ++k) p[k] += sd[k] * normal(random);
-      wrong->sensors[i] = SensorModel::from_parameters(p);
+      sensor::ParameterVector p = truth.sensors[i].parameters();
+      for (int k = 0; k < sensor::kSensorParameters; ++k) p[k] += sd[k] * normal(random);
+      wrong->sensors[i] = sensor::SensorModel::from_parameters(p);
       for (double& y : epoch.y_nT[i]) y += 0.3 * normal(random);
     }
     const TensorSample got = TensorPipeline(wrong).apply(epoch);
@@ -157,4 +158,4 @@ TEST(Tensor, WhatTheModelLeavesOutDoesNotAverageAway) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::calibration

@@ -13,7 +13,7 @@
 namespace mgtd::calib::testing {
 
 /// y += c f(pose, v, axis), one coefficient for each of the axes it is laid over.
-class AxisLaw final : public EffectOf<AxisLaw> {
+class AxisLaw final : public effects::EffectOf<AxisLaw> {
  public:
   using Shape = std::function<double(const Pose&, double t_h, int sensor, double v)>;
   /// `groups[axis]`: which coefficient acts on each of the twelve; -1 none.
@@ -26,7 +26,7 @@ class AxisLaw final : public EffectOf<AxisLaw> {
       if (g >= 0 && std::find(at.begin(), at.end(), g) == at.end()) at.push_back(g);
     }
   }
-  static EffectPtr finest(const std::string& name, const Shape& shape) {
+  static effects::EffectPtr finest(const std::string& name, const Shape& shape) {
     std::vector<std::string> names;
     std::array<int, 12> groups{};
     for (int c = 0; c < 12; ++c) {
@@ -36,15 +36,17 @@ class AxisLaw final : public EffectOf<AxisLaw> {
     return std::make_shared<const AxisLaw>(name, shape, groups, names);
   }
   [[nodiscard]] std::string_view name() const override { return name_; }
-  [[nodiscard]] Level level() const override { return Level::axis; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] effects::Level level() const override { return effects::Level::axis; }
+  [[nodiscard]] const std::vector<effects::Coefficient>& coefficients() const override {
+    return coefficients_;
+  }
   [[nodiscard]] std::span<const int> at(int sensor) const override {
     return at_[static_cast<std::size_t>(sensor)];
   }
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
 
   template <class S>
-  void equation(const Conditions& at, int sensor, std::span<const S> v, std::span<const S> c,
+  void equation(const effects::Conditions& at, int sensor, std::span<const S> v, std::span<const S> c,
                 std::span<S> out) const {
     const auto& own = at_[static_cast<std::size_t>(sensor)];
     for (int a = 0; a < 3; ++a) {
@@ -54,7 +56,7 @@ class AxisLaw final : public EffectOf<AxisLaw> {
       const auto slot = std::find(own.begin(), own.end(), g);
       if (g < 0) continue;
       out[axis] = c[static_cast<std::size_t>(slot - own.begin())] *
-                  shape_(at.pose, at.t_h, sensor, value_of(v[axis]));
+                  shape_(at.pose, at.t_h, sensor, sensor::value_of(v[axis]));
     }
   }
 
@@ -62,16 +64,19 @@ class AxisLaw final : public EffectOf<AxisLaw> {
   std::string name_;
   Shape shape_;
   std::array<int, 12> groups_;
-  std::vector<Coefficient> coefficients_;
+  std::vector<effects::Coefficient> coefficients_;
   std::array<std::vector<int>, 4> at_;
 };
 
-inline CandidateEffect candidate_effect(const std::string& name, const AxisLaw::Shape& shape) {
-  CandidateEffect out{.name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
-  out.hypotheses = hypotheses_of(*out.variants.front());
-  out.make = [name, shape](const Hypothesis* part, const std::optional<double>&) -> Result<EffectPtr> {
+inline criticism::tests::CandidateEffect candidate_effect(const std::string& name,
+                                                          const AxisLaw::Shape& shape) {
+  criticism::tests::CandidateEffect out{
+      .name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
+  out.hypotheses = criticism::tests::hypotheses_of(*out.variants.front());
+  out.make = [name, shape](const criticism::tests::Hypothesis* part,
+                           const std::optional<double>&) -> Result<effects::EffectPtr> {
     if (part == nullptr) return AxisLaw::finest(name, shape);
-    const Hypothesis& h = *part;
+    const criticism::tests::Hypothesis& h = *part;
     std::array<int, 12> groups{};
     for (Eigen::Index c = 0; c < 12; ++c) {
       Eigen::Index column = 0;
@@ -84,7 +89,7 @@ inline CandidateEffect candidate_effect(const std::string& name, const AxisLaw::
 }
 
 /// Five laws of an axis: two of temperature, one of time, two of the field.
-inline std::vector<CandidateEffect> few_candidates() {
+inline std::vector<criticism::tests::CandidateEffect> few_candidates() {
   const auto warmer = [](const Pose& p, int i) { return *p.T_degC[static_cast<std::size_t>(i)] - 20; };
   return {
       candidate_effect("offset.temperature",

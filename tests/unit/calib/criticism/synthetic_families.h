@@ -12,8 +12,9 @@
 namespace mgtd::calib::testing {
 
 /// One column on one axis; several are values of a searched number.
-inline std::shared_ptr<CandidateEffect> candidate_of_columns(const std::string& name, std::size_t values) {
-  auto out = std::make_shared<CandidateEffect>();
+inline std::shared_ptr<criticism::tests::CandidateEffect> candidate_of_columns(const std::string& name,
+                                                                               std::size_t values) {
+  auto out = std::make_shared<criticism::tests::CandidateEffect>();
   out->name = name;
   out->variants.resize(values);
   for (std::size_t v = 0; v < values; ++v) out->values.emplace_back(static_cast<double>(v));
@@ -23,9 +24,10 @@ inline std::shared_ptr<CandidateEffect> candidate_of_columns(const std::string& 
   return out;
 }
 
-inline ScoredFamily scored(const std::shared_ptr<CandidateEffect>& candidate_effect,
-                           const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
-  ScoredFamily out{.candidate_effect = candidate_effect.get(), .own = candidate_effect};
+inline criticism::tests::ScoredFamily scored(
+    const std::shared_ptr<criticism::tests::CandidateEffect>& candidate_effect,
+    const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
+  criticism::tests::ScoredFamily out{.candidate_effect = candidate_effect.get(), .own = candidate_effect};
   for (Eigen::Index v = 0; v < columns.cols(); ++v) {
     const Eigen::MatrixXd z = columns.col(v);
     out.signatures.push_back({.columns = z,

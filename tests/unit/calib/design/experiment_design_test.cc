@@ -7,7 +7,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::design {
 namespace {
 
 using testing::Simulation;
@@ -23,7 +23,7 @@ DesignRequest request_of(const PoseTable& table, const Simulation& sim) {
   return request;
 }
 
-double fitted_sd(const JointFit& fit, const Expected& e, int slot) {
+double fitted_sd(const fit::joint::JointFit& fit, const Expected& e, int slot) {
   return std::sqrt(fit.covariance(slot, slot)) / (e.unit == "deg" ? kRadiansPerDegree : 1);
 }
 
@@ -33,9 +33,9 @@ TEST(Plan, ForetellsWhatTheFitThenReports) {
   const auto foretold = evaluate_design(request_of(table, sim));
   ASSERT_TRUE(foretold) << foretold.error().text();
   ASSERT_TRUE(foretold->determined);
-  const auto fit = fit_joint(table, {});
+  const auto fit = fit::joint::fit_joint(table, {});
   ASSERT_TRUE(fit);
-  for (int p = 0; p < kSensorBlock; ++p) {
+  for (int p = 0; p < fit::joint::kSensorBlock; ++p) {
     const Expected& e = foretold->parameters[static_cast<std::size_t>(p)];
     // The fit estimates noise and table from the data: each axis to 7 %, the table to 4 %.
     EXPECT_NEAR(e.sd / fitted_sd(*fit, e, p), 1, 0.25) << e.name;
@@ -56,8 +56,8 @@ TEST(Plan, ForetoldErrorsAreTheRealOnes) {
   sim.G_nT_per_m = testing::gradient_50();
   const auto& G = sim.G_nT_per_m;
   const std::array<double, 5> truth{G(0, 0), G(1, 1), G(0, 1), G(0, 2), G(1, 2)};
-  JointOptions options;
-  options.effects = {*make_effect("site.gradient")};
+  fit::joint::JointOptions options;
+  options.effects = {*effects::library::make_effect("site.gradient")};
   std::mt19937_64 rng(71);
   const PoseTable first = simulate(sim, 18, 82, 70);
   DesignRequest request = request_of(first, sim);
@@ -70,15 +70,16 @@ TEST(Plan, ForetoldErrorsAreTheRealOnes) {
     PoseTable table;
     for (const Pose& pose : first.poses)
       table.poses.push_back(measure(sim, *pose.angles(), pose.number, 0, rng));
-    const auto fit = fit_joint(table, options);
+    const auto fit = fit::joint::fit_joint(table, options);
     ASSERT_TRUE(fit);
     for (std::size_t j = 0; j < sum.size(); ++j) {
-      const auto s = j / kSensorParameters;
-      const auto p = static_cast<Eigen::Index>(j % kSensorParameters);
-      const double error = j < kSensorBlock
-                               ? fit->state.sensors[s].parameters()[p] - sim.rig[s].parameters()[p]
-                               : fit->state.coefficients[static_cast<Eigen::Index>(j) - kSensorBlock] -
-                                     truth[j - kSensorBlock];
+      const auto s = j / sensor::kSensorParameters;
+      const auto p = static_cast<Eigen::Index>(j % sensor::kSensorParameters);
+      const double error =
+          j < fit::joint::kSensorBlock
+              ? fit->state.sensors[s].parameters()[p] - sim.rig[s].parameters()[p]
+              : fit->state.coefficients[static_cast<Eigen::Index>(j) - fit::joint::kSensorBlock] -
+                    truth[j - fit::joint::kSensorBlock];
       const double sd =
           foretold->parameters[j].sd * (foretold->parameters[j].unit == "deg" ? kRadiansPerDegree : 1);
       sum[j] += error * error / (sd * sd) / kRuns;
@@ -118,7 +119,7 @@ TEST(Plan, LevelTurnAloneIsNotDetermined) {
 TEST(Plan, GradientCostsLittleAndIsForetold) {
   const Simulation sim;
   DesignRequest request = request_of(simulate(sim, 36, 121, 5), sim);
-  request.effects = {*make_effect("site.gradient")};
+  request.effects = {*effects::library::make_effect("site.gradient")};
   const auto foretold = evaluate_design(request);
   ASSERT_TRUE(foretold) << foretold.error().text();
   EXPECT_EQ(foretold->parameters.back().name, "site.gradient Gyz");
@@ -144,9 +145,9 @@ TEST(Plan, WhatAnEffectNeedsMustBeInTheList) {
   const Simulation sim;
   DesignRequest request = request_of(simulate(sim, 36, 60, 5), sim);
   for (Pose& pose : request.poses.poses) pose.roll_rad = std::nullopt;
-  request.effects = {*make_effect("site.gradient")};
+  request.effects = {*effects::library::make_effect("site.gradient")};
   EXPECT_FALSE(evaluate_design(request));
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::design

@@ -8,7 +8,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 namespace {
 
 using ::testing::HasSubstr;
@@ -16,16 +16,16 @@ using ::testing::HasSubstr;
 /// Share of the information about an effect that is left when every other unknown is free, best combination
 /// of its coefficients.
 double information_left(const PoseTable& table, const std::string& spec) {
-  JointOptions options;
+  fit::joint::JointOptions options;
   options.table_sd_rad = to_rad(0.02);
-  auto fit = fit_joint(table, options);
+  auto fit = fit::joint::fit_joint(table, options);
   const EffectContext context{.table = &table, .offset_nT = {}};
-  fit->problem.effects = {*make_effect(*EffectSpec::parse(spec), context)};
+  fit->problem.effects = {*library::make_effect(*EffectSpec::parse(spec), context)};
   fit->state.coefficients = Eigen::VectorXd::Zero(fit->problem.coefficients());
-  for (LinearPrior& prior : fit->problem.priors)
+  for (fit::joint::LinearPrior& prior : fit->problem.priors)
     prior.row.conservativeResizeLike(Eigen::VectorXd::Zero(fit->problem.fixed()));
-  const Eigen::MatrixXd S = reduce(fit->problem, fit->state, 0).S;
-  const Eigen::Index m = fit->problem.coefficients(), n = kEffectSlot;
+  const Eigen::MatrixXd S = fit::joint::reduce(fit->problem, fit->state, 0).S;
+  const Eigen::Index m = fit->problem.coefficients(), n = fit::joint::kEffectSlot;
   const Eigen::MatrixXd own = S.bottomRightCorner(m, m), cross = S.bottomLeftCorner(m, n);
   const Eigen::VectorXd d = S.diagonal().head(n).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd base = d.asDiagonal() * S.topLeftCorner(n, n) * d.asDiagonal();
@@ -49,11 +49,11 @@ TEST(Absorbed, IronAndCrosstalkLeaveNothingInAUniformField) {
 
 TEST(Absorbed, AFitIsRefusedWithTheReason) {
   const PoseTable table = testing::run_with({}, {}, 3);
-  for (const EffectFamily& family : effect_families()) {
+  for (const library::EffectFamily& family : library::effect_families()) {
     if (family.untestable.empty()) continue;
-    JointOptions options;
-    options.effects = {*make_effect(family.name)};
-    const auto fit = fit_joint(table, options);
+    fit::joint::JointOptions options;
+    options.effects = {*library::make_effect(family.name)};
+    const auto fit = fit::joint::fit_joint(table, options);
     ASSERT_FALSE(fit);
     EXPECT_THAT(fit.error().message, HasSubstr(std::string(family.untestable)));
     EXPECT_EQ(fit.error().remedy, family.experiment);
@@ -63,14 +63,15 @@ TEST(Absorbed, AFitIsRefusedWithTheReason) {
 TEST(Absorbed, AConstantCurrentIsPartOfTheOffsets) {
   PoseTable table = testing::run_with({}, {}, 3);
   for (Pose& pose : table.poses) pose.covariates["motor_A"] = 1.5;
-  JointOptions options;
-  options.effects = {*make_effect("platform.current")};
-  const auto fit = fit_joint(table, options);
+  fit::joint::JointOptions options;
+  options.effects = {*library::make_effect("platform.current")};
+  const auto fit = fit::joint::fit_joint(table, options);
   ASSERT_FALSE(fit);
   EXPECT_THAT(fit.error().message, HasSubstr("motor_A is 1.5 A at every pose"));
   for (Pose& pose : table.poses) pose.covariates.clear();
-  EXPECT_THAT(fit_joint(table, options).error().message, HasSubstr("no column of the poses ends in _A"));
+  EXPECT_THAT(fit::joint::fit_joint(table, options).error().message,
+              HasSubstr("no column of the poses ends in _A"));
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -59,7 +59,7 @@ inline PoseTable run_with(const Injection& in, const Scene& scene, std::uint64_t
   std::mt19937_64 rng(seed);
   std::normal_distribution<double> normal;
   const Rig rig = table6_rig();
-  const auto r = Geometry{}.positions_P_m();
+  const auto r = sensor::Geometry{}.positions_P_m();
   PoseTable table;
   std::array<Eigen::Vector3d, kSensors> before;
   const int n = scene.standard + scene.random;

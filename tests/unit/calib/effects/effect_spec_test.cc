@@ -6,7 +6,7 @@
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/library.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 namespace {
 
 using ::testing::HasSubstr;
@@ -17,7 +17,7 @@ TEST(EffectSpec, TextReadsBackToItself) {
     const auto spec = EffectSpec::parse(text);
     ASSERT_TRUE(spec) << text;
     EXPECT_EQ(spec->text(), text);
-    const auto effect = make_effect(text);
+    const auto effect = library::make_effect(text);
     ASSERT_TRUE(effect) << effect.error().text();
     EXPECT_EQ((*effect)->spec(), text);
     EXPECT_EQ((*effect)->name(), family_name(text));
@@ -25,13 +25,13 @@ TEST(EffectSpec, TextReadsBackToItself) {
 }
 
 TEST(EffectSpec, DefaultsAreSpelledOut) {
-  EXPECT_EQ((*make_effect("axis.offset.temperature"))->spec(), "axis.offset.temperature@each-axis");
-  EXPECT_EQ((*make_effect("site.gradient@site"))->spec(), "site.gradient");
+  EXPECT_EQ((*library::make_effect("axis.offset.temperature"))->spec(), "axis.offset.temperature@each-axis");
+  EXPECT_EQ((*library::make_effect("site.gradient@site"))->spec(), "site.gradient");
 }
 
 TEST(EffectSpec, NonsenseIsRefusedWithWhatIsKnown) {
   const auto message = [](const char* text) {
-    const auto effect = make_effect(text);
+    const auto effect = library::make_effect(text);
     return effect ? std::string("accepted") : effect.error().text();
   };
   EXPECT_THAT(message("axis.cubik"), HasSubstr("no effect is called 'axis.cubik'"));
@@ -44,16 +44,16 @@ TEST(EffectSpec, NonsenseIsRefusedWithWhatIsKnown) {
 }
 
 TEST(AxisScale, CoarserScalesAreSumsOfTheFinest) {
-  const auto count = [](const char* text) { return (*make_effect(text))->coefficients().size(); };
+  const auto count = [](const char* text) { return (*library::make_effect(text))->coefficients().size(); };
   EXPECT_EQ(count("axis.offset.drift"), 12U);
   EXPECT_EQ(count("axis.offset.drift@each-sensor"), 4U);
   EXPECT_EQ(count("axis.offset.drift@all"), 1U);
   EXPECT_EQ(count("axis.offset.drift@s3"), 1U);
   EXPECT_EQ(count("axis.offset.drift@s3.z"), 1U);
-  const auto finest = *make_effect("axis.offset.drift");
+  const auto finest = *library::make_effect("axis.offset.drift");
   EXPECT_EQ(finest->coefficients().front().name, "s1.x");
   EXPECT_EQ(finest->coefficients().back().name, "s4.z");
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

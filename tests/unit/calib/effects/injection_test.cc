@@ -7,7 +7,7 @@
 
 /// Every effect put into a run by equations written here, and found again by the fit: the coefficient within
 /// its uncertainty, the chi-square back at one.
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 namespace {
 
 using Eigen::Vector3d;
@@ -269,11 +269,11 @@ std::vector<Case> site_cases() {
   return out;
 }
 
-JointOptions with(const std::string& spec, const Scene& scene) {
-  JointOptions options;
+fit::joint::JointOptions with(const std::string& spec, const Scene& scene) {
+  fit::joint::JointOptions options;
   if (!scene.with_f) options.field_nT = scene.f_nT;
   options.table_sd_rad = to_rad(0.02);
-  if (!spec.empty()) options.effects = {*make_effect(spec)};
+  if (!spec.empty()) options.effects = {*library::make_effect(spec)};
   return options;
 }
 
@@ -288,11 +288,11 @@ TEST(SiteStep, BesideAScalarReferenceTellsWhatLiesAcrossTheField) {
                                               return step + 0.4 * testing::gradient_50() * x;
                                             }},
                                             scene, 1);
-  const auto fit = fit_joint(table, with("site.step,ts=1.01", scene));
+  const auto fit = fit::joint::fit_joint(table, with("site.step,ts=1.01", scene));
   ASSERT_TRUE(fit) << fit.error().text();
   EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof));
   const Vector3d found = fit->state.coefficients.head<3>();
-  const Eigen::Matrix3d C = fit->covariance.block<3, 3>(kEffectSlot, kEffectSlot);
+  const Eigen::Matrix3d C = fit->covariance.block<3, 3>(fit::joint::kEffectSlot, fit::joint::kEffectSlot);
   const Vector3d n = scene.direction;
   EXPECT_GT(std::sqrt(n.dot(C * n)), 900) << "along the field only the prior of 1000 nT is known";
   EXPECT_LT(std::abs(n.dot(found)), 1);
@@ -313,8 +313,8 @@ TEST_P(Injected, IsFoundWithinItsUncertainty) {
   constexpr int kSeeds = 3;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const PoseTable table = testing::run_with(c.in, c.scene, seed);
-    const auto without = fit_joint(table, with("", c.scene));
-    const auto fit = fit_joint(table, with(c.spec, c.scene));
+    const auto without = fit::joint::fit_joint(table, with("", c.scene));
+    const auto fit = fit::joint::fit_joint(table, with(c.spec, c.scene));
     ASSERT_TRUE(without && fit) << (fit ? "" : fit.error().text());
     // Three and a half standard deviations of a chi-square, twice the tail of three seeds of all cases.
     EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof)) << c.spec;
@@ -328,7 +328,7 @@ TEST_P(Injected, IsFoundWithinItsUncertainty) {
     }
     ASSERT_EQ(fit->state.coefficients.size(), static_cast<Eigen::Index>(c.truth.size()));
     for (Eigen::Index i = 0; i < fit->state.coefficients.size(); ++i) {
-      const double sd = std::sqrt(fit->covariance(kEffectSlot + i, kEffectSlot + i));
+      const double sd = std::sqrt(fit->covariance(fit::joint::kEffectSlot + i, fit::joint::kEffectSlot + i));
       const double pull = (fit->state.coefficients[i] - c.truth[static_cast<std::size_t>(i)]) / sd;
       pulls += pull * pull;
       worst = std::max(worst, std::abs(pull));
@@ -352,4 +352,4 @@ INSTANTIATE_TEST_SUITE_P(Table, Injected, ::testing::ValuesIn(table_cases()), na
 INSTANTIATE_TEST_SUITE_P(Site, Injected, ::testing::ValuesIn(site_cases()), name_of);
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -7,26 +7,26 @@
 #include "calib/fit/joint/profile_search.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects {
 namespace {
 
 TEST(Hysteresis, PlayFollowsByHand) {
   double p = 0;
   const std::array<double, 6> x{0.05, 0.3, 0.25, 0.15, -0.4, -0.35};
   const std::array<double, 6> expected{0, 0.2, 0.2, 0.2, -0.3, -0.3};
-  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(p = play(p, x[i], 0.1), expected[i], 1e-15);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(p = laws::play(p, x[i], 0.1), expected[i], 1e-15);
 }
 
 /// A turn that goes beyond both dwells leaves its mark only where the path was kept.
 TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
   PoseTable table = testing::run_with({}, {.noise_nT = 0, .table_sd_rad = 0}, 4);
-  const auto dwells = play_before(*run_memory({.table = &table, .offset_nT = {}}), 0.05);
+  const auto dwells = laws::play_before(*laws::run_memory({.table = &table, .offset_nT = {}}), 0.05);
   const Pose &from = table.poses[50], &to = table.poses[51];
   const TableAngles over{*from.azimuth_rad + 2, *from.pitch_rad + 1.5, *from.roll_rad};
   table.path = {{*from.t_s + 20, over}};
-  const auto with_path = run_memory({.table = &table, .offset_nT = {}});
+  const auto with_path = laws::run_memory({.table = &table, .offset_nT = {}});
   ASSERT_TRUE(with_path);
-  const RememberedPose& remembered = (*with_path)[51];
+  const laws::RememberedPose& remembered = (*with_path)[51];
   ASSERT_EQ(remembered.on_the_way.size(), 1U);
   const testing::Scene scene;
   const Eigen::Vector3d B_S = scene.f_nT * scene.direction;
@@ -35,7 +35,7 @@ TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
   // Noise-free dwells of a rig linear in the field: the map by angles is exact, the offset good to a
   // nanotesla.
   EXPECT_LT((remembered.on_the_way[0][0] - v).norm(), 5);
-  const auto path = play_before(*with_path, 0.05);
+  const auto path = laws::play_before(*with_path, 0.05);
   EXPECT_NE(path.at(to.number)[0], dwells.at(to.number)[0]);
   EXPECT_EQ(path.at(from.number)[0], dwells.at(from.number)[0]);
 }
@@ -52,33 +52,34 @@ testing::Injection hysteresis_of(double h_nT, double w) {
   }};
 }
 
-JointOptions options_with(const char* spec) {
-  JointOptions options;
-  options.effects = {*make_effect(spec)};
+fit::joint::JointOptions options_with(const char* spec) {
+  fit::joint::JointOptions options;
+  options.effects = {*library::make_effect(spec)};
   return options;
 }
 
 TEST(Hysteresis, IsLeftOutWhereTheReadingsBeforeAreUnknown) {
   const PoseTable table = testing::run_with({}, {}, 4);
   for (const char* spec : {"axis.hysteresis@s2,w=0.1", "axis.settling@s2,tau=9"}) {
-    EXPECT_EQ((*make_effect(spec))->missing(table.poses[5]), kNoMemory);
-    const EffectPtr bound = *make_effect(*EffectSpec::parse(spec), {.table = &table, .offset_nT = {}});
+    EXPECT_EQ((*library::make_effect(spec))->missing(table.poses[5]), laws::kNoMemory);
+    const EffectPtr bound =
+        *library::make_effect(*EffectSpec::parse(spec), {.table = &table, .offset_nT = {}});
     EXPECT_EQ(bound->missing(table.poses[5]), "");
     Pose elsewhere = table.poses[5];
     elsewhere.number = 1000;
-    EXPECT_EQ(bound->missing(elsewhere), kNoMemory);
+    EXPECT_EQ(bound->missing(elsewhere), laws::kNoMemory);
   }
 }
 
 TEST(Tune, FindsTheWidthOfAHysteresis) {
   const PoseTable table = testing::run_with(hysteresis_of(4, 0.3), {}, 6);
-  const auto effects = profile_search(table, options_with("axis.hysteresis@s2.x"));
+  const auto effects = fit::joint::profile_search(table, options_with("axis.hysteresis@s2.x"));
   ASSERT_TRUE(effects) << effects.error().text();
   const auto spec = *EffectSpec::parse(effects->front()->spec());
   EXPECT_NEAR(*spec.number("w", 0, 0, 10), 0.3, 0.03);
-  JointOptions options;
+  fit::joint::JointOptions options;
   options.effects = *effects;
-  const auto fit = fit_joint(table, options);
+  const auto fit = fit::joint::fit_joint(table, options);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof));
   EXPECT_NEAR(fit->state.coefficients[0], 4, 0.6);
@@ -86,7 +87,7 @@ TEST(Tune, FindsTheWidthOfAHysteresis) {
 
 TEST(Tune, LeavesAGivenNumberAlone) {
   const PoseTable table = testing::run_with(hysteresis_of(4, 0.3), {}, 6);
-  const auto effects = profile_search(table, options_with("axis.hysteresis@s2.x,w=0.15"));
+  const auto effects = fit::joint::profile_search(table, options_with("axis.hysteresis@s2.x,w=0.15"));
   ASSERT_TRUE(effects);
   EXPECT_EQ(effects->front()->spec(), "axis.hysteresis@s2.x,w=0.15");
 }
@@ -97,7 +98,7 @@ TEST(Tune, FindsTheTimeOfAStep) {
         return sensor == 3 && axis == 1 && p.number > 60 ? 3.0 : 0.0;
       }};
   const PoseTable table = testing::run_with(step, {}, 7);
-  const auto effects = profile_search(table, options_with("axis.offset.step@s4.y"));
+  const auto effects = fit::joint::profile_search(table, options_with("axis.offset.step@s4.y"));
   ASSERT_TRUE(effects) << effects.error().text();
   const auto spec = *EffectSpec::parse(effects->front()->spec());
   // Ten times the noise: no pose can be on the wrong side.
@@ -111,20 +112,21 @@ TEST(Tune, FindsADipoleFromTheGrid) {
     return 100 * (3 * moment.dot(d) * d / std::pow(d.norm(), 5) - moment / std::pow(d.norm(), 3));
   }};
   const PoseTable table = testing::run_with(magnet, {}, 8);
-  const auto effects = profile_search(table, options_with("site.dipole"));
+  const auto effects = fit::joint::profile_search(table, options_with("site.dipole"));
   ASSERT_TRUE(effects) << effects.error().text();
-  JointOptions options;
+  fit::joint::JointOptions options;
   options.effects = *effects;
-  const auto fit = fit_joint(table, options);
+  const auto fit = fit::joint::fit_joint(table, options);
   ASSERT_TRUE(fit) << fit.error().text();
   EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof));
   const auto spec = *EffectSpec::parse(effects->front()->spec());
   for (int i = 0; i < 3; ++i) {
-    const double sd = std::sqrt(fit->covariance(kEffectSlot + 3 + i, kEffectSlot + 3 + i));
+    const double sd =
+        std::sqrt(fit->covariance(fit::joint::kEffectSlot + 3 + i, fit::joint::kEffectSlot + 3 + i));
     EXPECT_NEAR(*spec.number(std::string(1, "xyz"[i]), 0, -10, 10) + fit->state.coefficients[3 + i], place[i],
                 5 * sd + 1e-3);
   }
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects

@@ -7,7 +7,7 @@
 
 /// Data that cannot carry a calibration: refused, or given with a check that fails, a reason in the
 /// operator's words, and the poses to add.
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 using ::testing::AnyOf;
@@ -44,7 +44,7 @@ TEST(Coverage, OneAxisIsRefusedWhicheverItIs) {
       const double a = to_rad(5 * k);
       poses.push_back({axis == 0 ? a : 0, axis == 1 ? a : 0, axis == 2 ? a : 0});
     }
-    const auto report = fit(at({.table_sd_rad = to_rad(0.1)}, poses), {});
+    const auto report = method_choice::fit(at({.table_sd_rad = to_rad(0.1)}, poses), {});
     ASSERT_FALSE(report) << axis;
     EXPECT_EQ(report.error().code, ErrorCode::refused);
     EXPECT_THAT(report.error().remedy, HasSubstr("axis"));
@@ -52,7 +52,8 @@ TEST(Coverage, OneAxisIsRefusedWhicheverItIs) {
 }
 
 TEST(Coverage, LevelFlightIsNotAcceptedAndSaysWhatToAdd) {
-  const auto report = fit(at({.noise_nT = 10, .table_sd_rad = to_rad(0.1)}, nearly_level(2.5, 100)), {});
+  const auto report =
+      method_choice::fit(at({.noise_nT = 10, .table_sd_rad = to_rad(0.1)}, nearly_level(2.5, 100)), {});
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_FALSE(report->calibration.accepted_by_checks);
   const Check* const check = failed(*report, "coverage");
@@ -72,10 +73,10 @@ TEST(Coverage, LevelFlightsUncertaintyIsTheRealOne) {
     PoseTable table;
     for (const TableAngles& a : nearly_level(20, 100))
       table.poses.push_back(measure(sim, a, static_cast<int>(table.poses.size()) + 1, 0, rng));
-    const auto report = fit(table, {});
+    const auto report = method_choice::fit(table, {});
     ASSERT_TRUE(report) << report.error().text();
     const auto& c = report->calibration;
-    const double sd = std::sqrt(c.covariance(cz, cz));
+    const double sd = std::sqrt(c.covariance(sensor::cz, sensor::cz));
     squares += std::pow((c.sensors[0].scale[2] - sim.rig[0].scale[2]) / sd, 2) / kRuns;
     largest = std::max(largest, sd);
   }
@@ -85,19 +86,19 @@ TEST(Coverage, LevelFlightsUncertaintyIsTheRealOne) {
 
 TEST(Coverage, NearThePoleALevelTurnTellsNothing) {
   Simulation sim{.inclination_rad = to_rad(89.7), .table_sd_rad = to_rad(0.1)};
-  const auto level = fit(at(sim, nearly_level(2, 100)), {});
+  const auto level = method_choice::fit(at(sim, nearly_level(2, 100)), {});
   ASSERT_FALSE(level);
   EXPECT_THAT(level.error().message, HasSubstr("the readings lie on a plane"));
   // Turned over in all directions the field's direction does not matter.
-  const auto whole = fit(simulate(sim, 36, 121, 3), {});
+  const auto whole = method_choice::fit(simulate(sim, 36, 121, 3), {});
   ASSERT_TRUE(whole) << whole.error().text();
-  EXPECT_TRUE(whole->calibration.accepted_by_checks) << ::testing::PrintToString(fit_reasons(*whole));
+  EXPECT_TRUE(whole->calibration.accepted_by_checks) << ::testing::PrintToString(report::fit_reasons(*whole));
 }
 
 TEST(Coverage, WithoutAFieldTheFreeScaleIsSaid) {
-  const auto report = fit(testing::simulate({.with_f = false}, 36, 121, 3), {});
+  const auto report = method_choice::fit(testing::simulate({.with_f = false}, 36, 121, 3), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_THAT(fit_reasons(*report), Contains(HasSubstr("overall scale is free")));
+  EXPECT_THAT(report::fit_reasons(*report), Contains(HasSubstr("overall scale is free")));
 }
 
 /// Constant readings, and readings near one point: |b| can be made constant exactly, by a gain that vanishes
@@ -105,19 +106,19 @@ TEST(Coverage, WithoutAFieldTheFreeScaleIsSaid) {
 TEST(Coverage, DataThatOnlyTheTrivialSolutionFitsAreRefused) {
   std::vector<TableAngles> poses = nearly_level(0.05, 60);
   for (TableAngles& a : poses) a.azimuth_rad = 0.01 * a.azimuth_rad;
-  const auto near_a_point = fit(at({.noise_nT = 20}, poses), {});
+  const auto near_a_point = method_choice::fit(at({.noise_nT = 20}, poses), {});
   ASSERT_FALSE(near_a_point);
   EXPECT_THAT(near_a_point.error().message, HasSubstr("the fit wants a volume gain of"));
 
   PoseTable stuck = testing::simulate({.table_sd_rad = to_rad(0.1)}, 36, 121, 3);
   for (Pose& pose : stuck.poses) pose.y_nT[2] = {100, 200, 300};
-  const auto report = fit(stuck, {});
+  const auto report = method_choice::fit(stuck, {});
   ASSERT_FALSE(report);
   EXPECT_THAT(report.error().message, HasSubstr("sensor 3"));
 
   PoseTable twice = testing::simulate({.table_sd_rad = to_rad(0.1)}, 36, 121, 3);
   for (Pose& pose : twice.poses) pose.y_nT[1][1] = pose.y_nT[1][0];
-  const auto wired = fit(twice, {});
+  const auto wired = method_choice::fit(twice, {});
   ASSERT_FALSE(wired);
   EXPECT_THAT(wired.error().message, HasSubstr("sensor 2"));
 }
@@ -125,7 +126,7 @@ TEST(Coverage, DataThatOnlyTheTrivialSolutionFitsAreRefused) {
 TEST(Coverage, ASensorBetweenTwoMountingsIsNamed) {
   Simulation sim{.table_sd_rad = to_rad(0.1)};
   sim.rig[2].gamma_rad = to_rad(44);
-  const auto report = fit(simulate(sim, 36, 121, 3), {});
+  const auto report = method_choice::fit(simulate(sim, 36, 121, 3), {});
   ASSERT_TRUE(report) << report.error().text();
   const Check* const check = failed(*report, "mounting");
   ASSERT_NE(check, nullptr);
@@ -133,4 +134,4 @@ TEST(Coverage, ASensorBetweenTwoMountingsIsNamed) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

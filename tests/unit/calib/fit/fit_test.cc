@@ -8,7 +8,7 @@
 #include "calib/report/fit_reasons.h"
 #include "tests/support/paper_rigs.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 using ::testing::HasSubstr;
@@ -23,11 +23,13 @@ FitOptions two_step_options() {
 }
 
 /// Estimates in the units of the tables: deg, 1, nT.
-std::array<double, 12> in_table_units(const SensorModel& s) {
-  ParameterVector p = s.parameters();
-  for (const int angle : {theta, phi, psi, alpha, beta, gamma}) p[angle] = to_deg(p[angle]);
+std::array<double, 12> in_table_units(const sensor::SensorModel& s) {
+  sensor::ParameterVector p = s.parameters();
+  for (const int angle :
+       {sensor::theta, sensor::phi, sensor::psi, sensor::alpha, sensor::beta, sensor::gamma})
+    p[angle] = to_deg(p[angle]);
   std::array<double, 12> out{};
-  for (int k = 0; k < kSensorParameters; ++k) out.at(static_cast<std::size_t>(k)) = p[k];
+  for (int k = 0; k < sensor::kSensorParameters; ++k) out.at(static_cast<std::size_t>(k)) = p[k];
   return out;
 }
 
@@ -35,10 +37,12 @@ std::array<double, 12> in_table_units(const SensorModel& s) {
 std::array<double, 4> floor_of(const PoseTable& table, const RigTruth& rig, double f_nT) {
   std::array<double, 4> out{};
   for (std::size_t i = 0; i < 4; ++i) {
-    ParameterVector p;
-    for (int k = 0; k < kSensorParameters; ++k) p[k] = rig[i].at(static_cast<std::size_t>(k));
-    for (const int angle : {theta, phi, psi, alpha, beta, gamma}) p[angle] = to_rad(p[angle]);
-    const SensorModel truth = SensorModel::from_parameters(p);
+    sensor::ParameterVector p;
+    for (int k = 0; k < sensor::kSensorParameters; ++k) p[k] = rig[i].at(static_cast<std::size_t>(k));
+    for (const int angle :
+         {sensor::theta, sensor::phi, sensor::psi, sensor::alpha, sensor::beta, sensor::gamma})
+      p[angle] = to_rad(p[angle]);
+    const sensor::SensorModel truth = sensor::SensorModel::from_parameters(p);
     double sum = 0;
     for (const Pose& pose : table.poses) sum += std::pow(truth.correct(pose.y_nT.at(i)).norm() - f_nT, 2);
     out.at(i) = std::sqrt(sum / static_cast<double>(table.poses.size()));
@@ -52,7 +56,7 @@ TEST(TwoStepFit, ReachesTheNoiseFloorOnThePapersSimulation) {
                                            {Noise::Kind::uniform, 1.0, 0.0}, 3);
   FitOptions options = two_step_options();
   options.declination_rad = to_rad(-5.0);
-  const auto report = fit(table, options);
+  const auto report = method_choice::fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
   const auto floor = floor_of(table, testing::table3_rig(), site.f_nT);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -62,7 +66,7 @@ TEST(TwoStepFit, ReachesTheNoiseFloorOnThePapersSimulation) {
     for (std::size_t k = 0; k < 12; ++k) {
       const double limit = k >= 3 && k <= 5 ? 1e-5 : k >= 6 && k <= 8 ? 0.1 : 0.002;
       EXPECT_NEAR(got.at(k), testing::table3_rig().at(i).at(k), limit)
-          << "s" << i + 1 << ' ' << kParameterNames.at(k);
+          << "s" << i + 1 << ' ' << sensor::kParameterNames.at(k);
     }
   }
   EXPECT_NEAR(to_deg(report->site.inclination_rad), 60, 0.002);
@@ -72,20 +76,20 @@ TEST(TwoStepFit, FindsTheTableFrameFromTiltedPosesWithinItsUncertainty) {
   const RigTruth rig = testing::table6_rig();
   const PoseTable table = testing::measure(rig, {53'907.7, 60, -5}, testing::standard_run(121, 5), 36,
                                            {Noise::Kind::gaussian, 0.3, 0.1}, 17);
-  const auto report = fit(table, two_step_options());
+  const auto report = method_choice::fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_TRUE(report->calibration.accepted_by_checks)
-      << (fit_reasons(*report).empty() ? "" : fit_reasons(*report).front());
+      << (report::fit_reasons(*report).empty() ? "" : report::fit_reasons(*report).front());
   EXPECT_NEAR(report->site.declination_rad, to_rad(-5), 4.5 * report->site.declination_sd_rad);
   EXPECT_LT(to_deg(report->site.declination_sd_rad), 0.05);
   for (std::size_t i = 0; i < 4; ++i) {
     const auto got = in_table_units(report->calibration.sensors.at(i));
-    for (int k = 0; k < kSensorParameters; ++k) {
-      const auto at = static_cast<Eigen::Index>(i) * kSensorParameters + k;
+    for (int k = 0; k < sensor::kSensorParameters; ++k) {
+      const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters + k;
       double sd = std::sqrt(report->calibration.covariance(at, at));
-      if (k <= psi || k >= alpha) sd = to_deg(sd);
+      if (k <= sensor::psi || k >= sensor::alpha) sd = to_deg(sd);
       EXPECT_NEAR(got.at(static_cast<std::size_t>(k)), rig.at(i).at(static_cast<std::size_t>(k)), 4.5 * sd)
-          << "s" << i + 1 << ' ' << kParameterNames.at(static_cast<std::size_t>(k));
+          << "s" << i + 1 << ' ' << sensor::kParameterNames.at(static_cast<std::size_t>(k));
     }
   }
   ASSERT_TRUE(report->held_out);
@@ -96,7 +100,7 @@ TEST(TwoStepFit, PosesAboutOneAxisAreRefused) {
   const PoseTable table =
       testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
                        {Noise::Kind::gaussian, 0.3, 0.1}, 1);
-  const auto report = fit(table, two_step_options());
+  const auto report = method_choice::fit(table, two_step_options());
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::refused);
   EXPECT_THAT(report.error().message, HasSubstr("lie on a plane"));
@@ -108,7 +112,7 @@ TEST(TwoStepFit, AFieldAlongZOrHorizontalIsRefusedWithTheConditionNumber) {
     const PoseTable table =
         testing::measure(testing::table6_rig(), {50'000, inclination_deg, -5}, testing::standard_run(121, 1),
                          36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
-    const auto report = fit(table, two_step_options());
+    const auto report = method_choice::fit(table, two_step_options());
     ASSERT_FALSE(report) << inclination_deg;
     EXPECT_THAT(report.error().message, HasSubstr("condition number"));
   }
@@ -117,16 +121,16 @@ TEST(TwoStepFit, AFieldAlongZOrHorizontalIsRefusedWithTheConditionNumber) {
 TEST(TwoStepFit, WithoutStandardPosesOrFieldItSaysWhatIsMissing) {
   PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 1),
                                      0, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
-  EXPECT_THAT(fit(table, two_step_options()).error().message, HasSubstr("standard"));
+  EXPECT_THAT(method_choice::fit(table, two_step_options()).error().message, HasSubstr("standard"));
   for (Pose& pose : table.poses) pose.f_nT.reset();
-  EXPECT_THAT(fit(table, two_step_options()).error().remedy, HasSubstr("--field"));
+  EXPECT_THAT(method_choice::fit(table, two_step_options()).error().remedy, HasSubstr("--field"));
 }
 
 TEST(TwoStepFit, FewerThanNinePosesAreRefused) {
   PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 1),
                                      36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
   table.poses.resize(8);
-  EXPECT_THAT(fit(table, two_step_options()).error().message, HasSubstr("8 poses"));
+  EXPECT_THAT(method_choice::fit(table, two_step_options()).error().message, HasSubstr("8 poses"));
 }
 
 /// A southern site: the field points up.
@@ -134,7 +138,7 @@ TEST(TwoStepFit, TheSignOfBzIsFound) {
   const PoseTable table =
       testing::measure(testing::table6_rig(), {50'000, -55, 20}, testing::standard_run(121, 3), 36,
                        {Noise::Kind::gaussian, 0.3, 0.05}, 2);
-  const auto report = fit(table, two_step_options());
+  const auto report = method_choice::fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_NEAR(to_deg(report->site.inclination_rad), -55, 0.2);
   EXPECT_NEAR(to_deg(report->site.declination_rad), 20, 0.2);
@@ -148,7 +152,7 @@ TEST(TwoStepFit, ReversedAzimuthIsNoticed) {
   for (Pose& pose : table.poses) pose.azimuth_rad = -*pose.azimuth_rad;
   FitOptions options = two_step_options();
   options.inclination_rad = to_rad(60.0);
-  const auto report = fit(table, options);
+  const auto report = method_choice::fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_FALSE(report->calibration.accepted_by_checks);
 }
@@ -166,14 +170,14 @@ TEST(TwoStepFit, EveryTurnedAndMirroredSensorIsRecognised) {
       for (int a = 0; a < 3; ++a)
         wiring(a, order.at(static_cast<std::size_t>(a))) = (signs >> a & 1) != 0 ? -1 : 1;
       for (Pose& pose : table.poses) pose.y_nT[2] = wiring * pose.y_nT[2];
-      const auto report = fit(table, two_step_options());
+      const auto report = method_choice::fit(table, two_step_options());
       ASSERT_TRUE(report) << report.error().text();
       EXPECT_EQ(report->calibration.sensors[2].mounting, Eigen::Matrix3d(wiring.transpose()));
       EXPECT_LT(report->after.tensor_rmse_nT_per_m.xx, 30);
-      EXPECT_EQ(fit_reasons(*report).empty(), wiring.isIdentity());
+      EXPECT_EQ(report::fit_reasons(*report).empty(), wiring.isIdentity());
     }
   }
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -7,7 +7,7 @@
 
 #include "tests/blind/hidden_run.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 /// A run whose dwells show no spread in every second pose.
@@ -89,4 +89,4 @@ TEST(Quantisation, ReadingsWithoutSpreadOnNoGridShowNone) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -8,7 +8,7 @@
 #include "calib/sensor/step1.h"
 #include "proto/number.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit {
 namespace {
 
 /// Counts, one column a window of two seconds, in their order.
@@ -32,7 +32,7 @@ Eigen::Matrix3Xd static_means() {
 /// The constant magnitude in counts.
 constexpr double kRadius = 4070;
 
-double residual_rms(const ScalarCalibration& sensor, const Eigen::Matrix3Xd& y) {
+double residual_rms(const sensor::ScalarCalibration& sensor, const Eigen::Matrix3Xd& y) {
   const Eigen::ArrayXd left = sensor.correct(y).colwise().norm().transpose().array() - kRadius;
   return std::sqrt(left.square().mean());
 }
@@ -40,7 +40,7 @@ double residual_rms(const ScalarCalibration& sensor, const Eigen::Matrix3Xd& y) 
 TEST(RealSensor, AnOffsetFarOutsideTheSphereIsFound) {
   const Eigen::Matrix3Xd y = static_means();
   ASSERT_EQ(y.cols(), 137);
-  const auto fit = scalar_calibration(y, Eigen::VectorXd::Constant(y.cols(), kRadius));
+  const auto fit = sensor::scalar_calibration(y, Eigen::VectorXd::Constant(y.cols(), kRadius));
   ASSERT_TRUE(fit) << fit.error().text();
   // 1.557e-4 is the least that nine parameters can leave on these data (7.8 nT on a sphere of 50 000 nT): the
   // linear fit loses nothing to the maximum of the likelihood.
@@ -58,10 +58,10 @@ TEST(RealSensor, ItsOffsetDrifts) {
   const Eigen::Vector3d drift{0.557, -1.100, 0.946};
   for (Eigen::Index k = 0; k < y.cols(); ++k)
     y.col(k) -= drift * (static_cast<double>(k) / static_cast<double>(y.cols()) - 0.5);
-  const auto fit = scalar_calibration(y, Eigen::VectorXd::Constant(y.cols(), kRadius));
+  const auto fit = sensor::scalar_calibration(y, Eigen::VectorXd::Constant(y.cols(), kRadius));
   ASSERT_TRUE(fit) << fit.error().text();
   EXPECT_NEAR(residual_rms(*fit, y) / kRadius, 1.424e-4, 0.003e-4);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit

@@ -13,10 +13,10 @@
 /// AngleAxis, not with the code under test.
 namespace mgtd::calib::testing {
 
-using Rig = std::array<SensorModel, kSensors>;
+using Rig = std::array<sensor::SensorModel, kSensors>;
 
-inline SensorModel sensor(double theta_deg, double phi_deg, double psi_deg, Eigen::Vector3d c,
-                          Eigen::Vector3d i_nT, double alpha_deg, double beta_deg, double gamma_deg) {
+inline sensor::SensorModel sensor(double theta_deg, double phi_deg, double psi_deg, Eigen::Vector3d c,
+                                  Eigen::Vector3d i_nT, double alpha_deg, double beta_deg, double gamma_deg) {
   return {.theta_rad = to_rad(theta_deg),
           .phi_rad = to_rad(phi_deg),
           .psi_rad = to_rad(psi_deg),
@@ -53,7 +53,7 @@ struct Simulation {
   double f_sd_nT = 0;                                    ///< error of the scalar reference
   double f_drift_nT = 0;                                 ///< amplitude of the field's change over the run
   Eigen::Matrix3d G_nT_per_m = Eigen::Matrix3d::Zero();  ///< site gradient
-  Geometry geometry{};
+  sensor::Geometry geometry{};
   bool with_angles = true, with_f = true;
 };
 

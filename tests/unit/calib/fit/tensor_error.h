@@ -41,19 +41,21 @@ inline Components tensor_mean_square(const Rig& estimate, const Rig& truth,
 /// The same expected from a covariance of the 48 parameters at the truth.
 inline Components expected_mean_square(const Eigen::MatrixXd& covariance, const Rig& truth,
                                        const std::vector<Eigen::Vector3d>& fields, double d_m = 0.4) {
-  constexpr int kAll = kSensors * kSensorParameters;
+  constexpr int kAll = kSensors * sensor::kSensorParameters;
   Components sum = Components::Zero();
   for (const Eigen::Vector3d& b : fields) {
     Eigen::Matrix<double, 6, kAll> J;
     for (int j = 0; j < kAll; ++j) {
-      const auto s = static_cast<std::size_t>(j / kSensorParameters);
-      const int p = j % kSensorParameters;
-      const double h = p >= ix && p <= iz ? 1.0 : 1e-6;
+      const auto s = static_cast<std::size_t>(j / sensor::kSensorParameters);
+      const int p = j % sensor::kSensorParameters;
+      const double h = p >= sensor::ix && p <= sensor::iz ? 1.0 : 1e-6;
       std::array<Eigen::Vector3d, kSensors> change{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                                    Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-      const ParameterVector step = h * ParameterVector::Unit(p);
-      const SensorModel up = SensorModel::from_parameters(truth[s].parameters() + step, truth[s].mounting);
-      const SensorModel down = SensorModel::from_parameters(truth[s].parameters() - step, truth[s].mounting);
+      const sensor::ParameterVector step = h * sensor::ParameterVector::Unit(p);
+      const sensor::SensorModel up =
+          sensor::SensorModel::from_parameters(truth[s].parameters() + step, truth[s].mounting);
+      const sensor::SensorModel down =
+          sensor::SensorModel::from_parameters(truth[s].parameters() - step, truth[s].mounting);
       const Eigen::Vector3d y = truth[s].predict(b);
       change[s] = (up.correct(y) - down.correct(y)) / (2 * h);
       J.col(j) = tensor_of(change, d_m).matrix();

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 using testing::HasSubstr;
@@ -80,4 +80,4 @@ TEST(Cholesky, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 TEST(InverseByLu, PivotsWhereTheDiagonalIsZero) {
@@ -13,4 +13,4 @@ TEST(InverseByLu, PivotsWhereTheDiagonalIsZero) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 TEST(SolveByLdlt, OfARegularMatrixIsTheSolution) {
@@ -22,4 +22,4 @@ TEST(SolveByLdlt, ADirectionWithoutAPivotGetsNothing) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 const Eigen::MatrixXd kCovariance{{4, 3}, {3, 9}};
@@ -28,4 +28,4 @@ TEST(NormalDraws, TheSameSeedGivesTheSameAndAnotherSeedOthers) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 /// Of (x, y, z): x and y hang together, z stands alone.
@@ -26,4 +26,4 @@ TEST(Propagation, IsTheSameForMatricesOfRunTimeSize) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 /// A constant and a slope over four places.
@@ -56,4 +56,4 @@ TEST(TriangularisingRotation, LeavesNothingBelowTheTriangle) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

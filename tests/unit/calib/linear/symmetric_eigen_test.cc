@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::linear {
 namespace {
 
 /// Eigenvalues 1, 3 and 9; above the diagonal stands what must not be read.
@@ -29,4 +29,4 @@ TEST(PrincipalAxes, AreTheEigenvectorsOfAScatter) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::linear

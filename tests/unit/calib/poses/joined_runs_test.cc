@@ -43,13 +43,14 @@ PoseTable timeless(PoseTable table) {
 
 TEST(JoinedRuns, TheLaterRunGoesOnInTimeAndNumber) {
   const PoseTable a = run_at(0, "a"), b = run_at(3600, "b");
-  const auto both = joined(a, b);
+  const auto both = poses::joined(a, b);
   ASSERT_TRUE(both) << both.error().text();
   ASSERT_EQ(both->poses.size(), 6U);
   std::set<int> numbers;
   for (const Pose& pose : both->poses) {
     numbers.insert(pose.number);
-    EXPECT_DOUBLE_EQ(RunTime::of(*both).hours(pose), *pose.t_s / 3600) << "t_s and t_utc tell the same";
+    EXPECT_DOUBLE_EQ(poses::RunTime::of(*both).hours(pose), *pose.t_s / 3600)
+        << "t_s and t_utc tell the same";
   }
   EXPECT_EQ(numbers, (std::set<int>{1, 2, 3, 4, 5, 6}));
   EXPECT_DOUBLE_EQ(*both->poses[3].t_s, 3610);
@@ -58,7 +59,7 @@ TEST(JoinedRuns, TheLaterRunGoesOnInTimeAndNumber) {
 }
 
 TEST(JoinedRuns, WhichCameFirstTellsTheClockAndNotTheOrderOfTheWords) {
-  const auto both = joined(run_at(3600, "late"), run_at(0, "early"));
+  const auto both = poses::joined(run_at(3600, "late"), run_at(0, "early"));
   ASSERT_TRUE(both);
   EXPECT_EQ(*both->poses.front().f_nT, 0);
   EXPECT_EQ(*both->poses.back().f_nT, 3602);
@@ -67,27 +68,27 @@ TEST(JoinedRuns, WhichCameFirstTellsTheClockAndNotTheOrderOfTheWords) {
 
 TEST(JoinedRuns, WithoutAbsoluteTimeTheSecondMustGoOn) {
   const PoseTable a = without_utc(run_at(0, "a"), 0);
-  EXPECT_TRUE(joined(a, without_utc(run_at(0, "b"), 600)));
-  const auto again = joined(a, a);
+  EXPECT_TRUE(poses::joined(a, without_utc(run_at(0, "b"), 600)));
+  const auto again = poses::joined(a, a);
   ASSERT_FALSE(again);
   EXPECT_NE(again.error().message.find("overlap"), std::string::npos);
   EXPECT_FALSE(again.error().remedy.empty());
 }
 
-TEST(JoinedRuns, TheSameRunTwiceIsRefused) { EXPECT_FALSE(joined(run_at(0, "a"), run_at(0, "a"))); }
+TEST(JoinedRuns, TheSameRunTwiceIsRefused) { EXPECT_FALSE(poses::joined(run_at(0, "a"), run_at(0, "a"))); }
 
 TEST(JoinedRuns, RunsWithoutAnyTimeStandAsGiven) {
-  const auto both = joined(timeless(run_at(0, "a")), timeless(run_at(3600, "b")));
+  const auto both = poses::joined(timeless(run_at(0, "a")), timeless(run_at(3600, "b")));
   ASSERT_TRUE(both);
   EXPECT_EQ(*both->poses.front().f_nT, 0);
 }
 
 TEST(JoinedRuns, OneThatTellsItsTimeAndOneThatDoesNotAreRefused) {
-  EXPECT_FALSE(joined(run_at(0, "a"), timeless(run_at(3600, "b"))));
-  EXPECT_FALSE(joined(run_at(0, "a"), without_utc(run_at(0, "b"), 900)));
+  EXPECT_FALSE(poses::joined(run_at(0, "a"), timeless(run_at(3600, "b"))));
+  EXPECT_FALSE(poses::joined(run_at(0, "a"), without_utc(run_at(0, "b"), 900)));
 }
 
-TEST(JoinedRuns, ARunWithoutPosesIsRefused) { EXPECT_FALSE(joined(run_at(0, "a"), PoseTable{})); }
+TEST(JoinedRuns, ARunWithoutPosesIsRefused) { EXPECT_FALSE(poses::joined(run_at(0, "a"), PoseTable{})); }
 
 }  // namespace
 }  // namespace mgtd::calib::testing

@@ -10,7 +10,7 @@
 #include "proto/units.h"
 #include "tests/support/paper_rigs.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::poses {
 namespace {
 
 using ::testing::HasSubstr;
@@ -260,4 +260,4 @@ TEST(PoseTable, TheHashIsOfTheContent) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::poses

@@ -8,16 +8,17 @@
 #include "calib/report/size_text.h"
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::report {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST(Sentence, NotesBeginWithACapitalUnlessWithAName) {
-  ExplainReport report;
-  report.notes = {StepsFollowCurve{}, ExcessRemains{"axis.cubic", 0.3}, NoiseOverstated{"s3.z", 0.5},
-                  ExcessRemains{"lamp", 0.2}};
+  criticism::search::ExplainReport report;
+  report.notes = {criticism::search::StepsFollowCurve{}, criticism::search::ExcessRemains{"axis.cubic", 0.3},
+                  criticism::search::NoiseOverstated{"s3.z", 0.5},
+                  criticism::search::ExcessRemains{"lamp", 0.2}};
   report.candidates.push_back({.effect = "lamp"});
   EXPECT_THAT(
       sentence(report),
@@ -45,7 +46,7 @@ TEST(Sentence, AnEffectThatWouldBeSeenAtNoSizeIsToldSo) {
 }
 
 TEST(Sentence, SaysWhatWasLeftOut) {
-  ExplainReport report;
+  criticism::search::ExplainReport report;
   EXPECT_THAT(sentence(report), Not(HasSubstr("left out")));
   report.outliers = {{5, "s4.z", -49.98, "nT", 107}};
   EXPECT_THAT(sentence(report),
@@ -59,13 +60,13 @@ TEST(Sentence, SaysWhatWasLeftOut) {
 /// The readings tell each pose its own attitude: what is gained are the angles.
 TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
   const auto with_table_sd_deg = [](double sd_deg) {
-    auto fit = std::make_shared<JointFit>();
+    auto fit = std::make_shared<fit::joint::JointFit>();
     fit->table_sd_rad = to_rad(sd_deg);
     return fit;
   };
-  ExplainReport report;
+  criticism::search::ExplainReport report;
   report.fit = with_table_sd_deg(0.35);
-  Round round{.added = {.effect = "table.wobble", .where = "table"}};
+  criticism::search::Round round{.added = {.effect = "table.wobble", .where = "table"}};
   round.fit = with_table_sd_deg(0.1);
   report.rounds = {round};
   EXPECT_THAT(sentence(report),
@@ -74,10 +75,11 @@ TEST(Sentence, OfAnEffectOfTheTableTheAnglesAreTold) {
 
 TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
   const auto told = [](double before_nT, double after_nT) {
-    Round round{.added = {.effect = "site.step", .where = "site"}};
+    criticism::search::Round round{.added = {.effect = "site.step", .where = "site"}};
     round.rms_before_nT = before_nT, round.rms_after_nT = after_nT;
-    round.model = {*make_effect("axis.offset.step@s1.y,ts=0.5"), *make_effect("site.step,ts=0.25")};
-    ExplainReport report;
+    round.model = {*effects::library::make_effect("axis.offset.step@s1.y,ts=0.5"),
+                   *effects::library::make_effect("site.step,ts=0.25")};
+    criticism::search::ExplainReport report;
     report.rounds = {round};
     return sentence(report);
   };
@@ -89,11 +91,11 @@ TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
 
 /// A law of no library: names that take away a tenth of it are no causes.
 TEST(Sentence, SaysWhenWhatWasFoundIsTheLesserPart) {
-  ExplainReport report;
-  report.finding = Finding::partial;
+  criticism::search::ExplainReport report;
+  report.finding = criticism::search::Finding::partial;
   report.noise.known = true;
   report.noise_nT = 0.02;
-  Round round{.added = {.effect = "axis.offset.step", .where = "s1.y"}};
+  criticism::search::Round round{.added = {.effect = "axis.offset.step", .where = "s1.y"}};
   round.rms_before_nT = 0.0911, round.rms_after_nT = 0.0809;
   report.rounds = {round};
   EXPECT_THAT(sentence(report), HasSubstr("takes away only 22 % of what is beyond the noise"));
@@ -104,4 +106,4 @@ TEST(Sentence, SaysWhenWhatWasFoundIsTheLesserPart) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::report

@@ -5,7 +5,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 namespace {
 
 SensorModel table3_sensor1() {
@@ -45,4 +45,4 @@ TEST(SensorModel, ParametersRoundTrip) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

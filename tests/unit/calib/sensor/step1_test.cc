@@ -10,7 +10,7 @@
 #include "proto/units.h"
 #include "tests/support/paper_rigs.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::sensor {
 namespace {
 
 using ::testing::HasSubstr;
@@ -37,7 +37,7 @@ PoseTable clean() {
 
 void expect_truth(const ScalarCalibration& got, const testing::SensorTruth& truth, double relative,
                   double offset_nT) {
-  const SensorModel s = sensor_from(got.K, got.offset_nT, Eigen::Matrix3d::Identity());
+  const SensorModel s = fit::sensor_from(got.K, got.offset_nT, Eigen::Matrix3d::Identity());
   EXPECT_NEAR(to_deg(s.theta_rad), truth[0], to_deg(relative));
   EXPECT_NEAR(to_deg(s.phi_rad), truth[1], to_deg(relative));
   EXPECT_NEAR(to_deg(s.psi_rad), truth[2], to_deg(relative));
@@ -172,4 +172,4 @@ TEST(Step1, TheSimplifiedMethodLeavesHundredsOfNanotesla) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::sensor

@@ -6,7 +6,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 namespace {
 
 TEST(ChiSquare, AgreesWithClosedForms) {
@@ -51,4 +51,4 @@ TEST(ChiSquare, LogarithmDoesNotUnderflow) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

@@ -9,7 +9,7 @@
 
 #include "calib/stats/chi_square.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 namespace {
 
 TEST(FDistribution, IsTheClosedFormForTwoDegreesOfFreedom) {
@@ -49,4 +49,4 @@ TEST(FDistribution, WithoutALimitToTheNoiseIsTheChiSquare) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

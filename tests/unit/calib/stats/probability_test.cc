@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mgtd::calib {
+namespace mgtd::calib::stats {
 namespace {
 
 TEST(Probability, IsNeverZeroAndNeverAboveOne) {
@@ -26,4 +26,4 @@ TEST(Probability, ReadsAsPartOfASentence) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::stats

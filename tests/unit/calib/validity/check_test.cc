@@ -7,7 +7,7 @@
 #include "calib/effects/library/library.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 using ::testing::HasSubstr;
@@ -15,8 +15,8 @@ using testing::Simulation;
 
 Simulation rig() { return {.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05}; }
 
-Calibration calibrated(const Simulation& sim, std::uint64_t seed) {
-  return fit(simulate(sim, 36, 121, seed), {})->calibration;
+calibration::Calibration calibrated(const Simulation& sim, std::uint64_t seed) {
+  return fit::method_choice::fit(simulate(sim, 36, 121, seed), {})->calibration;
 }
 
 /// A dozen poses over the sphere.
@@ -42,7 +42,7 @@ TEST(Check, RemountedArrayIsStillValid) {
   later.rig = turned(later.rig, Q).sensors;
   const auto report = check(calibrated(rig(), 7), dozen(later, 8), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
+  EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
 }
 
 TEST(Check, SiteMayBeAnotherOne) {
@@ -52,13 +52,14 @@ TEST(Check, SiteMayBeAnotherOne) {
   later.G_nT_per_m = -0.5 * testing::gradient_50();
   later.f_nT = 48'000;
   later.inclination_rad = to_rad(-30);
-  FitOptions with;
-  with.effects = {*make_effect("site.gradient")};
-  const auto report = check(fit(simulate(before, 36, 121, 31), with)->calibration, dozen(later, 32), {});
+  fit::FitOptions with;
+  with.effects = {*effects::library::make_effect("site.gradient")};
+  const auto report =
+      check(fit::method_choice::fit(simulate(before, 36, 121, 31), with)->calibration, dozen(later, 32), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
+  EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
   // Without the gradient in the model the poses do not follow it; added at the command it is accounted for.
-  const Calibration plain = calibrated(rig(), 33);
+  const calibration::Calibration plain = calibrated(rig(), 33);
   EXPECT_FALSE(check(plain, dozen(later, 34), {})->valid);
   EXPECT_TRUE(check(plain, dozen(later, 34), with)->valid);
 }
@@ -70,7 +71,7 @@ TEST(Check, ScatterThatNoParameterExplainsIsNotValid) {
   ASSERT_TRUE(report);
   EXPECT_FALSE(report->valid);
   EXPECT_NEAR(report->excess, 4, 1);
-  EXPECT_THAT(validity_reasons(*report).front(), HasSubstr("scatter"));
+  EXPECT_THAT(report::validity_reasons(*report).front(), HasSubstr("scatter"));
 }
 
 TEST(Check, DriftOfOneOffsetIsFoundAndNamed) {
@@ -82,7 +83,7 @@ TEST(Check, DriftOfOneOffsetIsFoundAndNamed) {
   ASSERT_EQ(report->change.named.size(), 1U);
   EXPECT_EQ(report->change.named.front().name, "s3 iz");
   EXPECT_NEAR(report->change.named.front().change, 8, 2.5);
-  EXPECT_THAT(validity_reasons(*report).front(), HasSubstr("sensor s3"));
+  EXPECT_THAT(report::validity_reasons(*report).front(), HasSubstr("sensor s3"));
 }
 
 TEST(Check, LackOfFitOfTheOwnRunIsNoNews) {
@@ -96,9 +97,9 @@ TEST(Check, LackOfFitOfTheOwnRunIsNoNews) {
 }
 
 TEST(Check, ACalibrationByTheLinearMethodIsCheckedToo) {
-  FitOptions linear;
-  linear.method = Method::two_step;
-  const auto old = fit(simulate(rig(), 36, 121, 71), linear);
+  fit::FitOptions linear;
+  linear.method = fit::Method::two_step;
+  const auto old = fit::method_choice::fit(simulate(rig(), 36, 121, 71), linear);
   ASSERT_TRUE(old) << old.error().text();
   EXPECT_TRUE(check(old->calibration, dozen(rig(), 72), {})->valid);
   Simulation later = rig();
@@ -109,7 +110,7 @@ TEST(Check, ACalibrationByTheLinearMethodIsCheckedToo) {
 }
 
 TEST(Check, FewPosesSeeLessAndSaySo) {
-  const Calibration old = calibrated(rig(), 61);
+  const calibration::Calibration old = calibrated(rig(), 61);
   const auto offset_seen = [&](int poses) {
     const auto report = check(old, simulate(rig(), 0, poses, 62), {});
     EXPECT_TRUE(report && report->valid) << poses;
@@ -127,12 +128,12 @@ TEST(Check, FewPosesSeeLessAndSaySo) {
 TEST(Check, WithoutAFieldOnlyRatiosOfScaleAreTested) {
   Simulation later = rig();
   later.with_f = false;
-  const Calibration old = calibrated(rig(), 63);
-  for (SensorModel& sensor : later.rig) sensor.scale *= 1.001;  // as good as another field
+  const calibration::Calibration old = calibrated(rig(), 63);
+  for (sensor::SensorModel& sensor : later.rig) sensor.scale *= 1.001;  // as good as another field
   const auto report = check(old, dozen(later, 64), {});
   ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
-  FitOptions known;
+  EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
+  fit::FitOptions known;
   known.field_nT = later.f_nT;
   EXPECT_FALSE(check(old, dozen(later, 64), known)->valid);
 }
@@ -144,8 +145,8 @@ TEST(Check, OneSpoiledPoseIsListedAndDoesNotCondemn) {
   ASSERT_TRUE(report);
   ASSERT_EQ(report->outliers.size(), 1U);
   EXPECT_EQ(report->outliers.front().pose, 6);
-  EXPECT_TRUE(report->valid) << validity_reasons(*report).front();
+  EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

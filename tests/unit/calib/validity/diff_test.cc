@@ -8,7 +8,7 @@
 #include "calib/report/diff_report.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::validity {
 namespace {
 
 using ::testing::HasSubstr;
@@ -16,8 +16,8 @@ using testing::Simulation;
 
 Simulation rig() { return {.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05}; }
 
-Calibration calibrated(const Simulation& sim, std::uint64_t seed) {
-  return fit(simulate(sim, 36, 121, seed), {})->calibration;
+calibration::Calibration calibrated(const Simulation& sim, std::uint64_t seed) {
+  return fit::method_choice::fit(simulate(sim, 36, 121, seed), {})->calibration;
 }
 
 TEST(Diff, SameRigTwiceIsUnchanged) {
@@ -41,15 +41,15 @@ TEST(Diff, NamesTheParameterThatChanged) {
   EXPECT_TRUE(report.changed);
   std::vector<std::string> named;
   for (const ParameterChange& p : report.change.named) named.push_back(p.name);
-  EXPECT_THAT(named, ::testing::UnorderedElementsAre("s2 gamma", "s4 cx")) << conclusion_text(report);
+  EXPECT_THAT(named, ::testing::UnorderedElementsAre("s2 gamma", "s4 cx")) << report::conclusion_text(report);
 }
 
 TEST(Diff, TurnedArrayIsNoChange) {
   Simulation later = rig();
   later.rig = turned(later.rig, testing::passive(to_rad(-75), 2) * testing::passive(to_rad(3), 1)).sensors;
   const DiffReport report = diff(calibrated(rig(), 27), calibrated(later, 28));
-  EXPECT_FALSE(report.changed) << conclusion_text(report);
-  EXPECT_THAT(remarks_of(report).back(), HasSubstr("turn of the whole array"));
+  EXPECT_FALSE(report.changed) << report::conclusion_text(report);
+  EXPECT_THAT(report::remarks_of(report).back(), HasSubstr("turn of the whole array"));
 }
 
 TEST(Diff, GaugesMayDiffer) {
@@ -57,10 +57,10 @@ TEST(Diff, GaugesMayDiffer) {
   Simulation blind = rig();
   blind.with_angles = blind.with_f = false;
   const DiffReport same = diff(calibrated(rig(), 29), calibrated(blind, 30));
-  EXPECT_FALSE(same.changed) << conclusion_text(same);
+  EXPECT_FALSE(same.changed) << report::conclusion_text(same);
   blind.rig[2].offset_nT[0] += 10;
   const DiffReport moved = diff(calibrated(rig(), 29), calibrated(blind, 30));
-  ASSERT_EQ(moved.change.named.size(), 1U) << conclusion_text(moved);
+  ASSERT_EQ(moved.change.named.size(), 1U) << report::conclusion_text(moved);
   EXPECT_EQ(moved.change.named.front().name, "s3 ix");
 }
 
@@ -69,16 +69,17 @@ TEST(Diff, RewiredSensorIsRemarked) {
   later.rig[0].mounting << -1, 0, 0, 0, 1, 0, 0, 0, 1;
   const DiffReport report = diff(calibrated(rig(), 23), calibrated(later, 24));
   EXPECT_TRUE(report.changed);
-  EXPECT_THAT(remarks_of(report), ::testing::Contains(HasSubstr("sensor s1 stands differently")));
+  EXPECT_THAT(report::remarks_of(report), ::testing::Contains(HasSubstr("sensor s1 stands differently")));
 }
 
 TEST(Diff, EffectsAreCompared) {
   Simulation before = rig(), later = rig();
   before.G_nT_per_m = testing::gradient_50();
   later.G_nT_per_m = 1.2 * testing::gradient_50();
-  FitOptions options;
-  options.effects = {*make_effect("site.gradient")};
-  const auto a = fit(simulate(before, 36, 121, 25), options), b = fit(simulate(later, 36, 121, 26), options);
+  fit::FitOptions options;
+  options.effects = {*effects::library::make_effect("site.gradient")};
+  const auto a = fit::method_choice::fit(simulate(before, 36, 121, 25), options),
+             b = fit::method_choice::fit(simulate(later, 36, 121, 26), options);
   ASSERT_TRUE(a && b);
   const DiffReport report = diff(a->calibration, b->calibration);
   EXPECT_TRUE(report.changed);
@@ -87,4 +88,4 @@ TEST(Diff, EffectsAreCompared) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::validity

@@ -7,7 +7,7 @@
 #include "daemon/acquire/clock_report.h"
 #include "tests/unit/daemon/acquire/clock_trial.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 using test::ClockGrid;
@@ -110,4 +110,4 @@ TEST(ClockBound, ARateThatChangesIsFoundWithinSecondsAndFlagged) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -34,14 +34,14 @@ struct Trial {
   std::array<TrialDevice, kSensors> devices;
   double to_s{7200};
   std::uint64_t seed{1};
-  daemon::SamplerConfig config{};
+  daemon::acquire::SamplerConfig config{};
 };
 
 struct TrialResult {
   std::uint64_t epochs{0}, violated{0};
   std::uint64_t flagged{0};  ///< clock_unsettled
   std::uint64_t silent{0};   ///< violated, and not flagged
-  daemon::SamplerHealth health;
+  daemon::acquire::SamplerHealth health;
   double worst_excess_s{0};           ///< of the true skew beyond its bound
   double worst_skew_s{0};             ///< after settling
   double at_1_min_s{0}, at_end_s{0};  ///< the bound
@@ -93,9 +93,9 @@ class TrialStream {
 };
 
 [[nodiscard]] inline TrialResult run_trial(const Trial& trial) {
-  daemon::SamplerConfig config = trial.config;
+  daemon::acquire::SamplerConfig config = trial.config;
   config.rate_hz = 1 / trial.period_s;
-  daemon::Sampler sampler(config);
+  daemon::acquire::Sampler sampler(config);
   std::vector<TrialStream> streams;
   for (int slot = 0; slot < kSensors; ++slot)
     streams.emplace_back(slot, trial.devices.at(static_cast<std::size_t>(slot)), trial.period_s,

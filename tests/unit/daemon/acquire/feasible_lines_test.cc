@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 FeasibleLines wide() {
@@ -75,4 +75,4 @@ TEST(FeasibleLines, TheTruthStaysInsideHoweverManyCornersAreGivenUp) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

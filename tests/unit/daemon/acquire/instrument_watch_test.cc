@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 using ::testing::ElementsAre;
@@ -69,4 +69,4 @@ TEST(InstrumentWatch, NothingWantedJudgesNothing) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 Stamp at(double t_s) { return {Instant{from_seconds(t_s)}, {}}; }
@@ -35,4 +35,4 @@ TEST(LatestInputs, ShowsTheLastReadingAsLongAsItIsFresh) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

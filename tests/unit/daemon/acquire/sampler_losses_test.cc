@@ -8,7 +8,7 @@
 #include "daemon/acquire/sampler.h"
 #include "tests/unit/daemon/acquire/sampler_runs.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 using test::DeviceSim;
@@ -174,4 +174,4 @@ TEST(SamplerLosses, ADeviceThatSendsHalfAsOftenStaysInDoubt) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -5,7 +5,7 @@
 #include "daemon/acquire/sampler.h"
 #include "tests/unit/daemon/serve/streams.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 using test::DeviceSim;
@@ -142,4 +142,4 @@ RC_GTEST_PROP(SamplerProperty, OrderOfReadingTheFourPortsIsIrrelevant, ()) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -13,8 +13,8 @@
 /// These functions feed readings to a sampler and sort what comes out of it.
 namespace mgtd::test {
 
-inline std::vector<EpochOrGap> run(daemon::Sampler& sampler, const std::vector<FieldReading>& readings,
-                                   double silence_after_s = 0) {
+inline std::vector<EpochOrGap> run(daemon::acquire::Sampler& sampler,
+                                   const std::vector<FieldReading>& readings, double silence_after_s = 0) {
   std::vector<EpochOrGap> out;
   for (const FieldReading& r : readings) sampler.push(r, out);
   if (!readings.empty() && silence_after_s > 0) {

@@ -8,7 +8,7 @@
 #include "daemon/acquire/sampler.h"
 #include "tests/unit/daemon/serve/streams.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 using test::DeviceSim;
@@ -89,4 +89,4 @@ TEST(SamplerSkew, ATimerThatBeatsIsLearntInFiveMinutes) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -5,7 +5,7 @@
 
 #include "tests/unit/daemon/acquire/sampler_runs.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 using test::DeviceSim;
@@ -207,4 +207,4 @@ TEST(Sampler, FlagsTemperatureAndLatencyReachTheEpoch) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::acquire {
 namespace {
 
 /// Readings of a sensor with 0.3 nT of noise, rounded to `resolution_nT`.
@@ -67,4 +67,4 @@ TEST(StuckSensor, OneAxisThatRepeatsIsNoStandstill) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::acquire

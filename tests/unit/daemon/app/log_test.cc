@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 namespace {
 
 using ::testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST_F(QuietLogTest, OneDeviceDoesNotSilenceAnother) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

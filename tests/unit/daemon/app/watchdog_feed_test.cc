@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::app {
 namespace {
 
 Instant at(double s) { return Instant{from_seconds(s)}; }
@@ -35,4 +35,4 @@ TEST(WatchdogFeed, StarvesWhenTheDataStandStill) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::app

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 TEST(GapLine, GapsThatFollowEachOtherAreOne) {
@@ -27,4 +27,4 @@ TEST(GapLine, SamplesBetweenThemAreNotCalledMissing) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

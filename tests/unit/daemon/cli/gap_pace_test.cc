@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 Instant at(int seconds) { return Instant{} + from_seconds(500 + seconds); }
@@ -41,4 +41,4 @@ TEST(GapPace, TheNextGapBeginsAnew) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 std::string complaint(const CLI::Validator& validator, std::string given) { return validator(given); }
@@ -30,4 +30,4 @@ TEST(InRange, WhatIsNoNumberIsInNoRange) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

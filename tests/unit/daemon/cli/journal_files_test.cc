@@ -10,7 +10,7 @@
 #include "proto/raw_log.h"
 #include "tests/support/child_process.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 using ::testing::ElementsAre;
@@ -86,4 +86,4 @@ TEST_F(JournalFiles, WhatCannotBeReadIsNotTakenForAnEmptyJournal) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -6,7 +6,7 @@
 
 #include "daemon/cli/command.h"
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kReplaced = "run-\xEF\xBF\xBD.csv";  // U+FFFD
@@ -29,4 +29,4 @@ TEST(PrintJson, AnErrorThatNamesAPathWhichIsNotUtf8IsPrinted) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

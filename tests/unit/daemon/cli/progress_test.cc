@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 using testing::HasSubstr;
@@ -61,4 +61,4 @@ TEST(Progress, DurationsReadAsAPersonSaysThem) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

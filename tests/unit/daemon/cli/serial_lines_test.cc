@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 using ::testing::ElementsAre;
@@ -45,4 +45,4 @@ TEST(SerialLines, ComesFromWhatEachDriverIsTold) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::cli {
+namespace mgtd::daemon::cli {
 namespace {
 
 TEST(WorkProgress, ABarWithTheTimeLeftWhereTheShareIsKnown) {
@@ -34,4 +34,4 @@ TEST(WorkProgress, TheResultOfTheWorkIsHandedOn) {
 }
 
 }  // namespace
-}  // namespace mgtd::cli
+}  // namespace mgtd::daemon::cli

@@ -8,7 +8,7 @@
 
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::config {
 namespace {
 
 using testing::Contains;
@@ -176,4 +176,4 @@ TEST(Config, AnEmptyFileIsAConfigurationWithoutInstruments) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::config

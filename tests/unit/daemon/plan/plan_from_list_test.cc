@@ -10,7 +10,7 @@
 #include "daemon/plan/run_plan_json.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 using ::testing::HasSubstr;
@@ -21,7 +21,7 @@ drivers::TableLimits limits() {
 
 /// As mgt run start --poses does it: read, sent as JSON, read by the daemon, planned.
 Result<RunPlan> plan_of(const std::string& text, const PlanOptions& options = {}) {
-  const auto list = calib::read_pose_list(text, "poses.csv");
+  const auto list = calib::poses::read_pose_list(text, "poses.csv");
   if (!list) return tl::unexpected(list.error());
   RunRequest request;
   request.list = "poses.csv";
@@ -47,7 +47,7 @@ TEST(ListedPlan, WhatMgtNextWritesIsARun) {
   first.dwell_s = 6;
   first.since_stop_s = 30;
   const auto plan =
-      plan_of(calib::pose_list({.measurement = {}, .by_the_rig = true, .poses = {first, second}}));
+      plan_of(calib::report::pose_list({.measurement = {}, .by_the_rig = true, .poses = {first, second}}));
   ASSERT_TRUE(plan) << plan.error().text();
   ASSERT_EQ(plan->poses.size(), 2U);
   EXPECT_EQ(plan->poses[0].number, 1);
@@ -65,7 +65,7 @@ TEST(ListedPlan, WhatMgtNextWritesIsARun) {
 
 TEST(ListedPlan, WhatAHandHasToDoComesWithThePose) {
   const std::string action = "a heat pulse, slow: warm the heads by 5 degC and let them cool again";
-  const auto plan = plan_of(calib::pose_list(
+  const auto plan = plan_of(calib::report::pose_list(
       {.measurement = {.action = action}, .by_the_rig = false, .poses = {pose(0, 0, 0), pose(10, 0, 0)}}));
   ASSERT_TRUE(plan) << plan.error().text();
   EXPECT_EQ(plan->poses[0].note, "a heat pulse; slow: warm the heads by 5 degC and let them cool again");
@@ -116,4 +116,4 @@ TEST(ListedPlan, PosesAndSetsExcludeOneAnother) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 /// A seed that stands in a run file gives that run's plan, with every standard library and in every version.
@@ -18,4 +18,4 @@ TEST(RandomSource, MakesTheseChoicesFromThisSeed) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

@@ -13,7 +13,7 @@
 #include "daemon/plan/run_plan_json.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::plan {
 namespace {
 
 using drivers::TableLimits;
@@ -234,4 +234,4 @@ TEST(RunPlan, TextThatIsNoPlanIsRefused) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::plan

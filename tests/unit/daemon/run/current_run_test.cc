@@ -5,7 +5,7 @@
 
 #include "daemon/plan/run_plan.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 /// A run whose every action is answered at once with an event, as a table does that refuses an order.
@@ -21,7 +21,7 @@ struct Answered {
     inside = false;
   }
   void begin() {
-    RunPlan plan;
+    plan::RunPlan plan;
     plan.poses.resize(3);
     run.begin({}, plan, Stamp{});
   }
@@ -60,4 +60,4 @@ TEST(CurrentRun, NothingReachesARunThatWasForgotten) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

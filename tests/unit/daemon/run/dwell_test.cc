@@ -7,7 +7,7 @@
 
 #include "tests/unit/daemon/serve/streams.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using test::stamp_at;
@@ -185,4 +185,4 @@ TEST(Dwell, EndsByDataOrAtLastByTime) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

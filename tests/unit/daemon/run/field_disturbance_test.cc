@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr double kRate_hz = 50, kNoise_nT = 0.3;
@@ -138,4 +138,4 @@ TEST(StillFieldTest, ABlockThatIsMostlyMissingCountsAsNone) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 constexpr double kRate_hz = 50, kNoise_nT = 0.3;
@@ -85,4 +85,4 @@ TEST(FieldGuard, ALevelIsHeldAgainstThatOfThePoseBefore) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -5,12 +5,12 @@
 
 #include "tests/unit/daemon/run/run_bench.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using ::testing::HasSubstr;
 
-RunPlan plan() { return test::bench_plan(3); }
+plan::RunPlan plan() { return test::bench_plan(3); }
 
 TEST(HandEntry, AsksForNothingOnATableWithMotors) {
   HandEntry hands(false, plan(), {});
@@ -21,7 +21,7 @@ TEST(HandEntry, AsksForNothingOnATableWithMotors) {
 
 TEST(HandEntry, AFarEntryIsAskedForAgainAndStandsTheSecondTime) {
   HandEntry hands(true, plan(), {});
-  const PlannedPose pose = plan().poses[0];
+  const plan::PlannedPose pose = plan().poses[0];
   ASSERT_TRUE(hands.ask_before(pose));
   const TableAngles wrong{to_rad(140), 0, 0};  // 40 deg are asked for
   EXPECT_FALSE(hands.enter(wrong, pose));
@@ -34,7 +34,7 @@ TEST(HandEntry, AFarEntryIsAskedForAgainAndStandsTheSecondTime) {
 
 TEST(HandEntry, APauseForgetsTheScalesAndRedoKeepsThePoseBefore) {
   HandEntry hands(true, plan(), {});
-  const PlannedPose pose = plan().poses[1];
+  const plan::PlannedPose pose = plan().poses[1];
   ASSERT_TRUE(hands.ask_before(pose));
   ASSERT_TRUE(hands.enter(pose.target, pose));
   hands.paused();
@@ -45,8 +45,8 @@ TEST(HandEntry, APauseForgetsTheScalesAndRedoKeepsThePoseBefore) {
 }
 
 TEST(HandEntry, AMountingTurnsThePlatform) {
-  RunPlan mounted = plan();
-  for (PlannedPose& pose : mounted.poses) pose.mount = 1;
+  plan::RunPlan mounted = plan();
+  for (plan::PlannedPose& pose : mounted.poses) pose.mount = 1;
   HandEntry hands(false, mounted, {});
   EXPECT_TRUE(hands.used());
   EXPECT_FALSE(hands.way_known()) << "nobody has said how the array is mounted";
@@ -59,4 +59,4 @@ TEST(HandEntry, AMountingTurnsThePlatform) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -8,7 +8,7 @@
 #include "daemon/run/planned_poses.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using drivers::TableLimits;
@@ -37,7 +37,7 @@ TEST(LimitsCost, ATableThatReachesEverythingCostsNothing) {
 
 /// The standard errors are those that the plan of either list gives by itself.
 TEST(LimitsCost, SaysHowMuchLargerEveryErrorIsAndWhatToDo) {
-  const PlanOptions options{.step_deg = 20, .random = 40, .revisits = 4};
+  const plan::PlanOptions options{.step_deg = 20, .random = 40, .revisits = 4};
   const auto cost = limits_cost(options, limits(180, 90, 60), {});
   ASSERT_TRUE(cost) << cost.error().text();
   ASSERT_TRUE(*cost);
@@ -47,12 +47,12 @@ TEST(LimitsCost, SaysHowMuchLargerEveryErrorIsAndWhatToDo) {
   EXPECT_NEAR(c.left_out, 2 / 3.0, 1e-12);
   ASSERT_EQ(c.groups.size(), 5U);
   const auto offsets_nT = [&](const TableLimits& table) {
-    calib::DesignRequest request;
+    calib::design::DesignRequest request;
     request.power = false;
     request.poses = *planned_poses(options, table);
-    const auto report = calib::evaluate_design(request);
+    const auto report = calib::design::evaluate_design(request);
     double sum = 0;
-    for (const calib::Expected& e : report->parameters)
+    for (const calib::design::Expected& e : report->parameters)
       if (e.unit == "nT") sum += e.sd * e.sd;
     return std::sqrt(sum / 12);
   };
@@ -70,4 +70,4 @@ TEST(LimitsCost, SaysHowMuchLargerEveryErrorIsAndWhatToDo) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -6,15 +6,15 @@
 #include "daemon/plan/run_plan.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 TEST(PlannedPoses, AreThoseOfTheRunWithTheirTimes) {
-  const auto poses = planned_poses(Config{});
+  const auto poses = planned_poses(config::Config{});
   ASSERT_TRUE(poses) << poses.error().text();
   ASSERT_EQ(poses->poses.size(), 157U);
   const drivers::TableLimits anywhere{{-3.2, 3.2}, {-1.6, 1.6}, {-3.2, 3.2}};
-  const auto plan = make_plan({}, anywhere);
+  const auto plan = plan::make_plan({}, anywhere);
   ASSERT_TRUE(plan);
   double before = 0;
   for (std::size_t k = 0; k < plan->poses.size(); ++k) {
@@ -29,13 +29,13 @@ TEST(PlannedPoses, AreThoseOfTheRunWithTheirTimes) {
 }
 
 TEST(PlannedPoses, ARunThatCannotBePlannedIsRefused) {
-  Config config;
+  config::Config config;
   config.run.step_deg = 7;
   EXPECT_FALSE(planned_poses(config));
 }
 
 TEST(PlannedPoses, OnlyAttitudesWithinTheLimitsAreProposed) {
-  auto config = load_config(MGTD_SOURCE_DIR "/systemd/mgtd.toml");
+  auto config = config::load_config(MGTD_SOURCE_DIR "/systemd/mgtd.toml");
   ASSERT_TRUE(config);
   const auto left =
       reachable(*config, {{to_rad(270), 0, 0}, {0, 0, to_rad(180)}, {to_rad(45), to_rad(-90), to_rad(90)}});
@@ -44,4 +44,4 @@ TEST(PlannedPoses, OnlyAttitudesWithinTheLimitsAreProposed) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -14,11 +14,11 @@
 #include "calib/design/experiment_design.h"
 #include "daemon/run/planned_poses.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 struct Power {
-  calib::DesignPower all;
+  calib::design::DesignPower all;
   [[nodiscard]] int told_apart() const { return all.pairs - static_cast<int>(all.inseparable.size()); }
   [[nodiscard]] double smallest(const std::string& effect) const {
     for (const auto& d : all.detectable)
@@ -26,7 +26,7 @@ struct Power {
     return 0;
   }
   [[nodiscard]] bool sees(const std::string& effect) const { return smallest(effect) > 0; }
-  [[nodiscard]] const calib::LookAlike* confuses(const std::string& a, const std::string& b) const {
+  [[nodiscard]] const calib::design::LookAlike* confuses(const std::string& a, const std::string& b) const {
     for (const auto& pair : all.inseparable)
       if ((pair.effect == a && pair.alternative == b) || (pair.effect == b && pair.alternative == a))
         return &pair;
@@ -35,15 +35,15 @@ struct Power {
 };
 
 Power power_of(const PoseTable& poses) {
-  calib::DesignRequest request;
+  calib::design::DesignRequest request;
   request.poses = poses;
-  auto planned = calib::evaluate_design(request);
+  auto planned = calib::design::evaluate_design(request);
   EXPECT_TRUE(planned) << planned.error().text();
   return planned ? Power{*planned->power} : Power{};
 }
 
 PoseTable default_run() {
-  auto poses = planned_poses(Config{});
+  auto poses = planned_poses(config::Config{});
   EXPECT_TRUE(poses) << poses.error().text();
   return poses ? *poses : PoseTable{};
 }
@@ -67,7 +67,7 @@ TEST(PlannedPower, OneFieldStrengthNeverTellsAnAxisOwnSquareFromThoseOfTheOthers
   EXPECT_GT(pair->correlation, 0.999);
   ASSERT_TRUE(pair->remedy);
   EXPECT_NE(pair->remedy->action.find("field a fifth weaker"), std::string::npos) << pair->remedy->action;
-  EXPECT_GT(pair->remedy->p_right, calib::kSeparated);
+  EXPECT_GT(pair->remedy->p_right, calib::design::kSeparated);
 }
 
 TEST(PlannedPower, ARoomThatJustWarmsUpAsksForAHeatPulse) {
@@ -105,4 +105,4 @@ TEST(PlannedPower, WhatIsNotRecordedCannotBeTested) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

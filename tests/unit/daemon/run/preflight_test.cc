@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using testing::HasSubstr;
@@ -214,4 +214,4 @@ TEST(Preflight, CoarseInstrumentsMayRepeatThemselves) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -9,7 +9,7 @@
 #include "daemon/plan/mounting.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 /// Four sensors that are mounted differently and off by 1 % of the field.
@@ -26,7 +26,7 @@ class Site {
     out.pitch_rad = entered.pitch_rad;
     out.roll_rad = entered.roll_rad;
     const Eigen::Vector3d b =
-        calib::table_rotation(truth.azimuth_rad, truth.pitch_rad, truth.roll_rad, 0.0, 0.0) *
+        calib::sensor::table_rotation(truth.azimuth_rad, truth.pitch_rad, truth.roll_rad, 0.0, 0.0) *
         Eigen::Vector3d(25'000, -3'000, 43'000);
     out.y_nT = {Eigen::Vector3d(b.x() + 400, b.y(), b.z()), Eigen::Vector3d(-b.y(), b.x() - 500, b.z()),
                 Eigen::Vector3d(b.z(), b.x(), b.y() + 300), Eigen::Vector3d(b.x(), -b.y(), -b.z() + 450)};
@@ -94,19 +94,20 @@ TEST(Mounting, ComposesAsTheFieldDoes) {
     const TableAngles mount = k % 4 == 0 ? TableAngles{0, to_rad(90), 0} : site.attitude(),
                       table = site.attitude();
     const auto rotation = [](const TableAngles& a) {
-      return calib::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
+      return calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
     };
-    const double worst = (rotation(platform_angles(mount, table)) - rotation(mount) * rotation(table)).norm();
+    const double worst =
+        (rotation(plan::platform_angles(mount, table)) - rotation(mount) * rotation(table)).norm();
     EXPECT_LT(worst, 3e-6);  // at a pitch of 90 deg the two axes are told apart to a millionth
   }
 }
 
 TEST(Mounting, LevelArrayKeepsTheTablesAngles) {
-  const TableAngles table{to_rad(33), to_rad(-12), to_rad(70)}, both = platform_angles({}, table);
+  const TableAngles table{to_rad(33), to_rad(-12), to_rad(70)}, both = plan::platform_angles({}, table);
   EXPECT_NEAR(both.azimuth_rad, table.azimuth_rad, 1e-12);
   EXPECT_NEAR(both.pitch_rad, table.pitch_rad, 1e-12);
   EXPECT_NEAR(both.roll_rad, table.roll_rad, 1e-12);
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -27,8 +27,8 @@ inline drivers::TableLimits bench_limits() {
   return {{to_rad(-180), to_rad(180)}, {to_rad(-90), to_rad(90)}, {to_rad(-180), to_rad(180)}};
 }
 
-inline RunConfig bench_config() {
-  RunConfig c;
+inline daemon::run::RunConfig bench_config() {
+  daemon::run::RunConfig c;
   c.run_id = "bench";
   c.fewest_poses = 2;
   c.limits = bench_limits();
@@ -38,8 +38,8 @@ inline RunConfig bench_config() {
   return c;
 }
 
-inline RunPlan bench_plan(int poses) {
-  RunPlan plan;
+inline daemon::plan::RunPlan bench_plan(int poses) {
+  daemon::plan::RunPlan plan;
   for (int i = 0; i < poses; ++i) {
     plan.poses.push_back({i + 1,
                           i < 2 ? "standard" : "random",
@@ -78,8 +78,8 @@ struct FakeTable {
 
 class RunBench {
  public:
-  explicit RunBench(RunPlan plan, RunConfig config = bench_config(),
-                    const std::optional<EarlierLife>& earlier = std::nullopt)
+  explicit RunBench(daemon::plan::RunPlan plan, daemon::run::RunConfig config = bench_config(),
+                    const std::optional<daemon::run::EarlierLife>& earlier = std::nullopt)
       : limits(config.limits), fsm(std::move(config), std::move(plan), now(), earlier) {}
 
   static constexpr double kTick_s = 0.05;
@@ -97,12 +97,14 @@ class RunBench {
   bool saturated{false};
   double disturbance_nT{0};
   bool disk_full{false}, disk_stalls{false}, propose_fails{false}, solve_stalls{false};
-  std::function<Result<Solution>()> solver = [] { return Solution{true, "cal-1", {}, {}}; };
+  std::function<Result<daemon::run::Solution>()> solver = [] {
+    return daemon::run::Solution{true, "cal-1", {}, {}};
+  };
 
-  std::vector<Action> log;
+  std::vector<daemon::run::Action> log;
   std::vector<Pose> stored;
   std::vector<TableAngles> moves;
-  std::optional<Finish> finished;
+  std::optional<daemon::run::Finish> finished;
   std::optional<RunStatus> status;
   std::vector<RunState> states;       ///< without repetition
   TableAngles mounting;               ///< of the array on the table, as it truly is
@@ -118,10 +120,12 @@ class RunBench {
             WallTime{1'800'000'000'000'000'000 + from_seconds(t_s).count()}};
   }
 
-  void send(const Event& event) {
+  void send(const daemon::run::Event& event) {
     ++events;
-    if (std::holds_alternative<Request>(event) && std::get<Request>(event) == Request::abort) aborted = true;
-    for (Action& action : fsm.step(event, now())) {
+    if (std::holds_alternative<daemon::run::Request>(event) &&
+        std::get<daemon::run::Request>(event) == daemon::run::Request::abort)
+      aborted = true;
+    for (daemon::run::Action& action : fsm.step(event, now())) {
       EXPECT_FALSE(finished) << "an action after the last one";
       std::visit([this](auto& a) { carry_out(a); }, action);
       log.push_back(std::move(action));
@@ -143,10 +147,10 @@ class RunBench {
         const Slot slot = Slot::numbered(number);
         LinkHealth health;
         health.state = says(slot) ? LinkState::live : LinkState::silent;
-        send(LinkSeen{slot, health});
+        send(daemon::run::LinkSeen{slot, health});
       }
     }
-    send(Tick{});
+    send(daemon::run::Tick{});
   }
   /// Until `done` or the end of the run, at most `limit_s` of virtual time.
   bool run(
@@ -163,28 +167,28 @@ class RunBench {
   }
   void lose(Slot slot) {
     lost.insert(slot);
-    send(DeviceLost{slot, "the port is gone"});
+    send(daemon::run::DeviceLost{slot, "the port is gone"});
   }
   void give_back(Slot slot) {
     lost.erase(slot);
-    send(DeviceBack{slot});
+    send(daemon::run::DeviceBack{slot});
   }
   [[nodiscard]] bool says(Slot slot) const { return !lost.contains(slot) && !silent.contains(slot); }
   [[nodiscard]] TableReading reading() const {
     return {now(), table.at, table.referenced, table.moving, !table.moving};
   }
 
-  RunFsm fsm;
+  daemon::run::RunFsm fsm;
 
  private:
-  void carry_out(const HomeTable&) {
+  void carry_out(const daemon::run::HomeTable&) {
     EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
     if (lost.contains(Slot::table())) return;
     table.referenced = false;
     table.homing = true;
     table.go({});
   }
-  void carry_out(const MoveTable& move) {
+  void carry_out(const daemon::run::MoveTable& move) {
     EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
     EXPECT_FALSE(aborted) << "the table moves after an abort";
     EXPECT_TRUE(lost.empty()) << "the table moves while a device is lost";
@@ -197,22 +201,22 @@ class RunBench {
     moves.push_back(move.target);
     table.go(move.target);
   }
-  void carry_out(const SetTable& set) {
+  void carry_out(const daemon::run::SetTable& set) {
     EXPECT_FALSE(storing_) << "the table moves before the pose is stored";
     table.at = set.angles;
     table.moving = false;
   }
-  void carry_out(const DropPoses& drop) {
+  void carry_out(const daemon::run::DropPoses& drop) {
     dropped += static_cast<int>(drop.numbers.size());
     std::erase_if(stored, [&](const Pose& p) {
       return std::find(drop.numbers.begin(), drop.numbers.end(), p.number) != drop.numbers.end();
     });
   }
-  void carry_out(const StopTable&) {
+  void carry_out(const daemon::run::StopTable&) {
     ++stops;
     if (!lost.contains(Slot::table())) table.stop();
   }
-  void carry_out(StorePose& store) {
+  void carry_out(daemon::run::StorePose& store) {
     EXPECT_FALSE(storing_);
     EXPECT_FALSE(table.moving) << "a pose measured on the move";
     if (!store.pose.mount) {
@@ -221,18 +225,18 @@ class RunBench {
     storing_ = store.pose;
     answer_at_s_ = t_s + 0.12;
   }
-  void carry_out(const StartSolve&) {
+  void carry_out(const daemon::run::StartSolve&) {
     ++solves;
     EXPECT_FALSE(table.moving);
     solve_at_s_ = t_s + 0.5;
   }
-  void carry_out(const CancelSolve&) {}
-  void carry_out(const ProposeCalibration&) {
+  void carry_out(const daemon::run::CancelSolve&) {}
+  void carry_out(const daemon::run::ProposeCalibration&) {
     EXPECT_FALSE(aborted);
     ++proposals;
     propose_at_s_ = t_s + 0.1;
   }
-  void carry_out(const PublishStatus& publish) {
+  void carry_out(const daemon::run::PublishStatus& publish) {
     if (status && status->state != publish.status.state)
       transitions().emplace(status->state, publish.status.state);
     status = publish.status;
@@ -242,7 +246,7 @@ class RunBench {
       EXPECT_FALSE(table.moving) << "paused on the move";
     }
   }
-  void carry_out(const Finish& finish) {
+  void carry_out(const daemon::run::Finish& finish) {
     finished = finish;
     EXPECT_FALSE(is_active(finish.state));
     EXPECT_FALSE(finish.message.empty());
@@ -251,9 +255,9 @@ class RunBench {
       EXPECT_TRUE(status->proposed.empty());
     }
   }
-  void carry_out(const StorePath&) {}
-  void carry_out(const StoreChecks&) {}
-  void carry_out(const Record&) {}
+  void carry_out(const daemon::run::StorePath&) {}
+  void carry_out(const daemon::run::StoreChecks&) {}
+  void carry_out(const daemon::run::Record&) {}
 
   void answer() {
     if (storing_ && !disk_stalls && t_s >= answer_at_s_) {
@@ -263,18 +267,19 @@ class RunBench {
         stored.push_back(*storing_);
       }
       storing_.reset();
-      send(PoseStored{number, disk_full ? fail(ErrorCode::io, "no space left on device", "free some space")
-                                        : Result<void>{}});
+      send(daemon::run::PoseStored{
+          number,
+          disk_full ? fail(ErrorCode::io, "no space left on device", "free some space") : Result<void>{}});
     }
     if (solve_at_s_ && !solve_stalls && t_s >= *solve_at_s_) {
       solve_at_s_.reset();
-      send(SolveDone{solver()});
+      send(daemon::run::SolveDone{solver()});
     }
     if (propose_at_s_ && t_s >= *propose_at_s_) {
       propose_at_s_.reset();
-      send(CalibrationProposed{propose_fails
-                                   ? fail(ErrorCode::io, "no space left on device", "free some space")
-                                   : Result<void>{}});
+      send(daemon::run::CalibrationProposed{
+          propose_fails ? fail(ErrorCode::io, "no space left on device", "free some space")
+                        : Result<void>{}});
     }
   }
 
@@ -291,7 +296,7 @@ class RunBench {
     epoch.t = now();
     if (saturated) epoch.flags |= Flag::saturated;
     const auto turned = [](const TableAngles& a) {
-      return calib::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
+      return calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
     };
     const Eigen::Vector3d b_nT = turned(mounting) * (turned(really.value_or(table.at)) *
                                                      (50000 * Eigen::Vector3d(1, 0.1, 1.2).normalized()));

@@ -33,33 +33,35 @@ struct Operator {
     TableAngles read = there;
     blunder(read);
     entries.push_back(read);
-    bench.send(ScaleEntered{read});
+    bench.send(daemon::run::ScaleEntered{read});
   }
 };
 
-RunConfig hand_config() {
-  RunConfig config = bench_config();
+daemon::run::RunConfig hand_config() {
+  daemon::run::RunConfig config = bench_config();
   config.by_hand = true;
   return config;
 }
 
-RunPlan hand_plan(int poses) {
-  PlanOptions options{.step_deg = 0, .random = poses, .revisits = 0, .dwell_short_s = 2, .dwell_long_s = 3};
+daemon::plan::RunPlan hand_plan(int poses) {
+  daemon::plan::PlanOptions options{
+      .step_deg = 0, .random = poses, .revisits = 0, .dwell_short_s = 2, .dwell_long_s = 3};
   options.by_hand = true;
   // Less than the table's own travel: hands do not stop on the mark.
-  auto plan = make_plan(
+  auto plan = daemon::plan::make_plan(
       options, {{to_rad(-170), to_rad(170)}, {to_rad(-80), to_rad(80)}, {to_rad(-170), to_rad(170)}});
   EXPECT_TRUE(plan);
   return *plan;
 }
 
 /// Table of one axis: a level standard set of 8 azimuths and 24 poses in three mountings.
-RunPlan mount_plan() {
-  PlanOptions options{.step_deg = 45, .random = 24, .revisits = 4, .dwell_short_s = 2, .dwell_long_s = 3};
+daemon::plan::RunPlan mount_plan() {
+  daemon::plan::PlanOptions options{
+      .step_deg = 45, .random = 24, .revisits = 4, .dwell_short_s = 2, .dwell_long_s = 3};
   options.mounts = {deg(0, 0, 0), deg(0, 0, 90), deg(0, 90, 0)};
   drivers::TableLimits limits = bench_limits();
   limits.pitch = limits.roll = {};
-  auto plan = make_plan(options, limits);
+  auto plan = daemon::plan::make_plan(options, limits);
   EXPECT_TRUE(plan) << plan.error().text();
   return *plan;
 }
@@ -67,7 +69,7 @@ RunPlan mount_plan() {
 bool to_prompt(RunBench& bench, double limit_s = 600) { return bench.run_to(RunState::asking, limit_s); }
 
 TEST(RunByHand, TheEnteredAngleIsStoredAndNotTheTarget) {
-  const RunPlan plan = hand_plan(12);
+  const daemon::plan::RunPlan plan = hand_plan(12);
   RunBench bench(plan, hand_config());
   Operator hands;
   while (bench.run(4000, [&] { return bench.status && bench.status->prompt.has_value(); }) &&
@@ -95,8 +97,8 @@ TEST(RunByHand, NobodyAnswersAndTheRunPausesWithoutAGuess) {
   EXPECT_NEAR(bench.t_s - asked_s, 900, 2);
   EXPECT_TRUE(bench.stored.empty());
   EXPECT_THAT(bench.status->message, HasSubstr("nothing was entered"));
-  EXPECT_FALSE(bench.fsm.possible(ScaleEntered{}));
-  bench.send(Request::resume);
+  EXPECT_FALSE(bench.fsm.possible(daemon::run::ScaleEntered{}));
+  bench.send(daemon::run::Request::resume);
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_EQ(bench.status->prompt->pose, 1);
 }
@@ -147,8 +149,8 @@ TEST(RunByHand, TheSameEntryTwiceIsTheOperatorsWord) {
   });
   EXPECT_EQ(hands.again.size(), 2U);  // far from what was asked for, and against the turn of the field
   EXPECT_EQ(bench.stored.size(), 12U);
-  const bool said = std::any_of(bench.log.begin(), bench.log.end(), [](const Action& a) {
-    const auto* const record = std::get_if<Record>(&a);
+  const bool said = std::any_of(bench.log.begin(), bench.log.end(), [](const daemon::run::Action& a) {
+    const auto* const record = std::get_if<daemon::run::Record>(&a);
     return record != nullptr && record->what.find("stands by the entry") != std::string::npos;
   });
   EXPECT_TRUE(said);
@@ -164,7 +166,7 @@ TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
   }
   ASSERT_TRUE(to_prompt(bench));
   ASSERT_EQ(bench.status->prompt->pose, 4);
-  bench.send(Request::redo);
+  bench.send(daemon::run::Request::redo);
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_EQ(bench.status->prompt->pose, 3);
   EXPECT_EQ(bench.stored.size(), 2U);
@@ -184,9 +186,9 @@ TEST(RunByHand, RedoAfterAPauseAsksForThePoseUnderWayAgain) {
   ASSERT_TRUE(to_prompt(bench));
   hands.serve(bench);
   ASSERT_FALSE(bench.status->prompt.has_value()) << "pose 2 is being measured";
-  bench.send(Request::pause);
-  ASSERT_TRUE(bench.fsm.possible(Request::redo));
-  bench.send(Request::redo);
+  bench.send(daemon::run::Request::pause);
+  ASSERT_TRUE(bench.fsm.possible(daemon::run::Request::redo));
+  bench.send(daemon::run::Request::redo);
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_EQ(bench.status->prompt->pose, 2);
   EXPECT_EQ(bench.dropped, 0);
@@ -196,15 +198,15 @@ TEST(RunByHand, RedoAfterAPauseAsksForThePoseUnderWayAgain) {
 TEST(RunByHand, WhatIsEnteredOutsideTheLimitsIsRefused) {
   RunBench bench(hand_plan(12), hand_config());
   ASSERT_TRUE(to_prompt(bench));
-  const auto possible = bench.fsm.possible(ScaleEntered{deg(0, 120, 0)});
+  const auto possible = bench.fsm.possible(daemon::run::ScaleEntered{deg(0, 120, 0)});
   ASSERT_FALSE(possible);
   EXPECT_THAT(possible.error().message, HasSubstr("limits"));
-  EXPECT_TRUE(bench.fsm.possible(ScaleEntered{deg(0, 60, 0)}));
+  EXPECT_TRUE(bench.fsm.possible(daemon::run::ScaleEntered{deg(0, 60, 0)}));
 }
 
 TEST(RunByHand, AOneAxisTableAlternatesMountingsWithDrivenAzimuths) {
-  const RunPlan plan = mount_plan();
-  RunConfig config = bench_config();
+  const daemon::plan::RunPlan plan = mount_plan();
+  daemon::run::RunConfig config = bench_config();
   config.limits.pitch = config.limits.roll = {};
   RunBench bench(plan, config);
   Operator hands;
@@ -223,7 +225,7 @@ TEST(RunByHand, AOneAxisTableAlternatesMountingsWithDrivenAzimuths) {
     ASSERT_TRUE(pose.mount);
     mounts.insert(*pose.mount);
     const TableAngles entered = hands.entries[static_cast<std::size_t>(*pose.mount - 1)];
-    const TableAngles expected = platform_angles(entered, plan.poses[i].target);
+    const TableAngles expected = daemon::plan::platform_angles(entered, plan.poses[i].target);
     EXPECT_NEAR(std::remainder(*pose.azimuth_rad - expected.azimuth_rad, 2 * std::numbers::pi), 0, 1e-6);
     EXPECT_NEAR(*pose.pitch_rad, expected.pitch_rad, 1e-6);
   }
@@ -231,7 +233,7 @@ TEST(RunByHand, AOneAxisTableAlternatesMountingsWithDrivenAzimuths) {
 }
 
 TEST(RunByHand, RedoOfAMountingMeasuresItsPosesAgain) {
-  RunConfig config = bench_config();
+  daemon::run::RunConfig config = bench_config();
   config.limits.pitch = config.limits.roll = {};
   RunBench bench(mount_plan(), config);
   Operator hands;
@@ -239,7 +241,7 @@ TEST(RunByHand, RedoOfAMountingMeasuresItsPosesAgain) {
   hands.serve(bench);
   ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 3; }));
   ASSERT_TRUE(bench.run_to(RunState::moving));
-  bench.send(Request::redo);
+  bench.send(daemon::run::Request::redo);
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_EQ(bench.status->prompt->mount, 1);
   EXPECT_TRUE(bench.stored.empty());
@@ -248,9 +250,9 @@ TEST(RunByHand, RedoOfAMountingMeasuresItsPosesAgain) {
 }
 
 TEST(RunByHand, AfterARestartTheMountingIsAskedForAgain) {
-  RunConfig config = bench_config();
+  daemon::run::RunConfig config = bench_config();
   config.limits.pitch = config.limits.roll = {};
-  EarlierLife earlier;
+  daemon::run::EarlierLife earlier;
   earlier.stored = {1, 2, 3};
   earlier.started_utc = WallTime{1'799'999'000'000'000'000};
   RunBench bench(mount_plan(), config, earlier);
@@ -261,7 +263,7 @@ TEST(RunByHand, AfterARestartTheMountingIsAskedForAgain) {
 
 /// A heat pulse, a coil: what only a hand can do before a pose.
 TEST(RunByHand, WhatAListWantsDoneBeforeAPoseIsAskedForOnce) {
-  RunPlan plan = bench_plan(4);
+  daemon::plan::RunPlan plan = bench_plan(4);
   plan.poses[1].note = "warm the heads";
   RunBench bench(plan);
   ASSERT_TRUE(to_prompt(bench));
@@ -270,22 +272,22 @@ TEST(RunByHand, WhatAListWantsDoneBeforeAPoseIsAskedForOnce) {
   EXPECT_EQ(bench.status->prompt->what, OperatorPrompt::What::note);
   EXPECT_EQ(bench.status->prompt->pose, 2);
   EXPECT_EQ(bench.status->prompt->text, "before pose 2 of 4: warm the heads");
-  const auto scales = bench.fsm.possible(ScaleEntered{});
+  const auto scales = bench.fsm.possible(daemon::run::ScaleEntered{});
   ASSERT_FALSE(scales);
   EXPECT_THAT(scales.error().remedy, HasSubstr("mgt run resume"));
   const std::size_t moves = bench.moves.size();
   bench.run(60);
   EXPECT_EQ(bench.moves.size(), moves) << "nobody said that it is done";
-  bench.send(Request::pause);  // not done yet: asked again
+  bench.send(daemon::run::Request::pause);  // not done yet: asked again
   ASSERT_TRUE(bench.run_to(RunState::paused));
-  bench.send(Request::resume);
+  bench.send(daemon::run::Request::resume);
   ASSERT_TRUE(to_prompt(bench));
-  ASSERT_TRUE(bench.fsm.possible(Request::resume));
-  bench.send(Request::resume);
+  ASSERT_TRUE(bench.fsm.possible(daemon::run::Request::resume));
+  bench.send(daemon::run::Request::resume);
   ASSERT_TRUE(bench.run_to(RunState::dwelling));
-  bench.send(Request::pause);  // done: a pose that is measured again does not ask for it again
+  bench.send(daemon::run::Request::pause);  // done: a pose that is measured again does not ask for it again
   ASSERT_TRUE(bench.run_to(RunState::paused));
-  bench.send(Request::resume);
+  bench.send(daemon::run::Request::resume);
   ASSERT_TRUE(bench.run(600));
   ASSERT_TRUE(bench.finished);
   EXPECT_EQ(bench.finished->state, RunState::done) << bench.finished->message;
@@ -294,23 +296,23 @@ TEST(RunByHand, WhatAListWantsDoneBeforeAPoseIsAskedForOnce) {
 
 /// On a table that is turned by hand the note comes first, then the scales.
 TEST(RunByHand, ANoteAndTheScalesAreAskedForOneAfterTheOther) {
-  RunPlan plan = hand_plan(12);
+  daemon::plan::RunPlan plan = hand_plan(12);
   plan.poses[0].note = "switch the coil on";
   RunBench bench(plan, hand_config());
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_EQ(bench.status->prompt->what, OperatorPrompt::What::note);
-  bench.send(Request::resume);
+  bench.send(daemon::run::Request::resume);
   ASSERT_TRUE(bench.run(
       10, [&] { return bench.status->prompt && bench.status->prompt->what == OperatorPrompt::What::table; }));
   EXPECT_EQ(bench.status->prompt->pose, 1);
 }
 
 TEST(RunByHand, WaysToMountAreReadAndSaid) {
-  EXPECT_EQ(*parse_mounting("level"), TableAngles{});
-  EXPECT_NEAR(parse_mounting("pitch 20 roll -90")->roll_rad, to_rad(-90), 1e-12);
-  EXPECT_EQ(mounting_in_words(*parse_mounting("roll 90")), "roll 90 deg");
+  EXPECT_EQ(*daemon::plan::parse_mounting("level"), TableAngles{});
+  EXPECT_NEAR(daemon::plan::parse_mounting("pitch 20 roll -90")->roll_rad, to_rad(-90), 1e-12);
+  EXPECT_EQ(daemon::plan::mounting_in_words(*daemon::plan::parse_mounting("roll 90")), "roll 90 deg");
   for (const char* const bad : {"", "sideways", "roll", "roll x", "roll 400", "yaw 3"})
-    EXPECT_FALSE(parse_mounting(bad)) << bad;
+    EXPECT_FALSE(daemon::plan::parse_mounting(bad)) << bad;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "daemon/run/run_fsm.h"
 #include "tests/unit/daemon/run/run_bench.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using test::bench_config;
@@ -16,7 +16,7 @@ using test::RunBench;
 using testing::HasSubstr;
 
 /// Three poses, one of them approached by way of another point.
-RunPlan short_plan() {
+plan::RunPlan short_plan() {
   auto plan = bench_plan(3);
   plan.poses[1].target.azimuth_rad = to_rad(20);
   return plan;
@@ -351,4 +351,4 @@ TEST(RunFsmInterruption, RandomTroubleNeverBreaksAPromise) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -6,7 +6,7 @@
 
 #include "tests/unit/daemon/run/run_bench.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using test::bench_config;
@@ -25,7 +25,7 @@ bool ends(RunBench& bench, RunState state, double limit_s = 3000) {
 }
 
 TEST(RunFsm, WholeRunOf157PosesEndsWithAProposal) {
-  const auto plan = make_plan({}, test::bench_limits());
+  const auto plan = plan::make_plan({}, test::bench_limits());
   ASSERT_TRUE(plan);
   RunBench bench(*plan);
   ASSERT_TRUE(ends(bench, RunState::done, 7200));
@@ -68,7 +68,7 @@ TEST(RunFsm, TheEstimateOfTheRestLearnsFromThePoses) {
   auto config = bench_config();
   config.pace.velocity_rad_per_s = to_rad(300);  // ten times what the table does
   config.pace.settle_s = 0.1;
-  const auto plan = make_plan({.step_deg = 20, .random = 40, .revisits = 5}, test::bench_limits());
+  const auto plan = plan::make_plan({.step_deg = 20, .random = 40, .revisits = 5}, test::bench_limits());
   ASSERT_TRUE(plan);
   RunBench bench(*plan, config);
   ASSERT_TRUE(bench.run(3000, [&] { return bench.stored.size() == 38; }));
@@ -345,4 +345,4 @@ TEST(RunFsm, PlanOutsideTheLimitsOfTodayPauses) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

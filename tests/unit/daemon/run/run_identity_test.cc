@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using ::testing::HasSubstr;
@@ -43,4 +43,4 @@ TEST(RunIdentity, WhatTheReadingsSayIsNewOnce) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

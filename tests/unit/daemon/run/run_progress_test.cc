@@ -5,18 +5,18 @@
 
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 Instant at(double t_s) { return Instant{from_seconds(t_s)}; }
 
 /// Ten poses 10 degrees apart, 4 s each; at 10 deg/s 1 s of travel, 1 s of commands, 2 s of settling.
-RunPlan ten() {
-  RunPlan plan;
+plan::RunPlan ten() {
+  plan::RunPlan plan;
   for (int i = 1; i <= 10; ++i) plan.poses.push_back({i, "random", {to_rad(10.0 * i), 0, 0}, 4, 0, {}});
   return plan;
 }
-constexpr Pace kPace{.velocity_rad_per_s = 10 * kRadiansPerDegree, .solve_s = 1};
+constexpr plan::Pace kPace{.velocity_rad_per_s = 10 * kRadiansPerDegree, .solve_s = 1};
 
 TEST(RunProgress, StartsFromThePlan) {
   const RunProgress progress(ten(), kPace);
@@ -62,4 +62,4 @@ TEST(RunProgress, PosesOfAnEarlierLifeAreDone) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -60,13 +60,13 @@ class DiagramOfStates : public ::testing::Environment {
 /// The operator aborts as soon as the state is reached.
 void abort_in(RunState state, RunBench& bench) {
   ASSERT_TRUE(bench.run_to(state));
-  bench.send(Request::abort);
+  bench.send(daemon::run::Request::abort);
   ASSERT_TRUE(bench.run(60));
   EXPECT_EQ(bench.finished->state, RunState::aborted);
 }
 
 TEST(RunStates, AQuestionCanBeAnsweredByAnAbort) {
-  RunConfig config = bench_config();
+  daemon::run::RunConfig config = bench_config();
   config.by_hand = true;
   RunBench bench(bench_plan(2), config);
   abort_in(RunState::asking, bench);
@@ -80,7 +80,7 @@ TEST(RunStates, ADisturbedRunCanBeAborted) {
 }
 
 TEST(RunStates, ADisturbanceWithoutEndPausesTheRun) {
-  RunConfig config = bench_config();
+  daemon::run::RunConfig config = bench_config();
   config.calm_max_s = 20;
   RunBench bench(bench_plan(2), config);
   ASSERT_TRUE(bench.run_to(RunState::dwelling));

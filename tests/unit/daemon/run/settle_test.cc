@@ -7,7 +7,7 @@
 
 #include "tests/unit/daemon/serve/streams.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using test::stamp_at;
@@ -98,4 +98,4 @@ TEST(Settle, WithoutEpochsNothingIsSettled) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -5,7 +5,7 @@
 
 #include "proto/units.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 TableReading reading(double t_s, double azimuth_deg, bool moving) {
@@ -57,4 +57,4 @@ TEST(TableTrack, AReferenceIsGoneWithTheReportOrTheCable) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using ::testing::ElementsAre;
@@ -165,4 +165,4 @@ TEST(MagnetTestTest, SilentSensorsEndItToo) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

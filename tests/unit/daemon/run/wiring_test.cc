@@ -10,7 +10,7 @@
 
 #include "calib/sensor/sensor_equations.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::run {
 namespace {
 
 using Eigen::Matrix3d;
@@ -37,7 +37,7 @@ struct Array {
     }
   }
   [[nodiscard]] std::array<Vector3d, kSensors> at(const TableAngles& a) const {
-    const Matrix3d R = calib::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
+    const Matrix3d R = calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
     std::array<Vector3d, kSensors> y;
     for (std::size_t i = 0; i < kSensors; ++i) y[i] = S[i] * (tilt[i] * (R * b_S_nT)) + offset_nT[i];
     return y;
@@ -116,4 +116,4 @@ TEST(WiringTest, ASensorThatReadsAnotherFieldIsNoMatterOfMounting) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::run

@@ -18,7 +18,7 @@
 #include "tests/support/event_loop.h"
 #include "tests/support/line_peer.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 using Json = nlohmann::json;
@@ -286,4 +286,4 @@ TEST_F(ClientTest, StreamReaderRefusesWhatIsNoStream) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

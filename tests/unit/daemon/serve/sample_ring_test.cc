@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 constexpr std::size_t kSlots = 100, kSample = 700, kStatus = 4000;
@@ -35,4 +35,4 @@ TEST(SampleRing, LinesOfLikeLengthStayWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -4,7 +4,7 @@
 #include "proto/watch_request.h"
 #include "tests/unit/daemon/serve/stream_server_bench.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 TEST_F(StreamServerTest, ABadLineIsAnsweredAndTheConnectionStays) {
@@ -198,4 +198,4 @@ TEST_F(StreamServerTest, OneTooManyIsToldTheLimit) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -13,7 +13,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/event_loop.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 std::string python_of(const std::string& document) {
@@ -66,4 +66,4 @@ TEST(StreamDocument, ItsPythonReadsTheStream) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -14,7 +14,7 @@
 #include "tests/support/line_peer.h"
 
 /// A stream server and clients of it on one loop.
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 
 using Json = nlohmann::json;
 using mgtd::testing::LinePeer;
@@ -85,7 +85,7 @@ class StreamServerTest : public ::testing::Test {
 
   boost::asio::io_context io_;
   mgtd::testing::ScratchDirectory scratch_;
-  std::optional<DiskRing> disk_;
+  std::optional<store::DiskRing> disk_;
   std::unique_ptr<StreamServer> server_;
 };
 
@@ -101,4 +101,4 @@ inline std::uint64_t expect_whole(const LinePeer& peer, std::uint64_t next) {
   return next;
 }
 
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

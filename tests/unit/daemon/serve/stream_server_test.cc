@@ -5,12 +5,12 @@
 
 #include "tests/unit/daemon/serve/stream_server_bench.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 TEST_F(StreamServerTest, AClientThatComesBackAfterARestartGetsWhatItMissed) {
   const auto at = [](double s) { return Stamp{Instant{from_seconds(s)}, WallTime{from_seconds(s).count()}}; };
-  const DiskRingConfig config{.directory = scratch_ / "ring", .rig = "bench", .bytes = 8U << 20U};
+  const store::DiskRingConfig config{.directory = scratch_ / "ring", .rig = "bench", .bytes = 8U << 20U};
   disk_.emplace(config, at(0));
   start(64);
   publish(0, 4999);
@@ -137,4 +137,4 @@ TEST_F(StreamServerTest, StoppingSaysGoodbyeAndRemovesTheSocket) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 using Json = nlohmann::json;
@@ -358,4 +358,4 @@ TEST(Subscription, ADeadClientIsSeenWithoutItsHelp) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

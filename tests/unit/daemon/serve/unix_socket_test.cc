@@ -12,7 +12,7 @@
 #include "tests/support/event_loop.h"
 #include "tests/support/line_peer.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::serve {
 namespace {
 
 using mgtd::testing::LinePeer;
@@ -105,4 +105,4 @@ TEST(UnixSocket, NobodyThereIsUnreachableWithARemedy) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::serve

@@ -11,14 +11,14 @@
 #include "tests/unit/daemon/full_disk.h"
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using test::FullDisk;
 using test::TempDir;
 
-calib::Calibration calibration(int variant, bool good = true) {
-  calib::Calibration c;
+calib::calibration::Calibration calibration(int variant, bool good = true) {
+  calib::calibration::Calibration c;
   c.method = "two-step";
   c.sensors[1].offset_nT.x() = 10.0 + variant / 3.0;
   c.poses = 157;
@@ -85,7 +85,7 @@ TEST(CalibrationStore, ImportRefusesWhatCannotBeUsed) {
   TempDir dir;
   auto store = CalibrationStore::open(dir / "cal").value();
   const auto refused = [&](auto&& spoil, const std::string& why) {
-    calib::Calibration c = calibration(1);
+    calib::calibration::Calibration c = calibration(1);
     spoil(c);
     c.seal();
     const auto done = store.import(c, "cal.json", true, t(1));
@@ -201,4 +201,4 @@ TEST(CalibrationStore, SurvivesSigkillAtAnyMoment) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -12,7 +12,7 @@
 #include "tests/unit/daemon/full_disk.h"
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using test::FullDisk;
@@ -210,4 +210,4 @@ TEST(DiskRing, WithoutADirectoryItCountsOnAndSaysWhy) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -7,7 +7,7 @@
 
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using ::testing::HasSubstr;
@@ -36,4 +36,4 @@ TEST(ReadFile, AnErrorWhileReadingIsNotAnEmptyFile) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -10,7 +10,7 @@
 #include "tests/unit/daemon/full_disk.h"
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using test::FullDisk;
@@ -247,4 +247,4 @@ TEST(Journal, ADirectoryItCannotHaveIsTroubleAndIsTriedAgain) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -8,7 +8,7 @@
 #include "tests/unit/daemon/poses.h"
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using test::full_pose;
@@ -73,4 +73,4 @@ TEST(KeptModel, LivesInTheRunFileBesideWhatWasMeasured) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -14,7 +14,7 @@
 #include "tests/unit/daemon/poses.h"
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using test::full_pose;
@@ -292,4 +292,4 @@ TEST(PoseSource, TellsCsvFromRunFileByContent) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

@@ -9,7 +9,7 @@
 
 #include "tests/unit/daemon/temp_dir.h"
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 using ::testing::HasSubstr;
@@ -40,4 +40,4 @@ TEST(StoreLock, AFolderThatCannotBeIsNamed) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

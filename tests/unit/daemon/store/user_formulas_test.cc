@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 const std::vector<Definition> kTwo{
@@ -36,4 +36,4 @@ TEST(Definitions, ANameBecomesTheWholeFormula) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

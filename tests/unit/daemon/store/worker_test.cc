@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace mgtd::daemon {
+namespace mgtd::daemon::store {
 namespace {
 
 TEST(Worker, ResultComesBackOnTheLiveThread) {
@@ -66,4 +66,4 @@ TEST(Worker, OneJobIsStoppedAndTheNextIsNot) {
 }
 
 }  // namespace
-}  // namespace mgtd::daemon
+}  // namespace mgtd::daemon::store

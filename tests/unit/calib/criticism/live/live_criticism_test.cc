@@ -13,7 +13,7 @@
 
 #include "calib/report/live_report.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::live {
 namespace {
 
 using ::testing::HasSubstr;
@@ -21,12 +21,12 @@ using ::testing::HasSubstr;
 constexpr double kF_nT = 50'000, kDay_s = 86'400;
 
 /// 0.3 nT a sample, scales and angles known to 2e-6, offsets to 0.1 nT: a good run of 157 poses.
-Calibration calibration() {
-  Calibration c;
+calibration::Calibration calibration() {
+  calibration::Calibration c;
   c.sample_noise_nT.setConstant(0.3);
   c.covariance.diagonal().setConstant(4e-12);
   for (int i = 0; i < kSensors; ++i)
-    c.covariance.diagonal().segment<3>(kSensorParameters * i + ix).setConstant(0.01);
+    c.covariance.diagonal().segment<3>(sensor::kSensorParameters * i + sensor::ix).setConstant(0.01);
   c.seal();
   return c;
 }
@@ -54,7 +54,7 @@ Seen live(const Life& life, std::uint64_t seed) {
   std::normal_distribution<double> normal;
   std::student_t_distribution<double> student(std::max(3.0, life.student));
   const double student_sd = life.student > 0 ? std::sqrt(life.student / (life.student - 2)) : 1;
-  Calibration c = calibration();
+  calibration::Calibration c = calibration();
   // As many samples as at 50 Hz are in one of these.
   c.sample_noise_nT /= std::sqrt(50 / life.rate_hz);
   const ClosurePrior prior = closure_prior(c);
@@ -91,7 +91,7 @@ Seen live(const Life& life, std::uint64_t seed) {
     if (now == before || (now != LiveState::suspect && now != LiveState::near_source)) continue;
     if (seen.suspect + seen.near_source == 0) seen.first_s = t_s;
     ++(now == LiveState::suspect ? seen.suspect : seen.near_source);
-    seen.measured = live_report(criticism.finding()).measured;
+    seen.measured = report::live_report(criticism.finding()).measured;
   }
   return seen;
 }
@@ -192,7 +192,7 @@ TEST(LiveCriticism, ASourceNearbyIsNoFaultOfTheCalibration) {
 }
 
 TEST(LiveCriticism, HasNothingToSayWithoutNoise) {
-  Calibration c = calibration();
+  calibration::Calibration c = calibration();
   c.sample_noise_nT(2, 1) = 0;
   c.seal();
   EXPECT_EQ(LiveCriticism(c).finding().state, LiveState::none);
@@ -201,4 +201,4 @@ TEST(LiveCriticism, HasNothingToSayWithoutNoise) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::live

@@ -19,7 +19,7 @@ class AnswerFiles : public ::testing::Test {
 RealAnswer some_answer() {
   RealAnswer a;
   a.accepted = true;
-  a.finding = Finding::ambiguous;
+  a.finding = criticism::search::Finding::ambiguous;
   a.named = {"site.dipole"};
   a.declared = {"site.dipole", "site.gradient"};
   a.error_nT_per_m = 0.1;  // has no finite binary expansion
@@ -38,7 +38,7 @@ TEST_F(AnswerFiles, GoOnWhereTheyWereCut) {
   const RealAnswer* found = file.find("walk-1", 101);
   ASSERT_NE(found, nullptr);
   EXPECT_TRUE(found->accepted);
-  EXPECT_EQ(found->finding, Finding::ambiguous);
+  EXPECT_EQ(found->finding, criticism::search::Finding::ambiguous);
   EXPECT_EQ(found->declared, some_answer().declared);
   EXPECT_EQ(found->error_nT_per_m, 0.1);
   EXPECT_EQ(found->nees_scales, 35.25);

@@ -11,7 +11,7 @@
 #include "tests/blind/planted.h"
 #include "tests/blind/real_kind.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 constexpr std::uint64_t kSeed = 50;
@@ -78,13 +78,16 @@ TEST_P(BadData, IsSaidWithItsReason) {
   GetParam().damage(run);
   const auto r = explain(run, {});
   ASSERT_TRUE(r) << r.error().text();
-  EXPECT_EQ(r->finding, Finding::bad_data) << sentence(*r);
+  EXPECT_EQ(r->finding, Finding::bad_data) << report::sentence(*r);
   EXPECT_TRUE(r->named.empty());
   EXPECT_TRUE(r->rounds.empty());
   ASSERT_EQ(r->notes.size(), 1U);
   for (const std::string& part : GetParam().says)
-    EXPECT_NE(to_text(r->notes.front()).find(part), std::string::npos) << to_text(r->notes.front());
-  EXPECT_NE(sentence(*r).find(as_sentence(to_text(r->notes.front()))), std::string::npos) << sentence(*r);
+    EXPECT_NE(report::to_text(r->notes.front()).find(part), std::string::npos)
+        << report::to_text(r->notes.front());
+  EXPECT_NE(report::sentence(*r).find(report::as_sentence(report::to_text(r->notes.front()))),
+            std::string::npos)
+      << report::sentence(*r);
 }
 
 INSTANTIATE_TEST_SUITE_P(Explain, BadData, ::testing::ValuesIn(rows()), &title_of);
@@ -93,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Explain, BadData, ::testing::ValuesIn(rows()), &title_o
 TEST(GoodData, IsNotCalledBad) {
   const auto r = explain(testing::planted_run(testing::full_stage(kSeed), {}, kSeed), {});
   ASSERT_TRUE(r);
-  EXPECT_EQ(r->finding, Finding::pass) << sentence(*r);
+  EXPECT_EQ(r->finding, Finding::pass) << report::sentence(*r);
 }
 
 /// Sensor 4 is off by 300 nT in ten poses. A step of the offset describes a part of it, and leaves 30 nT
@@ -106,10 +109,10 @@ TEST(GoodData, ASensorThatIsOffForTenPosesIsLeftOutAndGetsNoName) {
   const testing::RealRun run = kind->make(107);
   const auto r = explain(run.table, {});
   ASSERT_TRUE(r) << r.error().text();
-  EXPECT_EQ(r->finding, Finding::pass) << sentence(*r);
+  EXPECT_EQ(r->finding, Finding::pass) << report::sentence(*r);
   EXPECT_TRUE(r->named.empty());
   EXPECT_EQ(r->outliers.size(), 10U);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -30,7 +30,7 @@ TEST(Blind, CleanRunsPass) {
   for (const HiddenRun& run : {HiddenRun{}, HiddenRun{.rho = 0.8}, HiddenRun{.tail = Tail::student3},
                                HiddenRun{.tail = Tail::outliers}}) {
     const Answers a = clean(run, kRuns, kSeed);
-    EXPECT_GE(a.of(Finding::pass), at_least(kRuns, 0.98)) << "rho " << run.rho;
+    EXPECT_GE(a.of(criticism::search::Finding::pass), at_least(kRuns, 0.98)) << "rho " << run.rho;
   }
 }
 
@@ -47,7 +47,7 @@ TEST(Blind, LawsOfOneAxisAreFoundAndNamed) {
 TEST(Blind, OwnSquareAndTransverseSquaresStayAmbiguous) {
   for (const HiddenLaw& law : one_field_laws()) {
     const Answers a = hidden(law, 20, 4, kSeed);
-    EXPECT_EQ(a.of(Finding::ambiguous), a.runs) << law.name;
+    EXPECT_EQ(a.of(criticism::search::Finding::ambiguous), a.runs) << law.name;
     EXPECT_EQ(a.in_set, a.runs) << law.name;
     EXPECT_EQ(a.advised, a.runs) << law.name;
   }
@@ -56,7 +56,8 @@ TEST(Blind, OwnSquareAndTransverseSquaresStayAmbiguous) {
 TEST(Blind, WhatIsInNoLibraryIsNotExplained) {
   Answers sum;
   for (const HiddenLaw& law : unlisted_laws()) sum += hidden(law, 40, 3, kSeed);
-  EXPECT_GE(sum.of(Finding::unknown) + sum.of(Finding::partial), at_least(sum.runs, 0.97));
+  EXPECT_GE(sum.of(criticism::search::Finding::unknown) + sum.of(criticism::search::Finding::partial),
+            at_least(sum.runs, 0.97));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "calib/report/choice_text.h"
 #include "tests/blind/hidden_run.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using ::testing::ElementsAre;
@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using testing::hidden_run;
 using testing::HiddenRun;
 
-EffectPtr effect(const std::string& spec) { return make_effect(spec).value(); }
+effects::EffectPtr effect(const std::string& spec) { return effects::library::make_effect(spec).value(); }
 
 /// An offset that goes with temperature, on a run whose temperature goes with time (`monotone`) or does not.
 PoseTable warm(bool monotone, std::uint64_t seed) {
@@ -36,14 +36,14 @@ PoseTable warm(bool monotone, std::uint64_t seed) {
 
 struct Chosen {
   PoseTable table;
-  FitOptions model;
+  fit::FitOptions model;
   Choice choice;
 };
 
 Chosen chosen(PoseTable table, const std::string& spec) {
   const auto before = explain(table, {});
   if (!before) throw std::runtime_error(before.error().text());
-  const EffectPtr added = effect(spec);
+  const effects::EffectPtr added = effect(spec);
   Chosen out{.table = std::move(table), .model = {}, .choice = {}};
   out.choice = choice_of(*before, out.table, added);
   out.model.effects = {added};
@@ -55,7 +55,7 @@ TEST(Choice, KeepsWhatCouldStandInItsPlaceUntilOtherPosesSettleIt) {
   EXPECT_EQ(c.choice.finding, "AMBIGUOUS");
   ASSERT_THAT(c.choice.alternatives, ElementsAre("axis.offset.drift@s3.z"));
   EXPECT_FALSE(c.choice.describes);
-  EXPECT_THAT(to_text(c.choice), HasSubstr("axis.offset.drift@s3.z could stand in its place"));
+  EXPECT_THAT(report::to_text(c.choice), HasSubstr("axis.offset.drift@s3.z could stand in its place"));
   EXPECT_EQ(on_these_poses(c.choice, c.table, c.model).alternatives, c.choice.alternatives)
       << "the same poses";
   EXPECT_EQ(on_these_poses(c.choice, warm(true, 2), c.model).alternatives, c.choice.alternatives)
@@ -67,7 +67,7 @@ TEST(Choice, ANameThatStoodAloneLeavesNothingOpen) {
   const Chosen c = chosen(warm(false, 1), "axis.offset.temperature@s3.z");
   EXPECT_EQ(c.choice.finding, "EXPLAINED");
   EXPECT_FALSE(c.choice.open());
-  EXPECT_EQ(to_text(c.choice), "");
+  EXPECT_EQ(report::to_text(c.choice), "");
 }
 
 /// Something that is in no library: a ninth harmonic of the azimuth.
@@ -78,7 +78,7 @@ TEST(Choice, ASurrogateDescribesAndDoesNotExplain) {
   };
   const Chosen c = chosen(hidden_run(run, 1), "axis.cubic@s2.x");
   EXPECT_TRUE(c.choice.describes);
-  EXPECT_THAT(to_text(c.choice), HasSubstr("describes the readings, it does not explain them"));
+  EXPECT_THAT(report::to_text(c.choice), HasSubstr("describes the readings, it does not explain them"));
 }
 
 TEST(Choice, ReadsBackAndAnEarlierFileHasNone) {
@@ -99,15 +99,15 @@ TEST(Choice, ASearchedNumberIsKeptAsItWasFound) {
   const auto change = add_effect(table, {}, effect("axis.offset.step@s4.y"));
   ASSERT_TRUE(change) << change.error().text();
   EXPECT_THAT(change->spec, HasSubstr(",ts="));
-  FitOptions kept;
+  fit::FitOptions kept;
   kept.effects = {effect(change->spec)};
-  FitOptions open;
+  fit::FitOptions open;
   open.effects = {effect("axis.offset.step@s4.y")};
-  const auto fitted = fit(table, kept);
+  const auto fitted = fit::method_choice::fit(table, kept);
   ASSERT_TRUE(fitted);
-  for (const FitOptions& options : {kept, open}) {
+  for (const fit::FitOptions& options : {kept, open}) {
     const auto explained = explain(table, {.fit = options});
-    const auto compared = compare(table, options);
+    const auto compared = tests::compare(table, options);
     ASSERT_TRUE(explained && compared);
     EXPECT_NEAR(explained->residual_nT, fitted->residual_nT, 1e-6);
     EXPECT_NEAR(compared->residual_nT, fitted->residual_nT, 1e-6);
@@ -117,4 +117,4 @@ TEST(Choice, ASearchedNumberIsKeptAsItWasFound) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

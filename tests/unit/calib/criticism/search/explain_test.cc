@@ -7,7 +7,7 @@
 #include "calib/report/verdict_text.h"
 #include "tests/unit/calib/criticism/hidden.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using testing::few_candidates;
@@ -22,7 +22,7 @@ ExplainReport must_explain(const PoseTable& table) {
 
 TEST(Explain, CleanRunPasses) {
   const ExplainReport r = must_explain(hidden_run({}, 1));
-  EXPECT_EQ(r.finding, Finding::pass) << sentence(r);
+  EXPECT_EQ(r.finding, Finding::pass) << report::sentence(r);
   EXPECT_TRUE(r.named.empty());
   EXPECT_EQ(r.detectable.size(), 5U);
   EXPECT_NEAR(r.chi2, r.dof, 4 * std::sqrt(2 * r.dof));
@@ -34,9 +34,9 @@ TEST(Explain, OffsetOfOneAxisThatFollowsTemperatureIsNamed) {
     return i == 2 && a == 2 ? 0.42 * (*p.T_degC[2] - 20) : 0;
   };
   const ExplainReport r = must_explain(hidden_run(run, 2));
-  EXPECT_EQ(r.finding, Finding::explained) << sentence(r);
+  EXPECT_EQ(r.finding, Finding::explained) << report::sentence(r);
   ASSERT_EQ(r.named, std::vector<std::string>{"offset.temperature"});
-  const Candidate& c = r.rounds.front().added;
+  const tests::Candidate& c = r.rounds.front().added;
   EXPECT_EQ(c.where, "s3.z");
   ASSERT_EQ(c.coefficients.size(), 1U);
   EXPECT_NEAR(c.coefficients[0].value, 0.42, 4 * c.coefficients[0].sd);
@@ -45,4 +45,4 @@ TEST(Explain, OffsetOfOneAxisThatFollowsTemperatureIsNamed) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -12,7 +12,7 @@
 #include "tests/blind/hidden_run.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using testing::hidden_run;
@@ -34,7 +34,7 @@ TEST(Improve, ThePriceOfAnEffectIsThatOfItsCoefficientNotOfTheMisfitBefore) {
   const ImproveRound& round = report->rounds.front();
   EXPECT_EQ(round.added.spec, "axis.offset.temperature@s3.z");
   EXPECT_GT(round.rms_before_nT, 10 * round.rms_after_nT);
-  const auto alone = add_effect(table, {}, make_effect(round.added.spec).value());
+  const auto alone = add_effect(table, {}, effects::library::make_effect(round.added.spec).value());
   ASSERT_TRUE(alone);
   EXPECT_LT(round.price.sd_ratio, 3);
   EXPECT_NEAR(round.price.sd_ratio, alone->price.sd_ratio, 0.02);
@@ -44,16 +44,17 @@ TEST(Improve, ThePriceOfAnEffectIsThatOfItsCoefficientNotOfTheMisfitBefore) {
 /// Ten fits from the solution, and one Gauss-Newton step for each fold.
 TEST(LeftOut, IsTheErrorThatTenFitsFind) {
   const PoseTable table = hidden_run({}, 2);
-  JointOptions options;
+  fit::joint::JointOptions options;
   for (const char* spec : {"axis.offset.temperature", "site.gradient"})
-    options.effects.push_back(make_effect(spec).value());
-  const auto fit = fit_joint(table, options);
+    options.effects.push_back(effects::library::make_effect(spec).value());
+  const auto fit = fit::joint::fit_joint(table, options);
   ASSERT_TRUE(fit);
-  const auto quick = left_out_nT(*fit);
-  const auto fits = held_out_errors(*fit);
+  const auto quick = fit::joint::left_out_nT(*fit);
+  const auto fits = fit::joint::held_out_errors(*fit);
   ASSERT_TRUE(quick && fits);
   EXPECT_NEAR(*quick, fits->residual_nT, 1e-3 * fits->residual_nT);
-  EXPECT_GT(*quick, joint_errors(fit->problem, fit->state, FixedBlock::fitted).residual_nT);
+  EXPECT_GT(*quick,
+            fit::joint::joint_errors(fit->problem, fit->state, fit::joint::FixedBlock::fitted).residual_nT);
 }
 
 /// From the nearest value of a grid to the true width, without a search.
@@ -69,24 +70,24 @@ TEST(Numbers, TheWidthOfAHysteresisIsRefinedBesideEverythingElse) {
              return 4 * (*p - x) / w;
            }},
       {}, 6);
-  JointOptions options;
-  options.effects.push_back(make_effect("axis.hysteresis@s2.x,w=0.22").value());
-  auto fit = fit_joint(table, options);
+  fit::joint::JointOptions options;
+  options.effects.push_back(effects::library::make_effect("axis.hysteresis@s2.x,w=0.22").value());
+  auto fit = fit::joint::fit_joint(table, options);
   ASSERT_TRUE(fit);
-  const double before = pose_residuals(fit->problem, fit->state).residual_nT();
+  const double before = fit::joint::pose_residuals(fit->problem, fit->state).residual_nT();
   refine_nonlinear_parameters(table, 0, options, *fit);
-  const auto spec = EffectSpec::parse(options.effects.front()->spec());
+  const auto spec = effects::EffectSpec::parse(options.effects.front()->spec());
   ASSERT_TRUE(spec);
   EXPECT_NEAR(*spec->number("w", 0, 0, 10), 0.3, 0.03);
-  EXPECT_LT(pose_residuals(fit->problem, fit->state).residual_nT(), before);
+  EXPECT_LT(fit::joint::pose_residuals(fit->problem, fit->state).residual_nT(), before);
 
-  JointOptions kept;
-  kept.effects.push_back(make_effect("axis.hysteresis@s2.x,w=0.22").value());
-  auto same = fit_joint(table, kept);
+  fit::joint::JointOptions kept;
+  kept.effects.push_back(effects::library::make_effect("axis.hysteresis@s2.x,w=0.22").value());
+  auto same = fit::joint::fit_joint(table, kept);
   ASSERT_TRUE(same);
   refine_nonlinear_parameters(table, 1, kept, *same);
   EXPECT_EQ(kept.effects.front()->spec(), "axis.hysteresis@s2.x,w=0.22") << "what was given stays";
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -11,13 +11,13 @@
 #include "tests/blind/hidden_run.h"
 #include "tests/blind/planted.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using testing::hidden_run;
 using testing::HiddenRun;
 
-EffectPtr effect(const std::string& spec) { return make_effect(spec).value(); }
+effects::EffectPtr effect(const std::string& spec) { return effects::library::make_effect(spec).value(); }
 
 /// An offset that follows temperature on s3.z, and a cubic on s1.x that is much smaller.
 PoseTable warm_and_bent(std::uint64_t seed) {
@@ -52,12 +52,12 @@ TEST(ModelChange, AnEffectThatIsNotThereBuysNothingAndHasItsPrice) {
   EXPECT_NEAR(change->realised, change->predicted, 0.1);
   EXPECT_GT(change->price.sd_ratio, 1.2);
   EXPECT_EQ(change->price.parameter, "s2.cy") << "a cubic hides behind the scale of its own axis";
-  EXPECT_THAT(to_text(*change), ::testing::HasSubstr("weak evidence")) << "p = 0.048";
+  EXPECT_THAT(report::to_text(*change), ::testing::HasSubstr("weak evidence")) << "p = 0.048";
 }
 
 TEST(ModelChange, ALawMayActOnASecondAxisButNotTwiceOnOne) {
   const PoseTable table = warm_and_bent(1);
-  FitOptions model;
+  fit::FitOptions model;
   model.effects = {effect("axis.offset.temperature@s3.z")};
   const auto second = add_effect(table, model, effect("axis.offset.temperature@s1.x"));
   ASSERT_TRUE(second) << second.error().text();
@@ -77,7 +77,7 @@ TEST(ModelChange, TheMomentOfAStepOfTheSiteIsSearched) {
   const auto change = add_effect(table, {}, effect("site.step"));
   ASSERT_TRUE(change) << change.error().text();
   EXPECT_THAT(change->spec, ::testing::StartsWith("site.step,ts="));
-  const auto spec = EffectSpec::parse(change->spec);
+  const auto spec = effects::EffectSpec::parse(change->spec);
   ASSERT_TRUE(spec);
   EXPECT_NEAR(*spec->number("ts", 0, 0, 100), at_s / 3600, 30.0 / 3600) << change->spec;
   EXPECT_FALSE(change->vetoed());
@@ -97,9 +97,9 @@ TEST(ModelChange, InAModelFarOffChanceIsJudgedByWhatIsLeft) {
 
 TEST(ModelChange, DroppingIsAddingBackwards) {
   const PoseTable table = warm_and_bent(3);
-  FitOptions with;
+  fit::FitOptions with;
   with.effects = {effect("axis.offset.temperature@s3.z"), effect("axis.cubic@s1.x")};
-  FitOptions without;
+  fit::FitOptions without;
   without.effects = {with.effects[0]};
   const auto added = add_effect(table, without, with.effects[1]);
   const auto dropped = drop_effect(table, with, 1);
@@ -113,7 +113,7 @@ TEST(ModelChange, DroppingIsAddingBackwards) {
 
 TEST(ModelChange, DroppingWhatIsNeededIsVetoedByPosesLeftOut) {
   const PoseTable table = warm_and_bent(4);
-  FitOptions with;
+  fit::FitOptions with;
   with.effects = {effect("axis.offset.temperature@s3.z")};
   const auto dropped = drop_effect(table, with, 0);
   ASSERT_TRUE(dropped);
@@ -127,9 +127,9 @@ TEST(ModelChange, ChanceAndPriceForbidAnAdditionAndNoRemoval) {
   change.price = {.sd_ratio = 1540, .parameter = "s2.scale.z"};
   change.held_out_before_nT = 1, change.held_out_after_nT = 1.005;
   EXPECT_THAT(change.vetoes(), ::testing::ElementsAre(Veto::not_shown, Veto::price));
-  EXPECT_THAT(to_text(change, Veto::price), ::testing::HasSubstr("s2.scale.z would be 1540 times"));
-  EXPECT_THAT(to_text(change, Veto::not_shown), ::testing::HasSubstr("not shown to be there"));
-  EXPECT_EQ(to_json(change)["vetoes"].size(), 2U);
+  EXPECT_THAT(report::to_text(change, Veto::price), ::testing::HasSubstr("s2.scale.z would be 1540 times"));
+  EXPECT_THAT(report::to_text(change, Veto::not_shown), ::testing::HasSubstr("not shown to be there"));
+  EXPECT_EQ(report::to_json(change)["vetoes"].size(), 2U);
   change.log10_p = -1.4;
   change.price.sd_ratio = 99;
   EXPECT_FALSE(change.vetoed());
@@ -143,7 +143,7 @@ TEST(ModelChange, ChanceAndPriceForbidAnAdditionAndNoRemoval) {
 
 TEST(ModelChange, AnEffectCannotBeInTwice) {
   const PoseTable table = hidden_run({}, 5);
-  FitOptions with;
+  fit::FitOptions with;
   with.effects = {effect("site.gradient")};
   const auto again = add_effect(table, with, effect("site.gradient"));
   ASSERT_FALSE(again);
@@ -152,7 +152,7 @@ TEST(ModelChange, AnEffectCannotBeInTwice) {
 
 TEST(Waterfall, ErrorsOfEffectsThatHaveNothingInCommonAddInSquares) {
   const PoseTable table = warm_and_bent(6);
-  FitOptions with;
+  fit::FitOptions with;
   with.effects = {effect("axis.cubic@s1.x"), effect("axis.offset.temperature@s3.z")};
   const auto w = waterfall(table, with);
   ASSERT_TRUE(w) << w.error().text();
@@ -169,8 +169,8 @@ TEST(Waterfall, ErrorsOfEffectsThatHaveNothingInCommonAddInSquares) {
   EXPECT_NEAR(std::sqrt(last), w->without_nT, 0.02 * w->without_nT);
   // All that is left is noise; the fit took some of its freedom.
   EXPECT_NEAR(w->with_nT, w->floor_nT, 0.15 * w->floor_nT);
-  EXPECT_EQ(to_json(*w).at("steps").size(), 2U);
+  EXPECT_EQ(report::to_json(*w).at("steps").size(), 2U);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -17,16 +17,17 @@ HiddenRun with_gradient() {
   return run;
 }
 
-NextReport must_ask(const PoseTable& table, const std::string& a, const std::string& b) {
-  auto report = next_of(table, {}, std::pair(a, b));
+criticism::search::NextReport must_ask(const PoseTable& table, const std::string& a, const std::string& b) {
+  auto report = criticism::search::next_of(table, {}, std::pair(a, b));
   EXPECT_TRUE(report) << (report ? "" : report.error().text());
-  return report ? *std::move(report) : NextReport{};
+  return report ? *std::move(report) : criticism::search::NextReport{};
 }
 
-const NextStep* step(const NextReport& report, std::string_view words) {
-  const auto found = std::find_if(report.steps.begin(), report.steps.end(), [&](const NextStep& s) {
-    return s.measurement.action.find(words) != std::string::npos;
-  });
+const criticism::search::NextStep* step(const criticism::search::NextReport& report, std::string_view words) {
+  const auto found =
+      std::find_if(report.steps.begin(), report.steps.end(), [&](const criticism::search::NextStep& s) {
+        return s.measurement.action.find(words) != std::string::npos;
+      });
   return found == report.steps.end() ? nullptr : &*found;
 }
 
@@ -41,11 +42,11 @@ TEST(NextPair, WhatIsTheSitesStaysBehindWhereTheRigIsMoved) {
   // Barely seen, so that the pair is open; the truth is the site's, which another place does not have.
   HiddenRun run = with_gradient();
   run.G_nT_per_m *= 0.02;
-  const NextReport site = must_ask(hidden_run(run, 3), "site.gradient", "site.dipole");
-  const NextStep* const moved = step(site, "another place");
+  const criticism::search::NextReport site = must_ask(hidden_run(run, 3), "site.gradient", "site.dipole");
+  const criticism::search::NextStep* const moved = step(site, "another place");
   ASSERT_EQ(moved, nullptr) << "both are the site's: at another place both are free again";
-  const NextReport mixed = must_ask(hidden_run(run, 3), "site.gradient", "axis.quadratic");
-  for (const NextStep& s : mixed.steps)
+  const criticism::search::NextReport mixed = must_ask(hidden_run(run, 3), "site.gradient", "axis.quadratic");
+  for (const criticism::search::NextStep& s : mixed.steps)
     EXPECT_GE(s.measurement.p_right_after, s.measurement.p_right_before) << s.measurement.action;
 }
 
@@ -54,12 +55,12 @@ TEST(NextPair, APairThatIsAskedAboutAndTheVerdictsOwnGiveOneAnswer) {
     return i == 1 && a == 0 ? 6 * std::pow(v[0] / 5e4, 2) : 0.0;
   };
   const PoseTable run = hidden_run({.hidden = square}, 4);
-  const auto open = next_of(run, {}, std::nullopt);
+  const auto open = criticism::search::next_of(run, {}, std::nullopt);
   ASSERT_TRUE(open);
   EXPECT_NEAR(open->p_right_before, 0.5, 1e-3) << "in one field strength their forms alone differ";
   for (const auto& [a, b] :
        {std::pair("axis.quadratic", "axis.transverse"), std::pair("axis.transverse", "axis.quadratic")}) {
-    const NextReport asked = must_ask(run, a, b);
+    const criticism::search::NextReport asked = must_ask(run, a, b);
     EXPECT_NEAR(asked.p_right_before, 0.5, 1e-3) << a;
     ASSERT_NE(step(asked, "field a fifth weaker"), nullptr) << a;
     EXPECT_GT(step(asked, "field a fifth weaker")->measurement.p_right_after, 0.9) << a;
@@ -72,9 +73,9 @@ TEST(NextPair, ANewTiltIsOfferedWhereTheRunIsFlat) {
     return i == 1 && a == 2 ? 2 * *p.t_s / 3600 : 0.0;
   };
   const PoseTable flat = level_poses(hidden_run({.hidden = drift}, 5));
-  const NextReport report = must_ask(flat, "axis.offset.drift", "axis.gain.drift");
-  const NextStep* const tilt = step(report, "tilted");
-  ASSERT_NE(tilt, nullptr) << to_text(report);
+  const criticism::search::NextReport report = must_ask(flat, "axis.offset.drift", "axis.gain.drift");
+  const criticism::search::NextStep* const tilt = step(report, "tilted");
+  ASSERT_NE(tilt, nullptr) << report::to_text(report);
   EXPECT_GT(tilt->measurement.p_right_after, tilt->measurement.p_right_before);
   for (std::size_t k = 0; k < tilt->poses.size(); ++k)
     EXPECT_GT(std::abs(*tilt->poses[k].pitch_rad), to_rad(20) - 0.4) << k;

@@ -5,7 +5,7 @@
 
 #include "tests/blind/unseen.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 /// This run once ended at sixty times the oracle's error.
@@ -18,4 +18,4 @@ TEST(PaperExperiment, IsExplainedToNearlyTheNoiseOnUnseenPoses) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

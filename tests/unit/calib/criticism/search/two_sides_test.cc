@@ -19,7 +19,7 @@
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using testing::Planted;
@@ -310,13 +310,13 @@ std::vector<Row> all_rows() {
 
 TEST(TwoSides, HaveTheSameLaws) {
   std::set<std::string> library, rig, rows, planted;
-  for (const EffectFamily& family : effect_families())
+  for (const effects::library::EffectFamily& family : effects::library::effect_families())
     if (family.untestable.empty()) library.insert(std::string(family.name));
   for (const rig::EffectKind* kind : rig::all_kinds())
     if (!kind->unnamed) rig.insert(kind->name);
   for (const char* absorbed : kAbsorbed) rig.erase(absorbed);
   for (const Row& row : all_rows()) {
-    rows.insert(std::string(family_name(row.spec)));
+    rows.insert(std::string(effects::family_name(row.spec)));
     planted.insert(row.planted.kind);
   }
   EXPECT_EQ(rows, library);
@@ -333,10 +333,11 @@ TEST(TwoSides, WhatIsAbsorbedIsDeclaredUntestable) {
     const PoseTable run = testing::planted_run(testing::full_stage(kSeed), {effect}, kSeed);
     const auto told = explain(run, {});
     ASSERT_TRUE(told) << told.error().text();
-    EXPECT_EQ(told->finding, Finding::pass) << effect.kind << ": " << sentence(*told);
-    EXPECT_TRUE(std::any_of(told->untestable.begin(), told->untestable.end(), [&](const Untestable& u) {
-      return u.effect == effect.kind && !u.why.empty();
-    })) << effect.kind;
+    EXPECT_EQ(told->finding, Finding::pass) << effect.kind << ": " << report::sentence(*told);
+    EXPECT_TRUE(
+        std::any_of(told->untestable.begin(), told->untestable.end(),
+                    [&](const tests::Untestable& u) { return u.effect == effect.kind && !u.why.empty(); }))
+        << effect.kind;
   }
 }
 
@@ -352,19 +353,20 @@ TEST_P(Planting, AgreeOnNameNumberSignAndUnit) {
   if (!stage.scenario.scalar) asked.fit.field_nT = stage.scenario.f_nT;
   const auto told = explain(run, asked);
   ASSERT_TRUE(told) << told.error().text();
-  const std::string family(family_name(row.spec));
+  const std::string family(effects::family_name(row.spec));
   const std::set<std::string> names = declared(*told);
-  EXPECT_TRUE(names.contains(family)) << sentence(*told);
+  EXPECT_TRUE(names.contains(family)) << report::sentence(*told);
   for (const std::string& name : names)
-    EXPECT_TRUE(name == family || row.alike.contains(name)) << name << ": " << sentence(*told);
-  EXPECT_EQ(told->finding, names.size() > 1 ? Finding::ambiguous : Finding::explained) << sentence(*told);
+    EXPECT_TRUE(name == family || row.alike.contains(name)) << name << ": " << report::sentence(*told);
+  EXPECT_EQ(told->finding, names.size() > 1 ? Finding::ambiguous : Finding::explained)
+      << report::sentence(*told);
 
-  const auto effect = make_effect(row.spec);
+  const auto effect = effects::library::make_effect(row.spec);
   ASSERT_TRUE(effect) << effect.error().text();
-  FitOptions options;
+  fit::FitOptions options;
   options.effects = {*effect};
   if (!stage.scenario.scalar) options.field_nT = stage.scenario.f_nT;
-  const auto fit = calib::fit(run, options);
+  const auto fit = fit::method_choice::fit(run, options);
   ASSERT_TRUE(fit) << fit.error().text();
   EXPECT_NEAR(fit->chi2 / fit->dof, 1, 4 * std::sqrt(2 / fit->dof));
   const auto& found = fit->calibration.effects.front().coefficients;
@@ -387,4 +389,4 @@ TEST_P(Planting, AgreeOnNameNumberSignAndUnit) {
 INSTANTIATE_TEST_SUITE_P(TwoSides, Planting, ::testing::ValuesIn(all_rows()), title_of);
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -12,7 +12,7 @@
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 using testing::Planted;
@@ -75,9 +75,9 @@ TEST_P(NotListed, IsNotGivenASingleName) {
   const auto r = explain(run, options);
   ASSERT_TRUE(r) << r.error().text();
   EXPECT_TRUE(r->finding != Finding::pass || (row.slow && (r->noise.wandering.any() || !r->outliers.empty())))
-      << sentence(*r);
-  EXPECT_NE(r->finding, Finding::bad_data) << sentence(*r);
-  EXPECT_NE(r->finding, Finding::explained) << sentence(*r);
+      << report::sentence(*r);
+  EXPECT_NE(r->finding, Finding::bad_data) << report::sentence(*r);
+  EXPECT_NE(r->finding, Finding::explained) << report::sentence(*r);
 }
 
 /// Twice what is usual of an offset that follows temperature, and nothing else: it is named, with its size.
@@ -88,9 +88,9 @@ TEST(Unlisted, ALawThatLeavesOnlyNoiseIsNamedAtAnySize) {
   ASSERT_TRUE(r) << r.error().text();
   ASSERT_EQ(r->candidates.front().effect, hot.kind);
   EXPECT_FALSE(r->candidates.front().plausible);
-  EXPECT_EQ(r->finding, Finding::explained) << sentence(*r);
-  EXPECT_EQ(r->named, std::vector<std::string>{hot.kind}) << sentence(*r);
-  EXPECT_NE(sentence(*r).find("is larger than is usual"), std::string::npos) << sentence(*r);
+  EXPECT_EQ(r->finding, Finding::explained) << report::sentence(*r);
+  EXPECT_EQ(r->named, std::vector<std::string>{hot.kind}) << report::sentence(*r);
+  EXPECT_NE(report::sentence(*r).find("is larger than is usual"), std::string::npos) << report::sentence(*r);
 }
 
 /// An exponential of the time, in a table of poses without the way between them: one offset that wanders.
@@ -103,7 +103,7 @@ TEST(Unlisted, WhatManyNamesWouldDescribeGetsNone) {
   ASSERT_TRUE(r) << r.error().text();
   EXPECT_TRUE(r->named.empty());
   EXPECT_EQ(r->noise.wandering.where, std::vector<std::string>{"s1.y"});
-  const std::string text = sentence(*r);
+  const std::string text = report::sentence(*r);
   EXPECT_NE(text.find("slow wandering of the offsets of s1.y"), std::string::npos) << text;
   EXPECT_EQ(text.find("Nothing else in the library looks like it"), std::string::npos) << text;
   EXPECT_EQ(text.find("way of the table"), std::string::npos) << text;
@@ -118,12 +118,12 @@ TEST(Unlisted, BesideAKnownLawOnlyThatIsNamed) {
     run.path.clear();
     const auto r = explain(run, {});
     ASSERT_TRUE(r) << r.error().text();
-    EXPECT_EQ(r->finding, Finding::partial) << sentence(*r);
-    EXPECT_EQ(r->named, std::vector<std::string>{known.kind}) << unknown.kind << ": " << sentence(*r);
+    EXPECT_EQ(r->finding, Finding::partial) << report::sentence(*r);
+    EXPECT_EQ(r->named, std::vector<std::string>{known.kind}) << unknown.kind << ": " << report::sentence(*r);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Unlisted, NotListed, ::testing::ValuesIn(rows()), title_of);
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

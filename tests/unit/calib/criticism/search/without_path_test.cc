@@ -8,7 +8,7 @@
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::search {
 namespace {
 
 struct Row {
@@ -49,11 +49,11 @@ TEST_P(WithoutPath, AMemoryIsNotGivenAnotherName) {
   ASSERT_TRUE(r) << r.error().text();
   const std::vector<std::string> memory{"axis.hysteresis"};
   if (r->finding == Finding::explained) {
-    EXPECT_EQ(r->named, memory) << sentence(*r);
+    EXPECT_EQ(r->named, memory) << report::sentence(*r);
   }
   if (row.sigmas < 30) return;  // a sketch of so little may be missed
   EXPECT_NE(r->finding, Finding::pass);
-  EXPECT_TRUE(named_or_possible(*r) || r->named.empty()) << sentence(*r);
+  EXPECT_TRUE(named_or_possible(*r) || r->named.empty()) << report::sentence(*r);
   EXPECT_TRUE(std::any_of(r->notes.begin(), r->notes.end(), [](const ExplainNote& note) {
     return std::holds_alternative<TablePathUnknown>(note);
   }));
@@ -67,4 +67,4 @@ std::vector<Row> rows() {
 INSTANTIATE_TEST_SUITE_P(Explain, WithoutPath, ::testing::ValuesIn(rows()));
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::search

@@ -15,7 +15,7 @@ constexpr int kAlternatives = 8;
 
 /// Law 0 and others that share `alike` of its signature (not in squares), each in a direction of its own.
 struct Laws {
-  std::vector<std::shared_ptr<CandidateEffect>> candidate_effects;
+  std::vector<std::shared_ptr<criticism::tests::CandidateEffect>> candidate_effects;
   std::vector<Eigen::VectorXd> columns;
 
   explicit Laws(double alike) {
@@ -27,13 +27,14 @@ struct Laws {
     }
   }
 
-  [[nodiscard]] std::vector<ScoredFamily> scored_on(const Eigen::VectorXd& residual) const {
-    std::vector<ScoredFamily> out;
+  [[nodiscard]] std::vector<criticism::tests::ScoredFamily> scored_on(const Eigen::VectorXd& residual) const {
+    std::vector<criticism::tests::ScoredFamily> out;
     for (std::size_t i = 0; i < columns.size(); ++i)
       out.push_back(scored(candidate_effects[i], columns[i], residual));
-    std::stable_sort(out.begin(), out.end(), [](const ScoredFamily& a, const ScoredFamily& b) {
-      return a.calibrated < b.calibrated;
-    });
+    std::stable_sort(out.begin(), out.end(),
+                     [](const criticism::tests::ScoredFamily& a, const criticism::tests::ScoredFamily& b) {
+                       return a.calibrated < b.calibrated;
+                     });
     return out;
   }
 };
@@ -48,11 +49,11 @@ Counts ask(const Laws& laws, double d, int runs) {
   Counts out;
   for (int i = 0; i < runs; ++i) {
     const auto families = laws.scored_on(d * laws.columns[0] + normal(kRows, random));
-    const auto alternatives = alternatives_of(families, 0, static_cast<std::uint64_t>(i));
+    const auto alternatives = criticism::tests::alternatives_of(families, 0, static_cast<std::uint64_t>(i));
     bool named = families.front().candidate_effect->name == "law 0";
     out.first += named ? 1 : 0;
     int possible = 0;
-    for (const Alternative& r : alternatives) {
+    for (const criticism::tests::Alternative& r : alternatives) {
       named = named || (r.possible && r.effect == "law 0");
       possible += r.possible ? 1 : 0;
     }
@@ -95,9 +96,9 @@ TEST(Alternatives, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
 }
 
 TEST(Alternatives, FormAloneTellsNothingApart) {
-  EXPECT_EQ(beyond_form(40, 1600), 0);
-  EXPECT_DOUBLE_EQ(beyond_form(400, 1600), 320);
-  EXPECT_DOUBLE_EQ(probability_right(0), 0.5);
+  EXPECT_EQ(criticism::tests::beyond_form(40, 1600), 0);
+  EXPECT_DOUBLE_EQ(criticism::tests::beyond_form(400, 1600), 320);
+  EXPECT_DOUBLE_EQ(criticism::tests::probability_right(0), 0.5);
 }
 
 }  // namespace

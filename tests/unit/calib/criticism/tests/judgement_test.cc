@@ -8,7 +8,7 @@
 #include "tests/blind/wandering_offsets.h"
 #include "tests/unit/calib/criticism/hidden.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 using testing::few_candidates;
@@ -16,8 +16,8 @@ using testing::hidden_run;
 using testing::HiddenRun;
 using testing::wandering_offsets;
 
-ExplainReport must_explain(const PoseTable& table) {
-  auto report = explain(table, {.fit = {}, .candidate_effects = few_candidates()});
+search::ExplainReport must_explain(const PoseTable& table) {
+  auto report = search::explain(table, {.fit = {}, .candidate_effects = few_candidates()});
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }
@@ -26,10 +26,10 @@ TEST(Judgement, OffsetsThatWanderAreNoiseAndGetNoName) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     HiddenRun run{.noise_nT = 0.2};
     run.hidden = wandering_offsets({.step_nT = 0.1}, seed);
-    const ExplainReport r = must_explain(hidden_run(run, seed));
-    EXPECT_EQ(r.finding, Finding::pass) << sentence(r);
+    const search::ExplainReport r = must_explain(hidden_run(run, seed));
+    EXPECT_EQ(r.finding, search::Finding::pass) << report::sentence(r);
     EXPECT_TRUE(r.noise.wandering.any());
-    EXPECT_THAT(sentence(r), ::testing::HasSubstr("slow wandering of all offsets"));
+    EXPECT_THAT(report::sentence(r), ::testing::HasSubstr("slow wandering of all offsets"));
   }
 }
 
@@ -39,8 +39,8 @@ TEST(Judgement, ADriftOfOneAxisIsADrift) {
   run.hidden = [](const Pose& p, int i, int a, const Eigen::Vector3d&) {
     return i == 2 && a == 1 ? 1.5 * *p.t_s / 3600 : 0;
   };
-  const ExplainReport r = must_explain(hidden_run(run, 5));
-  EXPECT_EQ(r.finding, Finding::explained) << sentence(r);
+  const search::ExplainReport r = must_explain(hidden_run(run, 5));
+  EXPECT_EQ(r.finding, search::Finding::explained) << report::sentence(r);
   EXPECT_EQ(r.named, std::vector<std::string>{"offset.drift"});
   EXPECT_FALSE(r.noise.wandering.any());
 }
@@ -51,8 +51,8 @@ TEST(Judgement, ALawIsNamedBesideOffsetsThatWander) {
   run.hidden = [walk](const Pose& p, int i, int a, const Eigen::Vector3d& v) {
     return walk(p, i, a, v) + (i == 0 && a == 2 ? 20 * std::pow(v[2] / 50'000, 3) : 0);
   };
-  const ExplainReport r = must_explain(hidden_run(run, 7));
-  EXPECT_EQ(r.finding, Finding::explained) << sentence(r);
+  const search::ExplainReport r = must_explain(hidden_run(run, 7));
+  EXPECT_EQ(r.finding, search::Finding::explained) << report::sentence(r);
   EXPECT_EQ(r.named, std::vector<std::string>{"cubic"});
 }
 
@@ -63,10 +63,10 @@ TEST(Judgement, NoiseThatIsLargerThanTheDwellsSayGetsNoName) {
     for (Pose& pose : table.poses)
       for (auto& sensor : pose.sd_nT)
         for (auto& sd : sensor) *sd /= 2;
-    const ExplainReport r = must_explain(table);
-    EXPECT_EQ(r.finding, Finding::pass) << sentence(r);
+    const search::ExplainReport r = must_explain(table);
+    EXPECT_EQ(r.finding, search::Finding::pass) << report::sentence(r);
     EXPECT_NEAR(r.noise.beyond_dwells, 2, 0.1);
-    EXPECT_THAT(sentence(r), ::testing::HasSubstr("successive samples are correlated"));
+    EXPECT_THAT(report::sentence(r), ::testing::HasSubstr("successive samples are correlated"));
   }
 }
 
@@ -78,9 +78,9 @@ TEST(Judgement, OneChannelBeyondItsNoiseIsNotTheNoiseOfTheDwells) {
   run.hidden = [&](const Pose&, int i, int a, const Eigen::Vector3d&) {
     return i == 1 && a == 0 ? 1.5 * normal(rng) : 0;
   };
-  const ExplainReport r = must_explain(hidden_run(run, 6));
-  EXPECT_EQ(r.finding, Finding::unknown) << sentence(r);
+  const search::ExplainReport r = must_explain(hidden_run(run, 6));
+  EXPECT_EQ(r.finding, search::Finding::unknown) << report::sentence(r);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -13,14 +13,14 @@
 #include "tests/unit/calib/criticism/hidden.h"
 
 /// The library's effects on runs whose physics is written here once more.
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 using testing::Hidden;
 using testing::hidden_run;
 
-ExplainReport must_explain(const PoseTable& table) {
-  auto report = explain(table, {});
+search::ExplainReport must_explain(const PoseTable& table) {
+  auto report = search::explain(table, {});
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }
@@ -32,8 +32,8 @@ Hidden on(int sensor, int axis, std::function<double(const Pose&, const Eigen::V
 }
 
 TEST(LibraryCandidates, CleanRunPassesAndSaysWhatItCouldHaveSeen) {
-  const ExplainReport r = must_explain(hidden_run({}, 7));
-  EXPECT_EQ(r.finding, Finding::pass) << sentence(r);
+  const search::ExplainReport r = must_explain(hidden_run({}, 7));
+  EXPECT_EQ(r.finding, search::Finding::pass) << report::sentence(r);
   EXPECT_GT(r.detectable.size(), 15U);
   const auto absorbed = std::count_if(r.untestable.begin(), r.untestable.end(), [](const Untestable& u) {
     return u.effect == "platform.hard-iron" || u.effect == "platform.soft-iron" ||
@@ -51,8 +51,8 @@ TEST(LibraryCandidates, ALawOfOneAxisIsNamedWithItsPlace) {
       {"axis.gain.temperature",
        on(1, 0, [](const Pose& p, const Eigen::Vector3d& v) { return 30e-6 * (*p.T_degC[1] - 20) * v[0]; })}};
   for (const auto& [name, hidden] : cases) {
-    const ExplainReport r = must_explain(hidden_run({.hidden = hidden}, 11));
-    EXPECT_EQ(r.finding, Finding::explained) << sentence(r);
+    const search::ExplainReport r = must_explain(hidden_run({.hidden = hidden}, 11));
+    EXPECT_EQ(r.finding, search::Finding::explained) << report::sentence(r);
     EXPECT_EQ(r.named, std::vector<std::string>{name});
     EXPECT_EQ(r.rounds.front().added.where, "s2.x");
   }
@@ -65,9 +65,9 @@ TEST(LibraryCandidates, OwnSquareAgainstTransverseSquaresIsNeverDecided) {
   const Hidden transverse =
       on(2, 1, [](const Pose&, const Eigen::Vector3d& v) { return -4 * (v[0] * v[0] + v[2] * v[2]) / 25e8; });
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    const ExplainReport r =
+    const search::ExplainReport r =
         must_explain(hidden_run({.hidden = seed % 2 == 0 ? quadratic : transverse}, 20 + seed));
-    EXPECT_EQ(r.finding, Finding::ambiguous) << sentence(r);
+    EXPECT_EQ(r.finding, search::Finding::ambiguous) << report::sentence(r);
     for (const char* name : {"axis.quadratic", "axis.transverse"})
       EXPECT_NE(std::find(r.named.begin(), r.named.end(), name), r.named.end()) << name;
   }
@@ -79,12 +79,13 @@ TEST(LibraryCandidates, WhatIsInNoLibraryIsNotNamed) {
     return i == 3 && a != 1 ? 1.2 * std::sin(7 * std::atan2(v[1], v[0])) * (p.number % 3 == 0 ? 2.0 : 1.0)
                             : 0.0;
   };
-  const ExplainReport r = must_explain(hidden_run({.hidden = lamp}, 31));
-  EXPECT_TRUE(r.finding == Finding::unknown || r.finding == Finding::partial) << sentence(r);
+  const search::ExplainReport r = must_explain(hidden_run({.hidden = lamp}, 31));
+  EXPECT_TRUE(r.finding == search::Finding::unknown || r.finding == search::Finding::partial)
+      << report::sentence(r);
 }
 
 TEST(LibraryCandidates, TheJsonHasItsKeys) {
-  const nlohmann::json j = to_json(must_explain(hidden_run({}, 8)));
+  const nlohmann::json j = report::to_json(must_explain(hidden_run({}, 8)));
   for (const char* key : {"schema", "verdict", "candidates", "named", "maps", "lack_of_fit",
                           "detectable_above", "untestable", "next", "text"})
     EXPECT_TRUE(j.contains(key)) << key;
@@ -99,11 +100,11 @@ TEST(LibraryCandidates, ImproveAddsWhatIsMissingAndUnseenPosesAgree) {
     if (i == 0 && a == 2) return 1.5 * (*p.T_degC[0] - 20);
     return i == 3 && a == 1 ? 12 * std::pow(v[1] / 5e4, 3) : 0.0;
   };
-  const auto r = improve(hidden_run({.hidden = hidden}, 12), {});
+  const auto r = search::improve(hidden_run({.hidden = hidden}, 12), {});
   ASSERT_TRUE(r) << r.error().text();
   ASSERT_EQ(r->rounds.size(), 2U);
-  EXPECT_EQ(r->finding, Finding::pass);
-  for (const ImproveRound& round : r->rounds) {
+  EXPECT_EQ(r->finding, search::Finding::pass);
+  for (const search::ImproveRound& round : r->rounds) {
     EXPECT_LT(*round.held_out_after_nT, *round.held_out_before_nT);
     // As predicted without a fit, roughly: while the model is far off the weights follow the residual.
     EXPECT_NEAR(round.realised_fall / round.predicted_fall, 1, 0.5);
@@ -125,7 +126,7 @@ TEST(Comparison, SaysWhichChannelFollowsWhat) {
   const Dependence& d = r->channels.front().against.front();
   EXPECT_NE(d.covariate.find("T_degC"), std::string::npos);
   EXPECT_EQ(d.component, "s3.x");
-  EXPECT_EQ(to_json(*r)["schema"], "mgt.compare/1");
+  EXPECT_EQ(report::to_json(*r)["schema"], "mgt.compare/1");
 }
 
 TEST(Comparison, WhatOrdersThePosesAlikeIsShownOnce) {
@@ -141,4 +142,4 @@ TEST(Comparison, WhatOrdersThePosesAlikeIsShownOnce) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -27,7 +27,7 @@ Eigen::MatrixXd steps() {
 // Nothing is there: the smallest p of all, its search counted, must be uniform where alarms are raised.
 TEST(Null, TheSearchOverANumberIsCounted) {
   std::mt19937_64 random(3);
-  std::vector<std::shared_ptr<CandidateEffect>> candidate_effects;
+  std::vector<std::shared_ptr<criticism::tests::CandidateEffect>> candidate_effects;
   std::vector<Eigen::MatrixXd> columns;
   for (int i = 0; i < 5; ++i) {
     candidate_effects.push_back(candidate_of_columns("law", 1));
@@ -37,16 +37,16 @@ TEST(Null, TheSearchOverANumberIsCounted) {
   candidate_effects.push_back(candidate_of_columns("step", static_cast<std::size_t>(columns.back().cols())));
   const auto ask = [&] {
     const Eigen::VectorXd residual = normal(kRows, random);
-    std::vector<ScoredFamily> out;
+    std::vector<criticism::tests::ScoredFamily> out;
     for (std::size_t f = 0; f < columns.size(); ++f)
       out.push_back(scored(candidate_effects[f], columns[f], residual));
     return out;
   };
   auto families = ask();
-  const Rates rates = draw_rates(families, 11);
-  ASSERT_TRUE(calibrate(families, rates));
+  const criticism::tests::Rates rates = criticism::tests::draw_rates(families, 11);
+  ASSERT_TRUE(criticism::tests::calibrate(families, rates));
   std::vector<double> asked;
-  for (const ScoredFamily& f : families) asked.push_back(f.asked);
+  for (const criticism::tests::ScoredFamily& f : families) asked.push_back(f.asked);
   EXPECT_NEAR(asked.front(), 1, 0.15);  // one question; its rate comes from a third of 1000 draws: 5.5 %
   EXPECT_GT(asked.back(), 4);           // 29 instants, neighbours alike
   EXPECT_LT(asked.back(), 20);
@@ -56,9 +56,10 @@ TEST(Null, TheSearchOverANumberIsCounted) {
     const auto run = ask();
     double smallest = 0;
     for (std::size_t f = 0; f < run.size(); ++f)
-      smallest = std::min(smallest, best_of(std::min(0.0, run[f].priced), asked[f]));
-    step_alarms += best_of(std::min(0.0, run.back().priced), asked.back()) < std::log10(0.05) ? 1 : 0;
-    alarms += best_of(smallest, rates.best) < std::log10(0.05) ? 1 : 0;
+      smallest = std::min(smallest, criticism::tests::best_of(std::min(0.0, run[f].priced), asked[f]));
+    step_alarms +=
+        criticism::tests::best_of(std::min(0.0, run.back().priced), asked.back()) < std::log10(0.05) ? 1 : 0;
+    alarms += criticism::tests::best_of(smallest, rates.best) < std::log10(0.05) ? 1 : 0;
   }
   // 200 expected; 14 one standard deviation of the count, 11 and 16 those of one and two estimated rates.
   EXPECT_NEAR(step_alarms, 200, 54);

@@ -12,7 +12,7 @@
 #include "calib/report/noise_text.h"
 #include "tests/blind/hidden_run.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 using ::testing::HasSubstr;
@@ -48,7 +48,7 @@ PoseTable with_revisits(const Eigen::Matrix3d& G_nT_per_m, std::uint64_t seed) {
 }
 
 double scatter_of_revisits(const PoseTable& table) {
-  const auto fit = fit_joint(table, {});
+  const auto fit = fit::joint::fit_joint(table, {});
   EXPECT_TRUE(fit);
   const Residual residual(fit->problem, fit->state, 0);
   const auto pure = pure_error(*fit, residual.chi2(), residual.dof());
@@ -69,8 +69,8 @@ TEST(Residual, IsOneNumberInEveryReport) {
                     const Eigen::Vector3d&) { return i == 2 && a == 2 ? 0.5 * (*p.T_degC[2] - 20) : 0.0; }},
       5);
   const auto compared = compare(table, {});
-  const auto explained = explain(table, {.fit = {}, .rounds = 0});
-  const auto fitted = fit(table, {});
+  const auto explained = search::explain(table, {.fit = {}, .rounds = 0});
+  const auto fitted = fit::method_choice::fit(table, {});
   ASSERT_TRUE(compared && explained && fitted);
   EXPECT_NEAR(compared->residual_nT, explained->residual_nT, 1e-9);
   EXPECT_NEAR(compared->residual_nT, fitted->residual_nT, 1e-9);
@@ -79,7 +79,7 @@ TEST(Residual, IsOneNumberInEveryReport) {
 
 /// 1300 degrees of freedom tell a standard deviation to 2 %.
 TEST(Residual, IsTheNoiseWhereTheModelIsComplete) {
-  const auto fitted = fit(hidden_run({}, 6), {});
+  const auto fitted = fit::method_choice::fit(hidden_run({}, 6), {});
   ASSERT_TRUE(fitted);
   EXPECT_NEAR(fitted->residual_nT, kNoise_nT, 0.06 * kNoise_nT);
   ASSERT_TRUE(fitted->held_out_residual_nT);
@@ -90,34 +90,34 @@ TEST(Residual, IsTheNoiseWhereTheModelIsComplete) {
 TEST(NoiseText, SaysFromWhatItWasReallyEstimated) {
   const auto clean = compare(hidden_run({}, 6), {});
   ASSERT_TRUE(clean);
-  EXPECT_THAT(noise_of_tests(clean->noise), IsEmpty());
-  EXPECT_THAT(to_text(*clean), HasSubstr("from the spread of the samples within the dwells"));
+  EXPECT_THAT(report::noise_of_tests(clean->noise), IsEmpty());
+  EXPECT_THAT(report::to_text(*clean), HasSubstr("from the spread of the samples within the dwells"));
   const auto silent = compare(hidden_run({.spreads = false}, 6), {});
   ASSERT_TRUE(silent);
-  EXPECT_THAT(to_text(*silent), HasSubstr("estimated from the residual itself"));
+  EXPECT_THAT(report::to_text(*silent), HasSubstr("estimated from the residual itself"));
   EXPECT_FALSE(silent->log10_p);
   const auto slow = compare(hidden_run({.rho = 0.7}, 6), {});
   ASSERT_TRUE(slow);
-  EXPECT_THAT(noise_of_tests(slow->noise), HasSubstr("which no dwell can see"));
+  EXPECT_THAT(report::noise_of_tests(slow->noise), HasSubstr("which no dwell can see"));
   const auto cubic = [](const Pose&, int i, int a, const Eigen::Vector3d& v) {
     return i == 1 && a == 0 ? 12 * std::pow(v[0] / 50'000, 3) : 0.0;
   };
   const auto far = compare(hidden_run({.noise_nT = 0.02, .hidden = cubic}, 6), {});
   ASSERT_TRUE(far);
   EXPECT_TRUE(far->noise.known);
-  EXPECT_THAT(noise_of_tests(far->noise), HasSubstr("far above that noise"));
-  EXPECT_THAT(to_text(*far), HasSubstr("p < 1e-30"));
+  EXPECT_THAT(report::noise_of_tests(far->noise), HasSubstr("far above that noise"));
+  EXPECT_THAT(report::to_text(*far), HasSubstr("p < 1e-30"));
 }
 
 /// Twice the noise, four times its variance: nu = 18 / (1 - 1/4)^2 = 32, four pairs of eight.
 TEST(NoiseText, WithoutRevisitsSaysHowManyWouldTell) {
   NoiseModel noise;
   noise.beyond_dwells = 2;
-  EXPECT_THAT(noise_of_tests(noise), HasSubstr("visit 4 attitudes twice"));
+  EXPECT_THAT(report::noise_of_tests(noise), HasSubstr("visit 4 attitudes twice"));
   noise.beyond_dwells = 1.2;
-  EXPECT_THAT(noise_of_tests(noise), HasSubstr("visit 25 attitudes twice"));
+  EXPECT_THAT(report::noise_of_tests(noise), HasSubstr("visit 25 attitudes twice"));
   noise.revisits = PureError{.pairs = 24};
-  EXPECT_THAT(noise_of_tests(noise), Not(HasSubstr("attitudes twice")));
+  EXPECT_THAT(report::noise_of_tests(noise), Not(HasSubstr("attitudes twice")));
 }
 
 TEST(NoiseText, OneAxisThatWandersMayFollowALawOfNoLibrary) {
@@ -125,9 +125,9 @@ TEST(NoiseText, OneAxisThatWandersMayFollowALawOfNoLibrary) {
   noise.wandering.evidence = 20;
   noise.wandering.nT_per_sqrt_h[3] = 1;
   noise.wandering.where = {"s2.x"};
-  EXPECT_THAT(noise_of_tests(noise), HasSubstr("measure again on another day"));
+  EXPECT_THAT(report::noise_of_tests(noise), HasSubstr("measure again on another day"));
   noise.wandering.where = {"all"};
-  EXPECT_THAT(noise_of_tests(noise), Not(HasSubstr("another day")));
+  EXPECT_THAT(report::noise_of_tests(noise), Not(HasSubstr("another day")));
 }
 
 /// A map with as many columns as there are degrees of freedom leaves nothing to tell the noise from.
@@ -138,4 +138,4 @@ TEST(NoiseReference, WithoutDegreesOfFreedomNothingIsImprobable) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -21,10 +21,10 @@ TEST(Refinement, AnInstantBetweenThoseThatAreTriedFirstIsFoundToThePose) {
   // The step lies after pose 90; twenty instants are tried, eight poses apart.
   const HiddenLaw& step = law("axis.offset.step");
   const double size = 20 * crb_of(step, 1, 2, 5);
-  const auto report = explain(hidden_run({.hidden = hide(step, 1, 2, size)}, 5), {});
+  const auto report = criticism::search::explain(hidden_run({.hidden = hide(step, 1, 2, size)}, 5), {});
   ASSERT_TRUE(report.has_value());
   ASSERT_FALSE(report->rounds.empty());
-  const auto spec = EffectSpec::parse(report->rounds.front().added.spec);
+  const auto spec = effects::EffectSpec::parse(report->rounds.front().added.spec);
   ASSERT_TRUE(spec.has_value());
   EXPECT_EQ(spec->name, "axis.offset.step");
   ASSERT_NE(spec->find("ts"), nullptr);
@@ -36,14 +36,14 @@ TEST(Refinement, AnInstantBetweenThoseThatAreTriedFirstIsFoundToThePose) {
 TEST(Refinement, AStaircaseIsNotOneLaw) {
   const HiddenLaw& drift = law("axis.offset.drift");
   const PoseTable table = hidden_run({.hidden = hide(drift, 0, 0, 20 * crb_of(drift, 0, 0, 74'004))}, 74'004);
-  ExplainOptions options;
-  options.candidate_effects = library_candidates(table).testable;
+  criticism::search::ExplainOptions options;
+  options.candidate_effects = criticism::tests::library_candidates(table).testable;
   std::erase_if(*options.candidate_effects,
-                [](const CandidateEffect& s) { return s.name == "axis.offset.drift"; });
-  const auto report = explain(table, options);
+                [](const criticism::tests::CandidateEffect& s) { return s.name == "axis.offset.drift"; });
+  const auto report = criticism::search::explain(table, options);
   ASSERT_TRUE(report.has_value());
   EXPECT_TRUE(report->named.empty()) << report->named.front();
-  EXPECT_NE(report->finding, Finding::explained);
+  EXPECT_NE(report->finding, criticism::search::Finding::explained);
 }
 
 }  // namespace

@@ -9,31 +9,31 @@
 #include "calib/criticism/tests/residual.h"
 #include "tests/unit/calib/criticism/hidden.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::criticism::tests {
 namespace {
 
 using testing::hidden_run;
 
-JointFit fit_of(const PoseTable& table) {
-  auto fit = fit_joint(table, {});
+fit::joint::JointFit fit_of(const PoseTable& table) {
+  auto fit = fit::joint::fit_joint(table, {});
   if (!fit) throw std::runtime_error(fit.error().text());
   return std::move(*fit);
 }
 
 /// All rows at once: readings of each channel less rho times those before, then least squares over all
 /// nuisances.
-double dense_chi2(const JointProblem& problem, const LinearRows& rows, double rho) {
+double dense_chi2(const fit::joint::JointProblem& problem, const LinearRows& rows, double rho) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n * kPoseRows, n * kNuisances);
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n * kPoseRows, n * fit::joint::kNuisances);
   for (Eigen::Index k = 0; k < n; ++k) {
-    N.block(k * kPoseRows, k * kNuisances, kPoseRows, kNuisances) =
+    N.block(k * kPoseRows, k * fit::joint::kNuisances, kPoseRows, fit::joint::kNuisances) =
         rows.nuisance.middleRows(k * kPoseRows, kPoseRows);
   }
   Eigen::MatrixXd A(N.rows(), N.cols() + 1);
   A << N, rows.residual;
   const Eigen::MatrixXd plain = A;
   for (Eigen::Index k = 1; k < n; ++k) {
-    for (int c = 0; c < kChannels; ++c) {
+    for (int c = 0; c < sensor::kChannels; ++c) {
       A.row(k * kPoseRows + c) = (plain.row(k * kPoseRows + c) - rho * plain.row((k - 1) * kPoseRows + c)) /
                                  std::sqrt(1 - rho * rho);
     }
@@ -46,14 +46,14 @@ double dense_chi2(const JointProblem& problem, const LinearRows& rows, double rh
 TEST(Whitener, EliminatesNuisancesExactlyForAnyCorrelation) {
   PoseTable table = hidden_run({}, 3);
   table.poses.resize(44);  // in the order of time
-  const JointFit fit = fit_of(table);
+  const fit::joint::JointFit fit = fit_of(table);
   const LinearRows rows = linear_rows(fit.problem, fit.state);
   for (const double rho : {0.0, 0.3, 0.8}) {
     const Whitener whitener(fit.problem, rows.nuisance, rho);
     EXPECT_NEAR(whitener.apply(rows.residual).squaredNorm(), dense_chi2(fit.problem, rows, rho),
                 1e-6 * rows.residual.squaredNorm())
         << rho;
-    EXPECT_EQ(whitener.rank(), 44 * kChannels);
+    EXPECT_EQ(whitener.rank(), 44 * sensor::kChannels);
   }
 }
 
@@ -61,7 +61,7 @@ TEST(Whitener, ResidualIsAsLargeAsItsFreedom) {
   // Mean of 8 chi-squares with 1834 degrees of freedom: 1 % one sigma.
   double sum = 0, dof = 0;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    const JointFit fit = fit_of(hidden_run({}, 40 + seed));
+    const fit::joint::JointFit fit = fit_of(hidden_run({}, 40 + seed));
     const Residual residual(fit.problem, fit.state, 0);
     sum += residual.chi2();
     dof += residual.dof();
@@ -74,7 +74,7 @@ TEST(Whitener, CorrelationFromPoseToPoseIsEstimatedWithItsMarginAndNoOtherBias) 
     double sum = 0;
     constexpr int kRuns = 8;
     for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-      const JointFit fit = fit_of(hidden_run({.rho = rho}, 60 + seed));
+      const fit::joint::JointFit fit = fit_of(hidden_run({.rho = rho}, 60 + seed));
       sum += pose_correlation(fit.problem, fit.state) / kRuns;
     }
     // The margin: 1.5 standard errors of a median of twelve channels of 157 poses, where there is a
@@ -86,4 +86,4 @@ TEST(Whitener, CorrelationFromPoseToPoseIsEstimatedWithItsMarginAndNoOtherBias) 
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::criticism::tests

@@ -13,7 +13,7 @@
 #include "calib/report/formula_report.h"
 #include "tests/blind/hidden_run.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::formula {
 namespace {
 
 using ::testing::HasSubstr;
@@ -21,13 +21,13 @@ using testing::hidden_run;
 using testing::HiddenRun;
 
 EffectPtr formula(const std::string& spec) {
-  auto effect = make_effect(spec);
+  auto effect = library::make_effect(spec);
   if (!effect) throw std::runtime_error(effect.error().text());
   return *effect;
 }
 
 Error refusal(const std::string& spec) {
-  auto effect = make_effect(spec);
+  auto effect = library::make_effect(spec);
   return effect ? Error{ErrorCode::internal, "accepted", ""} : effect.error();
 }
 
@@ -43,10 +43,10 @@ PoseTable warm_and_bent(std::uint64_t seed) {
   return table;
 }
 
-FitReport fit_with(const PoseTable& table, const std::vector<std::string>& specs) {
-  FitOptions options;
+fit::FitReport fit_with(const PoseTable& table, const std::vector<std::string>& specs) {
+  fit::FitOptions options;
   for (const std::string& s : specs) options.effects.push_back(formula(s));
-  auto report = fit(table, options);
+  auto report = fit::method_choice::fit(table, options);
   if (!report) throw std::runtime_error(report.error().text());
   return std::move(*report);
 }
@@ -64,20 +64,21 @@ TEST(Formula, ASpecReadsBackAndTheExpressionKeepsItsCommas) {
 /// The same law by the library and by a formula, one through temperature, one through the field itself.
 TEST(Formula, WhatTheLibraryKnowsTooGivesTheSameFit) {
   const PoseTable table = warm_and_bent(1);
-  const FitReport a = fit_with(table, {"axis.offset.temperature@s3.z", "axis.cubic@s1.x"});
-  const FitReport b = fit_with(table, {"warm@s3.z,expr=T_degC-20", "bent@s1.x,expr=(u/50000)^3"});
+  const fit::FitReport a = fit_with(table, {"axis.offset.temperature@s3.z", "axis.cubic@s1.x"});
+  const fit::FitReport b = fit_with(table, {"warm@s3.z,expr=T_degC-20", "bent@s1.x,expr=(u/50000)^3"});
   EXPECT_NEAR(a.chi2, b.chi2, 1e-5 * a.chi2);
   for (std::size_t e = 0; e < 2; ++e) {
-    const EffectCoefficient &x = a.calibration.effects[e].coefficients[0],
-                            &y = b.calibration.effects[e].coefficients[0];
+    const calibration::EffectCoefficient &x = a.calibration.effects[e].coefficients[0],
+                                         &y = b.calibration.effects[e].coefficients[0];
     EXPECT_NEAR(x.value, y.value, 1e-3 * x.sd) << a.calibration.effects[e].effect;
     EXPECT_NEAR(x.sd, y.sd, 1e-4 * x.sd);
   }
 }
 
 TEST(Formula, TheCalibrationIsCompleteInItself) {
-  const FitReport fitted = fit_with(warm_and_bent(2), {"warm@s3.z,unit=nT/degC,expr=min(k, k)*(T_degC-20)"});
-  const auto read = calibration_from_json_text(to_json_text(fitted.calibration));
+  const fit::FitReport fitted =
+      fit_with(warm_and_bent(2), {"warm@s3.z,unit=nT/degC,expr=min(k, k)*(T_degC-20)"});
+  const auto read = calibration::calibration_from_json_text(calibration::to_json_text(fitted.calibration));
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->effects[0].effect, "warm@s3.z,unit=nT/degC,expr=min(k, k)*(T_degC-20)");
   EXPECT_EQ(read->effects[0].coefficients[0].unit, "nT/degC");
@@ -88,7 +89,7 @@ TEST(Formula, ANumberInItIsFound) {
   run.hidden = [](const Pose& p, int i, int a, const Eigen::Vector3d&) {
     return i == 1 && a == 1 ? 20 * std::exp(-*p.t_s / 600) : 0.0;
   };
-  const FitReport fitted =
+  const fit::FitReport fitted =
       fit_with(hidden_run(run, 3), {"settling@s2.y,tau=60..6000,expr=k*exp(-t_h*3600/tau)"});
   const auto spec = EffectSpec::parse(fitted.calibration.effects[0].effect);
   ASSERT_TRUE(spec);
@@ -191,24 +192,25 @@ TEST(FormulaExamination, WhatTheCalibrationHoldsAlreadyIsSaid) {
   const PoseTable table = warm_and_bent(7);
   for (const char* absorbed :
        {"offset@s2.x,expr=1", "scale@s2.x,expr=u/1000", "iron@s2,level=platform,expr=b/1000"}) {
-    const auto x = examine_formula(table, {}, *EffectSpec::parse(absorbed));
+    const auto x = criticism::tests::examine_formula(table, {}, *EffectSpec::parse(absorbed));
     ASSERT_TRUE(x) << x.error().text();
     EXPECT_TRUE(x->wholly_absorbed()) << absorbed << ": " << x->absorbed;
     EXPECT_GT(x->absorbed, 0.999999) << absorbed;
-    EXPECT_THAT(to_text(*x), HasSubstr("absorbs it whole"));
+    EXPECT_THAT(report::to_text(*x), HasSubstr("absorbs it whole"));
   }
 }
 
 TEST(FormulaExamination, TheEffectItResemblesIsNamed) {
   const PoseTable table = warm_and_bent(8);
-  const auto x = examine_formula(table, {}, *EffectSpec::parse("warm@s3.z,expr=2*T_degC + 0*lamp_A"));
+  const auto x =
+      criticism::tests::examine_formula(table, {}, *EffectSpec::parse("warm@s3.z,expr=2*T_degC + 0*lamp_A"));
   ASSERT_TRUE(x) << x.error().text();
   ASSERT_FALSE(x->alike.empty());
   EXPECT_EQ(x->alike[0].effect, "axis.offset.temperature");
   EXPECT_GT(x->alike[0].correlation, 0.9999);
   EXPECT_GT(x->d(), 10) << "it is there";
   EXPECT_GT(x->absorbed, 0.5) << "its mean is an offset";
-  const auto lamp = examine_formula(table, {}, *EffectSpec::parse("lamp@s3.z,expr=lamp_A"));
+  const auto lamp = criticism::tests::examine_formula(table, {}, *EffectSpec::parse("lamp@s3.z,expr=lamp_A"));
   ASSERT_TRUE(lamp);
   EXPECT_LT(lamp->d(), 4.5) << "it is not there";
   ASSERT_FALSE(lamp->alike.empty());
@@ -216,4 +218,4 @@ TEST(FormulaExamination, TheEffectItResemblesIsNamed) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::formula

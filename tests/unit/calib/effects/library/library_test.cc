@@ -7,7 +7,7 @@
 #include "calib/effects/library/effect_page.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::effects::library {
 namespace {
 
 const CovariateMeans kNoMeans;
@@ -182,4 +182,4 @@ TEST(EffectLibrary, EveryFamilyHasAPage) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::effects::library

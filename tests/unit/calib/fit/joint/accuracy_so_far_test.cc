@@ -6,7 +6,7 @@
 #include "calib/fit/method_choice/fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 TEST(AccuracySoFar, GrowsWithThePosesAndEndsWhereTheWholeFitDoes) {
@@ -24,11 +24,11 @@ TEST(AccuracySoFar, GrowsWithThePosesAndEndsWhereTheWholeFitDoes) {
     EXPECT_EQ(last->poses, static_cast<int>(table.poses.size()));
     if (table.poses.size() == 40) with_40 = last->worst_nT_per_m();
   }
-  const auto report = fit(whole, {});
+  const auto report = method_choice::fit(whole, {});
   ASSERT_TRUE(report && last);
   EXPECT_NEAR(last->worst_nT_per_m(), report->tensor_sd_nT_per_m.zz, 0.02 * report->tensor_sd_nT_per_m.zz);
   EXPECT_GT(with_40, 2 * last->worst_nT_per_m());
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

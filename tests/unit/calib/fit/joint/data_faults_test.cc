@@ -11,7 +11,7 @@
 #include "calib/report/verdict_text.h"
 #include "tests/blind/hidden_run.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using ::testing::HasSubstr;
@@ -83,8 +83,8 @@ class DataFault : public ::testing::TestWithParam<Row> {};
 TEST_P(DataFault, IsNamedByFitAndExplainAlike) {
   PoseTable run = hidden_run({}, 3);
   GetParam().damage(run);
-  const auto fitted = fit(run, {});
-  const auto explained = explain(run, {});
+  const auto fitted = method_choice::fit(run, {});
+  const auto explained = criticism::search::explain(run, {});
   ASSERT_FALSE(fitted);
   ASSERT_FALSE(explained);
   EXPECT_THAT(fitted.error().message, HasSubstr(GetParam().message));
@@ -97,37 +97,39 @@ INSTANTIATE_TEST_SUITE_P(Fit, DataFault, ::testing::ValuesIn(rows()), &title_of)
 TEST(DataFaults, AMirroredSensorIsRefusedByTheFitInTheWordsOfExplain) {
   PoseTable run = hidden_run({}, 3);
   for (Pose& pose : run.poses) pose.y_nT[1][2] *= -1;
-  const auto fitted = fit(run, {});
-  const auto explained = explain(run, {});
+  const auto fitted = method_choice::fit(run, {});
+  const auto explained = criticism::search::explain(run, {});
   ASSERT_TRUE(fitted && explained);
   EXPECT_FALSE(fitted->calibration.accepted_by_checks);
-  EXPECT_EQ(explained->finding, Finding::bad_data);
+  EXPECT_EQ(explained->finding, criticism::search::Finding::bad_data);
   const std::string words =
       "sensor 2 is mirrored: left-handed axes, two leads are swapped or one is inverted";
-  EXPECT_THAT(fit_reasons(*fitted), ::testing::Contains(HasSubstr(words)));
-  EXPECT_THAT(note_texts(explained->notes), ::testing::Contains(HasSubstr(words)));
+  EXPECT_THAT(report::fit_reasons(*fitted), ::testing::Contains(HasSubstr(words)));
+  EXPECT_THAT(report::note_texts(explained->notes), ::testing::Contains(HasSubstr(words)));
 }
 
 TEST(DataFaults, ATableSetByHandPassesAndItsUncertaintyIsTold) {
   testing::Simulation sim{.noise_nT = 0.3, .table_sd_rad = to_rad(2), .f_sd_nT = 0.05};
   const PoseTable run = simulate(sim, 36, 121, 1);
-  const auto untold = explain(run, {});
+  const auto untold = criticism::search::explain(run, {});
   ASSERT_TRUE(untold) << untold.error().text();
-  EXPECT_EQ(untold->finding, Finding::pass) << sentence(*untold);
-  EXPECT_THAT(note_texts(untold->notes), ::testing::Contains(HasSubstr("the table angles are good to")));
-  const auto untold_fit = fit(run, {});
+  EXPECT_EQ(untold->finding, criticism::search::Finding::pass) << report::sentence(*untold);
+  EXPECT_THAT(report::note_texts(untold->notes),
+              ::testing::Contains(HasSubstr("the table angles are good to")));
+  const auto untold_fit = method_choice::fit(run, {});
   ASSERT_TRUE(untold_fit) << untold_fit.error().text();
-  EXPECT_TRUE(untold_fit->calibration.accepted_by_checks) << fit_reasons(*untold_fit).front();
-  EXPECT_THAT(fit_reasons(*untold_fit), ::testing::Contains(HasSubstr("the table angles are good to")));
+  EXPECT_TRUE(untold_fit->calibration.accepted_by_checks) << report::fit_reasons(*untold_fit).front();
+  EXPECT_THAT(report::fit_reasons(*untold_fit),
+              ::testing::Contains(HasSubstr("the table angles are good to")));
   FitOptions told;
   told.table_sd_rad = to_rad(2);
-  const auto fitted = fit(run, told);
-  const auto explained = explain(run, {.fit = told});
+  const auto fitted = method_choice::fit(run, told);
+  const auto explained = criticism::search::explain(run, {.fit = told});
   ASSERT_TRUE(fitted && explained);
-  EXPECT_TRUE(fitted->calibration.accepted_by_checks) << fit_reasons(*fitted).front();
-  EXPECT_EQ(explained->finding, Finding::pass) << sentence(*explained);
+  EXPECT_TRUE(fitted->calibration.accepted_by_checks) << report::fit_reasons(*fitted).front();
+  EXPECT_EQ(explained->finding, criticism::search::Finding::pass) << report::sentence(*explained);
   EXPECT_TRUE(explained->notes.empty());
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -7,7 +7,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Simulation;
@@ -51,9 +51,10 @@ TEST(Identifiability, LevelPosesLeaveTheVerticalWeakAndTheAdvicePays) {
   ASSERT_TRUE(fit) << fit.error().text();
   const Identifiability before = of(*fit, sim.f_nT);
   ASSERT_FALSE(before.weak.empty());
-  EXPECT_EQ(to_text(before.weak.front()).rfind("scale z of all sensors", 0), 0U)
-      << to_text(before.weak.front());
-  EXPECT_NE(to_text(before.coverage).find("platform +Z"), std::string::npos) << to_text(before.coverage);
+  EXPECT_EQ(checks::to_text(before.weak.front()).rfind("scale z of all sensors", 0), 0U)
+      << checks::to_text(before.weak.front());
+  EXPECT_NE(checks::to_text(before.coverage).find("platform +Z"), std::string::npos)
+      << checks::to_text(before.coverage);
   ASSERT_FALSE(before.add.empty());
   poses.insert(poses.end(), before.add.begin(), before.add.end());
   const PoseTable more = at(sim, poses, 2);
@@ -64,4 +65,4 @@ TEST(Identifiability, LevelPosesLeaveTheVerticalWeakAndTheAdvicePays) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -5,7 +5,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/fit/tensor_error.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Components;
@@ -31,7 +31,7 @@ Accuracy accuracy(Simulation sim, int poses, int runs, bool with_gradient) {
   JointOptions options;
   if (with_gradient) {
     sim.G_nT_per_m = testing::gradient_50();
-    options.effects = {*make_effect("site.gradient")};
+    options.effects = {*effects::library::make_effect("site.gradient")};
   }
   const auto fields = testing::clean_fields(sim.f_nT, 200, 4242);
   Accuracy out{Components::Zero(), Components::Zero()};
@@ -65,4 +65,4 @@ INSTANTIATE_TEST_SUITE_P(Poses, TensorAccuracy,
                          ::testing::Combine(::testing::Values(100, 157), ::testing::Bool()));
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -8,7 +8,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Simulation;
@@ -28,13 +28,15 @@ Vec<T> reading(const T* p, const Vec<T>& b, const Eigen::Matrix3d& mounting) {
     ceres::AngleAxisRotatePoint(w, v.data(), out.data());
     return out;
   };
-  const Vec<T> s = mounting.transpose().cast<T>() *
-                   axis_turn(p[alpha], 0, axis_turn(p[beta], 1, axis_turn(p[gamma], 2, b)));
+  const Vec<T> s =
+      mounting.transpose().cast<T>() *
+      axis_turn(p[sensor::alpha], 0, axis_turn(p[sensor::beta], 1, axis_turn(p[sensor::gamma], 2, b)));
   using std::cos, std::sin;
-  return {
-      p[cx] * (cos(p[theta]) * cos(p[phi]) * s[0] + sin(p[theta]) * cos(p[phi]) * s[1] + sin(p[phi]) * s[2]) +
-          p[ix],
-      p[cy] * (cos(p[psi]) * s[1] + sin(p[psi]) * s[2]) + p[iy], p[cz] * s[2] + p[iz]};
+  return {p[sensor::cx] * (cos(p[sensor::theta]) * cos(p[sensor::phi]) * s[0] +
+                           sin(p[sensor::theta]) * cos(p[sensor::phi]) * s[1] + sin(p[sensor::phi]) * s[2]) +
+              p[sensor::ix],
+          p[sensor::cy] * (cos(p[sensor::psi]) * s[1] + sin(p[sensor::psi]) * s[2]) + p[sensor::iy],
+          p[sensor::cz] * s[2] + p[sensor::iz]};
 }
 
 struct PoseCost {
@@ -76,7 +78,7 @@ struct PoseCost {
 
 double ceres_cost(const JointFit& fit, bool with_gradient, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
-  std::array<ParameterVector, kSensors> sensors;
+  std::array<sensor::ParameterVector, kSensors> sensors;
   std::array<double, 2> site{std::asin(fit.state.direction[2]),
                              std::atan2(fit.state.direction[1], fit.state.direction[0])};
   std::array<double, 5> g{};
@@ -86,8 +88,8 @@ double ceres_cost(const JointFit& fit, bool with_gradient, std::mt19937_64& rng)
   for (std::size_t i = 0; i < kSensors; ++i) {
     // Away from the optimum, so that Ceres has to find its own way.
     sensors[i] = fit.state.sensors[i].parameters();
-    for (int p = 0; p < kSensorParameters; ++p)
-      sensors[i][p] += (p >= ix && p <= iz ? 20 : 1e-3) * normal(rng);
+    for (int p = 0; p < sensor::kSensorParameters; ++p)
+      sensors[i][p] += (p >= sensor::ix && p <= sensor::iz ? 20 : 1e-3) * normal(rng);
     cost.mounting[i] = fit.state.sensors[i].mounting;
   }
   for (std::size_t k = 0; k < nuisances.size(); ++k) {
@@ -116,7 +118,7 @@ TEST(JointFit, AgreesWithCeres) {
     JointOptions options;
     if (with_gradient) {
       sim.G_nT_per_m = testing::gradient_50();
-      options.effects = {*make_effect("site.gradient")};
+      options.effects = {*effects::library::make_effect("site.gradient")};
     }
     sim.rig[3].mounting << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     const PoseTable table = simulate(sim, 20, 60, 23);
@@ -130,4 +132,4 @@ TEST(JointFit, AgreesWithCeres) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -8,7 +8,7 @@
 #include "calib/fit/method_choice/fit.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Simulation;
@@ -40,7 +40,7 @@ TEST(JointErrors, AReadingThatIsLeftOutCountsInNoRow) {
   const Simulation sim{.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05};
   PoseTable table = simulate(sim, 36, 121, 31);
   table.poses[60].y_nT[3][2] += 50;
-  const auto report = fit(table, {});
+  const auto report = method_choice::fit(table, {});
   ASSERT_TRUE(report);
   ASSERT_EQ(report->outliers.size(), 1U);
   for (const auto& row : {report->after, *report->held_out, *report->two_step}) {
@@ -52,7 +52,7 @@ TEST(JointErrors, AReadingThatIsLeftOutCountsInNoRow) {
 TEST(JointFit, AnAxisThatReadsTheSameInEveryPoseIsCalledDead) {
   PoseTable table = simulate(Simulation{}, 36, 40, 31);
   for (Pose& pose : table.poses) pose.y_nT[1][1] = 123.5;
-  const auto refused = fit(table, {});
+  const auto refused = method_choice::fit(table, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message,
             "sensor 2: its axis y reads 123.500 nT in every pose: it is dead or stuck");
@@ -62,7 +62,7 @@ TEST(JointErrors, MissingGradientShowsOutOfSampleAndItsTermTakesItAway) {
   const PoseTable table = simulate(with_gradient(), 36, 121, 33);
   JointOptions options;
   const auto without = fit_joint(table, options);
-  options.effects = {*make_effect("site.gradient")};
+  options.effects = {*effects::library::make_effect("site.gradient")};
   const auto with = fit_joint(table, options);
   ASSERT_TRUE(without && with);
   const auto before = held_out_errors(*without), after = held_out_errors(*with);
@@ -74,23 +74,26 @@ TEST(JointErrors, MissingGradientShowsOutOfSampleAndItsTermTakesItAway) {
 }
 
 /// y += c v^2 / 5e4 on one axis, b += c g on the platform.
-class Bend final : public EffectOf<Bend> {
+class Bend final : public effects::EffectOf<Bend> {
  public:
-  explicit Bend(Level level) : level_(level), coefficients_(1, {.name = "c", .unit = "nT"}) {}
+  explicit Bend(effects::Level level) : level_(level), coefficients_(1, {.name = "c", .unit = "nT"}) {}
   [[nodiscard]] std::string_view name() const override { return "bend"; }
-  [[nodiscard]] Level level() const override { return level_; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] effects::Level level() const override { return level_; }
+  [[nodiscard]] const std::vector<effects::Coefficient>& coefficients() const override {
+    return coefficients_;
+  }
   [[nodiscard]] std::span<const int> at(int) const override { return at_; }
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   template <class S>
-  void equation(const Conditions&, int, std::span<const S> in, std::span<const S> c, std::span<S> out) const {
+  void equation(const effects::Conditions&, int, std::span<const S> in, std::span<const S> c,
+                std::span<S> out) const {
     for (std::size_t o = 0; o < out.size(); ++o) out[o] = c[0] * in[o] * in[o] * (1 / 2.5e9);
-    if (level_ == Level::platform) out[0] = out[0] + c[0] * in[3];
+    if (level_ == effects::Level::platform) out[0] = out[0] + c[0] * in[3];
   }
 
  private:
-  Level level_;
-  std::vector<Coefficient> coefficients_;
+  effects::Level level_;
+  std::vector<effects::Coefficient> coefficients_;
   std::vector<int> at_{0};
 };
 
@@ -98,18 +101,19 @@ TEST(ArrayModel, CorrectUndoesEveryInstrumentEffect) {
   Simulation sim{.noise_nT = 0};
   const PoseTable table = simulate(sim, 12, 20, 35);
   JointOptions options;
-  options.effects = {std::make_shared<const Bend>(Level::axis), std::make_shared<const Bend>(Level::platform),
-                     *make_effect("site.gradient")};
+  options.effects = {std::make_shared<const Bend>(effects::Level::axis),
+                     std::make_shared<const Bend>(effects::Level::platform),
+                     *effects::library::make_effect("site.gradient")};
   auto problem = joint_problem(table, options);
   ASSERT_TRUE(problem);
   JointState state = joint_state(*problem, sim.rig, {0, 0.6, 0.8}, sim.f_nT);
   state.coefficients << 40, 25, 30, -45, -20, 50, 10;
-  const ArrayModel array(state.sensors, problem->geometry, problem->effects, state.coefficients);
+  const calibration::ArrayModel array(state.sensors, problem->geometry, problem->effects, state.coefficients);
   const JointPose& pose = problem->poses[20];
   PoseLinear linear;
   PoseModel(*problem, state).linearise(pose, Nuisance(0, 0, 0, 50'000), linear);
-  const Conditions at{*pose.pose, 0, nullptr};
-  const FieldVector b = array.correct(at, linear.y_nT, pose.T) - array.site_field(at, pose.T);
+  const effects::Conditions at{*pose.pose, 0, nullptr};
+  const sensor::FieldVector b = array.correct(at, linear.y_nT, pose.T) - array.site_field(at, pose.T);
   for (int i = 0; i < kSensors; ++i) {
     // Rounding of 5e4 nT, and the fixed point's 1e-9.
     EXPECT_LT((b.segment<3>(3 * i) - pose.T * Eigen::Vector3d(0, 30'000, 40'000)).norm(), 1e-8);
@@ -117,4 +121,4 @@ TEST(ArrayModel, CorrectUndoesEveryInstrumentEffect) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -10,7 +10,7 @@
 #include "calib/effects/library/library.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Simulation;
@@ -21,7 +21,7 @@ Eigen::VectorXd parameter_error(const JointFit& fit, const testing::Rig& truth) 
   Eigen::VectorXd e(kSensorBlock);
   for (int i = 0; i < kSensors; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    e.segment<kSensorParameters>(kSensorParameters * i) =
+    e.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
         fit.state.sensors[s].parameters() - truth[s].parameters();
   }
   return e;
@@ -41,7 +41,7 @@ TEST(JointFit, EstimatesTheTableAndTheNoise) {
   // 1525 degrees of freedom: 1.8 % one sigma.
   EXPECT_NEAR(fit.noise_nT(), 1.0, 0.08);
   EXPECT_TRUE(fit.outliers.empty());
-  EXPECT_NE(gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("table angles"),
+  EXPECT_NE(checks::gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("table angles"),
             std::string::npos);
 }
 
@@ -77,7 +77,7 @@ TEST(JointFit, GradientOfTheSiteIsFoundWithItsUncertainty) {
   sim.G_nT_per_m = testing::gradient_50();
   const PoseTable table = simulate(sim, 36, 121, 5);
   JointOptions options;
-  options.effects = {*make_effect("site.gradient")};
+  options.effects = {*effects::library::make_effect("site.gradient")};
   const JointFit fit = must_fit(table, options);
   const auto& G = sim.G_nT_per_m;
   const Eigen::Matrix<double, 5, 1> truth{G(0, 0), G(1, 1), G(0, 1), G(0, 2), G(1, 2)};
@@ -170,8 +170,9 @@ TEST(JointFit, WithoutAnglesTheCommonRotationIsConvention) {
   EXPECT_EQ(fit.gauge.constraints, 3);
   EXPECT_EQ(fit.state.sensors[1].mounting, sim.rig[1].mounting);
   EXPECT_LT(fit.chi2, fit.dof + 3.3 * std::sqrt(2 * fit.dof));
-  EXPECT_NE(gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("no table angles"),
-            std::string::npos);
+  EXPECT_NE(
+      checks::gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("no table angles"),
+      std::string::npos);
 }
 
 TEST(JointFit, WithoutAFieldTheScaleIsConvention) {
@@ -181,9 +182,9 @@ TEST(JointFit, WithoutAFieldTheScaleIsConvention) {
   const PoseTable table = simulate(sim, 36, 121, 15);
   const JointFit fit = must_fit(table);
   double mean = 0;
-  for (const SensorModel& s : fit.state.sensors) mean += s.scale.sum() / kChannels;
+  for (const sensor::SensorModel& s : fit.state.sensors) mean += s.scale.sum() / sensor::kChannels;
   EXPECT_NEAR(mean, 1, 1e-6);
-  EXPECT_NE(gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("scale is free"),
+  EXPECT_NE(checks::gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("scale is free"),
             std::string::npos);
   // Given the field, the truth comes back.
   JointOptions options;
@@ -203,7 +204,7 @@ TEST(JointFit, StandardAnglesOnlyLeaveTheAzimuthOpen) {
   const JointFit fit = must_fit(table);
   EXPECT_EQ(fit.gauge.angles, AngleCoverage::one_axis);
   double mean = 0;
-  for (const SensorModel& s : fit.state.sensors) mean += s.gamma_rad / kSensors;
+  for (const sensor::SensorModel& s : fit.state.sensors) mean += s.gamma_rad / kSensors;
   EXPECT_NEAR(mean, 0, 1e-6);
   EXPECT_LT(fit.noise_nT(), 1.15);
   JointOptions options;
@@ -225,11 +226,11 @@ TEST(JointFit, GradientWithoutAnglesIsRefused) {
   Simulation sim = real_rig();
   sim.with_angles = false;
   JointOptions options;
-  options.effects = {*make_effect("site.gradient")};
+  options.effects = {*effects::library::make_effect("site.gradient")};
   const auto fit = fit_joint(simulate(sim, 36, 50, 19), options);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code, ErrorCode::refused);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -13,7 +13,7 @@
 #include "tests/support/paper_rigs.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using ::testing::HasSubstr;
@@ -30,9 +30,9 @@ TEST(JointReport, IsTheDefaultAndHoldsTheDocumentedKeys) {
   for (std::size_t k = 150; k < table.poses.size(); ++k) table.poses[k].set = "check";
   FitOptions options;
   options.field_nT = 53'907.7;
-  const auto report = fit(table, options);
+  const auto report = method_choice::fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
-  const nlohmann::json out = to_json(*report);
+  const nlohmann::json out = report::to_json(*report);
   EXPECT_EQ(out["method"], "joint");
   EXPECT_EQ(out["poses"], 150);
   EXPECT_TRUE(out["accepted"].get<bool>()) << out["reasons"].dump(1);
@@ -44,11 +44,11 @@ TEST(JointReport, IsTheDefaultAndHoldsTheDocumentedKeys) {
   EXPECT_NEAR(out["noise_nT"].get<double>(), 1, 0.1);
   EXPECT_TRUE(out["check_poses"]["tensor_rmse_nT_per_m"]["yz"].is_number());
   EXPECT_LT(out["held_out"]["total_field_rmse_nT"][0].get<double>(), 1.3);
-  EXPECT_THAT(to_text(*report), HasSubstr("joint calibration"));
+  EXPECT_THAT(report::to_text(*report), HasSubstr("joint calibration"));
 }
 
 TEST(JointReport, SaysHowTheFitEnded) {
-  const auto report = fit(papers_run(), {});
+  const auto report = method_choice::fit(papers_run(), {});
   ASSERT_TRUE(report) << report.error().text();
   const FitSummary& s = report->summary;
   EXPECT_EQ(s.termination, Termination::converged);
@@ -58,14 +58,14 @@ TEST(JointReport, SaysHowTheFitEnded) {
   EXPECT_GE(s.iterations, s.rounds - 1);
   EXPECT_GT(s.initial_cost, s.final_cost);
   EXPECT_NEAR(s.final_cost, report->chi2 + report->chi2_table, 1e-6 * s.final_cost);
-  const nlohmann::json out = to_json(*report)["summary"];
+  const nlohmann::json out = report::to_json(*report)["summary"];
   EXPECT_EQ(out["termination"], "converged");
   EXPECT_EQ(out["iterations"], s.iterations);
-  EXPECT_THAT(to_text(*report), HasSubstr("fit:   converged in "));
+  EXPECT_THAT(report::to_text(*report), HasSubstr("fit:   converged in "));
 }
 
 TEST(JointReport, LeavesLessThanTheTwoStep) {
-  const auto report = fit(papers_run(), {});
+  const auto report = method_choice::fit(papers_run(), {});
   ASSERT_TRUE(report) << report.error().text();
   ASSERT_TRUE(report->two_step);
   EXPECT_LT(report->after.tensor_rmse_nT_per_m.zz, report->two_step->tensor_rmse_nT_per_m.zz);
@@ -78,33 +78,33 @@ TEST(JointReport, EffectsGoIntoTheCalibrationAndBack) {
   Simulation sim{.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05};
   sim.G_nT_per_m = testing::gradient_50();
   FitOptions options;
-  options.effects = {*make_effect("site.gradient")};
-  const auto report = fit(simulate(sim, 36, 121, 3), options);
+  options.effects = {*effects::library::make_effect("site.gradient")};
+  const auto report = method_choice::fit(simulate(sim, 36, 121, 3), options);
   ASSERT_TRUE(report) << report.error().text();
-  const nlohmann::json effects = to_json(*report)["effects"];
+  const nlohmann::json effects = report::to_json(*report)["effects"];
   ASSERT_EQ(effects.size(), 1U);
   EXPECT_EQ(effects[0]["effect"], "site.gradient");
   EXPECT_EQ(effects[0]["coefficients"][0]["name"], "Gxx");
   EXPECT_NEAR(effects[0]["coefficients"][0]["value"].get<double>(), 30, 2);
   EXPECT_LT(report->after.tensor_rmse_nT_per_m.xx, 4);
-  const auto again = calibration_from_json_text(to_json_text(report->calibration));
+  const auto again = calibration::calibration_from_json_text(calibration::to_json_text(report->calibration));
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(again->id, report->calibration.id);
   EXPECT_EQ(again->effect_covariance, report->calibration.effect_covariance);
-  EXPECT_TRUE(ArrayModel::of(*again));
+  EXPECT_TRUE(calibration::ArrayModel::of(*again));
 }
 
 TEST(JointReport, GoesOnWhereTheTwoStepRefuses) {
   // No standard set, no table angles, no field: three things the two-step cannot do without.
   Simulation sim;
   sim.with_angles = sim.with_f = false;
-  const auto report = fit(simulate(sim, 0, 100, 5), {});
+  const auto report = method_choice::fit(simulate(sim, 0, 100, 5), {});
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_FALSE(report->two_step);
   EXPECT_THAT(report->calibration.gauge, HasSubstr("no table angles"));
   EXPECT_THAT(report->calibration.gauge, HasSubstr("scale is free"));
-  EXPECT_TRUE(to_json(*report)["site"]["declination_deg"]["value"].is_null() ||
-              std::isnan(to_json(*report)["site"]["declination_deg"]["value"].get<double>()));
+  EXPECT_TRUE(report::to_json(*report)["site"]["declination_deg"]["value"].is_null() ||
+              std::isnan(report::to_json(*report)["site"]["declination_deg"]["value"].get<double>()));
 }
 
 TEST(JointReport, WrongDeclinationIsNoticed) {
@@ -112,20 +112,20 @@ TEST(JointReport, WrongDeclinationIsNoticed) {
   FitOptions options;
   options.inclination_rad = to_rad(60);
   options.declination_rad = to_rad(5);  // -5 is true
-  const auto report = fit(simulate(sim, 36, 121, 7), options);
+  const auto report = method_choice::fit(simulate(sim, 36, 121, 7), options);
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_FALSE(report->calibration.accepted_by_checks);
-  EXPECT_THAT(fit_reasons(*report).front(), HasSubstr("declination"));
+  EXPECT_THAT(report::fit_reasons(*report).front(), HasSubstr("declination"));
 }
 
 TEST(JointReport, BadPosesAreNamed) {
   PoseTable table = simulate(Simulation{.table_sd_rad = to_rad(0.1)}, 36, 121, 9);
   table.poses[60].y_nT[3][2] += 500;
-  const auto report = fit(table, {});
+  const auto report = method_choice::fit(table, {});
   ASSERT_TRUE(report);
   ASSERT_EQ(report->outliers.size(), 1U);
-  EXPECT_THAT(fit_reasons(*report), ::testing::Contains(HasSubstr("pose 61, s4.z")));
+  EXPECT_THAT(report::fit_reasons(*report), ::testing::Contains(HasSubstr("pose 61, s4.z")));
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -6,7 +6,7 @@
 #include "calib/fit/joint/joint_setup.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Simulation;
@@ -24,14 +24,14 @@ TEST(JointSolver, NoiseFreePosesGiveTheTruthBack) {
   ASSERT_TRUE(solution) << solution.error().text();
   EXPECT_LT(solution->reduced.cost.total(), 1e-6);
   for (std::size_t i = 0; i < kSensors; ++i) {
-    const ParameterVector error = solution->state.sensors[i].parameters() - sim.rig[i].parameters();
+    const sensor::ParameterVector error = solution->state.sensors[i].parameters() - sim.rig[i].parameters();
     // Rounding of 5e4 nT readings through a condition of about 1e4.
-    EXPECT_LT(error.head<3>().norm() + error.segment<3>(cx).norm() + error.tail<3>().norm(), 1e-8)
+    EXPECT_LT(error.head<3>().norm() + error.segment<3>(sensor::cx).norm() + error.tail<3>().norm(), 1e-8)
         << "sensor " << i + 1;
-    EXPECT_LT(error.segment<3>(ix).norm(), 1e-4) << "sensor " << i + 1;
+    EXPECT_LT(error.segment<3>(sensor::ix).norm(), 1e-4) << "sensor " << i + 1;
   }
   EXPECT_LE(solution->iterations, 6);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -11,7 +11,7 @@
 #include "tests/accuracy/contamination.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using ::testing::Contains;
@@ -24,7 +24,7 @@ PoseTable clean_table() {
 std::vector<std::string> left_out(const PoseTable& table) {
   const auto fit = fit_joint(table, {});
   if (!fit) throw std::runtime_error(fit.error().text());
-  return outlier_texts(fit->outliers);
+  return report::outlier_texts(fit->outliers);
 }
 
 /// An axis whose law is missing in the model misfits everywhere: where it does most it bends attitude and
@@ -86,7 +86,7 @@ TEST(Outliers, NameAnAxisThatIsAtEitherRail) {
   for (const std::size_t k : {59U, 60U, 61U}) table.poses[k].y_nT[3][2] = k == 60 ? -100'000 : 100'000;
   const auto fit = fit_joint(table, {});
   ASSERT_TRUE(fit) << fit.error().text();
-  const auto texts = outlier_texts(fit->outliers);
+  const auto texts = report::outlier_texts(fit->outliers);
   ASSERT_EQ(texts.size(), 1U);
   EXPECT_THAT(texts.front(), HasSubstr("poses 60-62 disturbed: saturated, s4.z contradicts"));
 }
@@ -122,22 +122,22 @@ TEST(Contaminated, TwoStepFitLeavesOutPoses) {
   const Spoilt data = spoilt(scene.run(1), {Gross::sensor, 0.1, 1000}, 1);
   FitOptions options;
   options.method = Method::two_step;
-  const auto report = fit(data.table, options);
+  const auto report = method_choice::fit(data.table, options);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->outliers.size(), 16U);
   for (const OutlierNode& node : report->outliers) EXPECT_THAT(node.where, HasSubstr("s"));
-  EXPECT_THAT(fit_reasons(*report), Contains(HasSubstr("left out of the fit")));
+  EXPECT_THAT(report::fit_reasons(*report), Contains(HasSubstr("left out of the fit")));
   // The same run without a gross reading, and without these poses.
   PoseTable told = scene.run(1);
   std::erase_if(told.poses, [&](const Pose& pose) {
     return std::any_of(report->outliers.begin(), report->outliers.end(),
                        [&](const OutlierNode& node) { return node.pose == pose.number; });
   });
-  const auto oracle = fit(told, options);
+  const auto oracle = method_choice::fit(told, options);
   ASSERT_TRUE(oracle);
   EXPECT_LT(tensor_mean_square(report->calibration.sensors, scene).sum(),
             1.01 * tensor_mean_square(oracle->calibration.sensors, scene).sum());
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -8,41 +8,44 @@
 #include "calib/fit/joint/joint_solver.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::Simulation;
 
 /// One effect per level, each with a genuine dependence on its input, to try the chain rule through every
 /// level.
-template <Level kLevel>
-class Probe final : public EffectOf<Probe<kLevel>> {
+template <effects::Level kLevel>
+class Probe final : public effects::EffectOf<Probe<kLevel>> {
  public:
   explicit Probe(double planted_error = 0)
       : planted_(planted_error), coefficients_(2, {.name = "c", .unit = "1"}) {}
   [[nodiscard]] std::string_view name() const override { return "probe"; }
-  [[nodiscard]] Level level() const override { return kLevel; }
-  [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
+  [[nodiscard]] effects::Level level() const override { return kLevel; }
+  [[nodiscard]] const std::vector<effects::Coefficient>& coefficients() const override {
+    return coefficients_;
+  }
   [[nodiscard]] std::span<const int> at(int) const override { return at_; }
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   template <class S>
-  void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
+  void equation(const effects::Conditions&, int sensor, std::span<const S> in, std::span<const S> c,
                 std::span<S> out) const {
     for (std::size_t o = 0; o < out.size(); ++o) {
       const S& a = in[o % in.size()];
       const S& b = in[(o + 1) % in.size()];
       out[o] = c[0] * sin(a * kScale) + (sensor + 1.0) * c[1] * a * b * kScale * kScale;
-      if (kLevel == Level::platform) out[o] += c[0] * in[3 + o];
+      if (kLevel == effects::Level::platform) out[o] += c[0] * in[3 + o];
       if constexpr (!std::is_same_v<S, double>) out[o].d *= 1 + planted_;
     }
   }
 
  private:
-  static constexpr double kScale = kLevel == Level::platform || kLevel == Level::axis ? 2e-5 : 1;
+  static constexpr double kScale =
+      kLevel == effects::Level::platform || kLevel == effects::Level::axis ? 2e-5 : 1;
   static double sin(double x) { return std::sin(x); }
-  static Jet sin(const Jet& x) { return {std::sin(x.v), std::cos(x.v) * x.d}; }
+  static effects::Jet sin(const effects::Jet& x) { return {std::sin(x.v), std::cos(x.v) * x.d}; }
   double planted_;
-  std::vector<Coefficient> coefficients_;
+  std::vector<effects::Coefficient> coefficients_;
   std::vector<int> at_{0, 1};
 };
 
@@ -52,7 +55,7 @@ struct Case {
   JointState state;
 };
 
-Case make_case(std::vector<EffectPtr> effects, bool with_angles) {
+Case make_case(std::vector<effects::EffectPtr> effects, bool with_angles) {
   Case c;
   c.table = simulate(Simulation{.with_angles = with_angles}, 12, 30, 3);
   JointOptions options;
@@ -110,8 +113,8 @@ double worst_derivative(const Case& c) {
   for (int slot = 0; slot < c.problem.fixed(); ++slot) {
     Column column;
     if (slot < kSensorBlock) {
-      const int row = 3 * (slot / kSensorParameters);
-      column.y.segment<3>(row) = linear.d_sensor.block<3, 1>(row, slot % kSensorParameters);
+      const int row = 3 * (slot / sensor::kSensorParameters);
+      column.y.segment<3>(row) = linear.d_sensor.block<3, 1>(row, slot % sensor::kSensorParameters);
     } else {
       column = {linear.d_global.col(slot - kSensorBlock), linear.f_global[slot - kSensorBlock]};
     }
@@ -128,37 +131,40 @@ double worst_derivative(const Case& c) {
   return worst;
 }
 
-template <Level kLevel>
-EffectPtr probe(double planted = 0) {
+template <effects::Level kLevel>
+effects::EffectPtr probe(double planted = 0) {
   return std::make_shared<const Probe<kLevel>>(planted);
 }
 
 TEST(PoseModel, DerivativesAreThoseOfTheModel) {
   EXPECT_LT(worst_derivative(make_case({}, true)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({}, false)), kTolerance);
-  EXPECT_LT(worst_derivative(make_case({*make_effect("site.gradient")}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({*effects::library::make_effect("site.gradient")}, true)), kTolerance);
 }
 
 TEST(PoseModel, DerivativesHoldThroughEveryLevel) {
-  EXPECT_LT(worst_derivative(make_case({probe<Level::site>()}, true)), kTolerance);
-  EXPECT_LT(worst_derivative(make_case({probe<Level::table>()}, true)), kTolerance);
-  EXPECT_LT(worst_derivative(make_case({probe<Level::platform>()}, true)), kTolerance);
-  EXPECT_LT(worst_derivative(make_case({probe<Level::axis>()}, true)), kTolerance);
-  EXPECT_LT(worst_derivative(make_case({probe<Level::reference>()}, true)), kTolerance);
-  EXPECT_LT(worst_derivative(
-                make_case({probe<Level::reference>(), probe<Level::table>(), probe<Level::site>()}, true)),
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::site>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::table>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::platform>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::axis>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::reference>()}, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::reference>(), probe<effects::Level::table>(),
+                                        probe<effects::Level::site>()},
+                                       true)),
             kTolerance);
-  EXPECT_LT(worst_derivative(make_case(
-                {probe<Level::axis>(), probe<Level::table>(), probe<Level::site>(), probe<Level::platform>()},
-                true)),
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::axis>(), probe<effects::Level::table>(),
+                                        probe<effects::Level::site>(), probe<effects::Level::platform>()},
+                                       true)),
             kTolerance);
-  EXPECT_LT(worst_derivative(make_case({probe<Level::platform>(), probe<Level::axis>()}, false)), kTolerance);
+  EXPECT_LT(
+      worst_derivative(make_case({probe<effects::Level::platform>(), probe<effects::Level::axis>()}, false)),
+      kTolerance);
 }
 
 TEST(PoseModel, PlantedDerivativeErrorIsCaught) {
-  EXPECT_GT(worst_derivative(make_case({probe<Level::site>(0.01)}, true)), 100 * kTolerance);
-  EXPECT_GT(worst_derivative(make_case({probe<Level::axis>(0.01)}, true)), 100 * kTolerance);
+  EXPECT_GT(worst_derivative(make_case({probe<effects::Level::site>(0.01)}, true)), 100 * kTolerance);
+  EXPECT_GT(worst_derivative(make_case({probe<effects::Level::axis>(0.01)}, true)), 100 * kTolerance);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -7,7 +7,7 @@
 #include "calib/fit/joint/wandering_estimate.h"
 #include "tests/blind/wandering_offsets.h"
 
-namespace mgtd::calib {
+namespace mgtd::calib::fit::joint {
 namespace {
 
 using testing::hidden_run;
@@ -48,7 +48,7 @@ TEST(WanderingEstimate, FindsTheRateOfAllOffsets) {
     const WanderingEstimate found = estimate_of(hidden_run(run, seed));
     ASSERT_EQ(found.where, std::vector<std::string>{"all"});
     EXPECT_GT(found.nT_per_sqrt_h.minCoeff(), 0);
-    for (int c = 0; c < kChannels; ++c)
+    for (int c = 0; c < sensor::kChannels; ++c)
       EXPECT_LT(std::abs(found.nT_per_sqrt_h[c] - kRate), 5 * found.sd[c]) << seed << ' ' << c;
     sum += found.nT_per_sqrt_h.mean();
   }
@@ -83,15 +83,15 @@ TEST(CovarianceWithWandering, IsHonest) {
     const testing::Rig truth = testing::table6_rig();
     for (int i = 0; i < kSensors; ++i) {
       const auto s = static_cast<std::size_t>(i);
-      const ParameterVector error = fit->state.sensors[s].parameters() - truth[s].parameters();
+      const sensor::ParameterVector error = fit->state.sensors[s].parameters() - truth[s].parameters();
       const auto square = [&](double by, int p) {
-        const int slot = kSensorParameters * i + p;
+        const int slot = sensor::kSensorParameters * i + p;
         return by * by / (*covariance)(slot, slot);
       };
       for (int axis = 0; axis < 3; ++axis, ++n) {
         const double at_end = run.hidden(table.poses.back(), i, axis, {});
-        scales += square(error[cx + axis], cx + axis);
-        offsets += square(error[ix + axis] - at_end, ix + axis);
+        scales += square(error[sensor::cx + axis], sensor::cx + axis);
+        offsets += square(error[sensor::ix + axis] - at_end, sensor::ix + axis);
       }
     }
   }
@@ -102,4 +102,4 @@ TEST(CovarianceWithWandering, IsHonest) {
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::joint

@@ -11,30 +11,31 @@
 
 /// Stated uncertainties against what many runs scatter by. Every run is measured anew: other noise, other
 /// errors of the table, the same attitudes.
-namespace mgtd::calib {
+namespace mgtd::calib::fit::two_step {
 namespace {
 
 using testing::Noise;
 using testing::RigTruth;
 constexpr int kRuns = 250;
 
-using Vector = Eigen::Matrix<double, kArrayParameters, 1>;
+using Vector = Eigen::Matrix<double, calibration::kArrayParameters, 1>;
 
 Vector truth_of(const RigTruth& rig) {
   Vector out;
   for (std::size_t i = 0; i < 4; ++i) {
-    for (int k = 0; k < kSensorParameters; ++k) {
+    for (int k = 0; k < sensor::kSensorParameters; ++k) {
       const double shown = rig.at(i).at(static_cast<std::size_t>(k));
-      out[static_cast<int>(i) * kSensorParameters + k] = k <= psi || k >= alpha ? to_rad(shown) : shown;
+      out[static_cast<int>(i) * sensor::kSensorParameters + k] =
+          k <= sensor::psi || k >= sensor::alpha ? to_rad(shown) : shown;
     }
   }
   return out;
 }
 
-Vector estimate_of(const Calibration& c) {
+Vector estimate_of(const calibration::Calibration& c) {
   Vector out;
   for (int i = 0; i < kSensors; ++i)
-    out.segment<kSensorParameters>(i * kSensorParameters) =
+    out.segment<sensor::kSensorParameters>(i * sensor::kSensorParameters) =
         c.sensors.at(static_cast<std::size_t>(i)).parameters();
   return out;
 }
@@ -58,12 +59,13 @@ Honesty honesty(const Noise& noise, const FitOptions& options, const testing::Si
   for (int run = 0; run < kRuns; ++run) {
     const PoseTable table = testing::measure(rig, site, testing::standard_run(121, 5), 36, noise,
                                              1000 + static_cast<std::uint64_t>(run));
-    const auto report = fit(table, options);
+    const auto report = method_choice::fit(table, options);
     if (!report) throw std::runtime_error(report.error().text());
-    const ArrayCovariance& C = report->calibration.covariance;
+    const calibration::ArrayCovariance& C = report->calibration.covariance;
     const Vector sd = C.diagonal().cwiseSqrt();
     const Vector e = (estimate_of(report->calibration) - truth).cwiseQuotient(sd);
-    const ArrayCovariance unit = sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
+    const calibration::ArrayCovariance unit =
+        sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
     out.nees += e.dot(unit.llt().solve(e)) / kRuns;
     out.ratio += e.cwiseAbs2() / kRuns;
     const SiteField& s = report->site;
@@ -77,11 +79,11 @@ Honesty honesty(const Noise& noise, const FitOptions& options, const testing::Si
 
 /// The mean of kRuns chi-squares of 48 degrees scatters by sqrt(2 48 / kRuns); five of that. A variance ratio
 /// by sqrt(2 / kRuns) = 9 %; five of that, for the worst of 48.
-const double kBand = 5 * std::sqrt(2.0 * kArrayParameters / kRuns);
+const double kBand = 5 * std::sqrt(2.0 * calibration::kArrayParameters / kRuns);
 const double kVarianceBand = 5 * std::sqrt(2.0 / kRuns);
 
 void expect_honest(const Honesty& h) {
-  EXPECT_NEAR(h.nees, kArrayParameters, kBand);
+  EXPECT_NEAR(h.nees, calibration::kArrayParameters, kBand);
   EXPECT_LT(h.ratio.maxCoeff(), 1 + kVarianceBand);
   EXPECT_GT(h.ratio.minCoeff(), 1 - kVarianceBand);
 }
@@ -116,7 +118,7 @@ TEST(Influence, LeavingTheTableOutIsNoticed) {
   FitOptions options = two_step_options();
   options.table_sd_rad = to_rad(0.05);
   const Honesty h = honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, options, kSite);
-  EXPECT_GT(h.nees, kArrayParameters + kBand);
+  EXPECT_GT(h.nees, calibration::kArrayParameters + kBand);
 }
 
 /// One field for all poses, wrong by its stated uncertainty: every scale factor is wrong alike.
@@ -127,10 +129,10 @@ TEST(Influence, AGivenFieldIsOneErrorCommonToAllPoses) {
   FitOptions options = two_step_options();
   options.field_nT = kSite.f_nT;
   options.field_sd_nT = 20;
-  const auto report = fit(table, options);
+  const auto report = method_choice::fit(table, options);
   ASSERT_TRUE(report);
-  const ArrayCovariance& C = report->calibration.covariance;
-  const int a = cx, b = 2 * kSensorParameters + cz;
+  const calibration::ArrayCovariance& C = report->calibration.covariance;
+  const int a = sensor::cx, b = 2 * sensor::kSensorParameters + sensor::cz;
   EXPECT_NEAR(std::sqrt(C(a, a)), 0.999 * 20 / kSite.f_nT, 1e-6);
   EXPECT_NEAR(C(a, b) / std::sqrt(C(a, a) * C(b, b)), 1, 1e-3);
 }
@@ -142,18 +144,18 @@ TEST(Influence, TheConventionOfMeanGammaHasNoError) {
   for (Pose& pose : table.poses) {
     if (pose.set != "standard") pose.azimuth_rad.reset(), pose.pitch_rad.reset(), pose.roll_rad.reset();
   }
-  const auto report = fit(table, two_step_options());
+  const auto report = method_choice::fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   Vector mean = Vector::Zero();
   double sum = 0;
   for (int i = 0; i < kSensors; ++i) {
-    mean[i * kSensorParameters + gamma] = 0.25;
+    mean[i * sensor::kSensorParameters + sensor::gamma] = 0.25;
     sum += report->calibration.sensors.at(static_cast<std::size_t>(i)).gamma_rad / 4;
   }
   EXPECT_NEAR(sum, 0, 1e-5);  // mean of sines against mean of angles: gamma^3
   EXPECT_NEAR(mean.dot(report->calibration.covariance * mean), 0, 1e-14);
-  EXPECT_GT(report->calibration.covariance(gamma, gamma), 0);
+  EXPECT_GT(report->calibration.covariance(sensor::gamma, sensor::gamma), 0);
 }
 
 }  // namespace
-}  // namespace mgtd::calib
+}  // namespace mgtd::calib::fit::two_step
