@@ -13,6 +13,7 @@
 #include "calib/poses/pose_list.h"
 #include "proto/number.h"
 #include "proto/sha256.h"
+#include "proto/trimmed.h"
 
 namespace mgtd::calib::poses {
 namespace {
@@ -23,12 +24,6 @@ struct Cell {
   std::string_view text;
   std::size_t column{1};  ///< 1-based position of its first character in the line
 };
-
-std::string_view trimmed(std::string_view text) {
-  const auto from = text.find_first_not_of(" \t\r");
-  if (from == std::string_view::npos) return {};
-  return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
-}
 
 std::vector<Cell> cells_of(std::string_view line) {
   std::vector<Cell> cells;

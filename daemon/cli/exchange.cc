@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Import and export: pose tables into run files and back.
+// Import and export: pose tables, and foreign tables by a map of their columns, into run files and back.
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "calib/poses/pose_table.h"
+#include "calib/poses/table_import.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/import_map_file.h"
 #include "daemon/store/pose_source.h"
 #include "daemon/store/run_file.h"
 
@@ -14,7 +16,7 @@ namespace mgtd::daemon::cli {
 namespace {
 
 struct ExchangeArguments {
-  std::string from, to;
+  std::string from, to, columns;
 };
 
 store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args) {
@@ -27,8 +29,22 @@ store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args
   return header;
 }
 
+/// What stands in the file, its columns as the map says where there is one.
+Result<PoseTable> imported(const ExchangeArguments& args) {
+  if (args.columns.empty()) return store::read_poses(args.from);
+  const auto map_text = read_file(args.columns);
+  if (!map_text) return tl::unexpected(map_text.error());
+  const auto map = import_map_from_text(*map_text, args.columns);
+  if (!map) return tl::unexpected(map.error());
+  const auto text = read_file(args.from);
+  if (!text) return tl::unexpected(text.error());
+  const auto table = calib::poses::import_table(*text, args.from, *map);
+  if (!table) return tl::unexpected(table.error());
+  return calib::poses::parse_pose_table(*table, args.from);
+}
+
 int run_import(const Session& session, const ExchangeArguments& args) {
-  const auto table = store::read_poses(args.from);
+  const auto table = imported(args);
   if (!table) return report(session, table.error());
   if (auto done = store::import_poses(*table, args.to, header_of(*table, args)); !done)
     return report(session, done.error());
@@ -65,9 +81,14 @@ int run_export(const Session& session, const ExchangeArguments& args) {
 
 void add_import(CLI::App& app, Session& session) {
   auto args = std::make_shared<ExchangeArguments>();
-  CLI::App* const command = add_command(app, session, "import", "make a run file of a pose table",
-                                        [args, &session] { return run_import(session, *args); });
-  command->add_option("POSES", args->from, "pose table in CSV")->required();
+  CLI::App* const command =
+      add_command(app, session, "import", "make a run file of a pose table, or of any table of readings",
+                  [args, &session] { return run_import(session, *args); });
+  command->add_option("POSES", args->from, "pose table in CSV; with --columns any delimited text")
+      ->required();
+  command->add_option(
+      "--columns", args->columns,
+      "MAP.toml: which column of the file is which, its unit, sign and time (docs/import.md)");
   command->add_option("-o,--output", args->to, "RUN.mgtrun; must not exist")->required();
 }
 

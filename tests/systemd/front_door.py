@@ -13,11 +13,14 @@ front_door.py --build DIR --source DIR --programs DIR CHECK, where CHECK is
   outputs     an output path that is a device, a FIFO or a symbolic link is written to and stays what it is
   packages    debian/ has the project's version and puts every installed file into one package
   kept        what `add` found is kept: every command tells the same residual of that run file
+  import      a table of another program comes in by a map of its columns, and out again unchanged
 Exit code 77: the tool needed for the check is not on this machine.
 """
 import argparse
+import csv
 import fnmatch
 import json
+import math
 import os
 import pathlib
 import re
@@ -314,6 +317,38 @@ at_s = 1100.0
     wanted = f"Residual {residuals['fit']:.3g} nT"
     if wanted not in page.read_text():
         raise Failure(f"the report does not say '{wanted}'")
+
+
+def check_import(options, root):
+    """A table of another program (semicolons, microtesla, radians, another order and sign) comes in unchanged."""
+    mgt, table = options.programs / "mgt", poses_of(options, root, "--rig", "table6")
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    axes = [f"s{sensor}_{axis}_nT" for sensor in range(1, 5) for axis in "xyz"]
+    foreign, columns = root / "logger.txt", root / "columns.toml"
+    lines = ["made by a logger", ";".join(["F", "turn"] + [f"B{i}" for i in range(12)])]
+    for row in rows:
+        cells = [row["f_nT"], repr(math.radians(float(row["azimuth_deg"])))]
+        lines.append(";".join(cells + [repr(float(row[axis]) * (1e-3 if axis[3] != "z" else -1e-3)) for axis in axes]))
+    foreign.write_text("\n".join(lines) + "\n")
+    map_lines = ["[columns]", 'f_nT = "F"', 'azimuth_deg = {from = "turn", unit = "rad"}']
+    for i, axis in enumerate(axes):
+        map_lines.append(f'{axis} = {{from = "B{i}", unit = "uT", sign = {-1 if axis[3] == "z" else 1}}}')
+    columns.write_text("\n".join(map_lines + ["[file]", "skip = 1"]) + "\n")
+    kept, back = root / "logger.mgtrun", root / "back.csv"
+    demand(run(mgt, "import", foreign, "--columns", columns, "-o", kept), "mgt import --columns")
+    demand(run(mgt, "export", kept, "-o", back), "mgt export")
+    again = list(csv.DictReader(back.read_text().splitlines()))
+    if len(again) != len(rows):
+        raise Failure(f"{len(rows)} rows went in, {len(again)} came out")
+    for name in ("f_nT", "azimuth_deg", *axes):
+        worst = max(abs(float(a[name]) - float(b[name])) for a, b in zip(rows, again))
+        if worst > 1e-6:
+            raise Failure(f"{name} changed by {worst} on its way through mgt import")
+    columns.write_text("[columns]\n" + 's1_x_nT = "nowhere"\n')
+    refused = subprocess.run([mgt, "import", foreign, "--columns", columns, "-o", root / "no.mgtrun"],
+                             text=True, stderr=subprocess.PIPE)
+    if refused.returncode != 2 or "there is no column 'nowhere'" not in refused.stderr or (root / "no.mgtrun").exists():
+        raise Failure(f"a column that is not there: {refused.returncode}, {refused.stderr}")
 
 
 def claims(source, package):

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/poses/table_import.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "proto/number.h"
+#include "proto/time.h"
+#include "proto/trimmed.h"
+
+namespace mgtd::calib::poses {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+struct ForeignCell {
+  std::string text;
+  std::size_t column{1};  ///< 1-based position of its first character in the line
+};
+
+/// The delimiter that a line is full of.
+char delimiter_of(std::string_view line) {
+  char best = ' ';
+  std::ptrdiff_t most = 0;
+  for (const char delimiter : {',', ';', '\t', '|'}) {
+    const auto count = std::count(line.begin(), line.end(), delimiter);
+    if (count > most) most = count, best = delimiter;
+  }
+  return best;
+}
+
+/// Up to the next delimiter outside quotes; "" inside quotes is a quote.
+std::vector<ForeignCell> cells_of(std::string_view line, char delimiter) {
+  const bool runs = delimiter == ' ';
+  const auto parts = [&](char c) {
+    return runs ? kBlanks.find(c) != std::string_view::npos : c == delimiter;
+  };
+  std::vector<ForeignCell> cells;
+  std::size_t at = 0;
+  while (true) {
+    while (runs && at < line.size() && parts(line[at])) ++at;
+    if (runs && at >= line.size()) return cells;
+    ForeignCell cell{.text = {}, .column = at + 1};
+    bool quoted = false;
+    for (; at < line.size() && (quoted || !parts(line[at])); ++at) {
+      if (line[at] != '"') {
+        cell.text += line[at];
+      } else if (quoted && at + 1 < line.size() && line[at + 1] == '"') {
+        cell.text += line[at++];
+      } else {
+        quoted = !quoted;
+      }
+    }
+    cell.text = trimmed(cell.text);
+    cells.push_back(std::move(cell));
+    if (at >= line.size()) return cells;
+    ++at;
+    if (runs) continue;
+    if (at == line.size()) {
+      cells.push_back({.text = {}, .column = at + 1});
+      return cells;
+    }
+  }
+}
+
+class Importer {
+ public:
+  Importer(std::string_view text, std::string_view file, const ImportMap& map)
+      : text_(text), file_(file), map_(map) {
+    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
+  }
+
+  Result<std::string> run() {
+    header_ = "pose" + std::string(map_.set.empty() ? "" : ",set");
+    if (map_.time) header_ += map_.time->utc ? ",t_utc" : ",t_s";
+    for (const ImportedColumn& column : map_.columns) header_ += "," + column.to;
+    while (next_line()) {
+      if (line_number_ <= map_.skip || trimmed(line_).empty() || is_comment()) {
+        leave_line();
+        continue;
+      }
+      if (!delimiter_) delimiter_ = map_.delimiter.value_or(delimiter_of(line_));
+      const std::vector<ForeignCell> cells = cells_of(line_, *delimiter_);
+      if (names_.empty()) {
+        if (auto named = name_columns(cells); !named) return tl::unexpected(named.error());
+        if (map_.header) {
+          begin();
+          continue;
+        }
+      }
+      if (auto taken = take(cells); !taken) return tl::unexpected(taken.error());
+    }
+    if (taken_ == 0)
+      return fail(ErrorCode::bad_input, fmt::format("{}: no row that could be taken", file_),
+                  "look at `skip`, `header` and `comment` of the map");
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] tl::unexpected<Error> complain(std::size_t column, std::string message,
+                                               std::string remedy) const {
+    return fail(ErrorCode::bad_input, fmt::format("{}:{}:{}: {}", file_, line_number_, column, message),
+                std::move(remedy));
+  }
+
+  bool next_line() {
+    if (text_.empty()) return false;
+    const std::size_t end = std::min(text_.find('\n'), text_.size());
+    line_ = text_.substr(0, end);
+    text_.remove_prefix(std::min(end + 1, text_.size()));
+    ++line_number_;
+    return true;
+  }
+  [[nodiscard]] bool is_comment() const {
+    return !map_.comment.empty() && trimmed(line_).starts_with(map_.comment);
+  }
+  /// The header of the pose table stands in the first line that is left for it.
+  void begin() {
+    out_ += header_ + "\n";
+    begun_ = true;
+  }
+  void leave_line() { out_ += "\n"; }
+
+  Result<void> name_columns(const std::vector<ForeignCell>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      names_.push_back(map_.header ? cells[i].text : std::to_string(i + 1));
+    for (const ImportedColumn& column : map_.columns) {
+      const auto at = place_of(column.from);
+      if (!at) return tl::unexpected(at.error());
+      places_.push_back(*at);
+    }
+    if (map_.time && !map_.time->from.empty()) {
+      const auto at = place_of(map_.time->from);
+      if (!at) return tl::unexpected(at.error());
+      time_at_ = *at;
+    }
+    return {};
+  }
+
+  [[nodiscard]] Result<std::size_t> place_of(const std::string& name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
+    return complain(1, fmt::format("there is no column '{}'", name),
+                    map_.header ? fmt::format("the header names {}", fmt::join(names_, ", "))
+                                : fmt::format("without a header columns are called 1 to {}", names_.size()));
+  }
+
+  Result<double> number(const ForeignCell& cell, const std::string& name) const {
+    std::string text = cell.text;
+    if (map_.decimal != '.') std::replace(text.begin(), text.end(), map_.decimal, '.');
+    const auto value = parse_number(text);
+    if (value) return *value;
+    return complain(cell.column, fmt::format("'{}' in column {} is not a number", cell.text, name),
+                    "look at `delimiter`, `decimal` and `skip` of the map");
+  }
+
+  Result<std::string> time(const std::vector<ForeignCell>& cells) {
+    const ImportedTime& time = *map_.time;
+    double t_s = 0;
+    if (time.from.empty()) {
+      t_s = static_cast<double>(rows_ - 1) / time.rate_hz.value_or(1);
+    } else if (time.utc) {
+      const ForeignCell& cell = cells[time_at_];
+      const auto t = parse_utc(cell.text);
+      if (!t) return complain(cell.column, t.error().message, t.error().remedy);
+      return format_utc(*t);
+    } else {
+      const auto value = number(cells[time_at_], time.from);
+      if (!value) return tl::unexpected(value.error());
+      if (!first_time_) first_time_ = *value;
+      t_s = (*value - *first_time_) * time.unit_s;
+    }
+    if (t_s < last_s_)
+      return complain(1, fmt::format("the time goes back: {} s after {} s", t_s, last_s_),
+                      "sort the rows by time, or give the rate of the rows: [time] rate_hz");
+    last_s_ = t_s;
+    return fmt::format("{}", t_s);
+  }
+
+  Result<void> take(const std::vector<ForeignCell>& cells) {
+    if (cells.size() != names_.size())
+      return complain(1, fmt::format("{} cells where {} are expected", cells.size(), names_.size()),
+                      "look at `delimiter` of the map, or correct this line");
+    ++rows_;
+    if (!begun_) {
+      // Without a header of its own the first row shares its line with that of the pose table.
+      out_.insert(out_.size(), header_ + "\n");
+      begun_ = true;
+    }
+    if ((rows_ - 1) % static_cast<std::size_t>(map_.every) != 0) {
+      leave_line();
+      return {};
+    }
+    ++taken_;
+    std::string row = std::to_string(taken_);
+    if (!map_.set.empty()) row += "," + map_.set;
+    if (map_.time) {
+      const auto t = time(cells);
+      if (!t) return tl::unexpected(t.error());
+      row += "," + *t;
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const ImportedColumn& column = map_.columns[i];
+      const ForeignCell& cell = cells[places_[i]];
+      row += ",";
+      if (cell.text.empty()) continue;
+      const auto value = number(cell, column.from);
+      if (!value) return tl::unexpected(value.error());
+      fmt::format_to(std::back_inserter(row), "{}", column.scale * *value + column.offset);
+    }
+    out_ += row + "\n";
+    return {};
+  }
+
+  std::string_view text_, file_, line_;
+  const ImportMap& map_;
+  int line_number_{0};
+  std::optional<char> delimiter_{};
+  std::vector<std::string> names_{};   ///< of the file's columns
+  std::vector<std::size_t> places_{};  ///< of the map's columns among them
+  std::size_t time_at_{0};
+  std::optional<double> first_time_{};
+  double last_s_{0};
+  std::size_t rows_{0}, taken_{0};
+  bool begun_{false};
+  std::string header_{}, out_{};
+};
+
+}  // namespace
+
+Result<std::string> import_table(std::string_view text, std::string_view file, const ImportMap& map) {
+  return Importer(text, file, map).run();
+}
+
+}  // namespace mgtd::calib::poses
