@@ -34,9 +34,9 @@ class Worker {
                               done = std::move(done), alive = std::weak_ptr(alive_),
                               keep = boost::asio::make_work_guard(home_)]() mutable {
       const std::stop_callback with_the_others(all, [&] { this_job.request_stop(); });
-      auto result = std::make_shared<decltype(job(this_job.get_token()))>(job(this_job.get_token()));
-      boost::asio::post(home, [alive = std::move(alive), done = std::move(done), result]() mutable {
-        if (!alive.expired()) done(std::move(*result));
+      boost::asio::post(home, [alive = std::move(alive), done = std::move(done),
+                               result = job(this_job.get_token())]() mutable {
+        if (!alive.expired()) done(std::move(result));
       });
     });
     return this_job;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -28,6 +29,18 @@ TEST(Worker, ResultComesBackOnTheLiveThread) {
   EXPECT_EQ(result, 42);
   EXPECT_EQ(delivered, std::this_thread::get_id());
   EXPECT_NE(solved, delivered);
+}
+
+/// A job's input and its result have one owner at a time: neither is shared between the threads.
+TEST(Worker, InputAndResultAreMovedNeverShared) {
+  boost::asio::io_context io(1);
+  Worker worker(io);
+  std::unique_ptr<int> result;
+  worker.run([input = std::make_unique<int>(42)](std::stop_token) mutable { return std::move(input); },
+             [&](std::unique_ptr<int> value) { result = std::move(value); });
+  io.run();
+  ASSERT_NE(result, nullptr);
+  EXPECT_EQ(*result, 42);
 }
 
 TEST(Worker, AJobIsToldToStopWhenTheWorkerGoes) {
