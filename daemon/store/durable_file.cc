@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
+#include <string>
 
 namespace mgtd::daemon::store {
 namespace {
@@ -35,6 +35,24 @@ int write_and_close(int fd, std::string_view text) {
   if (code == 0 && ::fsync(fd) != 0) code = errno;
   if (::close(fd) != 0 && code == 0) code = errno;
   return code;
+}
+
+/// 0 or errno.
+int read_to_end(int fd, std::string& text) {
+  std::array<char, 1U << 16U> piece;
+  for (;;) {
+    const ssize_t n = ::read(fd, piece.data(), piece.size());
+    if (n > 0) text.append(piece.data(), static_cast<std::size_t>(n));
+    if (n == 0) return 0;
+    if (n < 0 && errno != EINTR) return errno;
+  }
+}
+
+Error unreadable(const std::filesystem::path& path, int os_error) {
+  if (os_error == EISDIR)
+    return {ErrorCode::bad_input, fmt::format("{} is a directory", path.string()), "name a file in it"};
+  return {ErrorCode::bad_input, fmt::format("{} cannot be read: {}", path.string(), std::strerror(os_error)),
+          "check path and permissions"};
 }
 
 }  // namespace
@@ -70,20 +88,13 @@ Result<void> append_durably(const std::filesystem::path& path, std::string_view 
 }
 
 Result<std::string> read_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    return fail(ErrorCode::bad_input, fmt::format("{} is a directory", path.string()), "name a file in it");
-  }
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (in.is_open() && in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
-  if (!in.is_open() || in.bad() || text.bad()) {
-    return fail(ErrorCode::bad_input,
-                fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)),
-                "check path and permissions");
-  }
-  return std::move(text).str();
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return tl::unexpected(unreadable(path, errno));
+  std::string text;
+  const int code = read_to_end(fd, text);
+  ::close(fd);
+  if (code != 0) return tl::unexpected(unreadable(path, code));
+  return text;
 }
 
 }  // namespace mgtd::daemon::store

@@ -16,7 +16,8 @@ namespace mgtd::daemon::store {
 [[nodiscard]] Result<void> append_durably(const std::filesystem::path& path, std::string_view text);
 /// Makes names in the directory durable.
 [[nodiscard]] Result<void> sync_directory(const std::filesystem::path& directory);
-/// The whole file. `bad_input` when it cannot be read.
+/// The whole file. `bad_input` with the system's reason when it cannot be opened, or fails while it is read:
+/// a part of a file is never returned.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path);
 
 }  // namespace mgtd::daemon::store

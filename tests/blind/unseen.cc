@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/blind/unseen.h"
 
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "calib/criticism/search/improve.h"
@@ -12,6 +10,7 @@
 #include "calib/fit/joint/profile_search.h"
 #include "tests/blind/blind.h"
 #include "tests/rig/simulated_table.h"
+#include "tests/support/child_process.h"
 
 namespace mgtd::calib::testing {
 namespace {
@@ -83,10 +82,7 @@ PoseTable rig_run(const rig::Scenario& scenario, std::size_t unseen, std::uint64
 
 rig::Scenario paper_experiment() {
   const std::string path = MGTD_SOURCE_DIR "/tests/scenarios/paper_experiment.toml";
-  std::ifstream in(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  auto scenario = rig::parse_scenario(text.str(), path);
+  auto scenario = rig::parse_scenario(mgtd::testing::slurp(path), path);
   if (!scenario) throw std::runtime_error(scenario.error().front());
   return *std::move(scenario);
 }

@@ -5,12 +5,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "daemon/store/durable_file.h"
 #include "fuzz_targets.h"
 
 namespace {
@@ -25,11 +24,6 @@ std::vector<fs::path> files_of(const fs::path& path) {
     if (entry.is_regular_file()) out.push_back(entry.path());
   }
   return out;
-}
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// One to four wounds: a byte changed, a piece cut out, a piece said twice, the end torn off.
@@ -70,7 +64,7 @@ int main(int argc, char** argv) {
   int played = 0;
   for (int i = 2; i < argc; ++i) {
     for (const fs::path& file : files_of(argv[i])) {
-      const std::string bytes = read(file);
+      const std::string bytes = mgtd::daemon::store::read_file(file).value();
       std::fprintf(stderr, "%s\n", file.c_str());
       play(target->second, bytes);
       std::mt19937_64 random(20261121 + bytes.size());

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
+#include "daemon/store/durable_file.h"
 #include "daemon/store/run_file.h"
 #include "tests/fuzz/require.h"
 
@@ -17,8 +17,7 @@ namespace {
 using mgtd::testing::require;
 
 std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return mgtd::daemon::store::read_file(path).value();
 }
 
 void read_all(const mgtd::daemon::store::RunFile& run) {

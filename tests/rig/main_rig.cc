@@ -2,9 +2,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "tests/rig/config_text.h"
 #include "tests/rig/effect_list.h"
@@ -95,6 +96,17 @@ struct Arguments {
   }
 };
 
+/// The whole file. Nothing when it cannot be read: the reason is on stderr.
+std::optional<std::string> text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string text, piece(1U << 16U, '\0');
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0)
+    text.append(piece, 0, static_cast<std::size_t>(in.gcount()));
+  if (in.is_open() && !in.bad()) return text;
+  fmt::print(stderr, "mgt-rig: {} cannot be read: {}\n", path, std::strerror(errno));
+  return std::nullopt;
+}
+
 /// The scenario file, or a clean rig by name. Nothing when it has mistakes: they are on stderr.
 std::optional<Scenario> load(const Arguments& args) {
   std::string text =
@@ -102,13 +114,9 @@ std::optional<Scenario> load(const Arguments& args) {
   std::string file = "--rig";
   if (!args.scenario.empty()) {
     file = args.scenario;
-    std::ifstream in(file);
-    std::ostringstream content;
-    if (!in || !(content << in.rdbuf())) {
-      fmt::print(stderr, "mgt-rig: {} cannot be read\n", file);
-      return std::nullopt;
-    }
-    text = content.str();
+    auto content = text_of(file);
+    if (!content) return std::nullopt;
+    text = *std::move(content);
   }
   auto scenario = parse_scenario(text, file);
   if (scenario) return *std::move(scenario);
@@ -174,13 +182,9 @@ int table(const Arguments& args, Scenario s) {
 }
 
 int open(const Arguments& args) {
-  std::ifstream in(args.seal);
-  std::ostringstream content;
-  if (!in || !(content << in.rdbuf())) {
-    fmt::print(stderr, "mgt-rig: {} cannot be read\n", args.seal);
-    return 2;
-  }
-  const auto truth = open_seal(content.str());
+  const auto sealed = text_of(args.seal);
+  if (!sealed) return 2;
+  const auto truth = open_seal(*sealed);
   if (truth) return write("", truth->dump(1) + "\n");
   fmt::print(stderr, "mgt-rig: {}: {}\n", args.seal, truth.error());
   return 1;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/scenario/fault_story.h"
+#include "tests/support/child_process.h"
 
 namespace mgtd {
 namespace {
@@ -76,15 +77,8 @@ std::string table() {
   return out;
 }
 
-std::string slurp(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 TEST(FaultPage, SaysWhatHappens) {
-  std::string page = slurp(kPage);
+  std::string page = testing::slurp(kPage);
   const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
   ASSERT_NE(begin, std::string::npos) << kPage;
   ASSERT_NE(end, std::string::npos) << kPage;

@@ -3,22 +3,15 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "proto/control_codec.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
+#include "tests/support/child_process.h"
 
 namespace mgtd {
 namespace {
 
-std::string page() {
-  std::ifstream in(std::string(MGTD_SOURCE_DIR) + "/docs/stream.md");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+std::string page() { return testing::slurp(MGTD_SOURCE_DIR "/docs/stream.md"); }
 
 TEST(StreamPage, NamesEveryCommand) {
   const std::string text = page();

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "tests/support/child_process.h"
 
 namespace mgtd::rig {
 namespace {
@@ -16,10 +16,8 @@ using ::testing::HasSubstr;
 TEST(Scenario, EveryFileOfTheRepositoryIsOne) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(MGTD_SOURCE_DIR "/tests/scenarios")) {
-    std::ifstream in(entry.path());
-    std::ostringstream text;
-    text << in.rdbuf();
-    const auto scenario = parse_scenario(text.str(), entry.path().filename().string());
+    const auto scenario =
+        parse_scenario(mgtd::testing::slurp(entry.path()), entry.path().filename().string());
     EXPECT_TRUE(scenario.has_value()) << (scenario ? "" : scenario.error().front());
     ++files;
   }

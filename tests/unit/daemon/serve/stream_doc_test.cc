@@ -6,7 +6,6 @@
 #include <chrono>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include "daemon/serve/stream_server.h"
@@ -17,10 +16,7 @@ namespace mgtd::daemon::serve {
 namespace {
 
 std::string python_of(const std::string& document) {
-  std::ifstream in(document);
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string all = text.str();
+  const std::string all = mgtd::testing::slurp(document);
   const std::string fence = "```python\n";
   const std::size_t begin = all.find(fence);
   if (begin == std::string::npos) return {};

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 #include <map>
 
+#include "daemon/store/durable_file.h"
 #include "proto/stream_codec.h"
 #include "tests/unit/daemon/full_disk.h"
 #include "tests/unit/daemon/temp_dir.h"
@@ -108,10 +108,8 @@ TEST(DiskRing, AfterAnOrderlyEndNumbersGoOnByTheTimeBetween) {
 /// The files as they stand in the middle of a life: what a kill leaves.
 std::map<std::filesystem::path, std::string> snapshot(const std::filesystem::path& directory) {
   std::map<std::filesystem::path, std::string> out;
-  for (const RotatedFile& file : rotated_files(directory, "stream", ".ring")) {
-    std::ifstream in(file.path, std::ios::binary);
-    out[file.path] = std::string(std::istreambuf_iterator<char>(in), {});
-  }
+  for (const RotatedFile& file : rotated_files(directory, "stream", ".ring"))
+    out[file.path] = read_file(file.path).value();
   return out;
 }
 

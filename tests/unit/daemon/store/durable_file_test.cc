@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <string>
 
 #include "tests/unit/daemon/temp_dir.h"
 
@@ -18,6 +19,19 @@ TEST(ReadFile, AnEmptyFileIsEmptyText) {
   const auto text = read_file(dir / "empty");
   ASSERT_TRUE(text) << text.error().text();
   EXPECT_EQ(*text, "");
+}
+
+/// Longer than one piece of reading, and of a whole number of pieces.
+TEST(ReadFile, ALongFileIsReadToItsEnd) {
+  const test::TempDir dir;
+  for (const std::size_t length : {1U << 16U, (1U << 17U) + 1}) {
+    std::string bytes(length, '\0');
+    for (std::size_t i = 0; i < length; ++i) bytes[i] = static_cast<char>(i * 7 / 5);
+    std::ofstream(dir / "long", std::ios::binary) << bytes;
+    const auto text = read_file(dir / "long");
+    ASSERT_TRUE(text) << text.error().text();
+    EXPECT_TRUE(*text == bytes) << length;
+  }
 }
 
 TEST(ReadFile, AMissingFileAndADirectoryAreNamed) {

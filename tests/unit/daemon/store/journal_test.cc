@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <iterator>
 
+#include "daemon/store/durable_file.h"
 #include "tests/unit/daemon/full_disk.h"
 #include "tests/unit/daemon/temp_dir.h"
 
@@ -27,9 +27,8 @@ JournalConfig config_in(const TempDir& dir) {
 }
 
 std::string payloads(const std::filesystem::path& file, bool whole = true) {
-  std::ifstream in(file, std::ios::binary);
   RawLogDecoder decoder;
-  decoder.feed(std::string(std::istreambuf_iterator<char>(in), {}));
+  decoder.feed(read_file(file).value());
   std::string all;
   while (const auto record = decoder.next()) all += record->bytes;
   EXPECT_EQ(static_cast<bool>(decoder.finish()), whole) << file;
