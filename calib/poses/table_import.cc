@@ -118,7 +118,7 @@ class Importer {
   [[nodiscard]] bool is_comment() const {
     return !map_.comment.empty() && trimmed(line_).starts_with(map_.comment);
   }
-  /// The header of the pose table stands in the first line that is left for it.
+  /// The header of the pose table stands in the line of the file's own; without one, in a line more.
   void begin() {
     out_ += header_ + "\n";
     begun_ = true;
@@ -167,6 +167,11 @@ class Importer {
       const ForeignCell& cell = cells[time_at_];
       const auto t = parse_utc(cell.text);
       if (!t) return complain(cell.column, t.error().message, t.error().remedy);
+      if (last_utc_ && *t < *last_utc_)
+        return complain(cell.column,
+                        fmt::format("the time goes back: {} after {}", cell.text, format_utc(*last_utc_)),
+                        "sort the rows by time");
+      last_utc_ = *t;
       return format_utc(*t);
     } else {
       const auto value = number(cells[time_at_], time.from);
@@ -186,11 +191,7 @@ class Importer {
       return complain(1, fmt::format("{} cells where {} are expected", cells.size(), names_.size()),
                       "look at `delimiter` of the map, or correct this line");
     ++rows_;
-    if (!begun_) {
-      // Without a header of its own the first row shares its line with that of the pose table.
-      out_.insert(out_.size(), header_ + "\n");
-      begun_ = true;
-    }
+    if (!begun_) begin();
     if ((rows_ - 1) % static_cast<std::size_t>(map_.every) != 0) {
       leave_line();
       return {};
@@ -225,6 +226,7 @@ class Importer {
   std::size_t time_at_{0};
   std::optional<double> first_time_{};
   double last_s_{0};
+  std::optional<WallTime> last_utc_{};
   std::size_t rows_{0}, taken_{0};
   bool begun_{false};
   std::string header_{}, out_{};

@@ -106,6 +106,11 @@ TEST(TableImport, ATimeThatGoesBackIsRefused) {
   const auto out = import_table("t,a,b,c\n2,1,2,3\n1,4,5,6\n", "f", map);
   ASSERT_FALSE(out);
   EXPECT_THAT(out.error().message, HasSubstr("f:3:1: the time goes back"));
+  map.time->utc = true;
+  const auto dates =
+      import_table("t,a,b,c\n2026-11-21T10:00:01Z,1,2,3\n2026-11-21T10:00:00Z,4,5,6\n", "f", map);
+  ASSERT_FALSE(dates);
+  EXPECT_THAT(dates.error().message, HasSubstr("f:3:1: the time goes back"));
 }
 
 TEST(UnitStep, KnowsTheUnitsOfAColumnByItsName) {
