@@ -11,18 +11,16 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// An Epoch holds four readings at one instant; a Gap says that they are missing, and why.
+/// An Epoch holds the readings of all sensors at one instant; a Gap says that they are missing, and why.
 namespace mgtd {
 
 struct Epoch {
   std::uint64_t seq{0};  ///< counts epochs of the stream, gaps included
   Stamp t;               ///< when the field was what it was (device latency removed as far as known)
-  std::array<Eigen::Vector3d, kSensors> y_nT{no_readings()};
+  PerSensor<Eigen::Vector3d> y_nT{no_readings()};
   /// Latest head temperature; NaN where never measured.
-  std::array<double, kSensors> T_degC{
-      std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
-      std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  double skew_bound_s{0};  ///< no two of the four samples differ in true time by more than this
+  PerSensor<double> T_degC = PerSensor<double>(kSensorCount, std::numeric_limits<double>::quiet_NaN());
+  double skew_bound_s{0};  ///< no two of the samples differ in true time by more than this
   Flags flags;
 };
 

@@ -21,12 +21,16 @@ struct Pose {
   std::optional<WallTime> t_utc;
   std::optional<double> azimuth_rad, pitch_rad, roll_rad;
   std::optional<double> f_nT, f_sd_nT;
+  /// The field itself, measured beside the sensors or made by a coil cage, and the standard uncertainty of
+  /// each component. In the frame that the table turns; without table angles in one fixed to the platform.
+  std::optional<Eigen::Vector3d> ref_nT;
+  std::optional<double> ref_sd_nT;
   std::optional<double> n, n_eff;
-  std::array<Eigen::Vector3d, kSensors> y_nT{no_readings()};  ///< raw mean reading, nT at nominal scale
-  std::array<std::array<std::optional<double>, 3>, kSensors> sd_nT{};  ///< of one sample within the dwell
+  PerSensor<Eigen::Vector3d> y_nT{no_readings()};           ///< raw mean reading, nT at nominal scale
+  PerSensor<std::array<std::optional<double>, 3>> sd_nT{};  ///< of one sample within the dwell
   std::optional<int> mount, sense;
   std::optional<double> dwell_s, since_stop_s;
-  std::array<std::optional<double>, kSensors> T_degC{};
+  PerSensor<std::optional<double>> T_degC{};
   std::map<std::string, double> covariates;  ///< every other numeric column, under its own name
 
   /// All three table angles are known.

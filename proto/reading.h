@@ -11,19 +11,16 @@
 #include <vector>
 
 #include "proto/flags.h"
+#include "proto/per_sensor.h"
 #include "proto/time.h"
 
 /// Readings are what instruments report. Slots count from 0 in code and from 1 on every edge (s1 .. s4).
 namespace mgtd {
 
-inline constexpr int kSensors = 4;
-inline constexpr auto kSensorCount = static_cast<std::size_t>(kSensors);  ///< for what counts in sizes
-
-/// Four readings nobody has made: NaN, so that a forgotten one cannot pass for a measurement. (Eigen's
-/// vectors are not initialised by {}.)
-[[nodiscard]] inline std::array<Eigen::Vector3d, kSensors> no_readings() {
-  const Eigen::Vector3d none = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  return {none, none, none, none};
+/// Readings nobody has made: NaN, so that a forgotten one cannot pass for a measurement. (Eigen's vectors are
+/// not initialised by {}.)
+[[nodiscard]] inline PerSensor<Eigen::Vector3d> no_readings(std::size_t sensors = kSensorCount) {
+  return {sensors, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
 }
 
 /// One sample of one fluxgate. `y_nT` is not a vector in a frame: three readings at nominal scale, along axes

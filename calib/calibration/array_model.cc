@@ -39,9 +39,8 @@ PlatformInput platform_input(const Eigen::Vector3d& b_P_nT, const std::optional<
 
 }  // namespace
 
-ArrayModel::ArrayModel(const std::array<sensor::SensorModel, kSensors>& sensors,
-                       const sensor::Geometry& geometry, const std::vector<effects::EffectPtr>& effects,
-                       Eigen::VectorXd coefficients)
+ArrayModel::ArrayModel(const PerSensor<sensor::SensorModel>& sensors, const sensor::Geometry& geometry,
+                       const std::vector<effects::EffectPtr>& effects, Eigen::VectorXd coefficients)
     : effects_(effects),
       sensors_(sensors),
       positions_P_m_(geometry.positions_P_m()),
@@ -50,7 +49,9 @@ ArrayModel::ArrayModel(const std::array<sensor::SensorModel, kSensors>& sensors,
       platform_(effects_, effects::Level::platform),
       axis_(effects_, effects::Level::axis),
       coefficients_(std::move(coefficients)) {
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  gain_.resize(sensors_.size());
+  offset_nT_.resize(sensors_.size());
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
     gain_[i] = sensors[i].R_PS() * sensors[i].response().inverse();
     offset_nT_[i] = sensors[i].offset_nT;
   }
@@ -60,7 +61,7 @@ Result<ArrayModel> ArrayModel::of(const Calibration& calibration) {
   std::vector<effects::EffectPtr> effects;
   std::vector<double> values;
   for (const CalibratedEffect& fitted : calibration.effects) {
-    auto effect = effects::library::make_effect(fitted.effect);
+    auto effect = effects::library::make_effect(fitted.effect, static_cast<int>(calibration.sensors.size()));
     if (!effect) return tl::unexpected(effect.error());
     if ((*effect)->coefficients().size() != fitted.coefficients.size()) {
       return fail(ErrorCode::bad_input,
@@ -78,8 +79,8 @@ Result<ArrayModel> ArrayModel::of(const Calibration& calibration) {
 
 sensor::FieldVector ArrayModel::correct(const effects::Conditions& at, const sensor::FieldVector& y_nT,
                                         const std::optional<Eigen::Matrix3d>& R) const {
-  sensor::FieldVector out;
-  for (int i = 0; i < kSensors; ++i) {
+  sensor::FieldVector out(y_nT.size());
+  for (int i = 0; i < sensors(); ++i) {
     const auto s = static_cast<std::size_t>(i);
     Eigen::Vector3d v = y_nT.segment<3>(3 * i) - offset_nT_[s];
     if (!axis_.empty()) {
@@ -100,8 +101,8 @@ sensor::FieldVector ArrayModel::correct(const effects::Conditions& at, const sen
 }
 
 sensor::FieldVector ArrayModel::site_field(const effects::Conditions& at, const Eigen::Matrix3d& R) const {
-  sensor::FieldVector out = sensor::FieldVector::Zero();
-  for (int i = 0; i < kSensors && !site_.empty(); ++i) {
+  sensor::FieldVector out = sensor::FieldVector::Zero(3 * sensors());
+  for (int i = 0; i < sensors() && !site_.empty(); ++i) {
     const Eigen::Vector3d x_S_m = R.transpose() * positions_P_m_[static_cast<std::size_t>(i)];
     out.segment<3>(3 * i) = R * Eigen::Vector3d(site_.value(at, i, {x_S_m.data(), 3}, coefficients_));
   }
@@ -110,14 +111,14 @@ sensor::FieldVector ArrayModel::site_field(const effects::Conditions& at, const 
 
 Eigen::MatrixXd ArrayModel::derivative(const effects::Conditions& at, const sensor::FieldVector& b_P_nT,
                                        const std::optional<Eigen::Matrix3d>& R, bool site_removed) const {
-  const Eigen::Index m = coefficients_.size();
-  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(sensor::kChannels, kArrayParameters + m);
-  for (int i = 0; i < kSensors; ++i) {
+  const Eigen::Index m = coefficients_.size(), parameters = sensors() * sensor::kSensorParameters;
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(3 * sensors(), parameters + m);
+  for (int i = 0; i < sensors(); ++i) {
     const auto s = static_cast<std::size_t>(i);
     const Eigen::Vector3d b = b_P_nT.segment<3>(3 * i);
     d.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
         field_derivative(sensors_[s], b);
-    auto columns = d.block(3 * i, kArrayParameters, 3, m);
+    auto columns = d.block(3 * i, parameters, 3, m);
     if (!axis_.empty()) {
       const Eigen::Vector3d v = sensors_[s].response() * sensors_[s].R_PS().transpose() * b;
       columns -= gain_[s] * axis_.sum(at, i, {v.data(), 3}, coefficients_).d_coefficient;

@@ -11,14 +11,14 @@
 #include "calib/sensor/geometry.h"
 #include "calib/sensor/sensor_model.h"
 
-/// Four sensors and the effects of a model, from readings back to fields: the inverse of what the fit
+/// The sensors and the effects of a model, from readings back to fields: the inverse of what the fit
 /// predicts. An effect whose inputs were not measured at a pose (Effect::missing) is not removed there.
 namespace mgtd::calib::calibration {
 
 class ArrayModel {
  public:
   /// `coefficients` of all effects one after the other.
-  ArrayModel(const std::array<sensor::SensorModel, kSensors>& sensors, const sensor::Geometry& geometry,
+  ArrayModel(const PerSensor<sensor::SensorModel>& sensors, const sensor::Geometry& geometry,
              const std::vector<effects::EffectPtr>& effects, Eigen::VectorXd coefficients);
 
   /// Refuses an effect that is not in the library or has other coefficients there.
@@ -36,17 +36,18 @@ class ArrayModel {
   [[nodiscard]] bool has_instrument_effects() const { return !axis_.empty() || !platform_.empty(); }
   /// Site to platform as the table truly stood, for recorded angles.
   [[nodiscard]] Eigen::Matrix3d attitude(const effects::Conditions& at) const;
-  /// Derivative of the corrected field by the 48 parameters and then by all coefficients, readings held, to
-  /// first order in the effects. `site_removed`: of the corrected field less site_field.
+  /// Derivative of the corrected field by the parameters of all sensors and then by all coefficients,
+  /// readings held, to first order in the effects. `site_removed`: of the corrected field less site_field.
   [[nodiscard]] Eigen::MatrixXd derivative(const effects::Conditions& at, const sensor::FieldVector& b_P_nT,
                                            const std::optional<Eigen::Matrix3d>& R, bool site_removed) const;
 
  private:
+  [[nodiscard]] int sensors() const { return static_cast<int>(sensors_.size()); }
   std::vector<effects::EffectPtr> effects_;  ///< kept alive for the terms
-  std::array<sensor::SensorModel, kSensors> sensors_;
-  std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R (CA)^-1
-  std::array<Eigen::Vector3d, kSensors> offset_nT_;
-  std::array<Eigen::Vector3d, kSensors> positions_P_m_;
+  PerSensor<sensor::SensorModel> sensors_;
+  PerSensor<Eigen::Matrix3d> gain_;  ///< R (CA)^-1
+  PerSensor<Eigen::Vector3d> offset_nT_;
+  PerSensor<Eigen::Vector3d> positions_P_m_;
   effects::LevelTerms table_, site_, platform_, axis_;
   Eigen::VectorXd coefficients_;
 };

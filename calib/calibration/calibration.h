@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/sensor/channels.h"
 #include "calib/sensor/geometry.h"
 #include "calib/sensor/sensor_model.h"
 #include "proto/check.h"
@@ -18,17 +19,19 @@
 /// used.
 namespace mgtd::calib::calibration {
 
-inline constexpr int kArrayParameters = kSensors * sensor::kSensorParameters;  // 48
-using ArrayCovariance = Eigen::Matrix<double, kArrayParameters, kArrayParameters>;
+inline constexpr int kArrayParameters = kSensors * sensor::kSensorParameters;  ///< of the cross: 48
 /// One number per sensor (row) and axis (column), nT.
-using AxisNoise = Eigen::Matrix<double, kSensors, 3, Eigen::RowMajor>;
+using AxisNoise = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, kMostSensors, 3>;
+
+/// Over all axes.
+[[nodiscard]] double root_mean_square(const AxisNoise& noise_nT);
 
 /// The conditions under which the parameters hold.
 struct Reference {
-  std::array<std::optional<double>, kSensors> T_degC;  ///< mean head temperature during the run
-  std::string t_utc;                                   ///< start of the run; empty when unknown
-  std::optional<double> f_nT;                          ///< mean total field
-  std::map<std::string, double> currents_A;            ///< means of the columns ending in _A
+  PerSensor<std::optional<double>> T_degC;   ///< mean head temperature during the run
+  std::string t_utc;                         ///< start of the run; empty when unknown
+  std::optional<double> f_nT;                ///< mean total field
+  std::map<std::string, double> currents_A;  ///< means of the columns ending in _A
 };
 
 /// A coefficient of an effect as it was fitted.
@@ -44,23 +47,23 @@ struct CalibratedEffect {
   std::vector<EffectCoefficient> coefficients;
   /// What leaving it out changes in the corrected components (sensor by sensor), rms over the poses of the
   /// fit: what its absence costs where its inputs are not measured.
-  std::array<double, 3 * static_cast<std::size_t>(kSensors)> size_nT{};
+  sensor::FieldVector size_nT{};
 };
 
 struct Calibration {
   std::string id;      ///< "c" and 12 hex digits; set by seal()
   std::string method;  ///< "simplified", "two-step", "joint"
-  std::array<sensor::SensorModel, kSensors> sensors;
+  PerSensor<sensor::SensorModel> sensors;
   /// Of the parameters in kParameterNames order, sensor by sensor.
-  ArrayCovariance covariance{ArrayCovariance::Zero()};
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(kArrayParameters, kArrayParameters);
   std::vector<CalibratedEffect> effects;
   /// Of all coefficients (rows) with the 48 parameters and then with all coefficients (columns); empty
   /// without effects.
   Eigen::MatrixXd effect_covariance;
   sensor::Geometry geometry;
   /// Of one sample, for the stream's standard deviations; 0: unknown.
-  AxisNoise sample_noise_nT{AxisNoise::Zero()};
-  AxisNoise pose_noise_nT{AxisNoise::Zero()};  ///< scatter of a pose mean about the model
+  AxisNoise sample_noise_nT = AxisNoise::Zero(kSensors, 3);
+  AxisNoise pose_noise_nT = AxisNoise::Zero(kSensors, 3);  ///< scatter of a pose mean about the model
   std::string gauge;  ///< which common rotation was fixed, how, and how well it is known
   Reference reference;
   std::string data_hash;  ///< of the poses it was fitted to

@@ -15,13 +15,13 @@ constexpr const char* kSchema = "mgt.cal/1";
 
 json rows(const AxisNoise& noise) {
   json out = json::array();
-  for (int i = 0; i < kSensors; ++i) out.push_back({noise(i, 0), noise(i, 1), noise(i, 2)});
+  for (Eigen::Index i = 0; i < noise.rows(); ++i) out.push_back({noise(i, 0), noise(i, 1), noise(i, 2)});
   return out;
 }
 
 AxisNoise noise_from(const json& object) {
-  AxisNoise noise;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  AxisNoise noise(static_cast<Eigen::Index>(object.size()), 3);
+  for (std::size_t i = 0; i < object.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a)
       noise(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = object.at(i).at(a);
   }
@@ -61,19 +61,19 @@ sensor::SensorModel sensor_from_json(const json& object) {
   return sensor::SensorModel::from_parameters(p, mounting);
 }
 
-json triangle(const ArrayCovariance& c) {
+json triangle(const Eigen::MatrixXd& c) {
   json out = json::array();
-  for (int i = 0; i < kArrayParameters; ++i) {
-    for (int j = i; j < kArrayParameters; ++j) out.push_back(c(i, j));
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    for (Eigen::Index j = i; j < c.rows(); ++j) out.push_back(c(i, j));
   }
   return out;
 }
 
-ArrayCovariance covariance_from(const json& list) {
-  ArrayCovariance c;
+Eigen::MatrixXd covariance_from(const json& list, Eigen::Index n) {
+  Eigen::MatrixXd c(n, n);
   std::size_t k = 0;
-  for (int i = 0; i < kArrayParameters; ++i) {
-    for (int j = i; j < kArrayParameters; ++j) c(i, j) = c(j, i) = list.at(k++).get<double>();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = i; j < n; ++j) c(i, j) = c(j, i) = list.at(k++).get<double>();
   }
   return c;
 }
@@ -85,15 +85,24 @@ json effects_json(const std::vector<CalibratedEffect>& effects) {
     for (const EffectCoefficient& c : e.coefficients) {
       coefficients.push_back({{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
     }
-    out.push_back({{"effect", e.effect}, {"coefficients", std::move(coefficients)}, {"size_nT", e.size_nT}});
+    out.push_back({{"effect", e.effect},
+                   {"coefficients", std::move(coefficients)},
+                   {"size_nT", std::vector<double>(e.size_nT.begin(), e.size_nT.end())}});
   }
   return out;
+}
+
+sensor::FieldVector vector_from(const json& list) {
+  const auto values = list.get<std::vector<double>>();
+  if (values.size() > static_cast<std::size_t>(sensor::kMostChannels))
+    throw json::out_of_range::create(401, "size_nT: more values than channels", &list);
+  return sensor::FieldVector::Map(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 std::vector<CalibratedEffect> effects_from(const json& list) {
   std::vector<CalibratedEffect> out;
   for (const json& e : list) {
-    CalibratedEffect effect{e.at("effect"), {}, e.at("size_nT").get<decltype(CalibratedEffect::size_nT)>()};
+    CalibratedEffect effect{e.at("effect"), {}, vector_from(e.at("size_nT"))};
     for (const json& c : e.at("coefficients")) {
       effect.coefficients.push_back({c.at("name"), c.at("value"), c.at("sd"), c.at("unit")});
     }
@@ -129,9 +138,10 @@ json reference_json(const Reference& r) {
   return {{"T_degC", T}, {"t_utc", r.t_utc}, {"F_nT", or_null(r.f_nT)}, {"currents", r.currents_A}};
 }
 
-Reference reference_from(const json& object) {
+Reference reference_from(const json& object, std::size_t sensors) {
   Reference r;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  r.T_degC.resize(sensors);
+  for (std::size_t i = 0; i < sensors; ++i) {
     if (const json& t = object.at("T_degC").at(i); !t.is_null()) r.T_degC.at(i) = t.get<double>();
   }
   r.t_utc = object.at("t_utc");
@@ -148,22 +158,47 @@ std::vector<Check> checks_from(const json& list) {
   return out;
 }
 
+/// The cross by its baseline, any other array by the places of its sensors.
+void put_geometry(const sensor::Geometry& geometry, json& object) {
+  if (const auto baseline_m = geometry.cross_baseline_m()) {
+    object["baseline_m"] = *baseline_m;
+    return;
+  }
+  json places = json::array();
+  for (const Eigen::Vector3d& r_P_m : geometry.positions_P_m())
+    places.push_back({r_P_m[0], r_P_m[1], r_P_m[2]});
+  object["positions_m"] = std::move(places);
+}
+
+sensor::Geometry geometry_from(const json& object, std::size_t sensors) {
+  if (!object.contains("positions_m")) return sensor::Geometry(object.at("baseline_m").get<double>());
+  PerSensor<Eigen::Vector3d> places_P_m(sensors);
+  for (std::size_t i = 0; i < sensors; ++i) {
+    const json& place = object.at("positions_m").at(i);
+    places_P_m[i] = {place.at(0).get<double>(), place.at(1).get<double>(), place.at(2).get<double>()};
+  }
+  return sensor::Geometry(places_P_m);
+}
+
 /// Its values, whatever they are worth.
 Calibration calibration_of(const json& object) {
   Calibration c;
   c.id = object.at("id");
   c.method = object.at("method");
-  for (std::size_t i = 0; i < kSensorCount; ++i)
-    c.sensors.at(i) = sensor_from_json(object.at("sensors").at(i));
-  c.covariance = covariance_from(object.at("covariance"));
+  c.sensors.clear();
+  if (object.at("sensors").size() > static_cast<std::size_t>(kMostSensors))
+    throw json::out_of_range::create(401, "more sensors than an array can have", &object);
+  for (const json& sensor : object.at("sensors")) c.sensors.push_back(sensor_from_json(sensor));
+  const Eigen::Index parameters = static_cast<Eigen::Index>(c.sensors.size()) * sensor::kSensorParameters;
+  c.covariance = covariance_from(object.at("covariance"), parameters);
   c.effects = effects_from(object.at("effects"));
   const json& rows = object.at("effect_covariance");
-  c.effect_covariance = matrix_from(rows, kArrayParameters + rows.size());
-  c.geometry.baseline_m = object.at("baseline_m");
+  c.effect_covariance = matrix_from(rows, static_cast<std::size_t>(parameters) + rows.size());
+  c.geometry = geometry_from(object, c.sensors.size());
   c.sample_noise_nT = noise_from(object.at("sample_noise_nT"));
   c.pose_noise_nT = noise_from(object.at("pose_noise_nT"));
   c.gauge = object.at("gauge");
-  c.reference = reference_from(object.at("reference"));
+  c.reference = reference_from(object.at("reference"), c.sensors.size());
   c.data_hash = object.at("data_hash");
   c.poses = object.at("poses");
   c.accepted_by_checks = object.at("accepted");
@@ -173,9 +208,10 @@ Calibration calibration_of(const json& object) {
 }
 
 /// A calibration with one of everything, as to_json writes it.
-json example() {
+json example(const sensor::Geometry& geometry) {
   Calibration c;
-  c.effects = {{.effect = "", .coefficients = {{}}}};
+  c.geometry = geometry;
+  c.effects = {{.effect = "", .coefficients = {{}}, .size_nT = sensor::FieldVector::Zero(sensor::kChannels)}};
   c.effect_covariance = Eigen::MatrixXd::Zero(1, 1);
   c.checks = {{}};
   return to_json(c);
@@ -188,8 +224,11 @@ Result<Calibration> read(const json& object, std::optional<std::string_view> tex
     return fail(ErrorCode::bad_input,
                 fmt::format("schema {} is not \"{}\"", object["schema"].dump(), kSchema),
                 "use the version of mgt that wrote it");
-  static const json kExample = example();
-  if (const auto wrong = misfit(kExample, object))
+  static const json kCross = example(sensor::Geometry()),
+                    kOther =
+                        example(sensor::Geometry(PerSensor<Eigen::Vector3d>(1, Eigen::Vector3d::Zero())));
+  const bool other = object.is_object() && object.contains("positions_m");
+  if (const auto wrong = misfit(other ? kOther : kCross, object))
     return fail(ErrorCode::bad_input, "not a calibration: " + (text ? wrong->text(*text) : wrong->what),
                 kRemedy);
   // What the example cannot tell (a list that is too short, a temperature that is a text) is left to the
@@ -207,7 +246,7 @@ Result<Calibration> checked(const json& object, std::optional<std::string_view> 
   auto c = read(object, text);
   if (!c) return c;
   for (const CalibratedEffect& e : c->effects) {
-    if (effects::library::make_effect(e.effect)) continue;
+    if (effects::library::make_effect(e.effect, static_cast<int>(c->sensors.size()))) continue;
     return fail(ErrorCode::bad_input,
                 fmt::format("it holds an effect that this version cannot remove: {}", e.effect),
                 "use the version of mgt that wrote it");
@@ -249,24 +288,25 @@ json to_json(const std::vector<Check>& checks) {
 json to_json(const Calibration& c) {
   json sensors = json::array();
   for (const sensor::SensorModel& s : c.sensors) sensors.push_back(sensor_json(s));
-  return {{"schema", kSchema},
-          {"id", c.id},
-          {"method", c.method},
-          {"model", "y = C A R' b + I (12 parameters a sensor)"},
-          {"sensors", std::move(sensors)},
-          {"covariance", triangle(c.covariance)},
-          {"effects", effects_json(c.effects)},
-          {"effect_covariance", matrix_json(c.effect_covariance)},
-          {"baseline_m", c.geometry.baseline_m},
-          {"sample_noise_nT", rows(c.sample_noise_nT)},
-          {"pose_noise_nT", rows(c.pose_noise_nT)},
-          {"gauge", c.gauge},
-          {"reference", reference_json(c.reference)},
-          {"data_hash", c.data_hash},
-          {"poses", c.poses},
-          {"accepted", c.accepted_by_checks},
-          {"verdict", to_json(c.checks)},
-          {"software", c.software}};
+  json out{{"schema", kSchema},
+           {"id", c.id},
+           {"method", c.method},
+           {"model", "y = C A R' b + I (12 parameters a sensor)"},
+           {"sensors", std::move(sensors)},
+           {"covariance", triangle(c.covariance)},
+           {"effects", effects_json(c.effects)},
+           {"effect_covariance", matrix_json(c.effect_covariance)},
+           {"sample_noise_nT", rows(c.sample_noise_nT)},
+           {"pose_noise_nT", rows(c.pose_noise_nT)},
+           {"gauge", c.gauge},
+           {"reference", reference_json(c.reference)},
+           {"data_hash", c.data_hash},
+           {"poses", c.poses},
+           {"accepted", c.accepted_by_checks},
+           {"verdict", to_json(c.checks)},
+           {"software", c.software}};
+  put_geometry(c.geometry, out);
+  return out;
 }
 
 Result<Calibration> calibration_from_json(const json& object) { return checked(object, std::nullopt); }

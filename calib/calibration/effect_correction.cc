@@ -9,10 +9,11 @@ namespace {
 
 std::vector<effects::EffectPtr> effects_of(const Calibration& c, const PoseTable* run) {
   std::vector<effects::EffectPtr> out;
-  for (const CalibratedEffect& e : c.effects) out.push_back(*effects::library::make_effect(e.effect));
+  for (const CalibratedEffect& e : c.effects)
+    out.push_back(*effects::library::make_effect(e.effect, static_cast<int>(c.sensors.size())));
   if (run == nullptr) return out;
-  effects::EffectContext context{.table = run, .offset_nT = std::array<Eigen::Vector3d, kSensors>{}};
-  for (std::size_t i = 0; i < kSensors; ++i) (*context.offset_nT)[i] = c.sensors[i].offset_nT;
+  effects::EffectContext context{.table = run, .offset_nT = PerSensor<Eigen::Vector3d>(0)};
+  for (const sensor::SensorModel& sensor : c.sensors) context.offset_nT->push_back(sensor.offset_nT);
   auto bound = effects::library::bound_to_run(out, context);
   return bound ? std::move(*bound) : out;
 }
@@ -35,8 +36,7 @@ EffectCorrection::EffectCorrection(const Calibration& c, std::vector<effects::Ef
       array_(c.sensors, c.geometry, effects_, coefficients_of(c)),
       covariance_(full_covariance(c)),
       means_(c.reference.currents_A) {
-  for (const CalibratedEffect& e : c.effects)
-    size2_nT2_.push_back(Eigen::Map<const sensor::FieldVector>(e.size_nT.data()).cwiseAbs2());
+  for (const CalibratedEffect& e : c.effects) size2_nT2_.push_back(e.size_nT.cwiseAbs2());
   if (const auto start = parse_utc(c.reference.t_utc)) time_.start = *start;
 }
 
@@ -101,7 +101,7 @@ Corrected EffectCorrection::correct(const Pose& pose, const sensor::FieldVector&
   const effects::Conditions at{pose, time_.hours(pose), previous, &means_};
   std::optional<Eigen::Matrix3d> R;
   if (pose.angles()) R = array_.attitude(at);
-  Corrected out{.b_P_nT = array_.correct(at, y_nT, R), .covariance = sensor::ChannelCovariance::Zero()};
+  Corrected out{.b_P_nT = array_.correct(at, y_nT, R), .covariance = {}};
   out.covariance = covariance(at, out.b_P_nT, R, remove_site);
   if (remove_site && R) out.b_P_nT -= array_.site_field(at, *R);
   return out;

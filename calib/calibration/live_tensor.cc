@@ -14,7 +14,7 @@ constexpr double kTurned = 2e-3;  // of the field, relative
 
 }  // namespace
 
-LiveTensor::LiveTensor(sensor::Geometry geometry) : pipeline_(geometry) {}
+LiveTensor::LiveTensor(const sensor::Geometry& geometry) : pipeline_(geometry) {}
 
 LiveTensor::LiveTensor(const std::shared_ptr<const Calibration>& calibration) : pipeline_(calibration) {
   if (pipeline_.effects() == nullptr || !pipeline_.effects()->has_instrument_effects()) return;
@@ -27,7 +27,8 @@ LiveTensor::LiveTensor(const std::shared_ptr<const Calibration>& calibration) : 
 void LiveTensor::look_around(const Epoch& epoch, const LiveConditions& conditions) {
   now_.y_nT = epoch.y_nT;
   if (effects_->knows_start()) now_.t_utc = epoch.t.wall;
-  for (std::size_t i = 0; i < kSensors; ++i)
+  now_.T_degC.resize(epoch.T_degC.size());
+  for (std::size_t i = 0; i < epoch.T_degC.size(); ++i)
     now_.T_degC[i] = std::isfinite(epoch.T_degC[i]) ? std::optional(epoch.T_degC[i]) : std::nullopt;
   now_.azimuth_rad.reset();
   now_.pitch_rad.reset();
@@ -39,8 +40,8 @@ void LiveTensor::look_around(const Epoch& epoch, const LiveConditions& condition
   }
   if (conditions.covariates != nullptr) now_.covariates = *conditions.covariates;
   if (effects_->memories().empty()) return;
-  effects::laws::SensorReadings v_nT;
-  for (std::size_t i = 0; i < kSensors; ++i) v_nT[i] = epoch.y_nT[i] - calibration()->sensors[i].offset_nT;
+  effects::laws::SensorReadings v_nT(epoch.y_nT.size());
+  for (std::size_t i = 0; i < v_nT.size(); ++i) v_nT[i] = epoch.y_nT[i] - calibration()->sensors[i].offset_nT;
   for (const auto& memory : effects_->memories())
     memory->follow(to_seconds(epoch.t.mono.time_since_epoch()), v_nT);
 }

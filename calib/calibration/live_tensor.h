@@ -33,7 +33,7 @@ struct LeftOutEffect {
 class LiveTensor {
  public:
   /// No calibration: as TensorPipeline.
-  explicit LiveTensor(sensor::Geometry geometry);
+  explicit LiveTensor(const sensor::Geometry& geometry);
   explicit LiveTensor(const std::shared_ptr<const Calibration>& calibration);
 
   /// Epochs in order of time.

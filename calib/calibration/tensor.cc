@@ -34,15 +34,15 @@ Pose pose_of(const Epoch& epoch) {
 
 }  // namespace
 
-sensor::FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b) {
-  sensor::FieldVector out;
-  for (std::size_t i = 0; i < kSensorCount; ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
+sensor::FieldVector stacked(const PerSensor<Eigen::Vector3d>& b) {
+  sensor::FieldVector out(3 * static_cast<Eigen::Index>(b.size()));
+  for (std::size_t i = 0; i < b.size(); ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
   return out;
 }
 
-Eigen::Matrix<double, 6, sensor::kChannels> gradient_rows(const sensor::Geometry& geometry) {
-  const double g = 1 / geometry.baseline_m;
-  Eigen::Matrix<double, 6, sensor::kChannels> m = Eigen::Matrix<double, 6, sensor::kChannels>::Zero();
+sensor::ChannelColumns<6> gradient_rows(const sensor::Geometry& geometry) {
+  const double g = 1 / *geometry.cross_baseline_m();
+  sensor::ChannelColumns<6> m = sensor::ChannelColumns<6>::Zero(6, sensor::kChannels);
   const auto difference = [&](int row, int axis, int plus, int minus, double weight) {
     m(row, 3 * plus + axis) += weight;
     m(row, 3 * minus + axis) -= weight;
@@ -57,9 +57,9 @@ Eigen::Matrix<double, 6, sensor::kChannels> gradient_rows(const sensor::Geometry
   return m;
 }
 
-Eigen::Matrix<double, 4, sensor::kChannels> closure_rows(const sensor::Geometry& geometry) {
-  const double g = 1 / geometry.baseline_m;
-  Eigen::Matrix<double, 4, sensor::kChannels> m = Eigen::Matrix<double, 4, sensor::kChannels>::Zero();
+Eigen::MatrixXd closure_rows(const sensor::Geometry& geometry) {
+  const double g = 1 / *geometry.cross_baseline_m();
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(4, sensor::kChannels);
   m(0, 3 * 1) = g, m(0, 3 * 3) = -g;  // Bxy
   m(0, 1) = -g, m(0, 3 * 2 + 1) = g;  // -Byx
   for (int axis = 0; axis < 3; ++axis) {
@@ -68,9 +68,9 @@ Eigen::Matrix<double, 4, sensor::kChannels> closure_rows(const sensor::Geometry&
   return m;
 }
 
-FieldAndGradient field_and_gradient(const sensor::FieldVector& b, const sensor::Geometry& geometry) {
+FieldAndGradient field_and_gradient(const sensor::FieldVector& b, double baseline_m) {
   const auto b1 = b.segment<3>(0), b2 = b.segment<3>(3), b3 = b.segment<3>(6), b4 = b.segment<3>(9);
-  const double d = geometry.baseline_m;
+  const double d = baseline_m;
   const Eigen::Vector3d along_x = (b1 - b3) / d, along_y = (b2 - b4) / d;
   FieldAndGradient out;
   out.b_P_nT = (b1 + b2 + b3 + b4) / 4;
@@ -86,7 +86,8 @@ FieldAndGradient field_and_gradient(const sensor::FieldVector& b, const sensor::
   return out;
 }
 
-TensorPipeline::TensorPipeline(sensor::Geometry geometry) : geometry_(geometry) {
+TensorPipeline::TensorPipeline(const sensor::Geometry& geometry)
+    : geometry_(geometry), baseline_m_(geometry.cross_baseline_m().value_or(0)) {
   gain_.fill(Eigen::Matrix3d::Identity());
   offset_nT_.fill(Eigen::Vector3d::Zero());
 }
@@ -94,7 +95,8 @@ TensorPipeline::TensorPipeline(sensor::Geometry geometry) : geometry_(geometry) 
 TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run)
     : calibration_(std::move(calibration)),
       id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
-      geometry_(calibration_->geometry) {
+      geometry_(calibration_->geometry),
+      baseline_m_(geometry_.cross_baseline_m().value_or(0)) {
   for (std::size_t i = 0; i < kSensorCount; ++i) {
     const sensor::SensorModel& sensor = calibration_->sensors[i];
     gain_[i] = sensor.R_PS() * sensor.response().inverse();
@@ -124,7 +126,8 @@ void TensorPipeline::prepare_uncertainty() {
     return rows;
   };
   const auto corrected = [&](const AxisNoise& of_reading_nT) {
-    sensor::ChannelCovariance out = sensor::ChannelCovariance::Zero();
+    const Eigen::Index channels = geometry_.channels();
+    sensor::ChannelCovariance out = sensor::ChannelCovariance::Zero(channels, channels);
     for (std::size_t i = 0; i < kSensorCount; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       out.block<3, 3>(3 * at, 3 * at) =
@@ -137,7 +140,9 @@ void TensorPipeline::prepare_uncertainty() {
   const auto covariance = [&](const Eigen::Matrix<double, 1, sensor::kChannels>& u,
                               const Eigen::Matrix<double, 1, sensor::kChannels>& v) {
     const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
-    return Variance{u.dot(noise_ * v.transpose()), 0.5 * (Q + Q.transpose())};
+    const double noise = sensor::over_channels(
+        u.size(), [&](auto n) { return u.head(n).dot(noise_.topLeftCorner(n, n) * v.head(n).transpose()); });
+    return Variance{noise, 0.5 * (Q + Q.transpose())};
   };
   const auto G = gradient_rows(geometry_);
   for (Eigen::Index i = 0; i < 6; ++i) {
@@ -151,14 +156,14 @@ void TensorPipeline::prepare_uncertainty() {
   }
 }
 
-sensor::FieldVector TensorPipeline::correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const {
-  std::array<Eigen::Vector3d, kSensors> b;
+sensor::FieldVector TensorPipeline::correct(const PerSensor<Eigen::Vector3d>& y_nT) const {
+  PerSensor<Eigen::Vector3d> b;
   for (std::size_t i = 0; i < kSensorCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
   return stacked(b);
 }
 
 TensorSample TensorPipeline::sample(const sensor::FieldVector& b_P_nT) const {
-  const FieldAndGradient computed = field_and_gradient(b_P_nT, geometry_);
+  const FieldAndGradient computed = field_and_gradient(b_P_nT, baseline_m_);
   TensorSample out;
   out.calibration_id = id_;
   out.b_P_nT = computed.b_P_nT;

@@ -30,15 +30,14 @@ struct FieldAndGradient {
 };
 
 /// The four vectors one below the other.
-[[nodiscard]] sensor::FieldVector stacked(const std::array<Eigen::Vector3d, kSensors>& b);
+[[nodiscard]] sensor::FieldVector stacked(const PerSensor<Eigen::Vector3d>& b);
 
-[[nodiscard]] FieldAndGradient field_and_gradient(const sensor::FieldVector& b_P_nT,
-                                                  const sensor::Geometry& geometry);
+[[nodiscard]] FieldAndGradient field_and_gradient(const sensor::FieldVector& b_P_nT, double baseline_m);
 
 /// The six gradient components (xx, yy, zz, xy, xz, yz) and the four closure quantities (curl, centre x, y,
 /// z) as linear functions of the corrected components.
-[[nodiscard]] Eigen::Matrix<double, 6, sensor::kChannels> gradient_rows(const sensor::Geometry& geometry);
-[[nodiscard]] Eigen::Matrix<double, 4, sensor::kChannels> closure_rows(const sensor::Geometry& geometry);
+[[nodiscard]] sensor::ChannelColumns<6> gradient_rows(const sensor::Geometry& geometry);
+[[nodiscard]] Eigen::MatrixXd closure_rows(const sensor::Geometry& geometry);
 
 /// The stream's arithmetic for one calibration. Everything that does not depend on the sample is computed
 /// once; a sample allocates nothing.
@@ -52,7 +51,7 @@ class TensorPipeline {
  public:
   /// No calibration: readings pass uncorrected (identity), samples are flagged `uncalibrated`, sd and chi2
   /// are NaN.
-  explicit TensorPipeline(sensor::Geometry geometry);
+  explicit TensorPipeline(const sensor::Geometry& geometry);
   /// `run`: poses that will be applied, for effects with a memory (EffectCorrection).
   explicit TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run = nullptr);
 
@@ -68,7 +67,7 @@ class TensorPipeline {
                                    const Pose* previous = nullptr,
                                    sensor::FieldVector* fields_P_nT = nullptr) const;
   /// The corrected field at each sensor, platform frame, by the 48 parameters alone.
-  [[nodiscard]] sensor::FieldVector correct(const std::array<Eigen::Vector3d, kSensors>& y_nT) const;
+  [[nodiscard]] sensor::FieldVector correct(const PerSensor<Eigen::Vector3d>& y_nT) const;
   /// Field, gradient and closure of corrected fields, without their uncertainty.
   [[nodiscard]] TensorSample sample(const sensor::FieldVector& b_P_nT) const;
   /// Of the gradient: `covariance` of the corrected components by calibration and effects, and the noise.
@@ -101,11 +100,12 @@ class TensorPipeline {
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
   sensor::Geometry geometry_;
-  std::array<Eigen::Matrix3d, kSensors> gain_;  ///< R_PS (C A)^-1
-  std::array<Eigen::Vector3d, kSensors> offset_nT_;
+  double baseline_m_;
+  PerSensor<Eigen::Matrix3d> gain_;  ///< R_PS (C A)^-1
+  PerSensor<Eigen::Vector3d> offset_nT_;
   std::shared_ptr<const EffectCorrection> effects_;
-  sensor::ChannelCovariance noise_{
-      sensor::ChannelCovariance::Zero()};  ///< of one sample, in the corrected components
+  sensor::ChannelCovariance noise_{sensor::ChannelCovariance::Zero(
+      sensor::kChannels, sensor::kChannels)};  ///< of one sample, in the corrected components
   bool noise_known_{false};
   std::array<Variance, 6> gradient_variance_;
   std::array<double, 6> unmodelled_{};  ///< variance of a gradient by what scatters about the model

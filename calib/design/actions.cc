@@ -54,7 +54,7 @@ auto drifted(const PoseTable& table, double t_s) {
 }
 
 /// The same field at another pitch.
-void tilt(Pose& pose, double by_rad, const std::array<sensor::SensorModel, kSensors>& sensors) {
+void tilt(Pose& pose, double by_rad, const PerSensor<sensor::SensorModel>& sensors) {
   const auto before = pose.angles();
   if (!before) return;
   *pose.pitch_rad += by_rad;
@@ -92,7 +92,7 @@ double minutes_per_pose(const PoseTable& table) {
 }
 
 PoseTable extended(const PoseTable& table, const Action& action,
-                   const std::array<sensor::SensorModel, kSensors>& sensors) {
+                   const PerSensor<sensor::SensorModel>& sensors) {
   PoseTable out = table;
   const Pose& last = table.poses.back();
   const std::size_t n = table.poses.size();

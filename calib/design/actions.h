@@ -30,7 +30,7 @@ struct Action {
 /// The run with the poses of an action behind it; readings stand for the attitude only, those of a new tilt
 /// as `sensors` would make them.
 [[nodiscard]] PoseTable extended(const PoseTable& table, const Action& action,
-                                 const std::array<sensor::SensorModel, kSensors>& sensors);
+                                 const PerSensor<sensor::SensorModel>& sensors);
 
 [[nodiscard]] double minutes_per_pose(const PoseTable& table);
 

@@ -49,10 +49,11 @@ PoseTable measured_in_thought(const DesignRequest& request) {
   PoseTable table = request.poses;
   for (Pose& pose : table.poses) {
     pose.set.clear();
+    pose.y_nT = no_readings(request.sensors.size());
     const TableAngles a = pose.angles().value_or(TableAngles{});
     const Eigen::Vector3d b =
         request.f_nT * sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0) * n;
-    for (std::size_t i = 0; i < kSensors; ++i) pose.y_nT[i] = request.sensors[i].predict(b);
+    for (std::size_t i = 0; i < pose.y_nT.size(); ++i) pose.y_nT[i] = request.sensors[i].predict(b);
     pose.f_nT = request.scalar_sd_nT ? std::optional(request.f_nT) : std::nullopt;
     pose.f_sd_nT = request.scalar_sd_nT;
   }
@@ -68,14 +69,14 @@ struct Named {
 /// The fixed block but for the site's own slots, by slot.
 std::vector<std::pair<int, Named>> named_slots(const fit::joint::JointProblem& problem) {
   std::vector<std::pair<int, Named>> out;
-  for (int slot = 0; slot < fit::joint::kSensorBlock; ++slot) {
+  for (int slot = 0; slot < problem.slots().sensor_block(); ++slot) {
     const sensor::ShownParameter& shown =
         sensor::shown_parameters()[static_cast<std::size_t>(slot % sensor::kSensorParameters)];
     out.push_back({slot,
                    {fmt::format("s{} {}", slot / sensor::kSensorParameters + 1, shown.name), shown.unit,
                     shown.factor}});
   }
-  int slot = fit::joint::kEffectSlot;
+  int slot = problem.slots().effects();
   for (const effects::EffectPtr& effect : problem.effects) {
     for (const effects::Coefficient& c : effect->coefficients())
       out.push_back({slot++, {fmt::format("{} {}", effect->name(), c.name), c.unit, 1}});
@@ -96,7 +97,7 @@ std::vector<Separation> separations(const fit::joint::JointProblem& problem, con
   std::vector<Separation> out;
   const auto named = named_slots(problem);
   for (const auto& [slot, own] : named) {
-    if (slot < fit::joint::kEffectSlot) continue;
+    if (slot < problem.slots().effects()) continue;
     Separation s{
         .name = own.name, .inflation = std::sqrt(covariance(slot, slot) * S(slot, slot)), .alternative = {}};
     for (const auto& [other, theirs] : named) {
@@ -144,6 +145,7 @@ Result<DesignReport> evaluate_design(const DesignRequest& request) {
   const Eigen::MatrixXd S = fit::joint::reduce(problem, state, 0).S;
 
   DesignReport report;
+  report.sensors = request.sensors.size();
   if (request.power) {
     auto power = design_power(request, table);
     if (!power) return tl::unexpected(power.error());

@@ -32,7 +32,7 @@ struct DesignRequest {
   double field_sd_nT{0};    ///< so well
   double table_sd_rad{to_rad(0.1)};
   sensor::Geometry geometry;
-  std::array<sensor::SensorModel, kSensors> sensors{};  ///< an earlier calibration, or nominal sensors
+  PerSensor<sensor::SensorModel> sensors{};  ///< an earlier calibration, or nominal sensors
   std::vector<effects::EffectPtr> effects;
   double warming_degC{2};  ///< of the heads in the run, where the poses tell no temperature
   bool power{true};        ///< also say which effects would be seen and told apart
@@ -67,6 +67,7 @@ struct DesignAssumptions {
 
 struct DesignReport {
   int poses{0};
+  std::size_t sensors{kSensorCount};
   bool determined{false};            ///< every parameter follows from the poses
   std::vector<Expected> parameters;  ///< standard errors; empty unless determined
   std::vector<Separation> separations;

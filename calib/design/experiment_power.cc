@@ -189,7 +189,8 @@ Result<DesignProblem> design_problem(const DesignRequest& request, const PoseTab
   if (!problem) return tl::unexpected(problem.error());
   DesignProblem out{.problem = std::move(*problem), .state = {}, .gauge = {}};
   out.gauge = fit::joint::fix_gauge(out.problem, options);
-  fit::joint::weight_by_pose(out.problem, calibration::AxisNoise::Constant(request.pose_noise_nT));
+  fit::joint::weight_by_pose(
+      out.problem, calibration::AxisNoise::Constant(out.problem.sensors(), 3, request.pose_noise_nT));
   out.state = fit::joint::joint_state(
       out.problem, request.sensors,
       fit::joint::direction_of(request.inclination_rad, request.declination_rad), request.f_nT);

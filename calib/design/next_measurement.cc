@@ -45,8 +45,8 @@ struct Longer {
 
 Longer longer(const PoseTable& table, const Action& action, const fit::joint::JointFit& fit) {
   Longer out{.table = extended(table, action, fit.state.sensors)};
-  out.rows_here = criticism::tests::kPoseRows *
-                  static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
+  out.rows_here =
+      fit.problem.pose_rows() * static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
   return out;
 }
 
@@ -84,8 +84,8 @@ Eigen::VectorXd sizes_of(const criticism::tests::Candidate& winner, const std::v
   return out;
 }
 
-Longer as_it_is(const PoseTable& table) {
-  return {table, criticism::tests::kPoseRows * static_cast<Eigen::Index>(table.poses.size())};
+Longer as_it_is(const PoseTable& table, const fit::joint::JointProblem& problem) {
+  return {table, problem.pose_rows() * static_cast<Eigen::Index>(table.poses.size())};
 }
 
 /// What of `v` is not in the space of B, in squares.
@@ -150,7 +150,7 @@ std::vector<criticism::tests::Alternative> hardest(const criticism::tests::Candi
 void find_form_only(const PoseTable& table, const fit::joint::JointFit& fit,
                     const fit::joint::JointOptions& options, const criticism::tests::Candidate& winner,
                     std::vector<criticism::tests::Alternative>& alternatives) {
-  const Longer run = as_it_is(table);
+  const Longer run = as_it_is(table, fit.problem);
   const auto design = design_of(table, fit, options);
   if (!design) return;
   const criticism::tests::Residual residual(design->problem, design->state, 0);
@@ -174,7 +174,7 @@ NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& f
   auto alternatives = hardest(winner);
   if (alternatives.empty()) return out;
   find_form_only(table, fit, options, winner, alternatives);
-  out.p_right_before = p_right(as_it_is(table), fit, options, winner, alternatives);
+  out.p_right_before = p_right(as_it_is(table, fit.problem), fit, options, winner, alternatives);
   double worth = out.p_right_before + kWorthMeasuring;
   for (const Action& action : actions()) {
     const double after = p_right(longer(table, action, fit), fit, options, winner, alternatives);

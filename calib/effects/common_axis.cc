@@ -6,7 +6,7 @@
 namespace mgtd::calib::effects {
 
 bool share_an_axis(const Where& a, const Where& b) {
-  for (int s = 0; s < kSensors; ++s) {
+  for (int s = 0; s < kMostSensors; ++s) {
     for (int x = 0; x < 3; ++x)
       if (a.covers(s, x) && b.covers(s, x)) return true;
   }

@@ -73,7 +73,7 @@ Result<void> check_derivatives(const Effect& effect, const PoseTable& table) {
   std::vector<Compared> all;
   for (const Pose& pose : table.poses) {
     if (!effect.missing(pose).empty()) continue;
-    for (int sensor = 0; sensor < kSensors; ++sensor)
+    for (int sensor = 0; sensor < static_cast<int>(pose.y_nT.size()); ++sensor)
       if (!effect.at(sensor).empty()) compare(effect, pose, sensor, all);
   }
   std::array<double, kJetSlots> largest{};

@@ -16,7 +16,13 @@ inline constexpr double kReferenceField_nT = 50'000;  ///< F0: x = v/F0
 struct EffectContext {
   const PoseTable* table{nullptr};  ///< every pose in the order it was measured, those of set "check" too
   /// Offsets of the axes where they are known (a calibration); else they are estimated from the readings.
-  std::optional<std::array<Eigen::Vector3d, kSensors>> offset_nT;
+  std::optional<PerSensor<Eigen::Vector3d>> offset_nT;
+
+  [[nodiscard]] int sensors() const {
+    if (offset_nT) return static_cast<int>(offset_nT->size());
+    return table == nullptr || table->poses.empty() ? kSensors
+                                                    : static_cast<int>(table->poses.front().y_nT.size());
+  }
 };
 
 }  // namespace mgtd::calib::effects

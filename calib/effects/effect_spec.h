@@ -19,6 +19,7 @@ struct EffectSpec {
   std::string name;            ///< of the family
   std::optional<Where> where;  ///< not said: the family's own default
   std::vector<std::pair<std::string, std::string>> parameters;
+  int sensors{kSensors};  ///< of the array that the effect is laid over; not part of the text
 
   [[nodiscard]] static Result<EffectSpec> parse(std::string_view text);
   [[nodiscard]] std::string text() const;

@@ -15,14 +15,14 @@ Result<Where> Where::parse(std::string_view text) {
   if (text == "each-sensor") return Where{.scale = Scale::each_sensor};
   if (text == "each-axis") return Where{.scale = Scale::each_axis};
   if (text == "site" || text == "platform" || text == "table") return Where{.scale = Scale::own};
-  for (int sensor = 0; sensor < kSensors; ++sensor) {
+  for (int sensor = 0; sensor < kMostSensors; ++sensor) {
     if (text == sensor_name(sensor)) return Where{.scale = Scale::sensor, .sensor = sensor};
     for (int axis = 0; axis < 3; ++axis) {
       if (text == axis_name(sensor, axis)) return Where{.scale = Scale::axis, .sensor = sensor, .axis = axis};
     }
   }
   return fail(ErrorCode::usage, fmt::format("'{}' is no place for an effect", text),
-              "all, each-sensor, each-axis, a sensor (s1 to s4) or an axis (s1.x to s4.z)");
+              "all, each-sensor, each-axis, a sensor (s1, s2, ...) or an axis (s1.x, s1.y, ...)");
 }
 
 std::string Where::text() const {

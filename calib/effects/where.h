@@ -4,21 +4,23 @@
 #include <string_view>
 
 #include "proto/error.h"
+#include "proto/per_sensor.h"
 
 /// Which sensors and axes an effect is laid over, and how many coefficients that takes.
 namespace mgtd::calib::effects {
 
 struct Where {
   enum class Scale {
-    all,          ///< one coefficient for the twelve axes
+    all,          ///< one coefficient for the axes of all sensors
     each_sensor,  ///< one a sensor
-    each_axis,    ///< one an axis, s1.x .. s4.z
+    each_axis,    ///< one an axis, s1.x, s1.y, ...
     sensor,       ///< one, for the axes of one sensor: "s3"
     axis,         ///< one, for one axis: "s3.z"
     own           ///< effects of site, table and platform as a whole
   };
   Scale scale{Scale::each_axis};
   int sensor{-1}, axis{-1};  ///< 0-based, of `sensor` and `axis`
+  int sensors{kSensors};     ///< of the array; not part of the text
 
   /// "all", "each-sensor", "each-axis", "s3", "s3.z"; "site", "platform" and "table" are `own`.
   [[nodiscard]] static Result<Where> parse(std::string_view text);

@@ -9,7 +9,8 @@ namespace mgtd::calib::fit {
 calibration::Reference reference_of(const PoseTable& table, const Readings& readings) {
   calibration::Reference out;
   out.f_nT = readings.mean_f_nT();
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  out.T_degC.resize(readings.y_nT.size());
+  for (std::size_t i = 0; i < out.T_degC.size(); ++i) {
     double sum = 0, count = 0;
     for (const Pose& pose : table.poses) {
       if (pose.T_degC[i]) sum += *pose.T_degC[i], ++count;
@@ -27,7 +28,7 @@ calibration::Calibration calibration_frame(const PoseTable& table, const Reading
                                            const FitOptions& options) {
   calibration::Calibration c;
   c.method = name(options.method);
-  c.geometry.baseline_m = options.baseline_m;
+  c.geometry = options.geometry;
   c.sample_noise_nT = pooled_sample_noise(table);
   c.reference = reference_of(table, readings);
   c.data_hash = poses::data_hash(table);

@@ -35,10 +35,10 @@ double median(Eigen::VectorXd values) {
 
 /// The plane of some poses: its mean, the directions in it and across it.
 struct Plane {
-  Eigen::Matrix<double, sensor::kChannels, 1> mean;
-  Eigen::Matrix<double, sensor::kChannels, 3> along;
-  Eigen::Matrix<double, sensor::kChannels, sensor::kChannels - 3> across;
-  Eigen::Matrix<double, sensor::kChannels, 1> variance;  ///< ascending; the last three lie in the plane
+  sensor::FieldVector mean;
+  sensor::ChannelRows<3> along;
+  Eigen::MatrixXd across;        ///< no columns with one sensor
+  sensor::FieldVector variance;  ///< ascending; the last three lie in the plane
 
   Plane(const ReadingTable& y, const Which& which) {
     const ReadingTable chosen = y(Eigen::all, which);
@@ -47,17 +47,17 @@ struct Plane {
     const linear::SymmetricEigen eigen =
         linear::symmetric_eigen(z * z.transpose() / static_cast<double>(which.size()));
     along = eigen.vectors.rightCols<3>();
-    across = eigen.vectors.leftCols<sensor::kChannels - 3>();
+    across = eigen.vectors.leftCols(y.rows() - 3);
     variance = eigen.values.cwiseMax(0);
   }
   [[nodiscard]] double thickness() const {
-    return std::sqrt(variance[sensor::kChannels - 3] / variance[sensor::kChannels - 1]);
+    return std::sqrt(variance[variance.size() - 3] / variance[variance.size() - 1]);
   }
   [[nodiscard]] Eigen::VectorXd squares(const ReadingTable& y) const {
     return (across.transpose() * (y.colwise() - mean)).colwise().squaredNorm();
   }
   [[nodiscard]] Eigen::Matrix3Xd places(const ReadingTable& y) const {
-    return along.transpose() * (y.colwise() - mean) / std::sqrt(variance[sensor::kChannels - 1]);
+    return along.transpose() * (y.colwise() - mean) / std::sqrt(variance[variance.size() - 1]);
   }
 };
 
@@ -191,14 +191,14 @@ Which on_ellipsoid(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& f_nT) {
 }  // namespace
 
 bool looks_spoilt(const ReadingTable& y_nT) {
-  if (y_nT.cols() < kFewestPoses) return false;
+  if (y_nT.cols() < kFewestPoses || y_nT.rows() == 3) return false;
   Which all(static_cast<std::size_t>(y_nT.cols()));
   std::iota(all.begin(), all.end(), 0);
   const Plane plane(y_nT, all);
   const Eigen::VectorXd squares = plane.squares(y_nT);
   if (squares.maxCoeff() > kNearPlane * kNearPlane * median(squares)) return true;
-  const auto across = plane.variance.head<sensor::kChannels - 3>();
-  return across[sensor::kChannels - 4] > kUneven * across[(sensor::kChannels - 3) / 2];
+  const Eigen::Index across = y_nT.rows() - 3;
+  return plane.variance[across - 1] > kUneven * plane.variance[across / 2];
 }
 
 std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT,
@@ -211,6 +211,7 @@ std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT
   std::iota(all.begin(), all.end(), 0);
   const double thickness = Plane(some, all).thickness();
   if (!(thickness > kOneTurn)) return std::nullopt;
+  if (y_nT.rows() == 3) return on_ellipsoid(y_nT, f_nT);
   const auto solid = [&](const Plane& plane) { return plane.thickness() > kFlat * thickness; };
   const auto plane = trimmed<Plane>(some, kSubset, kDraws, solid);
   if (!plane) return std::nullopt;

@@ -18,7 +18,7 @@
 /// distances: the result is a start, never an estimate.
 namespace mgtd::calib::fit {
 
-using ReadingTable = Eigen::Matrix<double, sensor::kChannels, Eigen::Dynamic>;
+using ReadingTable = Eigen::MatrixXd;  ///< a row for each channel, a column for each pose
 
 /// Whether some poses are much farther from the plane that fits all of them best than most are, or one
 /// direction of the misfit is much larger than the others. Cheap; says yes to gross readings, and often where

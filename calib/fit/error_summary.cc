@@ -11,16 +11,15 @@ namespace mgtd::calib::fit {
 namespace {}  // namespace
 
 FieldTable raw_fields(const Readings& readings) {
-  FieldTable b(3 * kSensors, readings.poses());
-  for (std::size_t i = 0; i < kSensorCount; ++i)
+  FieldTable b(3 * static_cast<Eigen::Index>(readings.y_nT.size()), readings.poses());
+  for (std::size_t i = 0; i < readings.y_nT.size(); ++i)
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = readings.y_nT[i];
   return b;
 }
 
-FieldTable corrected_fields(const Readings& readings,
-                            const std::array<sensor::SensorModel, kSensors>& sensors) {
-  FieldTable b(3 * kSensors, readings.poses());
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+FieldTable corrected_fields(const Readings& readings, const PerSensor<sensor::SensorModel>& sensors) {
+  FieldTable b(3 * static_cast<Eigen::Index>(readings.y_nT.size()), readings.poses());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         gain * (readings.y_nT[i].colwise() - sensors[i].offset_nT);
@@ -36,7 +35,8 @@ ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, cons
   const auto mean = [](const Eigen::ArrayXd& squares, const Eigen::ArrayXd& weight) {
     return std::sqrt((squares * weight).sum() / std::max(1.0, weight.sum()));
   };
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  out.total_field_rmse_nT.resize(geometry.sensors());
+  for (std::size_t i = 0; i < geometry.sensors(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Eigen::ArrayXd weight =
         all ? Eigen::ArrayXd::Ones(n) : Eigen::ArrayXd(counted.field.row(at).transpose().cast<double>());
@@ -52,10 +52,10 @@ ErrorSummary summarise(const FieldTable& b_nT, const Eigen::VectorXd& f_nT, cons
 }
 
 double field_chi2(const FieldTable& b_nT, const Readings& readings,
-                  const std::array<sensor::SensorModel, kSensors>& sensors,
+                  const PerSensor<sensor::SensorModel>& sensors,
                   const calibration::AxisNoise& pose_noise_nT) {
   double chi2 = 0;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Eigen::Matrix3d gain = sensors[i].R_PS() * sensors[i].response().inverse();
     const Eigen::Vector3d variance = pose_noise_nT.row(at).array().square();

@@ -8,15 +8,15 @@
 namespace mgtd::calib::fit {
 
 /// Corrected fields, one column per pose; platform frame for the tensor to mean anything.
-using FieldTable = Eigen::Matrix<double, 3 * kSensors, Eigen::Dynamic>;
+using FieldTable = Eigen::MatrixXd;
 
 [[nodiscard]] FieldTable raw_fields(const Readings& readings);
 [[nodiscard]] FieldTable corrected_fields(const Readings& readings,
-                                          const std::array<sensor::SensorModel, kSensors>& sensors);
+                                          const PerSensor<sensor::SensorModel>& sensors);
 
 /// What counts, pose by pose: the field of each sensor, and the tensor. Empty: everything.
 struct Counted {
-  Eigen::Array<bool, kSensors, Eigen::Dynamic> field;
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> field;
   Eigen::Array<bool, 1, Eigen::Dynamic> tensor;
 };
 
@@ -26,7 +26,7 @@ struct Counted {
 /// (|b| - F)/sd squared, summed over sensors and poses. sd: the pose-mean noise along the field, and that of
 /// F.
 [[nodiscard]] double field_chi2(const FieldTable& b_nT, const Readings& readings,
-                                const std::array<sensor::SensorModel, kSensors>& sensors,
+                                const PerSensor<sensor::SensorModel>& sensors,
                                 const calibration::AxisNoise& pose_noise_nT);
 
 }  // namespace mgtd::calib::fit

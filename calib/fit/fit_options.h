@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/effects/effect.h"
+#include "calib/sensor/geometry.h"
 #include "proto/units.h"
 
 /// Options of a fit: its method, what the operator knows beside the poses, and the effects of the model.
@@ -25,7 +26,7 @@ struct FitOptions {
   /// Direction of the field in the platform frame when all table angles are zero: inclination positive
   /// towards +Z, declination from X towards Y. Not given: both are estimated (gauge: see Calibration::gauge).
   std::optional<double> inclination_rad, declination_rad;
-  double baseline_m{0.4};
+  sensor::Geometry geometry{};
   double table_sd_rad{to_rad(0.1)};         ///< of each table angle of each pose
   std::uint64_t seed{1};                    ///< of the draws that judge a fit (criticism); no method draws
   std::vector<effects::EffectPtr> effects;  ///< beside the twelve parameters a sensor; joint only

@@ -26,14 +26,14 @@ namespace mgtd::calib::fit {
 /// Root mean squares over poses. The field is that of each sensor against the pose's own F; the tensor of a
 /// uniform field is zero, so its rms is the error.
 struct ErrorSummary {
-  std::array<double, kSensors> total_field_rmse_nT{};
+  PerSensor<double> total_field_rmse_nT{};
   Gradient tensor_rmse_nT_per_m;
 };
 
 /// Step 2 from the odd and from the even poses of the standard set, counted by azimuth.
 struct HalvesComparison {
   ErrorSummary odd, even;
-  std::array<sensor::SensorModel, kSensors> odd_sensors, even_sensors;
+  PerSensor<sensor::SensorModel> odd_sensors, even_sensors;
   /// Largest difference between the halves of alpha, beta and gamma over the sensors, gamma less its common
   /// part.
   double angle_difference_rad{0};

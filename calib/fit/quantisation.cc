@@ -72,15 +72,17 @@ double step_of_means(const PoseTable& table) {
 
 Quantisation quantisation_of(const PoseTable& table) {
   Quantisation out;
+  if (!table.poses.empty())
+    out.variance_nT2.setZero(static_cast<Eigen::Index>(table.poses.front().y_nT.size()), 3);
   out.step_nT = step_of_means(table);
   if (out.seen()) {
     out.variance_nT2.setConstant(out.step_nT * out.step_nT / 12);
     return out;
   }
   std::vector<double> values;
-  calibration::AxisNoise count = calibration::AxisNoise::Zero();
+  calibration::AxisNoise count = out.variance_nT2;
   for (const Pose& pose : table.poses) {
-    for (std::size_t i = 0; i < kSensors; ++i) {
+    for (std::size_t i = 0; i < pose.y_nT.size(); ++i) {
       for (std::size_t a = 0; a < 3; ++a) {
         if (!stuck(pose, i, a)) continue;
         const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(a);

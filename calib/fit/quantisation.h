@@ -16,8 +16,9 @@
 namespace mgtd::calib::fit {
 
 struct Quantisation {
-  double step_nT{0};                                                    ///< 0: no grid is seen
-  calibration::AxisNoise variance_nT2{calibration::AxisNoise::Zero()};  ///< of a pose mean, by axis
+  double step_nT{0};  ///< 0: no grid is seen
+  calibration::AxisNoise variance_nT2{
+      calibration::AxisNoise::Zero(kSensors, 3)};  ///< of a pose mean, by axis
   [[nodiscard]] bool seen() const { return step_nT > 0; }
 };
 

@@ -13,9 +13,17 @@ namespace {
 /// noise.
 constexpr double kDisturbed = 5;
 
+std::size_t sensors_of(const PoseTable& table) {
+  return table.poses.empty() ? kSensorCount : table.poses.front().y_nT.size();
+}
+
+calibration::AxisNoise none_known(const PoseTable& table) {
+  return calibration::AxisNoise::Zero(static_cast<Eigen::Index>(sensors_of(table)), 3);
+}
+
 calibration::AxisNoise median_spread(const PoseTable& table) {
-  calibration::AxisNoise out = calibration::AxisNoise::Zero();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  calibration::AxisNoise out = none_known(table);
+  for (std::size_t i = 0; i < sensors_of(table); ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
       std::vector<double> values;
       for (const Pose& pose : table.poses)
@@ -32,10 +40,10 @@ calibration::AxisNoise median_spread(const PoseTable& table) {
 /// Mean square over quiet poses of sd^2 / weight(pose), per axis; zero where nothing is known.
 template <class Weight>
 calibration::AxisNoise pooled(const PoseTable& table, Weight weight) {
-  calibration::AxisNoise sum = calibration::AxisNoise::Zero(), count = calibration::AxisNoise::Zero();
+  calibration::AxisNoise sum = none_known(table), count = sum;
   const calibration::AxisNoise usual = median_spread(table);
   for (const Pose& pose : table.poses) {
-    for (std::size_t i = 0; i < kSensorCount; ++i) {
+    for (std::size_t i = 0; i < pose.sd_nT.size(); ++i) {
       for (std::size_t a = 0; a < 3; ++a) {
         const auto& sd = pose.sd_nT[i][a];
         if (!sd) continue;
@@ -57,7 +65,8 @@ calibration::AxisNoise pooled_sample_noise(const PoseTable& table) {
 
 Readings Readings::subset(const std::vector<Eigen::Index>& which) const {
   Readings out;
-  for (std::size_t i = 0; i < kSensorCount; ++i) out.y_nT[i] = y_nT[i](Eigen::all, which);
+  out.y_nT.resize(y_nT.size());
+  for (std::size_t i = 0; i < y_nT.size(); ++i) out.y_nT[i] = y_nT[i](Eigen::all, which);
   out.f_nT = f_nT(which);
   out.f_sd_nT = f_sd_nT(which);
   out.pose_noise_nT = pose_noise_nT;
@@ -80,6 +89,7 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
   }
   Readings out;
   const auto n = static_cast<Eigen::Index>(used.size());
+  out.y_nT.resize(sensors_of(table));
   for (auto& y : out.y_nT) y.resize(3, n);
   out.f_nT.resize(n);
   out.f_sd_nT.resize(n);
@@ -97,7 +107,7 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
                   fmt::format("pose {}: a total field of {} nT", pose.number, out.f_nT[k]),
                   "it must be in nT, between 1000 and 200000; check f_nT or --field");
     }
-    for (std::size_t i = 0; i < kSensorCount; ++i) out.y_nT[i].col(k) = pose.y_nT[i];
+    for (std::size_t i = 0; i < pose.y_nT.size(); ++i) out.y_nT[i].col(k) = pose.y_nT[i];
     out.standard.push_back(pose.set == "standard");
     out.number.push_back(pose.number);
     out.angles.push_back(pose.angles());

@@ -11,14 +11,14 @@
 namespace mgtd::calib::fit {
 
 struct Readings {
-  std::array<Eigen::Matrix3Xd, kSensors> y_nT;
+  PerSensor<Eigen::Matrix3Xd> y_nT;
   Eigen::VectorXd f_nT;
   Eigen::VectorXd f_sd_nT;
   std::vector<std::optional<TableAngles>> angles;
   std::vector<bool> standard;
   std::vector<int> number;  ///< of the pose in the table
   calibration::AxisNoise pose_noise_nT{
-      calibration::AxisNoise::Zero()};  ///< of a pose mean; zero when the table has no spreads
+      calibration::AxisNoise::Zero(kSensors, 3)};  ///< of a pose mean; zero when the table has no spreads
 
   [[nodiscard]] Eigen::Index poses() const { return f_nT.size(); }
   /// The pose belongs to the turn of the standard set and its azimuth is known.

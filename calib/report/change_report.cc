@@ -35,7 +35,7 @@ std::string amount(double value, const std::string& unit, bool sign) {
 
 json to_json(const validity::Change& c) {
   json sensors = json::array(), named = json::array(), parameters = json::array();
-  for (std::size_t i = 0; i < kSensors; ++i)
+  for (std::size_t i = 0; i < c.others_log10_p.size(); ++i)
     sensors.push_back({{"sensor", fmt::format("s{}", i + 1)}, {"others_log10_p", c.others_log10_p[i]}});
   for (const validity::ParameterChange& p : c.named) named.push_back(parameter_json(p));
   for (const validity::ParameterChange& p : c.parameters) parameters.push_back(parameter_json(p));
@@ -65,7 +65,7 @@ std::string named_text(const validity::Change& change) {
 
 std::string change_table(const validity::Change& change, std::size_t rows) {
   std::string out = "were it one sensor that changed, would the others be as they were?";
-  for (std::size_t i = 0; i < kSensors; ++i)
+  for (std::size_t i = 0; i < change.others_log10_p.size(); ++i)
     out += fmt::format("   s{} {}", i + 1, stats::p_phrase(change.others_log10_p[i]));
   out += fmt::format("\n\n{:<24} {:>20} {:>18} {:>8} {:>20}\n", "as if it alone changed", "by", "sd",
                      "sigmas", "smallest to be seen");

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 json axes_json(const calibration::AxisNoise& n) {
   json out = json::array();
-  for (int i = 0; i < kSensors; ++i) out.push_back({n(i, 0), n(i, 1), n(i, 2)});
+  for (Eigen::Index i = 0; i < n.rows(); ++i) out.push_back({n(i, 0), n(i, 1), n(i, 2)});
   return out;
 }
 

@@ -42,16 +42,16 @@ std::string amount(const design::Expected& e) {
 
 std::string parameter_table(const design::DesignReport& r) {
   std::string out = fmt::format("{:<20}", "standard error");
-  for (int i = 1; i <= kSensors; ++i) out += fmt::format("{:>16}", fmt::format("s{}", i));
+  for (std::size_t i = 1; i <= r.sensors; ++i) out += fmt::format("{:>16}", fmt::format("s{}", i));
   out += "\n";
   for (std::size_t p = 0; p < sensor::kSensorParameters; ++p) {
     out += fmt::format("{:<20}", sensor::shown_parameters()[p].name);
-    for (std::size_t i = 0; i < kSensors; ++i)
+    for (std::size_t i = 0; i < r.sensors; ++i)
       out += fmt::format("{:>16}", amount(r.parameters[i * sensor::kSensorParameters + p]));
     out += "\n";
   }
-  for (std::size_t j = kSensors * sensor::kSensorParameters; j < r.parameters.size(); ++j) {
-    const design::Separation& s = r.separations[j - kSensors * sensor::kSensorParameters];
+  for (std::size_t j = r.sensors * sensor::kSensorParameters; j < r.parameters.size(); ++j) {
+    const design::Separation& s = r.separations[j - r.sensors * sensor::kSensorParameters];
     out +=
         fmt::format("{:<28}{:>18}   {:.2f} times what it would be alone; most like {} ({:.2f})\n",
                     r.parameters[j].name, amount(r.parameters[j]), s.inflation, s.alternative, s.correlation);

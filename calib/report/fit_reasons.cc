@@ -20,7 +20,7 @@ namespace {
 
 std::vector<std::string> remarks_on_any(const fit::FitReport& report) {
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < report.calibration.sensors.size(); ++i) {
     const sensor::SensorModel& s = report.calibration.sensors[i];
     if (s.mounting.isIdentity()) continue;
     const bool mirrored = s.mounting.determinant() < 0;

@@ -46,7 +46,7 @@ json sensor_json(const calibration::Calibration& c, std::size_t i) {
   return out;
 }
 
-json half_json(const fit::ErrorSummary& errors, const std::array<sensor::SensorModel, kSensors>& sensors) {
+json half_json(const fit::ErrorSummary& errors, const PerSensor<sensor::SensorModel>& sensors) {
   json out = to_json(errors);
   for (const sensor::SensorModel& sensor : sensors) {
     out["sensors"].push_back({{"alpha_deg", to_deg(sensor.alpha_rad)},
@@ -59,7 +59,7 @@ json half_json(const fit::ErrorSummary& errors, const std::array<sensor::SensorM
 json halves_json(const std::optional<fit::HalvesComparison>& halves) {
   if (!halves) return {};
   json difference = json::array();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < halves->odd_sensors.size(); ++i) {
     const sensor::SensorModel &odd = halves->odd_sensors[i], &even = halves->even_sensors[i];
     difference.push_back({{"alpha_deg", to_deg(odd.alpha_rad - even.alpha_rad)},
                           {"beta_deg", to_deg(odd.beta_rad - even.beta_rad)},
@@ -130,7 +130,7 @@ json to_json(const fit::ErrorSummary& errors) {
 json to_json(const fit::FitReport& report) {
   const calibration::Calibration& c = report.calibration;
   json sensors = json::array();
-  for (std::size_t i = 0; i < kSensorCount; ++i) sensors.push_back(sensor_json(c, i));
+  for (std::size_t i = 0; i < c.sensors.size(); ++i) sensors.push_back(sensor_json(c, i));
   json out{{"schema", "mgt.fit/1"},
            {"id", c.id},
            {"method", c.method},
@@ -144,7 +144,7 @@ json to_json(const fit::FitReport& report) {
            {"chi2", report.chi2},
            {"dof", report.dof},
            {"noise_nT", report.noise_nT},
-           {"baseline_m", c.geometry.baseline_m},
+           {"baseline_m", c.geometry.cross_baseline_m() ? json(*c.geometry.cross_baseline_m()) : json()},
            {"sensors", std::move(sensors)},
            {"effects", effects_json(c.effects)},
            {"before", to_json(report.before)},

@@ -44,12 +44,12 @@ std::size_t seen_width(std::string_view text) {
 /// A number whose standard deviation is tiny is long: the columns are as wide as the longest of them.
 std::string parameter_table(const calibration::Calibration& c) {
   constexpr std::size_t kUsual = 24, kSpace = 2;
-  std::vector<std::array<std::string, kSensorCount>> cells;
+  std::vector<PerSensor<std::string>> cells;
   std::size_t width = kUsual;
   for (int k = 0; k < sensor::kSensorParameters; ++k) {
     const sensor::ShownParameter& shown = sensor::shown_parameters()[static_cast<std::size_t>(k)];
-    std::array<std::string, kSensorCount>& row = cells.emplace_back();
-    for (std::size_t i = 0; i < kSensorCount; ++i) {
+    PerSensor<std::string>& row = cells.emplace_back(c.sensors.size());
+    for (std::size_t i = 0; i < c.sensors.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters + k;
       const double sd = std::sqrt(std::max(0.0, c.covariance(at, at)));
       row.at(i) = with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor);
@@ -57,7 +57,7 @@ std::string parameter_table(const calibration::Calibration& c) {
     }
   }
   std::string out = fmt::format("{:<12}", "parameter");
-  for (std::size_t i = 0; i < kSensorCount; ++i)
+  for (std::size_t i = 0; i < c.sensors.size(); ++i)
     out += fmt::format("{:>{}}", fmt::format("s{}", i + 1), width);
   out += "\n";
   for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -84,7 +84,7 @@ std::string halves_table(const fit::HalvesComparison& halves) {
   std::string out = "step 2 from each half of the standard set (odd less even, deg)\n";
   const auto row = [&](std::string_view name, double sensor::SensorModel::*angle) {
     out += fmt::format("{:<12}", name);
-    for (std::size_t i = 0; i < kSensorCount; ++i) {
+    for (std::size_t i = 0; i < halves.odd_sensors.size(); ++i) {
       out += fmt::format("{:>24.5f}", to_deg(halves.odd_sensors[i].*angle - halves.even_sensors[i].*angle));
     }
     out += "\n";

@@ -32,7 +32,7 @@ std::string quarter_turn_text(const Eigen::Matrix3d& turn_P) {
 std::string rearrangement_text(const criticism::tests::Rearrangement& what) {
   if (what.turned) return fmt::format("s{} is turned {}", *what.turned + 1, quarter_turn_text(what.turn_P));
   std::string out;
-  for (std::size_t place = 0; place < kSensors; ++place) {
+  for (std::size_t place = 0; place < what.sensor.size(); ++place) {
     const std::size_t whose = what.sensor.at(place);
     if (whose == place) continue;
     const bool pair = what.sensor.at(whose) == place;

@@ -51,8 +51,8 @@ criticism::tests::Candidate as_fitted(const criticism::search::Round& round) {
   Eigen::Index slot = 0;
   for (const effects::EffectPtr& effect : round.fit->problem.effects) {
     for (const effects::Coefficient& c : effect->coefficients()) {
-      const double variance =
-          round.fit->covariance(fit::joint::kEffectSlot + slot, fit::joint::kEffectSlot + slot);
+      const double variance = round.fit->covariance(round.fit->problem.slots().effects() + slot,
+                                                    round.fit->problem.slots().effects() + slot);
       if (effect->name() == out.effect)
         found.push_back({c.name, round.fit->state.coefficients[slot], std::sqrt(variance), c.unit});
       ++slot;

@@ -76,11 +76,11 @@ Result<void> validate_effects(const calibration::Calibration& c) {
 
 Result<void> validate(const calibration::Calibration& c) {
   if (!fit::method_from(c.method)) return invalid(fmt::format("there is no method '{}'", c.method));
-  for (int i = 0; i < kSensors; ++i) {
+  for (int i = 0; i < static_cast<int>(c.sensors.size()); ++i) {
     if (auto ok = validate(c.sensors[static_cast<std::size_t>(i)], i + 1); !ok) return ok;
   }
-  if (!(c.geometry.baseline_m > 0))
-    return invalid(fmt::format("a baseline of {:g} m", c.geometry.baseline_m));
+  if (const auto baseline_m = c.geometry.cross_baseline_m(); baseline_m && !(*baseline_m > 0))
+    return invalid(fmt::format("a baseline of {:g} m", *baseline_m));
   if ((c.sample_noise_nT.array() < 0).any() || (c.pose_noise_nT.array() < 0).any())
     return invalid("a noise is below zero");
   if (!c.reference.t_utc.empty() && !parse_utc(c.reference.t_utc))

@@ -127,9 +127,10 @@ Inverse inverse_of(const Eigen::MatrixXd& C) {
 
 double Change::p() const { return std::min(1.0, 2 * std::pow(10.0, std::min(log10_p, log10_p_single))); }
 
-std::vector<ShownSlot> shown_slots(const std::vector<calibration::CalibratedEffect>& effects) {
+std::vector<ShownSlot> shown_slots(std::size_t sensors,
+                                   const std::vector<calibration::CalibratedEffect>& effects) {
   std::vector<ShownSlot> out;
-  for (int i = 1; i <= kSensors; ++i) {
+  for (std::size_t i = 1; i <= sensors; ++i) {
     for (const sensor::ShownParameter& p : sensor::shown_parameters())
       out.push_back({fmt::format("s{} {}", i, p.name), p.unit, p.factor});
   }
@@ -146,10 +147,11 @@ double small_sample_factor(int poses) {
   return freedom > 4 ? freedom / (freedom - 2) : 2;
 }
 
-TurnedArray turned(const std::array<sensor::SensorModel, kSensors>& sensors, const Eigen::Matrix3d& Q) {
+TurnedArray turned(const PerSensor<sensor::SensorModel>& sensors, const Eigen::Matrix3d& Q) {
   constexpr double h = 1e-6;  // angles, in which alone the turn is not linear
-  TurnedArray out{.sensors = sensors, .jacobian = calibration::ArrayCovariance::Identity()};
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  const Eigen::Index slots = static_cast<Eigen::Index>(sensors.size()) * sensor::kSensorParameters;
+  TurnedArray out{.sensors = sensors, .jacobian = Eigen::MatrixXd::Identity(slots, slots)};
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     out.sensors[i] = fit::turned(sensors[i], Q);
     const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters;
     for (const int p : {sensor::alpha, sensor::beta, sensor::gamma}) {
@@ -165,11 +167,11 @@ TurnedArray turned(const std::array<sensor::SensorModel, kSensors>& sensors, con
   return out;
 }
 
-Eigen::MatrixXd common_freedoms(const std::array<sensor::SensorModel, kSensors>& sensors, Eigen::Index slots,
+Eigen::MatrixXd common_freedoms(const PerSensor<sensor::SensorModel>& sensors, Eigen::Index slots,
                                 bool free_scale) {
   constexpr double h = 1e-6;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(slots, free_scale ? 4 : 3);
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters;
     for (int j = 0; j < 3; ++j) {
       const Eigen::Vector3d w = h * Eigen::Vector3d::Unit(j);
@@ -191,8 +193,9 @@ Change judge(const Evidence& e) {
   out.log10_p = stats::chi_square_log10_p(out.chi2, out.dof);
   out.log10_p_single = corrected_log10_p(single_chi2(e, W, W).maxCoeff(), choices);
   out.named = named_changes(e, W);
-  for (int i = 0; i < kSensors; ++i)
-    out.others_log10_p[static_cast<std::size_t>(i)] = others_log10_p(e, W, rank, i);
+  out.others_log10_p.resize(e.sensors);
+  for (std::size_t i = 0; i < e.sensors; ++i)
+    out.others_log10_p[i] = others_log10_p(e, W, rank, static_cast<int>(i));
   const double limit = std::sqrt(stats::chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
   for (Eigen::Index j = 0; j < choices; ++j) {
     const auto a = e.gain.col(j);

@@ -26,8 +26,8 @@ struct ParameterChange {
 struct Change {
   double chi2{0}, dof{0}, log10_p{0};  ///< that nothing changed: all parameters together
   double log10_p_single{0};  ///< the same by the parameter that accounts for most, corrected for the choice
-  std::array<double, kSensors> others_log10_p{};  ///< that nothing but this sensor changed
-  std::vector<ParameterChange> parameters;        ///< largest |sigmas| first
+  PerSensor<double> others_log10_p{};       ///< that nothing but this sensor changed
+  std::vector<ParameterChange> parameters;  ///< largest |sigmas| first
   /// The fewest parameters that account for the difference, in the order in which they were found, each with
   /// its change when these alone changed. Empty when nothing changed or when it is spread over many.
   std::vector<ParameterChange> named;
@@ -36,29 +36,29 @@ struct Change {
   [[nodiscard]] double p() const;
 };
 
-/// Names and units of the 48 parameters and of these effects, with the factor from the inside unit to the
-/// one shown.
+/// Names and units of the parameters of all sensors and of these effects, with the factor from the inside
+/// unit to the one shown.
 struct ShownSlot {
   std::string name, unit;
   double factor;
 };
-[[nodiscard]] std::vector<ShownSlot> shown_slots(const std::vector<calibration::CalibratedEffect>& effects);
+[[nodiscard]] std::vector<ShownSlot> shown_slots(std::size_t sensors,
+                                                 const std::vector<calibration::CalibratedEffect>& effects);
 
 /// Expected true over estimated variance when the noise of each axis comes from the residuals of so many
 /// poses: a covariance taken at its word would call an unchanged rig changed a little too often.
 [[nodiscard]] double small_sample_factor(int poses);
 
-/// Four sensors in a platform frame turned by Q, and what that does to their 48 parameters.
+/// The sensors in a platform frame turned by Q, and what that does to their parameters.
 struct TurnedArray {
-  std::array<sensor::SensorModel, kSensors> sensors;
-  calibration::ArrayCovariance jacobian;
+  PerSensor<sensor::SensorModel> sensors;
+  Eigen::MatrixXd jacobian;
 };
-[[nodiscard]] TurnedArray turned(const std::array<sensor::SensorModel, kSensors>& sensors,
-                                 const Eigen::Matrix3d& Q);
+[[nodiscard]] TurnedArray turned(const PerSensor<sensor::SensorModel>& sensors, const Eigen::Matrix3d& Q);
 
 /// Columns: what a small common rotation of the array (and, with `free_scale`, a common scale) does to the
 /// parameters.
-[[nodiscard]] Eigen::MatrixXd common_freedoms(const std::array<sensor::SensorModel, kSensors>& sensors,
+[[nodiscard]] Eigen::MatrixXd common_freedoms(const PerSensor<sensor::SensorModel>& sensors,
                                               Eigen::Index slots, bool free_scale);
 
 /// Inverse on the range of a covariance or an information, in units of its diagonal: directions whose
@@ -74,6 +74,7 @@ struct Evidence {
   Eigen::VectorXd difference;
   Eigen::MatrixXd covariance, gain, common;
   std::vector<ShownSlot> slots;
+  std::size_t sensors{kSensorCount};
 };
 
 /// Likelihood ratios, with the common freedoms projected out. Directions in which the covariance vanishes (a

@@ -19,16 +19,17 @@ struct Side {
   Eigen::MatrixXd C;
 };
 
-Side side_of(const calibration::Calibration& c, const std::array<sensor::SensorModel, kSensors>& sensors,
+Side side_of(const calibration::Calibration& c, const PerSensor<sensor::SensorModel>& sensors,
              const std::vector<calibration::CalibratedEffect>& shared) {
   std::vector<double> x;
   std::vector<Eigen::Index> slots;
+  const Eigen::Index parameters = c.covariance.rows();
   for (const sensor::SensorModel& sensor : sensors) {
     for (const double value : sensor.parameters()) x.push_back(value);
   }
-  for (Eigen::Index slot = 0; slot < calibration::kArrayParameters; ++slot) slots.push_back(slot);
+  for (Eigen::Index slot = 0; slot < parameters; ++slot) slots.push_back(slot);
   for (const calibration::CalibratedEffect& wanted : shared) {
-    Eigen::Index slot = calibration::kArrayParameters;
+    Eigen::Index slot = parameters;
     for (const calibration::CalibratedEffect& own : c.effects) {
       for (const calibration::EffectCoefficient& coefficient : own.coefficients) {
         if (own.effect == wanted.effect) {
@@ -70,8 +71,9 @@ std::vector<calibration::CalibratedEffect> shared_effects(const calibration::Cal
 /// was turned by itself or rewired does not count.
 Eigen::Matrix3d common_turn(const calibration::Calibration& a, const calibration::Calibration& b) {
   constexpr double kTogether_rad = 5 * kRadiansPerDegree;
-  std::array<Eigen::Matrix3d, kSensors> each;
-  for (std::size_t i = 0; i < kSensors; ++i) each[i] = a.sensors[i].R_PS() * b.sensors[i].R_PS().transpose();
+  PerSensor<Eigen::Matrix3d> each(a.sensors.size());
+  for (std::size_t i = 0; i < each.size(); ++i)
+    each[i] = a.sensors[i].R_PS() * b.sensors[i].R_PS().transpose();
   const auto together = [&](const Eigen::Matrix3d& P, const Eigen::Matrix3d& Q) {
     return std::acos(std::clamp(((P.transpose() * Q).trace() - 1) / 2, -1.0, 1.0)) < kTogether_rad;
   };
@@ -92,17 +94,17 @@ Eigen::Matrix3d common_turn(const calibration::Calibration& a, const calibration
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-/// The turn of the platform frame, with the uncertainty of the four sensors' mean.
-CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance) {
+/// The turn of the platform frame, with the uncertainty of the mean of the sensors.
+CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance, int sensors) {
   const Eigen::AngleAxisd turn(Q);
   CommonTurn out;
   for (int axis = 0; axis < 3; ++axis) {
     double variance = 0;
-    for (int i = 0; i < kSensors; ++i) {
-      for (int j = 0; j < kSensors; ++j) {
+    for (int i = 0; i < sensors; ++i) {
+      for (int j = 0; j < sensors; ++j) {
         variance += covariance(sensor::kSensorParameters * i + sensor::alpha + axis,
                                sensor::kSensorParameters * j + sensor::alpha + axis) /
-                    (kSensors * kSensors);
+                    (sensors * sensors);
       }
     }
     out.about_rad[axis] = turn.angle() * turn.axis()[axis];
@@ -118,12 +120,12 @@ DiffReport diff(const calibration::Calibration& a, const calibration::Calibratio
   const auto shared = shared_effects(a, b, out);
   const Eigen::Matrix3d Q = common_turn(a, b);
   const TurnedArray placed = turned(b.sensors, Q);
-  for (std::size_t i = 0; i < kSensors; ++i)
+  for (std::size_t i = 0; i < a.sensors.size(); ++i)
     if (a.sensors[i].mounting != placed.sensors[i].mounting) out.remounted.push_back(i);
   const Side from = side_of(a, a.sensors, shared), to = side_of(b, placed.sensors, shared);
   const Eigen::Index n = to.x.size();
   Eigen::MatrixXd J = Eigen::MatrixXd::Identity(n, n);
-  J.topLeftCorner<calibration::kArrayParameters, calibration::kArrayParameters>() = placed.jacobian;
+  J.topLeftCorner(placed.jacobian.rows(), placed.jacobian.rows()) = placed.jacobian;
   out.scale_taken_out = calibration::scale_is_free(a) || calibration::scale_is_free(b);
   const Eigen::MatrixXd C = small_sample_factor(a.poses) * from.C +
                             small_sample_factor(b.poses) * linear::propagated_covariance(J, to.C);
@@ -131,9 +133,10 @@ DiffReport diff(const calibration::Calibration& a, const calibration::Calibratio
                       .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),
                       .common = common_freedoms(a.sensors, n, out.scale_taken_out),
-                      .slots = shown_slots(shared)});
+                      .slots = shown_slots(a.sensors.size(), shared),
+                      .sensors = a.sensors.size()});
   out.changed = !out.remounted.empty() || out.change.p() < kChanged;
-  out.turn = turn_of(Q, C);
+  out.turn = turn_of(Q, C, static_cast<int>(a.sensors.size()));
   return out;
 }
 

@@ -115,8 +115,8 @@ Seen seen_of(const Score& score) {
 }
 
 bool field_known(const fit::joint::JointProblem& problem) {
-  return std::any_of(problem.priors.begin(), problem.priors.end(), [](const fit::joint::LinearPrior& prior) {
-    return prior.row[fit::joint::kFieldSlot] != 0;
+  return std::any_of(problem.priors.begin(), problem.priors.end(), [&](const fit::joint::LinearPrior& prior) {
+    return prior.row[problem.slots().field()] != 0;
   });
 }
 
@@ -134,7 +134,7 @@ double excess_of(const fit::joint::JointProblem& problem, const fit::joint::Join
   return dof > 0 && std::abs(chi2 / dof - 1) > 3 * std::sqrt(2 / dof) ? std::sqrt(chi2 / dof) : 1;
 }
 
-Evidence evidence_of(const FixedCalibration& frozen, const std::array<sensor::SensorModel, kSensors>& sensors,
+Evidence evidence_of(const FixedCalibration& frozen, const PerSensor<sensor::SensorModel>& sensors,
                      const Score& score, const Seen& seen, double noise, bool free_scale) {
   const Eigen::MatrixXd A = seen.A / noise;
   const Eigen::Index n = A.rows();
@@ -149,13 +149,16 @@ Evidence evidence_of(const FixedCalibration& frozen, const std::array<sensor::Se
           .covariance = Eigen::MatrixXd::Identity(n, n) + linear::propagated_covariance(A, frozen.covariance),
           .gain = A,
           .common = A * freedoms(Eigen::all, visible),
-          .slots = shown_slots(frozen.instrument)};
+          .slots = shown_slots(sensors.size(), frozen.instrument),
+          .sensors = sensors.size()};
 }
 
 double rms_noise(const fit::joint::JointProblem& problem) {
   double variance = 0;
   for (const fit::joint::JointPose& pose : problem.poses)
-    variance += pose.weight.cwiseMax(1e-9).cwiseAbs2().cwiseInverse().mean();
+    variance += sensor::over_channels(pose.weight.size(), [&](auto n) {
+      return pose.weight.head(n).cwiseMax(1e-9).cwiseAbs2().cwiseInverse().mean();
+    });
   return std::sqrt(variance / static_cast<double>(problem.poses.size()));
 }
 
@@ -195,11 +198,11 @@ Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses
 
 /// The covariance in the platform frame in which the array stands now.
 void turn_covariance(const calibration::Calibration& c, const Eigen::Matrix3d& Q, FixedCalibration& frozen) {
-  const calibration::ArrayCovariance J = turned(c.sensors, Q).jacobian;
-  const Eigen::MatrixXd rows = J * frozen.covariance.topRows<calibration::kArrayParameters>();
-  frozen.covariance.topRows<calibration::kArrayParameters>() = rows;
-  const Eigen::MatrixXd columns = frozen.covariance.leftCols<calibration::kArrayParameters>() * J.transpose();
-  frozen.covariance.leftCols<calibration::kArrayParameters>() = columns;
+  const Eigen::MatrixXd J = turned(c.sensors, Q).jacobian;
+  const Eigen::MatrixXd rows = J * frozen.covariance.topRows(J.rows());
+  frozen.covariance.topRows(J.rows()) = rows;
+  const Eigen::MatrixXd columns = frozen.covariance.leftCols(J.rows()) * J.transpose();
+  frozen.covariance.leftCols(J.rows()) = columns;
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ LatestInputs inputs_of(const config::Config& config) {
 LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs)
     : baseline_m_(baseline_m),
       sampler_(sampler),
-      live_(calib::sensor::Geometry{baseline_m}),
-      raw_(calib::sensor::Geometry{baseline_m}),
+      live_(calib::sensor::Geometry(baseline_m)),
+      raw_(calib::sensor::Geometry(baseline_m)),
       inputs_(std::move(inputs)) {}
 
 void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> calibration) {
@@ -51,7 +51,7 @@ void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> ca
   if (calibration == nullptr) {
     criticism_ = {};
     rearranged_ = {};
-    live_ = calib::calibration::LiveTensor(calib::sensor::Geometry{baseline_m_});
+    live_ = calib::calibration::LiveTensor(calib::sensor::Geometry(baseline_m_));
     return;
   }
   criticism_ = calib::criticism::live::LiveCriticism(*calibration);

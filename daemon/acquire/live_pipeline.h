@@ -84,8 +84,8 @@ class LivePipeline {
   calib::criticism::live::LiveCriticism criticism_;
   calib::criticism::tests::RearrangementWatch rearranged_;
   InstrumentWatch instruments_;
-  std::array<std::string, kSensors> told_;  ///< who answers
-  std::optional<TableReading> table_;       ///< the last
+  PerSensor<std::string> told_;        ///< who answers
+  std::optional<TableReading> table_;  ///< the last
   LatestInputs inputs_;
   bool calibrating_{false};
   std::vector<EpochOrGap> ready_;  ///< reused, so that a sample allocates nothing

@@ -137,8 +137,8 @@ void Sampler::push(const TemperatureReading& reading) {
   T_at_[slot] = reading.arrival.mono;
 }
 
-std::array<double, kSensors> Sampler::temperatures(Instant at) const {
-  std::array<double, kSensors> out = T_degC_;
+PerSensor<double> Sampler::temperatures(Instant at) const {
+  PerSensor<double> out = T_degC_;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (to_seconds(at - T_at_[i]) > config_.temperature_s) out[i] = std::numeric_limits<double>::quiet_NaN();
   }

@@ -35,13 +35,13 @@ namespace mgtd::daemon::acquire {
 
 struct SamplerConfig {
   double rate_hz{50};
-  std::array<double, kSensors> latency_s{};  ///< sample instant to first byte: filter group delay, conversion
-  std::array<double, kSensors> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
+  PerSensor<double> latency_s{};  ///< sample instant to first byte: filter group delay, conversion
+  PerSensor<double> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
   /// A sensor that sent nothing for so long is silent; multiply by a simulation's speed-up.
   double silence_s{1.0};
-  std::array<double, kSensors> step_s{0.016, 0.016, 0.016, 0.016};  ///< longest step of each delivery timer
-  double scheduling_s{0.5e-3};                                      ///< of the host, beside them
-  double max_drift{0.12};  ///< of a device's rate against rate_hz, relative
+  PerSensor<double> step_s{0.016, 0.016, 0.016, 0.016};  ///< longest step of each delivery timer
+  double scheduling_s{0.5e-3};                           ///< of the host, beside them
+  double max_drift{0.12};                                ///< of a device's rate against rate_hz, relative
   std::uint64_t settle_samples{100};
   double temperature_s{300};      ///< a temperature is attached to epochs for so long
   std::uint64_t first_seq{0};     ///< number of the first epoch
@@ -67,7 +67,7 @@ struct SensorStreamHealth {
 struct SamplerHealth {
   std::uint64_t epochs{0};
   std::uint64_t gaps{0};  ///< epochs not measured
-  std::array<SensorStreamHealth, kSensors> sensors;
+  PerSensor<SensorStreamHealth> sensors;
 };
 
 class Sampler {
@@ -171,17 +171,17 @@ class Sampler {
   void emit_silent_reference(std::vector<EpochOrGap>& out);
   [[nodiscard]] Pick pick(int slot, double t_s) const;
   [[nodiscard]] bool emit_next(std::vector<EpochOrGap>& out);
-  void emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, std::vector<EpochOrGap>& out);
+  void emit_epoch(double t_s, const PerSensor<Pick>& picks, std::vector<EpochOrGap>& out);
   void emit_gap(std::int64_t count, int slot, Why why, std::vector<EpochOrGap>& out);
   void flush_gap(std::vector<EpochOrGap>& out);
-  [[nodiscard]] std::array<double, kSensors> temperatures(Instant at) const;
+  [[nodiscard]] PerSensor<double> temperatures(Instant at) const;
   [[nodiscard]] Stamp stamp(double t_s) const;
 
   SamplerConfig config_;
   double period_s_;
   std::vector<Stream> streams_;
-  std::array<double, kSensors> T_degC_;
-  std::array<Instant, kSensors> T_at_{};
+  PerSensor<double> T_degC_;
+  PerSensor<Instant> T_at_{};
   bool begun_{false};
   Instant origin_{};
   std::int64_t origin_wall_ns_{0};  ///< wall clock at origin_, by the newest stamp

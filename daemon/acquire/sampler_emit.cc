@@ -66,7 +66,7 @@ bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
     return true;
   }
   const double t_s = grid_time(next_k_);
-  std::array<Pick, kSensors> picks;
+  PerSensor<Pick> picks;
   picks[kReferenceIndex].need = Need::ready;
   picks[kReferenceIndex].take(*own);
   int waiting = -1;
@@ -106,14 +106,14 @@ void Sampler::emit_silent_reference(std::vector<EpochOrGap>& out) {
   if (until >= next_k_) emit_gap(until - next_k_ + 1, kReferenceIndex, Why::silent, out);
 }
 
-void Sampler::emit_epoch(double t_s, const std::array<Pick, kSensors>& picks, std::vector<EpochOrGap>& out) {
+void Sampler::emit_epoch(double t_s, const PerSensor<Pick>& picks, std::vector<EpochOrGap>& out) {
   flush_gap(out);
   out.emplace_back(std::in_place_type<Epoch>);
   Epoch& epoch = *std::get_if<Epoch>(&out.back());
   epoch.seq = next_seq_++;
   epoch.t = stamp(t_s);
   epoch.T_degC = temperatures(epoch.t.mono);
-  std::array<ClockModel::Bound, kSensors> off;
+  PerSensor<ClockModel::Bound> off;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const Stream& s = streams_[i];
     off[i] = s.clock.bound(s.clock.index_of(t_s));

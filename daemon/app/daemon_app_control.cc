@@ -162,7 +162,7 @@ Reply DaemonApp::import_calibration(const ControlRequest& request) {
   if (!wanted) return tl::unexpected(wanted.error());
   const auto calibration = calib::calibration::calibration_from_json(wanted->calibration);
   if (!calibration) return tl::unexpected(calibration.error());
-  if (const double baseline_m = calibration->geometry.baseline_m;
+  if (const double baseline_m = calibration->geometry.cross_baseline_m().value_or(0);
       std::abs(baseline_m - config_.baseline_m) > kSameBaseline_m) {
     return fail(ErrorCode::refused,
                 fmt::format("calibration {} is of an array with a baseline of {:g} m, this rig has {:g} m",

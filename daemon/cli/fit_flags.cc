@@ -142,7 +142,7 @@ Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::P
   }
   if (flags.field_nT) out.field_nT = flags.field_nT;
   if (flags.field_sd_nT) out.field_sd_nT = *flags.field_sd_nT;
-  if (flags.baseline_m) out.baseline_m = *flags.baseline_m;
+  if (flags.baseline_m) out.geometry = calib::sensor::Geometry(*flags.baseline_m);
   if (flags.inclination_deg) out.inclination_rad = to_rad(*flags.inclination_deg);
   if (flags.declination_deg) out.declination_rad = to_rad(*flags.declination_deg);
   if (flags.table_sd_deg) out.table_sd_rad = to_rad(*flags.table_sd_deg);

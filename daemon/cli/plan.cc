@@ -108,7 +108,7 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
     r.field_known = true;
   }
   if (args.field_sd_nT) r.field_sd_nT = *args.field_sd_nT;
-  if (args.baseline_m) r.geometry.baseline_m = *args.baseline_m;
+  if (args.baseline_m) r.geometry = calib::sensor::Geometry(*args.baseline_m);
   if (args.inclination_deg) r.inclination_rad = to_rad(*args.inclination_deg);
   if (args.declination_deg) r.declination_rad = to_rad(*args.declination_deg);
   if (args.table_sd_deg) r.table_sd_rad = to_rad(*args.table_sd_deg);

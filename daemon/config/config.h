@@ -52,7 +52,7 @@ struct Config {
   std::string rig_name{"rig"};
   double baseline_m{0.4};
   double rate_hz{50};  ///< of the epochs; every sensor must deliver it
-  std::array<DeviceConfig, kSensors> sensors;
+  PerSensor<DeviceConfig> sensors;
   DeviceConfig table;
   std::optional<DeviceConfig> scalar;
   std::vector<DeviceConfig> auxiliary;

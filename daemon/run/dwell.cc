@@ -145,7 +145,7 @@ void Dwell::fill_readings(Pose& pose) const {
     residual.push_back(y - mean);
     square += residual.back().cwiseAbs2();
   }
-  std::array<double, kSensors> time{};
+  PerSensor<double> time{};
   for (int slot = 0; slot < kSensors; ++slot)
     time[static_cast<std::size_t>(slot)] = correlation_time(slot, residual);
   const double least = *std::min_element(time.begin(), time.end());

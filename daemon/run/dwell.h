@@ -50,7 +50,7 @@ struct DwellQuality {
   std::size_t frozen{0};
   std::size_t saturated{0};
   /// Successive epochs with all three axes of a sensor exactly equal.
-  std::array<std::size_t, kSensors> repeats{};
+  PerSensor<std::size_t> repeats{};
   double gap_share{0};
 };
 
@@ -84,15 +84,15 @@ class Dwell {
   std::vector<Sample> y_nT_;
   std::vector<std::uint64_t> seq_;
   std::vector<double> f_nT_;
-  std::array<double, kSensors> T_sum_degC_{};
-  std::array<std::size_t, kSensors> T_count_{};
+  PerSensor<double> T_sum_degC_{};
+  PerSensor<std::size_t> T_count_{};
   struct Sum {
     double sum{0};
     std::size_t count{0};
   };
   std::map<std::string, Sum> auxiliary_;  ///< by column
   std::optional<Sample> last_nT_;         ///< of any epoch of the dwell
-  std::array<std::size_t, kSensors> repeats_{};
+  PerSensor<std::size_t> repeats_{};
   std::size_t heard_{0}, saturated_{0}, frozen_{0};
   bool past_end_{false};
   std::optional<Stamp> first_;  ///< relates monotonic and wall time

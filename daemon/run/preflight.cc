@@ -170,7 +170,7 @@ Check Preflight::skew() const {
 
 Check Preflight::wiring(const Statistics& s) const {
   Wiring seen;
-  std::array<Eigen::Vector3d, kSensors> y_nT;
+  PerSensor<Eigen::Vector3d> y_nT;
   for (int slot = 0; slot < kSensors; ++slot)
     y_nT.at(static_cast<std::size_t>(slot)) = s.mean_nT.segment<3>(Eigen::Index{3} * slot);
   seen.add(y_nT, std::nullopt);

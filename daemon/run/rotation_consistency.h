@@ -37,7 +37,7 @@ class RotationConsistency {
   struct Seen {
     int number;
     Eigen::Matrix3d R;
-    std::array<Eigen::Vector3d, kSensors> u;  ///< directions of the readings
+    PerSensor<Eigen::Vector3d> u;  ///< directions of the readings
   };
   [[nodiscard]] static Seen seen(const Pose& pose);
 

@@ -117,9 +117,8 @@ std::string in_words(const Eigen::Matrix3d& S) {
   return quarter_turn(S).value_or(fmt::format("turned ({})", directions(S)));
 }
 
-void Wiring::add(const std::array<Eigen::Vector3d, kSensors>& y_nT,
-                 const std::optional<TableAngles>& angles) {
-  std::array<double, kSensors> f_nT{};
+void Wiring::add(const PerSensor<Eigen::Vector3d>& y_nT, const std::optional<TableAngles>& angles) {
+  PerSensor<double> f_nT{};
   for (std::size_t i = 0; i < kSensors; ++i) f_nT[i] = y_nT[i].norm();
   std::sort(f_nT.begin(), f_nT.end());
   const double field_nT = (f_nT[1] + f_nT[2]) / 2;  // of four, one may be foreign

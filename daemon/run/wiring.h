@@ -25,7 +25,7 @@ class Wiring {
   static constexpr double kForeign = 0.3;    ///< further off in every way: no matter of mounting
 
   /// Raw readings in one attitude; the table's angles where they are known.
-  void add(const std::array<Eigen::Vector3d, kSensors>& y_nT, const std::optional<TableAngles>& angles);
+  void add(const PerSensor<Eigen::Vector3d>& y_nT, const std::optional<TableAngles>& angles);
   [[nodiscard]] std::size_t attitudes() const { return seen_.size(); }
 
   /// One sentence each: "s3: mirrored (left-handed axes: y reversed)". Empty: all four alike, and as the
@@ -34,7 +34,7 @@ class Wiring {
 
  private:
   struct Seen {
-    std::array<Eigen::Vector3d, kSensors> y;  ///< in units of the field
+    PerSensor<Eigen::Vector3d> y;  ///< in units of the field
     std::optional<Eigen::Matrix3d> R_PS;
   };
   using Ways = std::vector<Eigen::Matrix3d>;

@@ -43,7 +43,7 @@ class WiringProbe {
 
  private:
   enum class Phase { resting, waiting, leaving };
-  using Readings = std::array<Eigen::Vector3d, kSensors>;
+  using Readings = PerSensor<Eigen::Vector3d>;
   struct Change {
     std::size_t sensor{0};  ///< that moved most
     double most_nT{0}, second_nT{0};
@@ -60,9 +60,9 @@ class WiringProbe {
   Phase phase_{Phase::resting};
   Instant entered_;
   std::optional<MagnetEnd> ended_;
-  std::size_t arm_{0};                                        ///< whose turn it is
-  int asked_{0};                                              ///< arms the operator was asked for
-  std::array<std::optional<std::size_t>, kSensors> found_{};  ///< sensor by arm
+  std::size_t arm_{0};                             ///< whose turn it is
+  int asked_{0};                                   ///< arms the operator was asked for
+  PerSensor<std::optional<std::size_t>> found_{};  ///< sensor by arm
 
   Readings at_rest_{};          ///< mean
   std::optional<Epoch> first_;  ///< of the time without a magnet that is under way

@@ -18,7 +18,7 @@ struct RunOptions {
   std::optional<double> inclination_rad, declination_rad;
   std::optional<double> table_sd_rad;
   std::optional<double> until_tensor_sd_nT_per_m;  ///< at which the run was to end; a resumed one still does
-  std::array<std::string, kSensors> sensor_names{"s1", "s2", "s3", "s4"};
+  PerSensor<std::string> sensor_names{"s1", "s2", "s3", "s4"};
 };
 
 struct RunHeader {

@@ -73,7 +73,8 @@ Components bound_square(const PoseTable& table, const Scene& scene) {
   auto problem = calib::fit::joint::joint_problem(table, options);
   if (!problem) throw std::runtime_error(problem.error().text());
   calib::fit::joint::fix_gauge(*problem, options);
-  calib::fit::joint::weight_by_pose(*problem, calib::calibration::AxisNoise::Constant(scene.noise_nT));
+  calib::fit::joint::weight_by_pose(*problem,
+                                    calib::calibration::AxisNoise::Constant(kSensors, 3, scene.noise_nT));
   const auto n =
       calib::fit::joint::direction_of(to_rad(scene.site.inclination_deg), to_rad(scene.site.declination_deg));
   const auto truth = models_of(scene.rig);
@@ -81,8 +82,8 @@ Components bound_square(const PoseTable& table, const Scene& scene) {
       calib::fit::joint::joint_state(*problem, truth, n, scene.site.f_nT);
   const auto covariance = calib::fit::joint::covariance_of(calib::fit::joint::reduce(*problem, state, 0).S);
   if (!covariance) throw std::runtime_error(covariance.error().text());
-  const Gradient g =
-      calib::fit::joint::calibration_tensor_sd(truth, {scene.site.baseline_m}, *covariance, scene.site.f_nT);
+  const Gradient g = calib::fit::joint::calibration_tensor_sd(
+      truth, calib::sensor::Geometry(scene.site.baseline_m), *covariance, scene.site.f_nT);
   return Components(g.xx, g.yy, g.zz, g.xy, g.xz, g.yz).square();
 }
 

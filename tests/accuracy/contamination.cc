@@ -52,7 +52,8 @@ std::array<calib::sensor::SensorModel, 4> oracle(const Spoilt& run, const Scene&
   auto problem = calib::fit::joint::joint_problem(run.table, options);
   if (!problem) throw std::runtime_error(problem.error().text());
   calib::fit::joint::fix_gauge(*problem, options);
-  calib::fit::joint::weight_by_pose(*problem, calib::calibration::AxisNoise::Constant(scene.noise_nT));
+  calib::fit::joint::weight_by_pose(*problem,
+                                    calib::calibration::AxisNoise::Constant(kSensors, 3, scene.noise_nT));
   std::vector<calib::fit::joint::JointPose> kept;
   for (std::size_t k = 0; k < run.bad.size(); ++k) {
     calib::fit::joint::JointPose pose = problem->poses[k];

@@ -28,7 +28,7 @@ Noise uniform(double half) { return {Noise::Kind::uniform, half, 0}; }
 
 RunErrors simulated(const Noise& noise, double baseline_m, int seeds) {
   calib::fit::FitOptions options;
-  options.baseline_m = baseline_m;
+  options.geometry = calib::sensor::Geometry(baseline_m);
   std::vector<RunErrors> runs;
   for (int seed = 1; seed <= seeds; ++seed) {
     const PoseTable table =

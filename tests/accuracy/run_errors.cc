@@ -53,7 +53,7 @@ RunErrors run_errors(const RigTruth& rig, const PoseTable& table, const calib::f
   const auto readings = calib::fit::readings_of(table, options);
   if (!readings) throw std::runtime_error(readings.error().text());
   out.floor = calib::fit::summarise(calib::fit::corrected_fields(*readings, models_of(rig)), readings->f_nT,
-                                    {.baseline_m = options.baseline_m});
+                                    options.geometry);
   return out;
 }
 

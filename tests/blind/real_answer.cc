@@ -19,7 +19,7 @@
 namespace mgtd::calib::testing {
 namespace {
 
-using Sensors = std::array<sensor::SensorModel, kSensors>;
+using Sensors = PerSensor<sensor::SensorModel>;
 constexpr double kField_nT = 50'000, kBaseline_m = 0.4;
 constexpr double kAsGood = 1.2;  ///< times the plain rig's error
 

@@ -66,7 +66,7 @@ class Truth {
   }
 
  private:
-  using Readings = std::array<Eigen::Vector3d, kSensors>;
+  using Readings = PerSensor<Eigen::Vector3d>;
   struct Moment {
     double t_s;
     Readings y_nT;

@@ -74,7 +74,7 @@ double LiveCriticism::turn_nT(const TensorSample& sample) {
   return turn_nT;
 }
 
-bool LiveCriticism::add(const TensorSample& sample, const std::array<double, kSensors>& T_degC) {
+bool LiveCriticism::add(const TensorSample& sample, const PerSensor<double>& T_degC) {
   beyond_.reset();
   if (!judges_) return false;
   const double turned_nT = turn_nT(sample);

@@ -39,7 +39,7 @@ class LiveCriticism {
   explicit LiveCriticism(const calibration::Calibration& calibration);
 
   /// True when the state changed. `T_degC`: of the heads, NaN where not measured.
-  bool add(const TensorSample& sample, const std::array<double, kSensors>& T_degC);
+  bool add(const TensorSample& sample, const PerSensor<double>& T_degC);
   /// The same without a stream around it.
   bool add(const ClosureSample& sample);
   [[nodiscard]] const LiveFinding& finding() const { return finding_; }

@@ -21,8 +21,7 @@ using ParameterRows = Eigen::Matrix<double, 16, calibration::kArrayParameters>;
 ParameterRows closure_by_parameters(const calibration::Calibration& c) {
   const auto rows = calibration::closure_rows(c.geometry);
   const auto at = [&](const Eigen::Vector3d& b_P_nT) {
-    Eigen::Matrix<double, sensor::kChannels, calibration::kArrayParameters> d;
-    d.setZero();
+    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(sensor::kChannels, calibration::kArrayParameters);
     for (int i = 0; i < kSensors; ++i) {
       d.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
           calibration::field_derivative(c.sensors[static_cast<std::size_t>(i)], b_P_nT);

@@ -142,7 +142,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     return out;
   }
   bool memory = memory_may_be_it(search, out);
-  for (int axis = 0; axis < sensor::kChannels; ++axis) {
+  for (int axis = 0; axis < search.fit.problem.channels(); ++axis) {
     if (criticism.maps.empty()) tests::look_at_maps(criticism);
     const Surrogates found = find_surrogates(out, criticism, search.unknown);
     if (!found.any()) break;

@@ -34,9 +34,9 @@ Fall score_fall(const ModelStage& stage, const effects::EffectPtr& effect) {
 /// Of the Wald test: what chi-square would rise by if these coefficients were zero.
 double wald_rise(const fit::joint::JointFit& fit, Eigen::Index first, Eigen::Index count) {
   const Eigen::VectorXd c = fit.state.coefficients.segment(first, count);
-  const Eigen::MatrixXd C =
-      fit.covariance.block(fit::joint::kEffectSlot + first, fit::joint::kEffectSlot + first, count, count) /
-      std::pow(fit.birge_ratio, 2);
+  const Eigen::MatrixXd C = fit.covariance.block(fit.problem.slots().effects() + first,
+                                                 fit.problem.slots().effects() + first, count, count) /
+                            std::pow(fit.birge_ratio, 2);
   return c.dot(linear::solve_by_ldlt(C, c));
 }
 
@@ -48,7 +48,8 @@ std::vector<calibration::EffectCoefficient> coefficients_of(const fit::joint::Jo
   std::vector<calibration::EffectCoefficient> out;
   Eigen::Index slot = first;
   for (const effects::Coefficient& c : fit.problem.effects[which]->coefficients()) {
-    const double variance = fit.covariance(fit::joint::kEffectSlot + slot, fit::joint::kEffectSlot + slot);
+    const double variance =
+        fit.covariance(fit.problem.slots().effects() + slot, fit.problem.slots().effects() + slot);
     out.push_back({c.name, fit.state.coefficients[slot], std::sqrt(variance), c.unit});
     ++slot;
   }

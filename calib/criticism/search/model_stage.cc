@@ -58,7 +58,7 @@ VariancePrice variance_price(const fit::joint::JointFit& narrow, const fit::join
   const auto before = fit::joint::covariance_of(fit::joint::reduce(same, narrow.state, 0).S);
   const auto after = fit::joint::covariance_of(fit::joint::reduce(wide.problem, wide.state, 0).S);
   if (!before || !after) return out;
-  for (int i = 0; i < fit::joint::kSensorBlock; ++i) {
+  for (int i = 0; i < wide.problem.slots().sensor_block(); ++i) {
     const double sd_ratio = std::sqrt((*after)(i, i) / (*before)(i, i));
     if (!std::isfinite(sd_ratio) || sd_ratio <= out.sd_ratio) continue;
     out.sd_ratio = sd_ratio;

@@ -65,7 +65,7 @@ std::optional<Eigen::VectorXd> column(const fit::joint::JointFit& fit, const Num
 /// Relative steps of the numbers; empty where the data do not tell them.
 std::optional<Eigen::VectorXd> steps(const fit::joint::JointFit& fit, const std::vector<Number>& numbers,
                                      const effects::EffectContext& context) {
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(fit.problem.poses.size()) * tests::kPoseRows,
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(fit.problem.poses.size()) * fit.problem.pose_rows(),
                        static_cast<Eigen::Index>(numbers.size()));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto one = column(fit, numbers[i], context);

@@ -21,7 +21,7 @@ std::set<std::string> significant_axes(const fit::joint::JointFit& fit, const ef
   for (std::size_t j = 0; j < effect.coefficients().size(); ++j) {
     const Eigen::Index slot = first + static_cast<Eigen::Index>(j);
     const double sd =
-        std::sqrt(fit.covariance(fit::joint::kEffectSlot + slot, fit::joint::kEffectSlot + slot));
+        std::sqrt(fit.covariance(fit.problem.slots().effects() + slot, fit.problem.slots().effects() + slot));
     if (std::abs(fit.state.coefficients[slot]) > kSignificant * sd)
       out.insert(effect.coefficients()[j].name.substr(0, 4));
   }

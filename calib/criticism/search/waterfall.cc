@@ -32,7 +32,7 @@ Result<ErrorLevel> level_with(const PoseTable& table, const ModelStage& whole,
 double tensor_floor(const fit::joint::JointFit& fit) {
   const auto rows = calibration::gradient_rows(fit.problem.geometry);
   double sum = 0;
-  for (int c = 0; c < sensor::kChannels; ++c)
+  for (int c = 0; c < rows.cols(); ++c)
     sum += rows.col(c).squaredNorm() * std::pow(fit.pose_noise_nT(c / 3, c % 3), 2);
   return std::sqrt(sum / 6);
 }

@@ -42,7 +42,7 @@ std::vector<Covariate> covariates(const fit::joint::JointProblem& problem) {
   add("azimuth_deg", [](const fit::joint::JointPose& p) {
     return p.pose->azimuth_rad ? to_deg(*p.pose->azimuth_rad) : kNone;
   });
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < problem.geometry.sensors(); ++i) {
     add(fmt::format("s{}_T_degC", i + 1),
         [i](const fit::joint::JointPose& p) { return p.pose->T_degC[i].value_or(kNone); });
   }
@@ -159,8 +159,9 @@ struct Fields {
 
 Fields fields_of(const fit::joint::JointFit& fit) {
   const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
-  Fields out{Eigen::MatrixXd(sensor::kChannels, n), Eigen::MatrixXd(sensor::kChannels, n),
-             Eigen::MatrixXd(kSensors, n), Eigen::MatrixXd::Zero(3, n)};
+  const int sensors = fit.problem.sensors(), channels = fit.problem.channels();
+  Fields out{Eigen::MatrixXd(channels, n), Eigen::MatrixXd(channels, n), Eigen::MatrixXd(sensors, n),
+             Eigen::MatrixXd::Zero(3, n)};
   const fit::joint::PoseModel model(fit.problem, fit.state);
   fit::joint::PoseLinear linear;
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -170,7 +171,7 @@ Fields fields_of(const fit::joint::JointFit& fit) {
     const fit::joint::Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
     out.whitened.col(k) = fit.noise_inflation * pose.weight.cwiseProduct(e);
     const double field = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < sensors; ++i) {
       const sensor::SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
       const Eigen::Vector3d b = s.correct(linear.y_nT.segment<3>(3 * i));
       const Eigen::Vector3d delta = s.R_PS() * (s.response().inverse() * e.segment<3>(3 * i));
@@ -186,18 +187,19 @@ std::vector<ResidualChannel> channels_of(const fit::joint::JointFit& fit, const 
   const Fields f = fields_of(fit);
   std::vector<Component> whitened, scalar, attitude, between, closure;
   const Eigen::MatrixXd closures = calibration::closure_rows(fit.problem.geometry) * f.delta_nT;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  const int sensors = fit.problem.sensors();
+  for (int c = 0; c < fit.problem.channels(); ++c) {
     const std::string axis = sensor::channel_name(c);
     whitened.push_back({axis, f.whitened.row(c)});
     Eigen::VectorXd d = f.delta_nT.row(c);
-    for (int i = 0; i < kSensors; ++i) d -= f.delta_nT.row(3 * i + c % 3).transpose() / kSensors;
+    for (int i = 0; i < sensors; ++i) d -= f.delta_nT.row(3 * i + c % 3).transpose() / sensors;
     between.push_back({axis, std::move(d)});
   }
-  for (int i = 0; i < kSensors; ++i) scalar.push_back({fmt::format("s{}", i + 1), f.scalar_nT.row(i)});
+  for (int i = 0; i < sensors; ++i) scalar.push_back({fmt::format("s{}", i + 1), f.scalar_nT.row(i)});
   for (int a = 0; a < 3; ++a) attitude.push_back({std::string(1, "xyz"[a]), f.attitude_deg.row(a)});
   const std::array<std::string, 4> names{"curl", "center x", "center y", "center z"};
   for (int i = 0; i < 4; ++i) {
-    const double to_nT = i == 0 ? fit.problem.geometry.baseline_m : 1;
+    const double to_nT = i == 0 ? fit.problem.geometry.cross_baseline_m().value_or(1) : 1;
     closure.push_back({names[static_cast<std::size_t>(i)], to_nT * closures.row(i)});
   }
   std::vector<ResidualChannel> out;

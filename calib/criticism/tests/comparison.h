@@ -40,10 +40,10 @@ struct Comparison {
   double noise_nT{0};     ///< of a pose mean
   double residual_nT{0};  ///< as PoseResiduals tells it
   calibration::AxisNoise axis_noise_nT{
-      calibration::AxisNoise::Zero()};  ///< of a pose mean as it was weighted
+      calibration::AxisNoise::Zero(kSensors, 3)};  ///< of a pose mean as it was weighted
   calibration::AxisNoise axis_residual_nT{
-      calibration::AxisNoise::Zero()};  ///< rms of what is left, freedom accounted for
-  double chi2{0}, dof{0};               ///< of readings, scalar reference and table angles together
+      calibration::AxisNoise::Zero(kSensors, 3)};  ///< rms of what is left, freedom accounted for
+  double chi2{0}, dof{0};  ///< of readings, scalar reference and table angles together
   /// Probability that the noise alone makes so large a residual; empty where the noise is not known.
   std::optional<double> log10_p{};
   double table_sd_deg{0};

@@ -32,9 +32,10 @@ void find_low_scatter(const fit::joint::JointFit& fit, Criticism& out) {
   Eigen::Index sensor = 0, axis = 0;
   out.low_scatter_ratio = ratio.minCoeff(&sensor, &axis);
   out.low_scatter = fmt::format("s{}.{}", sensor + 1, "xyz"[axis]);
-  const double nu = out.dof / sensor::kChannels;
+  const double nu = out.dof / static_cast<double>(ratio.size());
   const double more = stats::chi_square_p(std::pow(out.low_scatter_ratio, 2) * nu, nu);
-  out.low_scatter_log10_p = std::min(0.0, std::log10(sensor::kChannels * std::max(1 - more, 1e-300)));
+  out.low_scatter_log10_p =
+      std::min(0.0, std::log10(static_cast<double>(ratio.size()) * std::max(1 - more, 1e-300)));
 }
 
 /// The model holds this law: nothing of it is left to test.
@@ -123,7 +124,7 @@ Residual among_poses(const fit::joint::JointFit& fit) {
 int noisier_channels(const fit::joint::JointFit& fit) {
   constexpr double kSigmas = 3;
   const calibration::AxisNoise ratio = fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio;
-  const double chance = std::sqrt(2 * sensor::kChannels / std::max(fit.dof, 1.0));
+  const double chance = std::sqrt(2 * static_cast<double>(ratio.size()) / std::max(fit.dof, 1.0));
   return static_cast<int>((ratio.array().square() > 1 + kSigmas * chance).count());
 }
 
@@ -133,8 +134,8 @@ bool contradicts_dwells(const Criticism& c) {
   constexpr double kHalf = 0.5;
   constexpr double kRevisitsAgree_log10_p = -3;
   constexpr double kUnequal = 40;  // chi-square with eleven degrees of freedom where all channels are alike
-  constexpr int kNoisier =
-      sensor::kChannels / 2;  // fewer: something is with these few, and no noise of the dwells
+  const int kNoisier =
+      c.tested->problem.channels() / 2;  // fewer: something is with these few, and no noise of the dwells
   const NoiseReference& n = c.noise.reference;
   if (!n.from_dwells() || !c.rejects_omnibus()) return false;
   if (c.noise.revisits && c.noise.revisits->log10_p < kRevisitsAgree_log10_p) return false;
@@ -153,7 +154,7 @@ fit::joint::JointFit weighed_by_residual(const fit::joint::JointFit& fit) {
   for (int i = 0; i < kRounds; ++i) {
     const calibration::AxisNoise ratio = fit::joint::pose_residuals(out.problem, out.state).noise_ratio;
     for (fit::joint::JointPose& pose : out.problem.poses)
-      for (int c = 0; c < sensor::kChannels; ++c) pose.weight[c] /= ratio(c / 3, c % 3);
+      for (int c = 0; c < out.problem.channels(); ++c) pose.weight[c] /= ratio(c / 3, c % 3);
     fit::joint::refit_nuisances(out.problem, out.state);
   }
   return out;
@@ -169,7 +170,9 @@ std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
   const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
   std::vector<double> out;
   for (Eigen::Index k = 0; k < residual.poses(); ++k)
-    out.push_back(product.segment<sensor::kChannels>(k * sensor::kChannels).sum());
+    out.push_back(sensor::over_channels(residual.channels(), [&](auto rows) {
+      return product.segment(k * residual.channels(), rows).sum();
+    }));
   return out;
 }
 
@@ -194,7 +197,7 @@ Criticism criticise(const fit::joint::JointFit& fit, const CandidateEffects& can
   out.noise.known = true;
   out.noise.revisits = revisits;
   out.noise.beyond_dwells =
-      std::sqrt(fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio.array().square().mean());
+      calibration::root_mean_square(fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio);
   return out;
 }
 

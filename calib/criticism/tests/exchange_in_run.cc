@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "calib/criticism/tests/possible_exchanges.h"
+
 namespace mgtd::calib::criticism::tests {
 namespace {
 
@@ -57,11 +59,11 @@ Row row_of(const Eigen::Vector3d& y) {
 }
 
 /// Sums up to before each pose, sensor by sensor; those of all poses at the end.
-using Sums = std::array<std::vector<Normal>, kSensorCount>;
+using Sums = PerSensor<std::vector<Normal>>;
 
 Sums sums_of(const PoseTable& table, double f_nT) {
-  Sums out;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  Sums out(table.poses.front().y_nT.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
     Normal sum;
     for (const Pose& pose : table.poses) {
       out[i].push_back(sum);
@@ -75,22 +77,24 @@ Sums sums_of(const PoseTable& table, double f_nT) {
 
 struct Best {
   double misfit{std::numeric_limits<double>::max()};
-  std::array<std::size_t, kSensors> sensor{};
+  PerSensor<std::size_t> sensor{};
   std::size_t from{0};
 };
 
 /// The best of every exchange at one pose, into `best` by exchange.
-void look_at(const Sums& sums, std::size_t from, std::vector<Best>& best) {
-  std::array<std::array<double, kSensorCount>, kSensorCount> misfit{};
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
-    for (std::size_t j = 0; j < kSensorCount; ++j)
+void look_at(const Sums& sums, std::size_t from, const std::vector<PerSensor<std::size_t>>& exchanges,
+             std::vector<Best>& best) {
+  const std::size_t sensors = sums.size();
+  PerSensor<PerSensor<double>> misfit(sensors, PerSensor<double>(sensors));
+  for (std::size_t i = 0; i < sensors; ++i) {
+    for (std::size_t j = 0; j < sensors; ++j)
       misfit[i][j] = sums[i][from].with(sums[j].back(), sums[j][from]).misfit();
   }
-  std::array<std::size_t, kSensors> sensor{0, 1, 2, 3};
-  for (std::size_t number = 0; std::next_permutation(sensor.begin(), sensor.end()); ++number) {
+  for (std::size_t number = 0; number < exchanges.size(); ++number) {
     // What comes in a place from here on belongs to the sensor whose it is.
+    const PerSensor<std::size_t>& sensor = exchanges[number];
     double sum = 0;
-    for (std::size_t place = 0; place < kSensorCount; ++place) sum += misfit[sensor[place]][place];
+    for (std::size_t place = 0; place < sensors; ++place) sum += misfit[sensor[place]][place];
     if (sum < best[number].misfit) best[number] = {sum, sensor, from};
   }
 }
@@ -98,22 +102,23 @@ void look_at(const Sums& sums, std::size_t from, std::vector<Best>& best) {
 }  // namespace
 
 std::optional<ExchangeInRun> exchange_in_run(const PoseTable& table, std::optional<double> field_nT) {
-  constexpr std::size_t kExchanges = 23;
   const std::size_t n = table.poses.size();
   if (n < kFewestInAll) return std::nullopt;
+  const auto exchanges = possible_exchanges(table.poses.front().y_nT.size());
+  if (exchanges.empty()) return std::nullopt;
   const double f_nT = mean_field_nT(table, field_nT);
   const Sums sums = sums_of(table, f_nT);
   double without = 0;
   for (const auto& of_sensor : sums) without += of_sensor.back().misfit();
-  std::vector<Best> best(kExchanges);
-  for (std::size_t from = kFewest; from + kFewest <= n; ++from) look_at(sums, from, best);
+  std::vector<Best> best(exchanges.size());
+  for (std::size_t from = kFewest; from + kFewest <= n; ++from) look_at(sums, from, exchanges, best);
   std::sort(best.begin(), best.end(), [](const Best& a, const Best& b) { return a.misfit < b.misfit; });
   const auto to_nT = [&](double misfit) {
-    return std::sqrt(misfit / static_cast<double>(kSensorCount * n)) * f_nT / 2;
+    return std::sqrt(misfit / static_cast<double>(sums.size() * n)) * f_nT / 2;
   };
   const double taken_so = to_nT(best[0].misfit), as_it_stands = to_nT(without);
   if (as_it_stands < kLeast_nT || as_it_stands < kExchangeBetter * taken_so ||
-      to_nT(best[1].misfit) < kOtherExchange * taken_so)
+      (best.size() > 1 && to_nT(best[1].misfit) < kOtherExchange * taken_so))
     return std::nullopt;
   ExchangeInRun out;
   out.what.sensor = best[0].sensor;
@@ -133,14 +138,13 @@ std::optional<Rearrangement> exchanged_since(const calibration::Calibration& bef
                           ((a.offset_nT - b.offset_nT) / kAged_nT).squaredNorm();
     return std::sqrt(square / kNumbers);
   };
-  Rearrangement what;
-  while (std::next_permutation(what.sensor.begin(), what.sensor.end())) {
+  for (const PerSensor<std::size_t>& sensor : possible_exchanges(now.sensors.size())) {
     bool fits = true;
-    for (std::size_t place = 0; place < kSensorCount && fits; ++place) {
-      const std::size_t whose = what.sensor.at(place);
+    for (std::size_t place = 0; place < sensor.size() && fits; ++place) {
+      const std::size_t whose = sensor.at(place);
       fits = apart(place, whose) < 1 && (whose == place || apart(place, place) > kOwn);
     }
-    if (fits) return what;
+    if (fits) return Rearrangement{.sensor = sensor};
   }
   return std::nullopt;
 }

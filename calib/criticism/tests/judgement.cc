@@ -118,7 +118,7 @@ fit::joint::JointFit as_stated(const fit::joint::JointFit& fit) {
 /// The largest step from one pose to the next, in units of the noise of a pose mean.
 double step_over_noise(const fit::joint::JointFit& fit, const fit::joint::WanderingRates& nT_per_sqrt_h) {
   const auto& poses = fit.problem.poses;
-  fit::joint::Channels squares = fit::joint::Channels::Zero();
+  fit::joint::Channels squares = fit::joint::Channels::Zero(poses.front().y_nT.size());
   double from_h = poses.front().t_h, to_h = from_h;
   for (const fit::joint::JointPose& pose : poses) {
     squares += pose.weight.cwiseAbs2();
@@ -162,7 +162,7 @@ fit::joint::JointFit with_noise(const fit::joint::JointFit& stated, double facto
 double deviance_of(const fit::joint::JointFit& fit, const fit::joint::WanderingRates& rates) {
   double log_variances = 0;
   for (const fit::joint::JointPose& pose : fit.problem.poses)
-    for (int c = 0; c < sensor::kChannels; ++c)
+    for (int c = 0; c < fit.problem.channels(); ++c)
       if (pose.weight[c] > 0) log_variances -= 2 * std::log(pose.weight[c]);
   const Residual residual(fit.problem, fit.state, 0, rates);
   return residual.chi2() + residual.whitener().log_det() + log_variances;

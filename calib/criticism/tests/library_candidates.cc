@@ -96,7 +96,7 @@ bool by_temperature(const effects::library::EffectFamily& family) {
 
 bool temperature_changes(const PoseTable& table) {
   constexpr double kNoChange_degC = 1e-6;
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < table.poses.front().T_degC.size(); ++i) {
     std::optional<double> low, high;
     for (const Pose& pose : table.poses) {
       if (!pose.T_degC[i]) continue;

@@ -13,7 +13,7 @@
 namespace mgtd::calib::criticism::tests {
 namespace {
 
-using Mixing = Eigen::Matrix<double, sensor::kChannels, sensor::kChannels>;
+using Mixing = sensor::ChannelCovariance;
 constexpr double kMaxRho = 0.95;
 /// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
 /// too large costs a little power. And the standard error of a median over that of a mean.
@@ -28,28 +28,28 @@ constexpr double kContradicts_log10_p = -3;
 struct Fitted {
   Eigen::MatrixXd e;      ///< 12 x P
   std::vector<Mixing> M;  ///< by pose
-  Eigen::MatrixXd J;      ///< 12 P x fixed, the same of the fixed block
+  Eigen::MatrixXd J;      ///< channels P x fixed, the same of the fixed block
 };
 
 Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const LinearRows rows = linear_rows(problem, state);
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  Fitted out{.e = Eigen::MatrixXd(sensor::kChannels, n),
-             .M = {},
-             .J = Eigen::MatrixXd(sensor::kChannels * n, problem.fixed())};
+  const Eigen::Index channels = problem.channels(), block_rows = problem.pose_rows();
+  Fitted out{.e = Eigen::MatrixXd(channels, n), .M = {}, .J = Eigen::MatrixXd(channels * n, problem.fixed())};
   for (Eigen::Index k = 0; k < n; ++k) {
-    const auto N = rows.nuisance.middleRows<kPoseRows>(k * kPoseRows);
-    const Eigen::Matrix4d H = N.transpose() * N;
+    const auto N = rows.nuisance.middleRows(k * block_rows, block_rows);
+    const Eigen::Matrix4d H = sensor::over_rows<sensor::kChannels + 4>(
+        block_rows, [&](auto r) -> Eigen::Matrix4d { return N.topRows(r).transpose() * N.topRows(r); });
     const Eigen::LLT<Eigen::Matrix4d> llt(H);
-    const auto top = N.topRows<sensor::kChannels>();
+    const auto top = N.topRows(channels);
     const auto weight = problem.poses[static_cast<std::size_t>(k)].weight;
-    Mixing there = Mixing::Zero();
+    Mixing there = Mixing::Zero(channels, channels);
     there.diagonal() = (weight.array() > 0).cast<double>();
     out.M.push_back(there - top * llt.solve(top.transpose()));
-    out.e.col(k) = rows.residual.segment<sensor::kChannels>(k * kPoseRows);
-    const Eigen::MatrixXd block = rows.fixed.middleRows<kPoseRows>(k * kPoseRows);
-    out.J.middleRows<sensor::kChannels>(k * sensor::kChannels) =
-        block.topRows<sensor::kChannels>() - top * llt.solve(N.transpose() * block);
+    out.e.col(k) = rows.residual.segment(k * block_rows, channels);
+    const Eigen::MatrixXd block = rows.fixed.middleRows(k * block_rows, block_rows);
+    out.J.middleRows(k * channels, channels) =
+        block.topRows(channels) - top * llt.solve(N.transpose() * block);
   }
   return out;
 }
@@ -117,19 +117,22 @@ std::vector<LagOne> lag_one(const fit::joint::JointProblem& problem, const fit::
   const Fitted f = fitted(problem, state);
   const Eigen::MatrixXd hat = leverages(f);
   const auto order = order_in_time(problem);
-  std::vector<LagOne> out(sensor::kChannels);
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  const Eigen::Index channels = problem.channels();
+  std::vector<LagOne> out(static_cast<std::size_t>(channels));
+  for (Eigen::Index c = 0; c < channels; ++c) {
     LagOne& x = out[static_cast<std::size_t>(c)];
     x.L.resize(static_cast<Eigen::Index>(order.size()), hat.cols());
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Eigen::Index k = order[i];
       const auto& M = f.M[static_cast<std::size_t>(k)];
-      x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * sensor::kChannels + c);
+      x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * channels + c);
       x.squares += f.e(c, k) * f.e(c, k);
-      x.own += M.row(c).squaredNorm();
+      x.own += sensor::over_channels(channels, [&](auto n) { return M.row(c).head(n).squaredNorm(); });
       if (i == 0) continue;
       x.products += f.e(c, k) * f.e(c, order[i - 1]);
-      x.by_lag += M.row(c).dot(f.M[static_cast<std::size_t>(order[i - 1])].row(c));
+      const auto& before = f.M[static_cast<std::size_t>(order[i - 1])];
+      x.by_lag += sensor::over_channels(channels,
+                                        [&](auto n) { return M.row(c).head(n).dot(before.row(c).head(n)); });
     }
   }
   return out;
@@ -140,7 +143,8 @@ double median_correlation(const fit::joint::JointProblem& problem, const fit::jo
   std::vector<double> seen;
   for (const LagOne& c : channels) seen.push_back(c.squares > 0 ? c.products / c.squares : 0);
   std::sort(seen.begin(), seen.end());
-  const double median = (seen[sensor::kChannels / 2 - 1] + seen[sensor::kChannels / 2]) / 2;
+  const std::size_t half = seen.size() / 2;
+  const double median = seen.size() % 2 == 0 ? (seen[half - 1] + seen[half]) / 2 : seen[half];
   // What would show as the median: the curve rises with rho, and a step of 0.05 is straight enough.
   double rho = 0, last = -1;
   for (double trial = 0; trial < kMaxRho + 1e-9; trial += 0.05) {
@@ -172,7 +176,7 @@ std::pair<fit::joint::Channels, fit::joint::Channels> in_common_units(const fit:
 double pose_correlation(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   const double rho = median_correlation(problem, state);
   if (rho <= kCorrelated) return rho;
-  const double values = sensor::kChannels * static_cast<double>(problem.poses.size());
+  const double values = problem.channels() * static_cast<double>(problem.poses.size());
   return std::min(kMaxRho, rho + kCautious * kMedianOfMean * std::sqrt((1 - rho * rho) / values));
 }
 
@@ -194,8 +198,13 @@ std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2
   for (const auto& [u, v] : pairs) {
     const auto a = static_cast<std::size_t>(u), b = static_cast<std::size_t>(v);
     const auto [by_u, by_v] = in_common_units(problem.poses[a].weight, problem.poses[b].weight);
-    squares += (by_u.cwiseProduct(f.e.col(u)) - by_v.cwiseProduct(f.e.col(v))).squaredNorm();
-    expected += (by_u.asDiagonal() * f.M[a]).squaredNorm() + (by_v.asDiagonal() * f.M[b]).squaredNorm();
+    sensor::over_channels(by_u.size(), [&](auto n) {
+      squares +=
+          (by_u.head(n).cwiseProduct(f.e.col(u).head(n)) - by_v.head(n).cwiseProduct(f.e.col(v).head(n)))
+              .squaredNorm();
+      expected += (by_u.head(n).asDiagonal() * f.M[a].topLeftCorner(n, n)).squaredNorm() +
+                  (by_v.head(n).asDiagonal() * f.M[b].topLeftCorner(n, n)).squaredNorm();
+    });
   }
   if (!(expected > 0)) return std::nullopt;
   out.nu = expected / 2;
@@ -223,6 +232,7 @@ NoiseModel noise_model(const fit::joint::JointFit& fit, const Residual& residual
   const bool lasting = out.correlated() || fit.noise_inflation > 1 || residual.whitener().wanders();
   n.known = out.known && !lasting;
   n.by_channel = !out.known;
+  n.channels = static_cast<int>(residual.channels());
   if (lasting) n.scale2 = residual.chi2() / residual.dof();
   if (n.known && out.revisits) {
     const PureError& p = *out.revisits;

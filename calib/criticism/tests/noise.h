@@ -11,7 +11,7 @@
 /// Residuals of pose k with its nuisances fitted are e_k = M_k n_k, M_k = I - N (N'N + Lambda)^-1 N'. They
 /// give
 ///     correlation from pose to pose   rho_c = sum e_kc e_(k-1)c / sum (M_k M_(k-1)')_cc, corrected for what
-///                                     the fit took; the median over the twelve channels counts, so that an
+///                                     the fit took; the median over the channels counts, so that an
 ///                                     effect on one axis is not taken for noise
 ///     pure error                      pairs of visits to one attitude: |e_u - e_v|^2 against tr M_u M_u' +
 ///                                     tr M_v M_v', both in nT where the two weigh differently, so that what

@@ -4,6 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "calib/criticism/tests/possible_exchanges.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -38,35 +41,39 @@ bool same(const Rearrangement& a, const Rearrangement& b) {
 std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipeline& pipeline,
                                                 const Epoch& epoch) {
   std::vector<Rearrangement> out;
-  Rearrangement what;
   Epoch given = epoch;
-  while (std::next_permutation(what.sensor.begin(), what.sensor.end())) {
+  for (const PerSensor<std::size_t>& sensor : possible_exchanges(epoch.y_nT.size())) {
     // What comes in a place is given to the sensor whose it is.
-    for (std::size_t place = 0; place < kSensors; ++place) {
-      given.y_nT.at(what.sensor.at(place)) = epoch.y_nT.at(place);
-      given.T_degC.at(what.sensor.at(place)) = epoch.T_degC.at(place);
+    for (std::size_t place = 0; place < sensor.size(); ++place) {
+      given.y_nT.at(sensor.at(place)) = epoch.y_nT.at(place);
+      given.T_degC.at(sensor.at(place)) = epoch.T_degC.at(place);
     }
-    if (pipeline.apply(given).closure.chi2 < kExplainedClosure_chi2) out.push_back(what);
+    if (pipeline.apply(given).closure.chi2 < kExplainedClosure_chi2) out.push_back({.sensor = sensor});
   }
   return out;
 }
 
 std::vector<Rearrangement> turns_explaining(const calibration::TensorPipeline& pipeline, const Epoch& epoch) {
   const sensor::FieldVector b_P_nT = pipeline.correct(epoch.y_nT);
+  const std::size_t sensors = epoch.y_nT.size();
+  PerSensor<std::size_t> in_place(sensors);
+  std::iota(in_place.begin(), in_place.end(), std::size_t{0});
   std::vector<Rearrangement> out;
-  for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
+  for (std::size_t sensor = 0; sensors > 2 && sensor < sensors; ++sensor) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < kSensors; ++i)
-      if (i != sensor) mean += b_P_nT.segment<3>(3 * static_cast<Eigen::Index>(i)) / (kSensors - 1);
+    for (std::size_t i = 0; i < sensors; ++i)
+      if (i != sensor)
+        mean += b_P_nT.segment<3>(3 * static_cast<Eigen::Index>(i)) / static_cast<double>(sensors - 1);
     double apart = 0;
-    for (std::size_t i = 0; i < kSensors; ++i)
+    for (std::size_t i = 0; i < sensors; ++i)
       if (i != sensor)
         apart = std::max(apart, (b_P_nT.segment<3>(3 * static_cast<Eigen::Index>(i)) - mean).norm());
     const Eigen::Vector3d own = b_P_nT.segment<3>(3 * static_cast<Eigen::Index>(sensor));
     const double f_nT = mean.norm();
     if (apart > kOthersAgree * f_nT || (own - mean).norm() < kStandsOut * f_nT) continue;
     for (const Eigen::Matrix3d& turn : quarter_turns())
-      if ((turn * own - mean).norm() < kTurnAgreement * f_nT) out.push_back({{0, 1, 2, 3}, sensor, turn});
+      if ((turn * own - mean).norm() < kTurnAgreement * f_nT)
+        out.push_back({.sensor = in_place, .turned = sensor, .turn_P = turn});
   }
   return out;
 }

@@ -12,7 +12,8 @@
 /// Finds from the readings which sensors are in another place, or are mounted otherwise, than when they were
 /// calibrated.
 ///
-///     exchanged   the readings of the four, given to each other's calibrations, have a closure within noise
+///     exchanged   the readings of the sensors, given to each other's calibrations, have a closure within
+///     noise
 ///                 and calibration (chi-square of 4 below kExplainedClosure_chi2); as they come, beyond ten
 ///                 standard deviations
 ///     turned      the field of one sensor, turned by quarters about the platform's axes, agrees with the
@@ -23,15 +24,15 @@
 namespace mgtd::calib::criticism::tests {
 
 struct Rearrangement {
-  std::array<std::size_t, kSensors> sensor{0, 1, 2, 3};  ///< whose readings come in each place
-  std::optional<std::size_t> turned{};                   ///< one of the sensors ...
-  Eigen::Matrix3d turn_P{Eigen::Matrix3d::Identity()};   ///< ... by so much
+  PerSensor<std::size_t> sensor{0, 1, 2, 3};            ///< whose readings come in each place
+  std::optional<std::size_t> turned{};                  ///< one of the sensors ...
+  Eigen::Matrix3d turn_P{Eigen::Matrix3d::Identity()};  ///< ... by so much
 };
 
 inline constexpr double kExplainedClosure_chi2 = 30;  ///< of four: once in 2e5 intact samples
 inline constexpr double kTurnAgreement = 0.05;        ///< of the field, as well as a hand turns
 
-/// All exchanges (23) and turns (4 x 23) that explain the readings of one epoch.
+/// The exchanges of possible_exchanges() and the turns (23 a sensor) that explain the readings of one epoch.
 [[nodiscard]] std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipeline& pipeline,
                                                               const Epoch& epoch);
 [[nodiscard]] std::vector<Rearrangement> turns_explaining(const calibration::TensorPipeline& pipeline,

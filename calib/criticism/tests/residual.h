@@ -13,14 +13,16 @@ namespace mgtd::calib::criticism::tests {
 class Residual {
  public:
   Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
-           const fit::joint::WanderingRates& nT_per_sqrt_h = fit::joint::WanderingRates::Zero());
+           const fit::joint::WanderingRates& nT_per_sqrt_h = {});
 
-  /// Twelve rows a pose, then the priors.
+  /// A row for each reading, pose by pose, then the priors.
   [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
   [[nodiscard]] double chi2() const { return chi2_; }
   [[nodiscard]] double dof() const { return dof_; }
   [[nodiscard]] const Whitener& whitener() const { return whitener_; }
   [[nodiscard]] Eigen::Index poses() const { return poses_; }
+  /// Rows of value() for one pose.
+  [[nodiscard]] Eigen::Index channels() const { return whitener_.channels(); }
 
   /// From now on everything is in units of noise with `scale2` times the variance of the weights.
   void measure_by(double scale2);

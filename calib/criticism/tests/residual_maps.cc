@@ -27,24 +27,24 @@ Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Ei
   return h;
 }
 
-/// The functions free in each of the twelve channels.
+/// The functions free in each channel.
 Map of_channels(const fit::joint::JointProblem& problem, std::string name, Eigen::Index m,
                 const ChannelFunctions& functions) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
-  Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * kPoseRows, m * sensor::kChannels)};
+  const int channels = problem.channels();
+  const Eigen::Index block = problem.pose_rows();
+  Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * block, m * channels)};
   for (Eigen::Index k = 0; k < poses; ++k) {
     const fit::joint::JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
-    for (int c = 0; c < sensor::kChannels; ++c) {
+    for (int c = 0; c < channels; ++c) {
       const std::vector<double> values = functions(pose, c);
       for (std::size_t j = 0; j < values.size(); ++j)
-        out.rows(k * kPoseRows + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
+        out.rows(k * block + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
     }
   }
-  out.hypotheses.push_back(
-      picked("all", sensor::kChannels, 1, 0, m * sensor::kChannels, m * sensor::kChannels));
-  for (int c = 0; c < sensor::kChannels; ++c) {
-    out.hypotheses.push_back(
-        picked(sensor::channel_name(c), 1, sensor::kChannels, c * m, m, m * sensor::kChannels));
+  out.hypotheses.push_back(picked("all", channels, 1, 0, m * channels, m * channels));
+  for (int c = 0; c < channels; ++c) {
+    out.hypotheses.push_back(picked(sensor::channel_name(c), 1, channels, c * m, m, m * channels));
   }
   return out;
 }
@@ -201,7 +201,7 @@ std::vector<Map> residual_maps(const fit::joint::JointProblem& problem, const fi
   for (SiteRows& site : site_map_rows(problem, state)) {
     const Eigen::Index m = site.rows.cols();
     out.push_back({.name = std::move(site.name), .rows = std::move(site.rows), .hypotheses = {}});
-    out.back().hypotheses.push_back(picked("site", sensor::kChannels, 1, 0, m, m));
+    out.back().hypotheses.push_back(picked("site", problem.channels(), 1, 0, m, m));
   }
   return out;
 }
@@ -211,7 +211,11 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
   std::vector<MapScore> out;
   for (const Map& map : maps) {
     const Signature s = signature_of(residual, map.rows);
-    MapScore best{.map = map.name, .where = {}, .log10_p = 1, .by_channel = {}, .fit = {}};
+    MapScore best{.map = map.name,
+                  .where = {},
+                  .log10_p = 1,
+                  .by_channel = std::vector<double>(static_cast<std::size_t>(residual.channels())),
+                  .fit = {}};
     double scales = 0;
     for (const Hypothesis& h : map.hypotheses) {
       scales += 1.0 / h.alike;
@@ -220,8 +224,7 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
       if (k == 0) continue;
       const Eigen::VectorXd t = step.basis.transpose() * s.by_residual;
       const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
-      if (h.alike == sensor::kChannels)
-        best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
+      if (h.alike > 1) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
       if (log10_p >= best.log10_p) continue;
       best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
       best.fit = s.columns * (step.basis * t);

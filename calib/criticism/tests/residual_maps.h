@@ -35,9 +35,9 @@ struct MapScore {
   std::string where{};  ///< of the hypothesis that shows it best
   double S{0};
   int k{0};
-  double log10_p{0};                                   ///< of the map, its hypotheses counted
-  std::array<double, sensor::kChannels> by_channel{};  ///< log10 p of each channel alone; 0 where it has none
-  Eigen::VectorXd fit{};  ///< the residual that the map explains, rows as Residual::value()
+  double log10_p{0};                 ///< of the map, its hypotheses counted
+  std::vector<double> by_channel{};  ///< log10 p of each channel alone; 0 where it has none
+  Eigen::VectorXd fit{};             ///< the residual that the map explains, rows as Residual::value()
 };
 
 [[nodiscard]] std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& residual,

@@ -9,11 +9,13 @@
 namespace mgtd::calib::criticism::tests {
 namespace {
 
-Eigen::Index row_of(std::size_t pose) { return static_cast<Eigen::Index>(pose) * kPoseRows; }
+Eigen::Index row_of(const fit::joint::JointProblem& problem, std::size_t pose) {
+  return static_cast<Eigen::Index>(pose) * problem.pose_rows();
+}
 
 void fill_attitude(const fit::joint::JointPose& pose, const fit::joint::Nuisance& nuisance, Eigen::Index row,
                    LinearRows& out) {
-  const Eigen::Index first = row + sensor::kChannels + 1;
+  const Eigen::Index first = row + pose.y_nT.size() + 1;
   if (!pose.has_angles) {
     out.nuisance(first, 3) = 1;
     return;
@@ -25,28 +27,29 @@ void fill_attitude(const fit::joint::JointPose& pose, const fit::joint::Nuisance
 }  // namespace
 
 LinearRows linear_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
-  const auto rows = row_of(problem.poses.size());
+  const auto rows = row_of(problem, problem.poses.size());
   LinearRows out{.residual = Eigen::VectorXd::Zero(rows),
                  .fixed = Eigen::MatrixXd::Zero(rows, problem.fixed()),
                  .nuisance = Eigen::MatrixXd::Zero(rows, fit::joint::kNuisances)};
   const fit::joint::PoseModel model(problem, state);
   fit::joint::PoseBlocks b;
+  const Eigen::Index channels = problem.channels(), block = problem.slots().sensor_block();
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const fit::joint::JointPose& pose = problem.poses[k];
-    const Eigen::Index row = row_of(k);
+    const Eigen::Index row = row_of(problem, k);
     fit::joint::assemble(problem, model, state, k, false, b);
-    out.residual.segment<sensor::kChannels>(row) = b.residual;
-    out.residual[row + sensor::kChannels] = b.scalar.residual;
-    out.nuisance.middleRows<sensor::kChannels>(row) = b.N;
-    out.nuisance.row(row + sensor::kChannels) = b.scalar.nuisance;
+    out.residual.segment(row, channels) = b.residual;
+    out.residual[row + channels] = b.scalar.residual;
+    out.nuisance.middleRows(row, channels) = b.N;
+    out.nuisance.row(row + channels) = b.scalar.nuisance;
     const auto w = pose.weight.asDiagonal();
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < problem.sensors(); ++i) {
       out.fixed.block<3, sensor::kSensorParameters>(row + 3 * i, sensor::kSensorParameters * i) =
           pose.weight.segment<3>(3 * i).asDiagonal() * b.linear.d_sensor.middleRows<3>(3 * i);
     }
     const Eigen::Index globals = b.linear.d_global.cols();
-    out.fixed.block(row, fit::joint::kSensorBlock, sensor::kChannels, globals) = w * b.linear.d_global;
-    out.fixed.block(row + sensor::kChannels, fit::joint::kSensorBlock, 1, globals) = b.scalar.global;
+    out.fixed.block(row, block, channels, globals) = w * b.linear.d_global;
+    out.fixed.block(row + channels, block, 1, globals) = b.scalar.global;
     fill_attitude(pose, state.nuisances[k], row, out);
   }
   return out;
@@ -71,14 +74,15 @@ Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem, const fit::
   at.coefficients.tail(added) = coefficients;
   const fit::joint::PoseModel model(wider, at);
   fit::joint::PoseLinear linear;
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(row_of(problem.poses.size()), added);
+  const Eigen::Index channels = problem.channels();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(row_of(problem, problem.poses.size()), added);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const fit::joint::JointPose& pose = problem.poses[k];
     if (!effect->missing(*pose.pose).empty()) continue;
     model.linearise(pose, state.nuisances[k], linear);
-    const Eigen::Index row = row_of(k);
-    out.middleRows<sensor::kChannels>(row) = pose.weight.asDiagonal() * linear.d_global.rightCols(added);
-    out.row(row + sensor::kChannels) = pose.f_weight * linear.f_global.tail(added);
+    const Eigen::Index row = row_of(problem, k);
+    out.middleRows(row, channels) = pose.weight.asDiagonal() * linear.d_global.rightCols(added);
+    out.row(row + channels) = pose.f_weight * linear.f_global.tail(added);
   }
   return out;
 }
@@ -99,7 +103,7 @@ PriorRows prior_rows(const fit::joint::JointProblem& problem, const fit::joint::
   const auto observe = [&](const std::optional<double>& known, double now, Eigen::Index i) {
     if (!known) return;
     out.residual[n + i] = w * std::remainder(*known - now, 2 * std::numbers::pi);
-    out.fixed.block<1, 2>(n + i, fit::joint::kSiteSlot) = w * rows.row(i);
+    out.fixed.block<1, 2>(n + i, problem.slots().site()) = w * rows.row(i);
   };
   observe(problem.known_inclination_rad, fit::joint::inclination_of(state.direction), 0);
   observe(problem.known_declination_rad, fit::joint::declination_of(state.direction), 1);

@@ -4,13 +4,12 @@
 
 #include "calib/fit/joint/joint_problem.h"
 
-/// The linearised joint fit as rows, one block of sixteen a pose, each divided by its standard deviation:
+/// The linearised joint fit as rows, a block of JointProblem::pose_rows() for each pose, each row divided by
+/// its standard deviation (of the cross, with twelve readings):
 ///     0..11  readings     12  scalar reference     13..15  attitude (without table angles: the idle slot)
 ///
 /// An observation that was left out is a row of zeros. Nothing is eliminated here: see whitener.h.
 namespace mgtd::calib::criticism::tests {
-
-inline constexpr int kPoseRows = sensor::kChannels + 4;
 
 struct LinearRows {
   Eigen::VectorXd residual;  ///< measured less predicted

@@ -11,7 +11,7 @@ namespace mgtd::calib::criticism::tests {
 double NoiseReference::log10_p(double S, int k, int axes) const {
   if (known) return stats::f_log10_p(S / k, k, nu);
   // The noise of the channels concerned is what they have left once the effect is taken out.
-  const double own = by_channel ? dof * axes / sensor::kChannels : dof;
+  const double own = by_channel ? dof * axes / channels : dof;
   if (!(own > k)) return 0;  // nothing would be left to tell the noise from
   const double left = own * chi2 / dof - S;
   if (!(left > 0)) return stats::f_log10_p(1e12, k, own - k);

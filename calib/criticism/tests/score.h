@@ -25,7 +25,8 @@ inline constexpr double kAbsorbed = 1e-6;
 struct NoiseReference {
   bool known{true};       ///< the noise is known from the dwells; else it is that of the residual itself, ...
   bool by_channel{true};  ///< ... channel by channel
-  double scale2{1};       ///< variance of the noise over that of the weights, where the dwells say too little
+  int channels{sensor::kChannels};
+  double scale2{1};  ///< variance of the noise over that of the weights, where the dwells say too little
   double nu{std::numeric_limits<double>::infinity()};  ///< degrees of freedom behind scale2
   double chi2{0}, dof{0};                              ///< of the residual in units of this noise
   /// The dwells say how large the noise is, and nothing contradicts them.

@@ -16,13 +16,13 @@ constexpr double kAbsorbedShare = 1e-6;
 /// One column per channel and term, in the order of SlowSums.
 Eigen::MatrixXd slow_rows(const fit::joint::JointProblem& problem) {
   const fit::joint::WanderingTerms terms = fit::joint::wandering_terms(problem);
-  const auto rows = static_cast<Eigen::Index>(problem.poses.size()) * kPoseRows;
+  const auto rows = static_cast<Eigen::Index>(problem.poses.size()) * problem.pose_rows();
   Eigen::MatrixXd out =
-      Eigen::MatrixXd::Zero(rows, terms.any() ? sensor::kChannels * fit::joint::kWanderingTerms : 0);
+      Eigen::MatrixXd::Zero(rows, terms.any() ? problem.channels() * fit::joint::kWanderingTerms : 0);
   for (std::size_t k = 0; terms.any() && k < problem.poses.size(); ++k) {
     const fit::joint::JointPose& pose = problem.poses[k];
-    for (int c = 0; c < sensor::kChannels; ++c) {
-      out.block<1, fit::joint::kWanderingTerms>(static_cast<Eigen::Index>(k) * kPoseRows + c,
+    for (int c = 0; c < problem.channels(); ++c) {
+      out.block<1, fit::joint::kWanderingTerms>(static_cast<Eigen::Index>(k) * problem.pose_rows() + c,
                                                 c * fit::joint::kWanderingTerms) =
           pose.weight[c] * terms.at(pose.t_h).transpose();
     }
@@ -50,10 +50,10 @@ fit::joint::Channels relative(const fit::joint::WanderingEstimate& estimate,
 }
 
 /// Squares of what each channel feels of a law.
-fit::joint::Channels felt(const Eigen::MatrixXd& rows) {
-  fit::joint::Channels out = fit::joint::Channels::Zero();
-  for (Eigen::Index k = 0; k < rows.rows(); k += kPoseRows)
-    out += rows.middleRows<sensor::kChannels>(k).rowwise().squaredNorm();
+fit::joint::Channels felt(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& rows) {
+  fit::joint::Channels out = fit::joint::Channels::Zero(problem.channels());
+  for (Eigen::Index k = 0; k < rows.rows(); k += problem.pose_rows())
+    out += rows.middleRows(k, problem.channels()).rowwise().squaredNorm();
   return out;
 }
 
@@ -66,7 +66,7 @@ WanderingAlternative::WanderingAlternative(const fit::joint::JointFit& bare)
       slow_(residual_.project(slow_rows(problem_)).projected),
       likelihood_(sums_of(residual_, slow_)),
       estimate_(fit::joint::estimate_wandering(likelihood_)),
-      theta_(fit::joint::Channels::Zero()) {
+      theta_(fit::joint::Channels::Zero(problem_.channels())) {
   if (!estimate_.any()) return;
   theta_ = relative(estimate_, likelihood_);
   likelihood_.climb(theta_, kClimbs);
@@ -81,14 +81,15 @@ WanderingAlternative::Ratio WanderingAlternative::ratio(const Eigen::MatrixXd& r
   const auto deviance = [&](const fit::joint::Channels& at) { return deviance_with(with, at); };
   // From rates that are too high the likelihood is climbed slowly: begin with those of the others, and with
   // none, too.
-  const fit::joint::Channels here = felt(rows);
+  const fit::joint::Channels here = felt(problem_, rows);
   fit::joint::Channels low = theta_;
   double usual = std::numeric_limits<double>::infinity();
-  for (int c = 0; c < sensor::kChannels; ++c)
+  for (Eigen::Index c = 0; c < theta_.size(); ++c)
     if (here[c] == 0 && theta_[c] > 0) usual = std::min(usual, theta_[c]);
-  for (int c = 0; c < sensor::kChannels; ++c)
+  for (Eigen::Index c = 0; c < theta_.size(); ++c)
     if (here[c] > 0) low[c] = std::isinf(usual) ? 0 : std::min(usual, theta_[c]);
-  double least = std::min({deviance(theta_), deviance(low), deviance(fit::joint::Channels::Zero())});
+  double least =
+      std::min({deviance(theta_), deviance(low), deviance(fit::joint::Channels::Zero(problem_.channels()))});
   for (fit::joint::Channels theta : {theta_, low}) {
     with.climb(theta, kClimbs);
     least = std::min(least, deviance(theta));

@@ -36,29 +36,33 @@ std::vector<Eigen::Index> order_in_time(const fit::joint::JointProblem& problem)
 
 Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
                    const fit::joint::WanderingRates& nT_per_sqrt_h)
-    : rho_(rho), order_(order_in_time(problem)), steps_(order_.size()) {
-  for (int c = 0; c < sensor::kChannels; ++c)
+    : rho_(rho),
+      channels_(problem.channels()),
+      pose_rows_(problem.pose_rows()),
+      order_(order_in_time(problem)),
+      steps_(order_.size()) {
+  for (int c = 0; c < nT_per_sqrt_h.size(); ++c)
     if (nT_per_sqrt_h[c] > 0) walking_.push_back(c);
   const auto W = static_cast<Eigen::Index>(walking_.size()), U = unknowns();
   const double fresh = 1 / std::sqrt(1 - rho * rho);
   /// What the readings of a pose, each times a factor, feel of its unknowns.
-  const auto felt = [&](Eigen::Index pose, const Eigen::Matrix<double, sensor::kChannels, 1>& factor) {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(sensor::kChannels, U);
+  const auto felt = [&](Eigen::Index pose, const sensor::FieldVector& factor) {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(channels_, U);
     for (Eigen::Index i = 0; i < W; ++i) {
       const int c = walking_[static_cast<std::size_t>(i)];
       out(c, i) = factor[c] * problem.poses[static_cast<std::size_t>(pose)].weight[c];
     }
     out.rightCols<fit::joint::kNuisances>() =
-        factor.asDiagonal() * nuisance.middleRows<sensor::kChannels>(pose * kPoseRows);
+        factor.asDiagonal() * nuisance.middleRows(pose * pose_rows_, channels_);
     return out;
   };
   Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(U, U);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     Step& step = steps_[k];
     const auto& pose = problem.poses[static_cast<std::size_t>(order_[k])];
-    step.now.setOnes();
-    step.before.setZero();
-    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + sensor::kChannels, U), mine = last;
+    step.now.setOnes(channels_);
+    step.before.setZero(channels_);
+    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + channels_, U), mine = last;
     last.topRows(U) = carried;
     if (k > 0) {
       const auto& previous = problem.poses[static_cast<std::size_t>(order_[k - 1])];
@@ -66,7 +70,7 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
         const auto both = (pose.weight.array() > 0 && previous.weight.array() > 0).cast<double>();
         step.now = 1 + both * (fresh - 1);
         step.before = -rho * fresh * both;
-        last.bottomRows<sensor::kChannels>() = felt(order_[k - 1], step.before);
+        last.bottomRows(channels_) = felt(order_[k - 1], step.before);
       }
       const double root_h = std::sqrt(std::max(0.0, pose.t_h - previous.t_h));
       for (Eigen::Index i = 0; i < W; ++i) {
@@ -78,13 +82,13 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
     } else {
       for (Eigen::Index i = 0; i < W; ++i) mine(U + i, i) = 1 / kStart_nT;
     }
-    mine.bottomRows<sensor::kChannels>() = felt(order_[k], step.now);
+    mine.bottomRows(channels_) = felt(order_[k], step.now);
     step.first = linear::triangularising_rotation(last);
     if (k > 0) log_det_ += log_det_of(step.first * last);
-    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + sensor::kChannels + fit::joint::kNuisances, U);
-    left.topRows(W + sensor::kChannels) = (step.first * mine).bottomRows(W + sensor::kChannels);
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + channels_ + fit::joint::kNuisances, U);
+    left.topRows(W + channels_) = (step.first * mine).bottomRows(W + channels_);
     left.bottomRightCorner<fit::joint::kNuisances, fit::joint::kNuisances>() =
-        nuisance.middleRows<fit::joint::kNuisances>(order_[k] * kPoseRows + sensor::kChannels);
+        nuisance.middleRows<fit::joint::kNuisances>(order_[k] * pose_rows_ + channels_);
     step.second = linear::triangularising_rotation(left);
     carried = (step.second * left).topRows(U);
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
@@ -94,26 +98,24 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
 
 Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& rows) const {
   const Eigen::Index n = rows.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * sensor::kChannels, n);
-  Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + W + sensor::kChannels, n), turned(in.rows(), n);
-  Eigen::MatrixXd left(W + kPoseRows, n), emitted(W + kPoseRows, n);
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * channels_, n);
+  Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + W + channels_, n), turned(in.rows(), n);
+  Eigen::MatrixXd left(W + pose_rows_, n), emitted(W + pose_rows_, n);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const Step& step = steps_[k];
-    const Eigen::Index row = order_[k] * kPoseRows;
+    const Eigen::Index row = order_[k] * pose_rows_;
     in.middleRows(U, W).setZero();
-    in.bottomRows<sensor::kChannels>() = step.now.asDiagonal() * rows.middleRows<sensor::kChannels>(row);
+    in.bottomRows(channels_) = step.now.asDiagonal() * rows.middleRows(row, channels_);
     if (k > 0 && rho_ != 0) {
-      in.bottomRows<sensor::kChannels>() +=
-          step.before.asDiagonal() * rows.middleRows<sensor::kChannels>(order_[k - 1] * kPoseRows);
+      in.bottomRows(channels_) +=
+          step.before.asDiagonal() * rows.middleRows(order_[k - 1] * pose_rows_, channels_);
     }
     turned.noalias() = step.first * in;
-    left.topRows(W + sensor::kChannels) = turned.bottomRows(W + sensor::kChannels);
-    left.bottomRows<fit::joint::kNuisances>() =
-        rows.middleRows<fit::joint::kNuisances>(row + sensor::kChannels);
+    left.topRows(W + channels_) = turned.bottomRows(W + channels_);
+    left.bottomRows<fit::joint::kNuisances>() = rows.middleRows<fit::joint::kNuisances>(row + channels_);
     emitted.noalias() = step.second * left;
     in.topRows(U) = emitted.topRows(U);
-    out.middleRows<sensor::kChannels>(order_[k] * sensor::kChannels) =
-        emitted.bottomRows<sensor::kChannels>();
+    out.middleRows(order_[k] * channels_, channels_) = emitted.bottomRows(channels_);
   }
   return out;
 }

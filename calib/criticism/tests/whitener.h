@@ -11,9 +11,9 @@
 /// Model of the readings' noise: of each channel first-order autoregressive over the poses in the order of
 /// time, n_k = rho n_(k-1) + sqrt(1 - rho^2) e_k; scalar and attitude are independent. Rows of pose k less
 /// rho times those of the pose before have independent noise; a sequence of orthogonal transformations then
-/// removes the nuisances, pose by pose (a banded QR). What is left are twelve rows a pose with unit
-/// independent noise, equivalent to marginalising C_k = Sigma_k + N_k Lambda N_k' exactly, for any rho.
-/// A channel whose reading was left out starts its memory anew.
+/// removes the nuisances, pose by pose (a banded QR). What is left are as many rows a pose as it
+/// has readings, with unit independent noise, equivalent to marginalising C_k = Sigma_k + N_k Lambda N_k'
+/// exactly, for any rho. A channel whose reading was left out starts its memory anew.
 ///
 /// Beside it an offset may wander (wandering.h): o_k = o_(k-1) + a sqrt(t_k - t_(k-1)) e_k. Its value at each
 /// pose is one more unknown, and each step a row of its own; both are removed in the same way, exactly.
@@ -21,14 +21,16 @@ namespace mgtd::calib::criticism::tests {
 
 class Whitener {
  public:
-  /// `nuisance` as in LinearRows. Poses are taken in the order of their times.
+  /// `nuisance` as in LinearRows; no rates: no offset wanders. Poses are taken in the order of their times.
   Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
-           const fit::joint::WanderingRates& nT_per_sqrt_h = fit::joint::WanderingRates::Zero());
+           const fit::joint::WanderingRates& nT_per_sqrt_h = {});
 
-  /// (16 P) x n rows in, (12 P) x n out, blocks of twelve in the order of the poses of the problem.
+  /// Rows as in LinearRows in; out, a block for each pose of the problem, with as many rows as it has
+  /// readings.
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& rows) const;
 
   [[nodiscard]] double rho() const { return rho_; }
+  [[nodiscard]] Eigen::Index channels() const { return channels_; }
   /// ln of the determinant of the covariance of the readings, less that of their weights.
   [[nodiscard]] double log_det() const { return log_det_; }
   [[nodiscard]] bool wanders() const { return !walking_.empty(); }
@@ -43,7 +45,7 @@ class Whitener {
     return static_cast<Eigen::Index>(walking_.size()) + fit::joint::kNuisances;
   }
   struct Step {
-    Eigen::Matrix<double, sensor::kChannels, 1> now,
+    sensor::FieldVector now,
         before;  ///< factors of this pose's readings and the last one's
     /// Rows carried over, steps of the walks and readings: takes out the unknowns of the pose before.
     Eigen::MatrixXd first;
@@ -51,6 +53,7 @@ class Whitener {
     Eigen::MatrixXd second;
   };
   double rho_;
+  Eigen::Index channels_, pose_rows_;
   std::vector<int> walking_;  ///< channels
   int rank_{0};
   double log_det_{0};

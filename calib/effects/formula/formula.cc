@@ -33,7 +33,8 @@ Result<Level> level_of(const EffectSpec& spec) {
 
 Result<Where> place_of(const EffectSpec& spec, Level level) {
   const bool site = level == Level::site;
-  if (!spec.where) return Where{.scale = site ? Where::Scale::own : Where::Scale::each_axis};
+  if (!spec.where)
+    return Where{.scale = site ? Where::Scale::own : Where::Scale::each_axis, .sensors = spec.sensors};
   if (site != (spec.where->scale == Where::Scale::own)) {
     return fail(ErrorCode::usage,
                 fmt::format("{} at level {} cannot be laid over '{}'", spec.name, to_string(level),
@@ -41,7 +42,9 @@ Result<Where> place_of(const EffectSpec& spec, Level level) {
                 site ? "leave the part after '@' out: it has one coefficient for x, y and z each"
                      : "all, each-sensor, each-axis, a sensor (s3) or an axis (s3.z)");
   }
-  return *spec.where;
+  Where out = *spec.where;
+  out.sensors = spec.sensors;
+  return out;
 }
 
 /// The formula's own number: its name, and a value or a range.

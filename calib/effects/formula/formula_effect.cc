@@ -70,7 +70,7 @@ std::string_view FormulaEffect::missing(const Pose& pose) const {
   for (const FormulaName& n : names_) {
     if (n.source == Source::column && !n.get(pose)) return n.name;
     if (n.source != Source::temperature) continue;
-    for (int sensor = 0; sensor < kSensors; ++sensor) {
+    for (int sensor = 0; sensor < scale_.sensors(); ++sensor) {
       if (!scale_.acts_on(sensor)) continue;
       if (const std::string_view column = laws::missing_temperature(pose, sensor); !column.empty())
         return column;
@@ -179,7 +179,7 @@ Result<void> FormulaEffect::check(const PoseTable& table) const {
   if (const auto ok = Effect::check(table); !ok) return ok;
   const std::vector<double> ones(kMaxActive, 1.0);
   for (const Pose& pose : table.poses) {
-    for (int sensor = 0; sensor < kSensors; ++sensor) {
+    for (int sensor = 0; sensor < static_cast<int>(pose.y_nT.size()); ++sensor) {
       Inputs in{};
       if (level_ != Level::site)
         for (std::size_t a = 0; a < 3; ++a)

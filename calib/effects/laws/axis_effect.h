@@ -42,7 +42,7 @@ class AxisEffect final : public EffectOf<AxisEffect<Law>> {
   }
 
   [[nodiscard]] std::string_view missing(const Pose& pose) const override {
-    for (int sensor = 0; sensor < kSensors; ++sensor) {
+    for (int sensor = 0; sensor < scale_.sensors(); ++sensor) {
       if (!scale_.acts_on(sensor)) continue;
       if (const std::string_view column = law_.missing(pose, sensor); !column.empty()) return column;
     }

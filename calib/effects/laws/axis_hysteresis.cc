@@ -23,17 +23,16 @@ double turning_point(const RememberedPose& pose, std::size_t k, std::size_t i, i
 
 std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>& run, double w) {
   std::unordered_map<int, PlayState> out;
-  PlayState p;
-  p.fill(Eigen::Vector3d::Zero());
+  PlayState p(run.empty() ? kSensorCount : run.front().v_nT.size(), Eigen::Vector3d::Zero());
   const auto move = [&](const SensorReadings& v_nT) {
-    for (std::size_t i = 0; i < kSensors; ++i) {
+    for (std::size_t i = 0; i < p.size(); ++i) {
       for (int a = 0; a < 3; ++a) p[i][a] = play(p[i][a], v_nT[i][a] / kReferenceField_nT, w);
     }
   };
   for (const RememberedPose& pose : run) {
     for (std::size_t k = 0; k < pose.on_the_way.size(); ++k) {
-      SensorReadings v_nT;
-      for (std::size_t i = 0; i < kSensors; ++i) {
+      SensorReadings v_nT(p.size());
+      for (std::size_t i = 0; i < p.size(); ++i) {
         for (int a = 0; a < 3; ++a) v_nT[i][a] = turning_point(pose, k, i, a);
       }
       move(v_nT);
@@ -45,7 +44,9 @@ std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>
 }
 
 void LivePlay::begin(double, const SensorReadings& v_nT) {
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  low_.resize(v_nT.size());
+  high_.resize(v_nT.size());
+  for (std::size_t i = 0; i < v_nT.size(); ++i) {
     const Eigen::Vector3d x = v_nT[i] / kReferenceField_nT;
     low_[i] = x.array() - w_;
     high_[i] = x.array() + w_;
@@ -53,7 +54,7 @@ void LivePlay::begin(double, const SensorReadings& v_nT) {
 }
 
 void LivePlay::step(double, const SensorReadings& v_nT) {
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < v_nT.size(); ++i) {
     for (int a = 0; a < 3; ++a) {
       const double x = v_nT[i][a] / kReferenceField_nT;
       low_[i][a] = play(low_[i][a], x, w_);

@@ -19,7 +19,7 @@
 namespace mgtd::calib::effects::laws {
 
 /// The play at one pose before the pose's own field has moved it, by sensor and axis.
-using PlayState = std::array<Eigen::Vector3d, kSensors>;
+using PlayState = PerSensor<Eigen::Vector3d>;
 
 /// p after x.
 [[nodiscard]] inline double play(double p, double x, double w) { return std::max(x - w, std::min(x + w, p)); }

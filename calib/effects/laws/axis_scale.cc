@@ -22,8 +22,9 @@ std::string group_of(int sensor, int axis, const Where& where, bool axes_alike) 
 
 }  // namespace
 
-AxisScale::AxisScale(const AxisCoefficients& law, const Where& where) {
-  for (int sensor = 0; sensor < kSensors; ++sensor) {
+AxisScale::AxisScale(const AxisCoefficients& law, const Where& where)
+    : at_(static_cast<std::size_t>(where.sensors)), first_(static_cast<std::size_t>(where.sensors)) {
+  for (int sensor = 0; sensor < sensors(); ++sensor) {
     const auto s = static_cast<std::size_t>(sensor);
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);

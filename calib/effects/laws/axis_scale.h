@@ -22,8 +22,8 @@ struct AxisCoefficients {
   bool axes_alike{true};
 };
 
-/// Coefficients in the order s1.x .. s4.z at the finest scale; each coefficient of a coarser scale acts where
-/// several of the finest do, so that its column is their sum.
+/// Coefficients in the order s1.x, s1.y, ... at the finest scale; each coefficient of a coarser scale acts
+/// where several of the finest do, so that its column is their sum.
 class AxisScale {
  public:
   AxisScale(const AxisCoefficients& law, const Where& where);
@@ -34,12 +34,13 @@ class AxisScale {
   [[nodiscard]] int first(int sensor, int axis) const {
     return first_[static_cast<std::size_t>(sensor)][static_cast<std::size_t>(axis)];
   }
+  [[nodiscard]] int sensors() const { return static_cast<int>(at_.size()); }
   [[nodiscard]] bool acts_on(int sensor) const { return !at(sensor).empty(); }
 
  private:
   std::vector<Coefficient> coefficients_;
-  std::array<std::vector<int>, kSensors> at_;
-  std::array<std::array<int, 3>, kSensors> first_{};
+  PerSensor<std::vector<int>> at_;
+  PerSensor<std::array<int, 3>> first_;
 };
 
 }  // namespace mgtd::calib::effects::laws

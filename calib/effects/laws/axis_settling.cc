@@ -13,7 +13,7 @@ void LiveSettling::begin(double t_s, const SensorReadings& v_nT) {
 
 void LiveSettling::step(double dt_s, const SensorReadings& v_nT) {
   const double left = std::exp(-dt_s / tau_s_);
-  for (std::size_t i = 0; i < kSensors; ++i) z_nT_[i] = v_nT[i] + left * (z_nT_[i] - v_nT[i]);
+  for (std::size_t i = 0; i < z_nT_.size(); ++i) z_nT_[i] = v_nT[i] + left * (z_nT_[i] - v_nT[i]);
 }
 
 std::pair<Settling, std::shared_ptr<LiveMemory>> Settling::live() const {
@@ -34,7 +34,7 @@ class Slow {
     const double dt_s = t_s - t_s_;
     if (!(dt_s > 0)) return;
     const double left = std::exp(-dt_s / tau_s_);
-    for (std::size_t i = 0; i < kSensors; ++i) {
+    for (std::size_t i = 0; i < z_nT_.size(); ++i) {
       const Eigen::Vector3d lag_nT = (v_nT[i] - v_nT_[i]) * (tau_s_ / dt_s);
       z_nT_[i] = v_nT[i] - lag_nT + left * (z_nT_[i] - v_nT_[i] + lag_nT);
     }

@@ -16,7 +16,7 @@ ThermalBending::ThermalBending(const Where& where)
     : PlatformEffect({{"x", "y", "z"}, "arcsec/degC", 5, where}) {}
 
 std::string_view ThermalBending::missing(const Pose& pose) const {
-  for (int sensor = 0; sensor < kSensors; ++sensor) {
+  for (int sensor = 0; sensor < scale().where().sensors; ++sensor) {
     if (at(sensor).empty()) continue;
     if (const auto column = missing_temperature(pose, sensor); !column.empty()) return column;
   }

@@ -11,7 +11,7 @@
 ///     platform.flexure          omega_i = S_i g, g unit gravity, platform frame     deg, 3 x 3 a sensor
 ///     platform.thermal-bending  omega_i = w_i (T_i - T0)                            arcsec/degC, 3 a sensor
 ///
-/// A turn that all four sensors make together is a turn of the table: only its angles speak against it. One
+/// A turn that all sensors make together is a turn of the table: only its angles speak against it. One
 /// such turn nothing speaks against: S_i = 1 for all turns the array about the vertical, which is another
 /// declination of the field. A prior of 0.1 deg on each element of S holds it.
 namespace mgtd::calib::effects::laws {

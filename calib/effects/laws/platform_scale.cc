@@ -7,8 +7,8 @@ namespace mgtd::calib::effects::laws {
 
 PlatformScale::PlatformScale(const std::vector<std::string>& names, const char* unit, double typical,
                              const Where& where, double prior_sd)
-    : where_(where) {
-  for (int sensor = 0; sensor < kSensors; ++sensor) {
+    : where_(where), at_(static_cast<std::size_t>(where.sensors)) {
+  for (int sensor = 0; sensor < where.sensors; ++sensor) {
     if (where.scale == Where::Scale::sensor && sensor != where.sensor) continue;
     for (const std::string& name : names) {
       at_[static_cast<std::size_t>(sensor)].push_back(static_cast<int>(coefficients_.size()));

@@ -9,7 +9,7 @@
 #include "calib/effects/where.h"
 
 /// The coefficients of an effect that is a vector or a matrix of each sensor: the same list for every sensor,
-/// "s3.x", for one sensor or for the four.
+/// "s3.x", for one sensor or for all.
 namespace mgtd::calib::effects::laws {
 
 class PlatformScale {
@@ -25,7 +25,7 @@ class PlatformScale {
  private:
   Where where_;
   std::vector<Coefficient> coefficients_;
-  std::array<std::vector<int>, kSensors> at_;
+  PerSensor<std::vector<int>> at_;
 };
 
 }  // namespace mgtd::calib::effects::laws

@@ -10,9 +10,12 @@
 
 namespace mgtd::calib::effects::laws {
 
-TabletopMagnet::TabletopMagnet(std::vector<int> mounts) : mounts_(std::move(mounts)) {
+TabletopMagnet::TabletopMagnet(std::vector<int> mounts, int sensors)
+    : mounts_(std::move(mounts)),
+      all_(static_cast<std::size_t>(sensors)),
+      of_mount_(static_cast<std::size_t>(sensors)) {
   for (std::size_t m = 1; m < mounts_.size(); ++m) {
-    for (int sensor = 0; sensor < kSensors; ++sensor) {
+    for (int sensor = 0; sensor < sensors; ++sensor) {
       const auto s = static_cast<std::size_t>(sensor);
       for (int axis = 0; axis < 3; ++axis) {
         const auto index = static_cast<int>(coefficients_.size());
@@ -44,7 +47,8 @@ Result<std::shared_ptr<const Effect>> TabletopMagnet::bound(const EffectContext&
                     found.size()),
         "turn or tilt the array on the table, measure again, and number the mountings");
   }
-  return std::make_shared<const TabletopMagnet>(std::vector<int>(found.begin(), found.end()));
+  return std::make_shared<const TabletopMagnet>(std::vector<int>(found.begin(), found.end()),
+                                                context.sensors());
 }
 
 std::span<const int> TabletopMagnet::at(int sensor) const { return all_[static_cast<std::size_t>(sensor)]; }

@@ -17,7 +17,7 @@ namespace mgtd::calib::effects::laws {
 class TabletopMagnet final : public EffectOf<TabletopMagnet> {
  public:
   /// `mounts` without repetition; empty: those of the run it is bound to.
-  explicit TabletopMagnet(std::vector<int> mounts);
+  TabletopMagnet(std::vector<int> mounts, int sensors);
   [[nodiscard]] std::string_view name() const override { return "platform.tabletop-magnet"; }
   [[nodiscard]] std::string spec() const override;
   [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
@@ -37,8 +37,8 @@ class TabletopMagnet final : public EffectOf<TabletopMagnet> {
  private:
   std::vector<int> mounts_;
   std::vector<Coefficient> coefficients_;
-  std::array<std::vector<int>, kSensors> all_;
-  std::array<std::map<int, std::vector<int>>, kSensors> of_mount_;
+  PerSensor<std::vector<int>> all_;
+  PerSensor<std::map<int, std::vector<int>>> of_mount_;
 };
 
 }  // namespace mgtd::calib::effects::laws

@@ -28,22 +28,23 @@ std::optional<Eigen::MatrixXd> readings_by_angles(const PoseTable& table) {
   }
   if (known.size() <= kElements) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(known.size());
-  Eigen::MatrixXd A(n, kElements), y(n, sensor::kChannels);
+  Eigen::MatrixXd A(n, kElements), y(n, 3 * static_cast<Eigen::Index>(table.poses.front().y_nT.size()));
   for (Eigen::Index k = 0; k < n; ++k) {
     const Pose& pose = *known[static_cast<std::size_t>(k)];
     A.row(k) = elements(*pose.angles());
-    for (int i = 0; i < kSensors; ++i) y.row(k).segment<3>(3 * i) = pose.y_nT[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < pose.y_nT.size(); ++i)
+      y.row(k).segment<3>(3 * static_cast<Eigen::Index>(i)) = pose.y_nT[i];
   }
   return A.completeOrthogonalDecomposition().solve(y);
 }
 
 SensorReadings offsets_of(const PoseTable& table) {
-  SensorReadings out;
+  SensorReadings out(table.poses.front().y_nT.size());
   const auto n = static_cast<Eigen::Index>(table.poses.size());
   Eigen::VectorXd f(n);
   for (Eigen::Index k = 0; k < n; ++k)
     f[k] = table.poses[static_cast<std::size_t>(k)].f_nT.value_or(kReferenceField_nT);
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
     Eigen::Matrix3Xd y(3, n);
     for (Eigen::Index k = 0; k < n; ++k) y.col(k) = table.poses[static_cast<std::size_t>(k)].y_nT[i];
     const auto start = sensor::sensor_start(y, f);
@@ -54,8 +55,8 @@ SensorReadings offsets_of(const PoseTable& table) {
 }
 
 SensorReadings less(const SensorReadings& y_nT, const SensorReadings& offset_nT) {
-  SensorReadings out;
-  for (std::size_t i = 0; i < kSensors; ++i) out[i] = y_nT[i] - offset_nT[i];
+  SensorReadings out(y_nT.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = y_nT[i] - offset_nT[i];
   return out;
 }
 
@@ -75,9 +76,9 @@ Result<std::vector<RememberedPose>> run_memory(const EffectContext& context) {
         .pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}, .way_s = {}};
     for (; by_angles && pose.t_s && point != table.path.end() && point->t_s < *pose.t_s; ++point) {
       const Eigen::RowVectorXd y = elements(point->angles) * *by_angles;
-      SensorReadings readings;
-      for (int i = 0; i < kSensors; ++i)
-        readings[static_cast<std::size_t>(i)] = y.segment<3>(3 * i).transpose();
+      SensorReadings readings(offset_nT.size());
+      for (std::size_t i = 0; i < readings.size(); ++i)
+        readings[i] = y.segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
       remembered.on_the_way.push_back(less(readings, offset_nT));
       remembered.way_s.push_back(point->t_s);
     }

@@ -21,7 +21,7 @@ namespace mgtd::calib::effects::laws {
 /// What Effect::missing says of a pose that is not in the run an effect is bound to.
 inline constexpr std::string_view kNoMemory = "the readings before";
 
-using SensorReadings = std::array<Eigen::Vector3d, kSensors>;
+using SensorReadings = PerSensor<Eigen::Vector3d>;
 
 struct RememberedPose {
   int pose{0};                             ///< number

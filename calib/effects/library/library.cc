@@ -28,21 +28,42 @@ Result<EffectPtr> make_effect(std::string_view text) {
   return make_effect(*spec);
 }
 
+Result<EffectPtr> make_effect(std::string_view text, int sensors) {
+  auto spec = EffectSpec::parse(text);
+  if (!spec) return tl::unexpected(spec.error());
+  spec->sensors = sensors;
+  return make_effect(*spec);
+}
+
 Result<EffectPtr> make_effect(const EffectSpec& spec, const EffectContext& context) {
-  auto effect = make_effect(spec);
+  EffectSpec of_array = spec;
+  of_array.sensors = context.sensors();
+  auto effect = make_effect(of_array);
   if (!effect) return effect;
   auto bound = (*effect)->bound(context);
   if (!bound) return tl::unexpected(bound.error());
   return *bound ? *bound : *effect;
 }
 
+namespace {
+
+/// An effect is made before the array is known, for the cross; here it is made anew where that is another.
+Result<EffectPtr> laid_over(const EffectPtr& effect, int sensors) {
+  if (sensors == kSensors) return effect;
+  return make_effect(effect->spec(), sensors);
+}
+
+}  // namespace
+
 Result<std::vector<EffectPtr>> bound_to_run(const std::vector<EffectPtr>& effects,
                                             const EffectContext& context) {
   std::vector<EffectPtr> out;
-  for (const EffectPtr& effect : effects) {
-    auto bound = effect->bound(context);
+  for (const EffectPtr& given : effects) {
+    auto effect = laid_over(given, context.sensors());
+    if (!effect) return tl::unexpected(effect.error());
+    auto bound = (*effect)->bound(context);
     if (!bound) return tl::unexpected(bound.error());
-    out.push_back(*bound ? std::move(*bound) : effect);
+    out.push_back(*bound ? std::move(*bound) : *std::move(effect));
   }
   return out;
 }

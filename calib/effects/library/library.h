@@ -17,6 +17,8 @@ namespace mgtd::calib::effects::library {
 /// have.
 [[nodiscard]] Result<EffectPtr> make_effect(std::string_view spec);
 [[nodiscard]] Result<EffectPtr> make_effect(const EffectSpec& spec);
+/// Laid over an array of so many sensors; without the number it is that of the cross, or of the run.
+[[nodiscard]] Result<EffectPtr> make_effect(std::string_view spec, int sensors);
 /// The same, bound to a run.
 [[nodiscard]] Result<EffectPtr> make_effect(const EffectSpec& spec, const EffectContext& context);
 /// Effects as they are on one run (Effect::bound), those that do not care unchanged.

@@ -16,7 +16,7 @@ Result<void> absorbed(std::string_view name) {
 
 Crosstalk::Crosstalk(double baseline_m) : baseline_m_(baseline_m) {
   constexpr double kCubicCentimetre_m3 = 1e-6;
-  const auto r = sensor::Geometry{baseline_m}.positions_P_m();
+  const auto r = sensor::Geometry(baseline_m).positions_P_m();
   for (std::size_t i = 0; i < kSensors; ++i) {
     coefficients_.push_back({.name = sensor_name(static_cast<int>(i)), .unit = "cm^3", .typical = 3});
     for (std::size_t j = 0; j < kSensors; ++j) {

@@ -52,7 +52,7 @@ class Crosstalk final : public EffectOf<Crosstalk> {
   [[nodiscard]] std::string spec() const override;
   [[nodiscard]] Level level() const override { return Level::platform; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
-  [[nodiscard]] std::span<const int> at(int) const override { return all_; }
+  [[nodiscard]] std::span<const int> at(int) const override { return {all_.data(), all_.size()}; }
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
   [[nodiscard]] Result<void> check(const PoseTable&) const override { return absorbed(name()); }
   template <class S>
@@ -71,8 +71,8 @@ class Crosstalk final : public EffectOf<Crosstalk> {
  private:
   double baseline_m_;
   std::vector<Coefficient> coefficients_;
-  std::array<int, kSensors> all_{0, 1, 2, 3};
-  std::array<std::array<Eigen::Matrix3d, kSensors>, kSensors> coupling_;  ///< per cm^3
+  PerSensor<int> all_{0, 1, 2, 3};
+  PerSensor<PerSensor<Eigen::Matrix3d>> coupling_;  ///< per cm^3
 };
 
 }  // namespace mgtd::calib::effects::library

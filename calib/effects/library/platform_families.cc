@@ -46,7 +46,7 @@ Result<EffectPtr> tabletop_magnet(const EffectSpec& spec) {
       mounts.push_back(static_cast<int>(*mount));
     }
   }
-  return std::make_shared<const laws::TabletopMagnet>(std::move(mounts));
+  return std::make_shared<const laws::TabletopMagnet>(std::move(mounts), spec.sensors);
 }
 
 template <class E>

@@ -47,14 +47,14 @@ Check mounting_check(const FitReport& r) {
   double worst = 0;
   std::size_t which = 0;
   std::vector<std::size_t> mirrored;
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < r.calibration.sensors.size(); ++i) {
     const sensor::SensorModel& s = r.calibration.sensors[i];
     const Eigen::Matrix3d turn = s.R_PS() * s.mounting.transpose();
     const double angle = std::acos(std::clamp((turn.trace() - 1) / 2, -1.0, 1.0));
     if (angle > worst) worst = angle, which = i;
     if (s.mounting.determinant() < 0) mirrored.push_back(i + 1);
   }
-  const bool tie = 2 * mirrored.size() == kSensors;
+  const bool tie = 2 * mirrored.size() == r.calibration.sensors.size();
   return {
       "mounting", worst <= kMaxTurn_rad && mirrored.empty(),
       tie ? fmt::format("two sensors are mirror images of the other two: which are right-handed cannot be "

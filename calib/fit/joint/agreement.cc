@@ -48,7 +48,7 @@ Scatter scatter_of(const JointFit& fit) {
   Scatter out;
   const PoseResiduals residuals = pose_residuals(fit.problem, fit.state);
   double squares = 0, count = 0, typical = 0;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (int c = 0; c < fit.problem.channels(); ++c) {
     std::vector<double> misfits;
     for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
       const double t = residuals.t(c, static_cast<Eigen::Index>(k));
@@ -58,7 +58,7 @@ Scatter scatter_of(const JointFit& fit) {
     for (const double x : misfits) squares += x * x, ++count;
     const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
     std::nth_element(misfits.begin(), middle, misfits.end());
-    typical += std::pow(stats::kMadToSd * *middle, 2) / sensor::kChannels;
+    typical += std::pow(stats::kMadToSd * *middle, 2) / fit.problem.channels();
   }
   out.residual_nT = std::sqrt(squares / std::max(1.0, count));
   out.typical_nT = std::sqrt(typical);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ double median(std::vector<double> values) {
 }
 
 /// "s2", "s1, s2 and s4", "all sensors".
-std::string sensors_text(const std::vector<std::size_t>& which) {
-  if (which.size() == kSensorCount) return "all sensors";
+std::string sensors_text(const std::vector<std::size_t>& which, std::size_t of) {
+  if (which.size() == of && of > 1) return "all sensors";
   std::vector<std::string> names;
   for (const std::size_t i : which) names.push_back(fmt::format("s{}", i + 1));
   if (names.size() == 1) return names.front();
@@ -77,10 +78,11 @@ double field_of(const JointProblem& problem, double f_nT) {
   return median(std::move(fields));
 }
 
-tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, double size_nT, Unit unit) {
+tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, std::size_t of, double size_nT,
+                                 Unit unit) {
   return fail(ErrorCode::bad_input,
               fmt::format("the readings of {} look like {}: {:.4g} in the middle pose, in columns of nT",
-                          sensors_text(which), unit.name, size_nT),
+                          sensors_text(which, of), unit.name, size_nT),
               fmt::format("multiply these columns (and their _sd_nT) by {}", unit.factor));
 }
 
@@ -88,9 +90,10 @@ tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, double s
 
 Result<void> check_units(const JointProblem& problem, double f_nT) {
   const double field = field_of(problem, f_nT);
-  std::array<double, kSensorCount> size{};
-  for (std::size_t i = 0; i < kSensorCount; ++i) size[i] = size_of(problem, i);
-  const std::vector<std::size_t> all{0, 1, 2, 3};
+  PerSensor<double> size(problem.geometry.sensors());
+  for (std::size_t i = 0; i < size.size(); ++i) size[i] = size_of(problem, i);
+  std::vector<std::size_t> all(size.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   // The total field alone is off: it is the reference that has another unit.
   const bool earthly = *least > 1e4 && *most < 1e5;
@@ -108,16 +111,17 @@ Result<void> check_units(const JointProblem& problem, double f_nT) {
     unit = own;
     off.push_back(i);
   }
-  if (!off.empty()) return wrong_unit(off, size[off.front()], unit);
+  if (!off.empty()) return wrong_unit(off, all.size(), size[off.front()], unit);
   if (problem.common_field && *least > kFewest_nT && *most < kMost_nT)
-    return wrong_unit(all, *most, {"uT", "1000"});
+    return wrong_unit(all, all.size(), *most, {"uT", "1000"});
   return {};
 }
 
 Result<void> check_copies(const JointProblem& problem) {
-  for (std::size_t first = 0; first < kSensorCount; ++first) {
+  const std::size_t sensors = problem.geometry.sensors();
+  for (std::size_t first = 0; first < sensors; ++first) {
     std::vector<std::size_t> copies;
-    for (std::size_t i = first + 1; i < kSensorCount; ++i) {
+    for (std::size_t i = first + 1; i < sensors; ++i) {
       const auto same = std::count_if(problem.poses.begin(), problem.poses.end(), [&](const JointPose& p) {
         return p.y_nT.segment<3>(3 * static_cast<Eigen::Index>(i)) ==
                p.y_nT.segment<3>(3 * static_cast<Eigen::Index>(first));
@@ -128,18 +132,18 @@ Result<void> check_copies(const JointProblem& problem) {
     if (copies.empty()) continue;
     return fail(ErrorCode::bad_input,
                 fmt::format("{} {} digit for digit what s{} reads: one sensor was copied, four are needed",
-                            sensors_text(copies), copies.size() == 1 ? "reads" : "read", first + 1),
+                            sensors_text(copies, sensors), copies.size() == 1 ? "reads" : "read", first + 1),
                 "look at what fills the columns of these sensors: a port or a column was taken twice");
   }
   return {};
 }
 
-Result<void> check_turned_together(const std::array<Eigen::Matrix3Xd, kSensorCount>& b_nT,
-                                   const std::array<Eigen::Matrix3d, kSensorCount>& to_first) {
+Result<void> check_turned_together(const PerSensor<Eigen::Matrix3Xd>& b_nT,
+                                   const PerSensor<Eigen::Matrix3d>& to_first) {
   const Eigen::Matrix3Xd reference = b_nT[0].colwise().normalized();
   std::vector<std::size_t> apart;
   double worst_rad = 0;
-  for (std::size_t i = 1; i < kSensorCount; ++i) {
+  for (std::size_t i = 1; i < b_nT.size(); ++i) {
     const Eigen::Matrix3Xd own = to_first[i] * b_nT[i].colwise().normalized();
     std::vector<double> angles;
     for (Eigen::Index k = 0; k < own.cols(); ++k)
@@ -153,7 +157,7 @@ Result<void> check_turned_together(const std::array<Eigen::Matrix3Xd, kSensorCou
       ErrorCode::bad_input,
       fmt::format("{} did not turn together with s1: in the middle pose no fixed mounting brings the "
                   "directions in which they saw the field closer than {:.0f} deg (limit {:.0f})",
-                  sensors_text(apart), to_deg(worst_rad), to_deg(kTurnedApart_rad)),
+                  sensors_text(apart, b_nT.size()), to_deg(worst_rad), to_deg(kTurnedApart_rad)),
       "the four readings of a pose belong to one attitude of one platform: look whether rows or columns of "
       "the table were mixed up, or whether the sensors were turned one by one");
 }

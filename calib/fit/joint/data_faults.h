@@ -24,8 +24,7 @@ namespace mgtd::calib::fit::joint {
 /// Sensors that did not turn together: no fixed turn brings the directions in which they saw the field
 /// together, pose by pose. `b_nT`: of each sensor, corrected for itself, in its own frame; `to_first` turns
 /// them into that of sensor 1.
-[[nodiscard]] Result<void> check_turned_together(
-    const std::array<Eigen::Matrix3Xd, static_cast<std::size_t>(kSensors)>& b_nT,
-    const std::array<Eigen::Matrix3d, static_cast<std::size_t>(kSensors)>& to_first);
+[[nodiscard]] Result<void> check_turned_together(const PerSensor<Eigen::Matrix3Xd>& b_nT,
+                                                 const PerSensor<Eigen::Matrix3d>& to_first);
 
 }  // namespace mgtd::calib::fit::joint

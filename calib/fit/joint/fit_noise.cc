@@ -54,16 +54,16 @@ void settle(FitNoise& noise, JointProblem& problem, JointState& state) {
 }
 
 calibration::AxisNoise assumed_noise(const JointProblem& problem) {
-  Eigen::Array<double, sensor::kChannels, 1> squares = Eigen::Array<double, sensor::kChannels, 1>::Zero();
-  Eigen::Array<double, sensor::kChannels, 1> count = squares;
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(problem.channels());
+  Eigen::ArrayXd count = squares;
   for (const JointPose& pose : problem.poses) {
-    for (int c = 0; c < sensor::kChannels; ++c) {
+    for (int c = 0; c < problem.channels(); ++c) {
       if (!(pose.weight[c] > 0)) continue;
       squares[c] += 1 / (pose.weight[c] * pose.weight[c]);
       ++count[c];
     }
   }
-  return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(kSensors, 3);
+  return (squares / count.max(1)).sqrt().matrix().reshaped<Eigen::RowMajor>(problem.sensors(), 3);
 }
 
 }  // namespace mgtd::calib::fit::joint

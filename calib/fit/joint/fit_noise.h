@@ -14,13 +14,13 @@ namespace mgtd::calib::fit::joint {
 inline constexpr double kNoiseFloor_nT = 1e-4;
 
 struct FitNoise {
-  calibration::AxisNoise pose_nT{
-      calibration::AxisNoise::Constant(kStartNoise_nT)};  ///< of a pose mean, where no dwell tells it
-  std::optional<calibration::AxisNoise> sample_nT{};      ///< of a sample, where the dwells do
+  calibration::AxisNoise pose_nT{calibration::AxisNoise::Constant(
+      kSensors, 3, kStartNoise_nT)};                  ///< of a pose mean, where no dwell tells it
+  std::optional<calibration::AxisNoise> sample_nT{};  ///< of a sample, where the dwells do
   double table_sd_rad{0};
   double noise_inflation{1};  ///< JointOptions::noise_inflation
   /// Beside the dwells' own, nT^2: of the digitiser's step, and what JointOptions adds.
-  Channels more_nT2{Channels::Zero()};
+  Channels more_nT2;
 
   /// Weighs the poses; what was left out or loosened has to be left out or loosened again.
   void apply(JointProblem& problem) const;

@@ -24,9 +24,10 @@ constexpr double kNamedShare = 0.8;  ///< of a direction's square that its descr
 /// nT of corrected field per unit of each slot.
 Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
   Eigen::VectorXd d = Eigen::VectorXd::Constant(problem.fixed(), f_nT);
-  for (int i = 0; i < kSensors; ++i) d.segment<3>(sensor::kSensorParameters * i + sensor::ix).setOnes();
-  d[kFieldSlot] = 1;
-  int slot = kEffectSlot;
+  for (int i = 0; i < problem.sensors(); ++i)
+    d.segment<3>(sensor::kSensorParameters * i + sensor::ix).setOnes();
+  d[problem.slots().field()] = 1;
+  int slot = problem.slots().effects();
   for (const effects::EffectPtr& effect : problem.effects) {
     // An effect of its typical size counts as ten nanotesla: what makes it worth a place in the model.
     for (const effects::Coefficient& c : effect->coefficients()) d[slot++] = 10 / c.typical;
@@ -34,30 +35,32 @@ Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
   return d;
 }
 
-/// Orthonormal basis of the common small rotations of all four sensors, nT units, with the site direction
+/// Orthonormal basis of the common small rotations of all sensors, nT units, with the site direction
 /// left free.
 Eigen::MatrixXd common_rotation(const JointProblem& problem, const Eigen::VectorXd& d) {
   Eigen::MatrixXd q = Eigen::MatrixXd::Zero(problem.fixed(), 5);
-  for (int i = 0; i < kSensors; ++i) {
+  for (int i = 0; i < problem.sensors(); ++i) {
     for (int j = 0; j < 3; ++j) q(sensor::kSensorParameters * i + sensor::alpha + j, j) = d[sensor::alpha];
   }
-  q(kSiteSlot, 3) = q(kSiteSlot + 1, 4) = 1;
+  const int site = problem.slots().site();
+  q(site, 3) = q(site + 1, 4) = 1;
   return linear::orthonormal(q);
 }
 
-/// What a slot is called: sensor by sensor for a parameter's index alone, `all` for the four together.
+/// What a slot is called: sensor by sensor for a parameter's index alone, `all` for all sensors together.
 std::string slot_name(const JointProblem& problem, int slot, bool all) {
   static constexpr std::array<const char*, sensor::kSensorParameters> kWords{
       "angle theta (x-y)", "angle phi (x-z)", "angle psi (y-z)", "scale x",    "scale y",   "scale z",
       "offset x",          "offset y",        "offset z",        "tilt alpha", "tilt beta", "turn gamma"};
-  if (slot < kSensorBlock) {
+  const FixedSlots slots = problem.slots();
+  if (slot < slots.sensor_block()) {
     const char* word = kWords[static_cast<std::size_t>(slot % sensor::kSensorParameters)];
     return all ? fmt::format("{} of all sensors", word)
                : fmt::format("s{} {}", slot / sensor::kSensorParameters + 1, word);
   }
-  if (slot < kFieldSlot) return "direction of the site's field";
-  if (slot == kFieldSlot) return "strength of the field";
-  int at = kEffectSlot;
+  if (slot < slots.field()) return "direction of the site's field";
+  if (slot == slots.field()) return "strength of the field";
+  int at = slots.effects();
   for (const effects::EffectPtr& effect : problem.effects) {
     for (const effects::Coefficient& c : effect->coefficients()) {
       if (at++ == slot) return fmt::format("{} {}", effect->name(), c.name);
@@ -72,19 +75,19 @@ struct NamedShare {
 };
 
 /// A direction by parameters: one that lies in a single sensor keeps its sensor, others are named for all
-/// four.
+/// sensors.
 std::vector<NamedShare> parts(const JointProblem& problem, const Eigen::VectorXd& v) {
   std::vector<NamedShare> out;
   for (int p = 0; p < sensor::kSensorParameters; ++p) {
-    Eigen::Vector4d share;
-    for (int i = 0; i < kSensors; ++i)
+    Eigen::VectorXd share(problem.sensors());
+    for (int i = 0; i < problem.sensors(); ++i)
       share[i] = v[sensor::kSensorParameters * i + p] * v[sensor::kSensorParameters * i + p];
     Eigen::Index most = 0;
     const bool one = share.maxCoeff(&most) > kNamedShare * share.sum();
     out.push_back(
         {slot_name(problem, sensor::kSensorParameters * static_cast<int>(most) + p, !one), share.sum()});
   }
-  for (int slot = kSensorBlock; slot < v.size(); ++slot)
+  for (int slot = problem.slots().sensor_block(); slot < v.size(); ++slot)
     out.push_back({slot_name(problem, slot, false), v[slot] * v[slot]});
   std::sort(out.begin(), out.end(),
             [](const NamedShare& a, const NamedShare& b) { return a.share > b.share; });
@@ -109,7 +112,7 @@ FieldCoverage field_coverage(const JointProblem& problem, const JointState& stat
   std::vector<Eigen::Vector3d> directions;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < kSensors; ++i)
+    for (std::size_t i = 0; i < state.sensors.size(); ++i)
       b += state.sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i)));
     directions.push_back(b.normalized());
   }
@@ -196,9 +199,10 @@ Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& st
   at.nuisances = {Nuisance(0, 0, 0, f_nT)};
   if (!pose.has_angles) at.nuisances.front().head<3>() = pose.T * state.direction * f_nT;
   Eigen::MatrixXd S = reduce(one, at, 0).S;
+  const FixedSlots at_slot = problem.slots();
   // What reduce holds because nothing observes it is no information.
-  if (!problem.common_field) S(kFieldSlot, kFieldSlot) = 0;
-  if (!problem.has_angles) S(kSiteSlot, kSiteSlot) = S(kSiteSlot + 1, kSiteSlot + 1) = 0;
+  if (!problem.common_field) S(at_slot.field(), at_slot.field()) = 0;
+  if (!problem.has_angles) S(at_slot.site(), at_slot.site()) = S(at_slot.site() + 1, at_slot.site() + 1) = 0;
   return S;
 }
 

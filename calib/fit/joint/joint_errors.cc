@@ -12,15 +12,16 @@ namespace mgtd::calib::fit::joint {
 namespace {
 
 struct ErrorSums {
-  Eigen::Vector4d field{Eigen::Vector4d::Zero()};
+  Eigen::VectorXd field;
   Eigen::Matrix<double, 6, 1> tensor{Eigen::Matrix<double, 6, 1>::Zero()};
   PoseResiduals residuals;
-  Eigen::Vector4d fields{Eigen::Vector4d::Zero()};
+  Eigen::VectorXd fields;
   double tensors{0};
 
   [[nodiscard]] JointErrors errors(FixedBlock block) const {
     JointErrors out;
-    for (int i = 0; i < kSensors; ++i)
+    out.summary.total_field_rmse_nT.resize(static_cast<std::size_t>(field.size()));
+    for (Eigen::Index i = 0; i < field.size(); ++i)
       out.summary.total_field_rmse_nT[static_cast<std::size_t>(i)] =
           std::sqrt(field[i] / std::max(1.0, fields[i]));
     const Eigen::Matrix<double, 6, 1> g = (tensor / std::max(1.0, tensors)).cwiseSqrt();
@@ -34,6 +35,7 @@ void add(const JointProblem& problem, const JointState& state, ErrorSums& sums) 
   const calibration::ArrayModel array(state.sensors, problem.geometry, problem.effects, state.coefficients);
   const auto rows = calibration::gradient_rows(problem.geometry);
   const Counted counts = counted(problem);
+  if (sums.field.size() == 0) sums.field = sums.fields = Eigen::VectorXd::Zero(problem.sensors());
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const JointPose& pose = problem.poses[k];
     const Nuisance& x = state.nuisances[k];
@@ -44,13 +46,15 @@ void add(const JointProblem& problem, const JointState& state, ErrorSums& sums) 
     if (R) b -= array.site_field(at, *R);
     const double f = problem.common_field ? state.f_nT : pose.f_nT;
     const auto at_pose = static_cast<Eigen::Index>(k);
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < problem.sensors(); ++i) {
       if (!counts.field(i, at_pose)) continue;
       sums.field[i] += std::pow(b.segment<3>(3 * i).norm() - f, 2);
       ++sums.fields[i];
     }
     if (!counts.tensor[at_pose]) continue;
-    sums.tensor += (rows * b).cwiseAbs2();
+    sums.tensor += sensor::over_channels(b.size(), [&](auto n) -> Eigen::Matrix<double, 6, 1> {
+      return (rows.leftCols(n) * b.head(n)).cwiseAbs2();
+    });
     ++sums.tensors;
   }
   const PoseResiduals more = pose_residuals(problem, state);
@@ -80,11 +84,12 @@ ProblemPart part(const JointFit& fit, std::size_t from, std::size_t to, bool ins
 
 Counted counted(const JointProblem& problem) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  Counted out{.field = decltype(Counted::field)(kSensors, n), .tensor = decltype(Counted::tensor)(n)};
+  Counted out{.field = decltype(Counted::field)(problem.sensors(), n),
+              .tensor = decltype(Counted::tensor)(n)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
     out.tensor[k] = true;
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < problem.sensors(); ++i) {
       const bool there = pose.weight.segment<3>(3 * i).minCoeff() > 0;
       out.field(i, k) = there && pose.f_weight > 0;
       out.tensor[k] = out.tensor[k] && there;

@@ -28,8 +28,8 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
   fit.chi2 = (reduced.cost.readings + reduced.cost.scalar) * fit.noise_inflation * fit.noise_inflation;
   fit.chi2_table = reduced.cost.attitude;
   fit.dof_table = residuals.attitude_freedom;
-  double unknowns =
-      kSensorBlock + problem.coefficients() + (problem.common_field ? 1 : 0) + (problem.has_angles ? 2 : 0);
+  double unknowns = problem.slots().sensor_block() + problem.coefficients() + (problem.common_field ? 1 : 0) +
+                    (problem.has_angles ? 2 : 0);
   double observed = residuals.readings + residuals.scalars + fit.gauge.constraints +
                     (problem.has_angles && problem.known_inclination_rad ? 1 : 0) +
                     (problem.has_angles && problem.known_declination_rad ? 1 : 0);
@@ -56,11 +56,11 @@ Eigen::MatrixXd widened_information(const JointFit& fit) {
   return reduce(wide, fit.state, 0).S;
 }
 
-/// Of the mean alpha, beta and gamma of the four sensors.
-std::array<double, 3> common_rotation_sd(const Eigen::MatrixXd& covariance) {
+/// Of the mean alpha, beta and gamma of all sensors.
+std::array<double, 3> common_rotation_sd(int sensors, const Eigen::MatrixXd& covariance) {
   const auto sd = [&](int parameter) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(covariance.rows());
-    for (int i = 0; i < kSensors; ++i) row[sensor::kSensorParameters * i + parameter] = 1.0 / kSensors;
+    for (int i = 0; i < sensors; ++i) row[sensor::kSensorParameters * i + parameter] = 1.0 / sensors;
     return std::sqrt(linear::propagated_variance(row, covariance));
   };
   return {sd(sensor::alpha), sd(sensor::beta), sd(sensor::gamma)};
@@ -84,7 +84,9 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   noise.sample_nT = sample_noise(table);
   noise.table_sd_rad = options.table_sd_rad;
   fit.quantisation = quantisation_of(table);
-  noise.more_nT2 = options.more_nT2 + fit.quantisation.variance_nT2.reshaped<Eigen::RowMajor>().matrix();
+  noise.pose_nT.setConstant(fit.problem.sensors(), 3, kStartNoise_nT);
+  noise.more_nT2 = fit.quantisation.variance_nT2.reshaped<Eigen::RowMajor>().matrix();
+  if (options.more_nT2.size() > 0) noise.more_nT2 += options.more_nT2;
   fit.noise_inflation = noise.noise_inflation = noise.sample_nT ? options.noise_inflation : 1;
   for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.noise_inflation;
   const double most = most_left_out(fit.problem, options);
@@ -108,7 +110,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : std::move(reduced.S));
   if (!covariance) return tl::unexpected(covariance.error());
   fit.covariance = *std::move(covariance);
-  fit.common_rotation_sd_rad = common_rotation_sd(fit.covariance);
+  fit.common_rotation_sd_rad = common_rotation_sd(fit.problem.sensors(), fit.covariance);
   return fit;
 }
 
@@ -143,7 +145,7 @@ Result<JointFit> settled_run(const PoseTable& table, JointOptions options, const
 
 }  // namespace
 
-double JointFit::noise_nT() const { return std::sqrt(pose_noise_nT.array().square().mean()); }
+double JointFit::noise_nT() const { return calibration::root_mean_square(pose_noise_nT); }
 
 Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options) {
   return settled_run(table, options, nullptr);

@@ -25,7 +25,7 @@ struct JointFit {
   JointState state;
   /// Of the fixed block, gauge constraints included; the noise of the readings inflated by `birge_ratio`.
   Eigen::MatrixXd covariance;
-  calibration::AxisNoise pose_noise_nT{calibration::AxisNoise::Zero()};
+  calibration::AxisNoise pose_noise_nT{calibration::AxisNoise::Zero(kSensors, 3)};
   std::optional<calibration::AxisNoise> sample_noise_nT;  ///< set when the weights come from the dwells
   Quantisation quantisation;                              ///< in the weights, where they come from the dwells
   double noise_inflation{1};  ///< JointOptions::noise_inflation: in the weights, not in what follows

@@ -16,13 +16,14 @@ int JointProblem::coefficients() const {
 }
 
 Eigen::VectorXd JointState::fixed() const {
-  Eigen::VectorXd x(kEffectSlot + coefficients.size());
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  const FixedSlots at = slots();
+  Eigen::VectorXd x(at.effects() + coefficients.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     x.segment<sensor::kSensorParameters>(static_cast<int>(i) * sensor::kSensorParameters) =
         sensors[i].parameters();
   }
-  x.segment<2>(kSiteSlot).setZero();
-  x[kFieldSlot] = f_nT;
+  x.segment<2>(at.site()).setZero();
+  x[at.field()] = f_nT;
   x.tail(coefficients.size()) = coefficients;
   return x;
 }
@@ -45,15 +46,16 @@ void turn(const sensor::SensorModel& from, const Eigen::Vector3d& step, sensor::
 
 JointState JointState::moved(const Eigen::VectorXd& step) const {
   JointState next = *this;
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  const FixedSlots at = slots();
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     const auto part =
         step.segment<sensor::kSensorParameters>(static_cast<int>(i) * sensor::kSensorParameters);
     next.sensors[i] =
         sensor::SensorModel::from_parameters(sensors[i].parameters() + part, sensors[i].mounting);
     turn(sensors[i], part.tail<3>(), next.sensors[i]);
   }
-  next.direction = (direction + tangents(direction) * step.segment<2>(kSiteSlot)).normalized();
-  next.f_nT += step[kFieldSlot];
+  next.direction = (direction + tangents(direction) * step.segment<2>(at.site())).normalized();
+  next.f_nT += step[at.field()];
   next.coefficients += step.tail(coefficients.size());
   return next;
 }

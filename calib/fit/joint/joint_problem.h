@@ -16,7 +16,7 @@
 /// What the joint fit observes and what it solves for (method, section 5).
 ///
 /// Observations of pose k, each with its own standard deviation:
-///     12 readings  y_i = axis(C_i A_i R_i' b_i) + I_i,   b_i = platform(R_k B(R_k' r_i))
+///     3N readings  y_i = axis(C_i A_i R_i' b_i) + I_i,   b_i = platform(R_k B(R_k' r_i))
 ///      1 scalar    F_k = |B(0)|; without a scalar reference F_k = F, one unknown for all poses
 ///      3 attitude  R_k = turn_by(w_k) T(table angles of k), w_k near 0
 /// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of
@@ -25,12 +25,20 @@
 namespace mgtd::calib::fit::joint {
 
 inline constexpr int kNuisances = 4;
-inline constexpr int kSensorBlock = kSensors * sensor::kSensorParameters;
-/// Slots of the fixed block after the sensors: two tangents of n, F, then the effects.
-inline constexpr int kSiteSlot = kSensorBlock, kFieldSlot = kSiteSlot + 2, kEffectSlot = kFieldSlot + 1;
-inline constexpr int kGlobals = kEffectSlot - kSensorBlock;  ///< of every model; effects come behind
+inline constexpr int kGlobals = 3;  ///< of every model: two tangents of n, F; effects come behind
 
-using Channels = Eigen::Matrix<double, sensor::kChannels, 1>;
+/// Where the unknowns of the fixed block stand: the sensors, two tangents of n, F, then the effects.
+struct FixedSlots {
+  int sensors{kSensors};
+
+  [[nodiscard]] int channels() const { return 3 * sensors; }
+  [[nodiscard]] int sensor_block() const { return sensors * sensor::kSensorParameters; }
+  [[nodiscard]] int site() const { return sensor_block(); }
+  [[nodiscard]] int field() const { return site() + 2; }
+  [[nodiscard]] int effects() const { return sensor_block() + kGlobals; }
+};
+
+using Channels = sensor::FieldVector;
 using Nuisance = Eigen::Matrix<double, kNuisances, 1>;
 
 /// Weight of an attitude that is not believed: 30 degrees, enough to keep the turn about the field defined.
@@ -72,16 +80,22 @@ struct JointProblem {
   std::stop_token stop{};  ///< of FitOptions
 
   [[nodiscard]] int coefficients() const;
-  [[nodiscard]] int fixed() const { return kEffectSlot + coefficients(); }
+  [[nodiscard]] FixedSlots slots() const { return {static_cast<int>(geometry.sensors())}; }
+  [[nodiscard]] int sensors() const { return slots().sensors; }
+  [[nodiscard]] int channels() const { return slots().channels(); }
+  /// Rows of a pose in the linearised fit: its readings, the scalar reference, the attitude.
+  [[nodiscard]] int pose_rows() const { return channels() + kNuisances; }
+  [[nodiscard]] int fixed() const { return slots().effects() + coefficients(); }
 };
 
 struct JointState {
-  std::array<sensor::SensorModel, kSensors> sensors;
+  PerSensor<sensor::SensorModel> sensors;
   Eigen::Vector3d direction{0, 0, 1};  ///< n, unit vector in the site frame
   double f_nT{0};                      ///< F, used with common_field
   Eigen::VectorXd coefficients;
   std::vector<Nuisance> nuisances;
 
+  [[nodiscard]] FixedSlots slots() const { return {static_cast<int>(sensors.size())}; }
   /// The fixed block as a vector; the two slots of n hold zero (they are steps in its tangent plane).
   [[nodiscard]] Eigen::VectorXd fixed() const;
   /// x + step on the manifold: n moves in its tangent plane and is normalised.

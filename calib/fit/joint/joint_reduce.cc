@@ -14,17 +14,19 @@ constexpr int kBatch = 32;
 
 /// Slots that no observation reaches are held by a unit information.
 void hold_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
-  if (!problem.has_angles) S(kSiteSlot, kSiteSlot) = S(kSiteSlot + 1, kSiteSlot + 1) = 1;
-  if (!problem.common_field) S(kFieldSlot, kFieldSlot) = 1;
+  const FixedSlots at = problem.slots();
+  if (!problem.has_angles) S(at.site(), at.site()) = S(at.site() + 1, at.site() + 1) = 1;
+  if (!problem.common_field) S(at.field(), at.field()) = 1;
 }
 
 void add_direction_prior(const JointProblem& problem, const Eigen::Vector3d& n, Reduced& out) {
   const double w = problem.direction_weight;
+  const int site = problem.slots().site();
   const auto observe = [&](const std::optional<double>& known, double now, const Eigen::RowVector2d& row) {
     if (!known) return;
     const double r = w * std::remainder(*known - now, 2 * std::numbers::pi);
-    out.S.block<2, 2>(kSiteSlot, kSiteSlot) += w * w * row.transpose() * row;
-    out.g.segment<2>(kSiteSlot) += w * r * row.transpose();
+    out.S.block<2, 2>(site, site) += w * w * row.transpose() * row;
+    out.g.segment<2>(site) += w * r * row.transpose();
     out.cost.priors += r * r;
   };
   const Eigen::Matrix2d rows = inclination_declination_rows(n);
@@ -50,7 +52,7 @@ void scalar_row(const JointProblem& problem, const JointState& state, const Join
   row.residual = w * (observed - linear.f_nT);
   row.nuisance = w * linear.f_nuisance;
   row.global = w * linear.f_global;
-  if (problem.common_field) row.global[kFieldSlot - kSensorBlock] -= w;
+  if (problem.common_field) row.global[problem.slots().field() - problem.slots().sensor_block()] -= w;
 }
 
 /// Those columns of a few rows of the globals that are not zero, each row times its weight: an effect of an
@@ -59,21 +61,23 @@ struct Felt {
   std::vector<Eigen::Index> slots;
   Eigen::Matrix<double, 3, Eigen::Dynamic> rows;
 
-  void take(const PoseLinear& linear, const Channels& weight, int sensor) {
+  void take(const PoseLinear& linear, const Channels& weight, int sensor, int sensor_block) {
     slots.clear();
     rows.resize(3, linear.d_global.cols());
     for (Eigen::Index j = 0; j < linear.d_global.cols(); ++j) {
       const Eigen::Vector3d column = linear.d_global.col(j).segment<3>(3 * sensor);
       if (column.isZero(0)) continue;
       rows.col(static_cast<Eigen::Index>(slots.size())) = weight.segment<3>(3 * sensor).cwiseProduct(column);
-      slots.push_back(kSensorBlock + j);
+      slots.push_back(sensor_block + j);
     }
   }
 };
 
 /// Adds J' J and J' r of the fixed block, lower triangle, reading rows then scalar row.
-void add_fixed(const PoseBlocks& b, const JointPose& pose, Felt& felt, Reduced& out) {
-  for (int i = 0; i < kSensors; ++i) {
+void add_fixed(const FixedSlots& slots, const PoseBlocks& b, const JointPose& pose, Felt& felt,
+               Reduced& out) {
+  const int block = slots.sensor_block();
+  for (int i = 0; i < slots.sensors; ++i) {
     const auto w = pose.weight.segment<3>(3 * i).asDiagonal();
     const Eigen::Matrix<double, 3, sensor::kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
     const Eigen::Vector3d r = b.residual.segment<3>(3 * i);
@@ -81,7 +85,7 @@ void add_fixed(const PoseBlocks& b, const JointPose& pose, Felt& felt, Reduced& 
     // lazyProduct: these are too small for blocking to pay.
     out.S.block<sensor::kSensorParameters, sensor::kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
     out.g.segment<sensor::kSensorParameters>(at) += A.transpose().lazyProduct(r);
-    felt.take(b.linear, pose.weight, i);
+    felt.take(b.linear, pose.weight, i, block);
     for (std::size_t j = 0; j < felt.slots.size(); ++j) {
       const Eigen::Vector3d column = felt.rows.col(static_cast<Eigen::Index>(j));
       const Eigen::Index slot = felt.slots[j];
@@ -94,9 +98,9 @@ void add_fixed(const PoseBlocks& b, const JointPose& pose, Felt& felt, Reduced& 
   for (Eigen::Index j = 0; j < b.scalar.global.size(); ++j) {
     const double x = b.scalar.global[j];
     if (x == 0) continue;
-    out.S.col(kSensorBlock + j).segment(kSensorBlock + j, b.scalar.global.size() - j) +=
+    out.S.col(block + j).segment(block + j, b.scalar.global.size() - j) +=
         x * b.scalar.global.tail(b.scalar.global.size() - j).transpose();
-    out.g[kSensorBlock + j] += b.scalar.residual * x;
+    out.g[block + j] += b.scalar.residual * x;
   }
 }
 
@@ -109,11 +113,17 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   out.residual = pose.weight.cwiseProduct(pose.y_nT - out.linear.y_nT);
   scalar_row(problem, state, pose, out.linear, out.scalar);
   out.N = pose.weight.asDiagonal() * out.linear.d_nuisance;
-  out.H = out.N.transpose().lazyProduct(out.N);
+  sensor::over_channels(out.residual.size(), [&](auto rows) {
+    const auto N = out.N.topRows(rows);
+    const auto residual = out.residual.head(rows);
+    out.H = N.transpose().lazyProduct(N);
+    out.g = N.transpose().lazyProduct(residual);
+    out.cost.readings = residual.squaredNorm();
+  });
   out.H += out.scalar.nuisance.transpose() * out.scalar.nuisance;
-  out.g = out.N.transpose().lazyProduct(out.residual);
   out.g += out.scalar.residual * out.scalar.nuisance.transpose();
-  out.cost = {.readings = out.residual.squaredNorm(), .scalar = out.scalar.residual * out.scalar.residual};
+  out.cost.scalar = out.scalar.residual * out.scalar.residual;
+  out.cost.attitude = out.cost.priors = 0;
   if (pose.has_angles) {
     const double w2 = pose.attitude_weight * pose.attitude_weight;
     out.H.diagonal().head<3>().array() += w2;
@@ -125,15 +135,17 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   }
   if (!with_border) return;
   const Eigen::Index globals = out.linear.d_global.cols();
-  out.U.resize(kSensorBlock + globals, kNuisances);
-  for (int i = 0; i < kSensors; ++i) {
+  out.U.resize(problem.slots().sensor_block() + globals, kNuisances);
+  for (int i = 0; i < problem.sensors(); ++i) {
     const Eigen::Matrix<double, 3, kNuisances> wN =
         pose.weight.segment<3>(3 * i).asDiagonal() * out.N.middleRows<3>(3 * i);
     out.U.middleRows<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
         out.linear.d_sensor.middleRows<3>(3 * i).transpose().lazyProduct(wN);
   }
-  const Eigen::Matrix<double, sensor::kChannels, kNuisances> wN = pose.weight.asDiagonal() * out.N;
-  out.U.bottomRows(globals) = out.linear.d_global.transpose().lazyProduct(wN);
+  const sensor::ChannelRows<kNuisances> wN = pose.weight.asDiagonal() * out.N;
+  sensor::over_channels(wN.rows(), [&](auto rows) {
+    out.U.bottomRows(globals) = out.linear.d_global.topRows(rows).transpose().lazyProduct(wN.topRows(rows));
+  });
   out.U.bottomRows(globals) += out.scalar.global.transpose().lazyProduct(out.scalar.nuisance);
 }
 
@@ -152,7 +164,7 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   };
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, true, b);
-    add_fixed(b, problem.poses[k], felt, out);
+    add_fixed(problem.slots(), b, problem.poses[k], felt, out);
     out.cost.readings += b.cost.readings;
     out.cost.scalar += b.cost.scalar;
     out.cost.attitude += b.cost.attitude;

@@ -36,8 +36,8 @@ SiteField site_of(const JointFit& fit) {
                 .declination_sd_rad = kUnknown};
   if (!fit.problem.has_angles) return out;
   const Eigen::Matrix2d rows = inclination_declination_rows(fit.state.direction);
-  const Eigen::Matrix2d C =
-      linear::propagated_covariance(rows, fit.covariance.block<2, 2>(kSiteSlot, kSiteSlot));
+  const Eigen::Matrix2d C = linear::propagated_covariance(
+      rows, fit.covariance.block<2, 2>(fit.problem.slots().site(), fit.problem.slots().site()));
   out.inclination_rad = inclination_of(fit.state.direction);
   out.declination_rad = declination_of(fit.state.direction);
   out.inclination_sd_rad = std::sqrt(C(0, 0));
@@ -64,7 +64,7 @@ void compare_methods(const Readings& readings, const FitOptions& options, const 
   report.before = errors(raw_fields(readings));
   FieldTable b = raw_fields(readings);
   const Readings kept = readings.subset(untouched(fit));
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < readings.y_nT.size(); ++i) {
     const auto step1 = sensor::scalar_calibration(kept.y_nT[i], kept.f_nT);
     if (!step1) continue;  // the row then shows this sensor as it was read
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
@@ -128,13 +128,12 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
 }
 
 /// What an effect does to the corrected components, rms over the poses.
-decltype(calibration::CalibratedEffect::size_nT) size_of(const JointFit& fit,
-                                                         const effects::EffectPtr& effect, int first) {
+sensor::FieldVector size_of(const JointFit& fit, const effects::EffectPtr& effect, int first) {
   const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
   const calibration::ArrayModel alone(fit.state.sensors, fit.problem.geometry, {effect},
                                       fit.state.coefficients.segment(first, m));
   const calibration::ArrayModel none(fit.state.sensors, fit.problem.geometry, {}, {});
-  sensor::FieldVector squares = sensor::FieldVector::Zero();
+  sensor::FieldVector squares = sensor::FieldVector::Zero(fit.problem.geometry.channels());
   for (const JointPose& pose : fit.problem.poses) {
     const effects::Conditions at = pose.conditions();
     std::optional<Eigen::Matrix3d> R;
@@ -143,17 +142,14 @@ decltype(calibration::CalibratedEffect::size_nT) size_of(const JointFit& fit,
     if (R) change -= alone.site_field(at, *R);
     squares += change.cwiseAbs2();
   }
-  decltype(calibration::CalibratedEffect::size_nT) out{};
-  sensor::FieldVector::Map(out.data()) =
-      (squares / static_cast<double>(fit.problem.poses.size())).cwiseSqrt();
-  return out;
+  return (squares / static_cast<double>(fit.problem.poses.size())).cwiseSqrt();
 }
 
 }  // namespace
 
 JointOptions joint_options(const FitOptions& options) {
   JointOptions out;
-  out.geometry.baseline_m = options.baseline_m;
+  out.geometry = options.geometry;
   out.effects = options.effects;
   out.field_nT = options.field_nT;
   if (options.field_sd_nT > 0) out.field_sd_nT = options.field_sd_nT;
@@ -173,18 +169,20 @@ Result<JointOptions> profiled_options(const PoseTable& table, const FitOptions& 
 }
 
 void fill_calibration(const JointFit& fit, calibration::Calibration& c) {
+  const FixedSlots slots = fit.problem.slots();
+  const Eigen::Index parameters = slots.sensor_block();
   c.sensors = fit.state.sensors;
-  c.covariance = fit.covariance.topLeftCorner<calibration::kArrayParameters, calibration::kArrayParameters>();
+  c.covariance = fit.covariance.topLeftCorner(parameters, parameters);
   c.pose_noise_nT = fit.pose_noise_nT * fit.birge_ratio;
   const auto m = fit.state.coefficients.size();
-  c.effect_covariance.resize(m, calibration::kArrayParameters + m);
-  c.effect_covariance << fit.covariance.block(kEffectSlot, 0, m, calibration::kArrayParameters),
+  c.effect_covariance.resize(m, parameters + m);
+  c.effect_covariance << fit.covariance.block(slots.effects(), 0, m, parameters),
       fit.covariance.bottomRightCorner(m, m);
   int slot = 0;
   for (const effects::EffectPtr& effect : fit.problem.effects) {
     calibration::CalibratedEffect out{effect->spec(), {}, size_of(fit, effect, slot)};
     for (const effects::Coefficient& coefficient : effect->coefficients()) {
-      const double variance = fit.covariance(kEffectSlot + slot, kEffectSlot + slot);
+      const double variance = fit.covariance(slots.effects() + slot, slots.effects() + slot);
       out.coefficients.push_back(
           {coefficient.name, fit.state.coefficients[slot], std::sqrt(variance), coefficient.unit});
       ++slot;

@@ -23,8 +23,8 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   JointPose out;
   out.pose = &pose;
   out.t_h = time.hours(pose);
-  for (int i = 0; i < kSensors; ++i) out.y_nT.segment<3>(3 * i) = pose.y_nT[static_cast<std::size_t>(i)];
-  out.weight.setConstant(1 / kStartNoise_nT);
+  out.y_nT = calibration::stacked(pose.y_nT);
+  out.weight = Channels::Constant(out.y_nT.size(), 1 / kStartNoise_nT);
   if (common_field) {
     out.f_weight = 1 / kCommonFieldSpread_nT;
   } else {
@@ -44,8 +44,8 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
 LinearPrior mean_of(const JointProblem& problem, std::initializer_list<int> parameters, double target,
                     double weight) {
   LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()), .target = target, .weight = weight};
-  const double share = 1.0 / (kSensors * static_cast<double>(parameters.size()));
-  for (int i = 0; i < kSensors; ++i) {
+  const double share = 1.0 / (problem.sensors() * static_cast<double>(parameters.size()));
+  for (int i = 0; i < problem.sensors(); ++i) {
     for (const int p : parameters) prior.row[sensor::kSensorParameters * i + p] = share;
   }
   return prior;
@@ -58,7 +58,7 @@ LinearPrior about_slot(const JointProblem& problem, int slot, double target, dou
 }
 
 void add_coefficient_priors(JointProblem& problem) {
-  int slot = kEffectSlot;
+  int slot = problem.slots().effects();
   for (const effects::EffectPtr& effect : problem.effects) {
     for (const effects::Coefficient& c : effect->coefficients()) {
       if (c.prior_sd > 0) problem.priors.push_back(about_slot(problem, slot, 0, c.prior_sd));
@@ -133,7 +133,7 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
     problem.priors.push_back(mean_of(problem, {sensor::cx, sensor::cy, sensor::cz}, 1, kScaleConstraint));
     gauge.constraints += 1;
   } else if (problem.common_field) {
-    problem.priors.push_back(about_slot(problem, kFieldSlot, *options.field_nT,
+    problem.priors.push_back(about_slot(problem, problem.slots().field(), *options.field_nT,
                                         options.field_sd_nT.value_or(kCommonFieldSpread_nT)));
   }
   return gauge;
@@ -148,9 +148,12 @@ double start_field_nT(const JointProblem& problem, const JointOptions& options) 
   }
   // Readings of unit scale on a sphere about their centre: the spread of all directions together is the
   // radius.
-  Channels mean = Channels::Zero();
+  Channels mean = Channels::Zero(problem.channels());
   for (const JointPose& pose : problem.poses) mean += pose.y_nT / static_cast<double>(problem.poses.size());
-  for (const JointPose& pose : problem.poses) sum += (pose.y_nT - mean).squaredNorm() / kSensors;
+  for (const JointPose& pose : problem.poses)
+    sum += sensor::over_channels(mean.size(),
+                                 [&](auto rows) { return (pose.y_nT - mean).head(rows).squaredNorm(); }) /
+           problem.sensors();
   return std::sqrt(sum / static_cast<double>(problem.poses.size()));
 }
 

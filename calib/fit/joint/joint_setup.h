@@ -22,9 +22,9 @@ struct JointOptions {
   std::optional<double> field_sd_nT;
   std::optional<double> inclination_rad, declination_rad;  ///< of the site's field at zero table angles
   double table_sd_rad{to_rad(0.1)};                        ///< start value, estimated
-  /// Variance of a pose mean beside that of the dwells, by channel: for an axis that follows a law which the
-  /// model lacks, so that its misfit does not bend the parameters of other axes.
-  Channels more_nT2{Channels::Zero()};
+  /// Variance of a pose mean beside that of the dwells, by channel, or empty for none: for an axis that
+  /// follows a law which the model lacks, so that its misfit does not bend the parameters of other axes.
+  Channels more_nT2;
   /// Factor on the stated noise of readings and scalar reference, for a model that is known to be far off:
   /// its misfit would otherwise bend the parameters that are weakly determined.
   double noise_inflation{1};

@@ -19,11 +19,12 @@ void move_nuisances(const JointProblem& problem, const JointState& from, const E
     assemble(problem, model, from, k, false, b);
     const auto globals = step.tail(b.linear.d_global.cols());
     Channels moved = b.linear.d_global.lazyProduct(globals);
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < problem.sensors(); ++i) {
       moved.segment<3>(3 * i) += b.linear.d_sensor.middleRows<3>(3 * i) *
                                  step.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i);
     }
-    b.g -= b.N.transpose() * problem.poses[k].weight.cwiseProduct(moved);
+    moved = problem.poses[k].weight.cwiseProduct(moved);
+    sensor::over_channels(moved.size(), [&](auto n) { b.g -= b.N.topRows(n).transpose() * moved.head(n); });
     b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
     b.H.diagonal() *= 1 + damping;
     to.nuisances[k] += b.H.llt().solve(b.g);

@@ -33,10 +33,10 @@ struct PoseBlocks {
   PoseLinear linear;
   Channels residual;  ///< w (measured - predicted)
   ScalarRow scalar;
-  Eigen::Matrix<double, sensor::kChannels, kNuisances> N;  ///< w dy/d(nuisances)
-  Eigen::Matrix<double, kNuisances, kNuisances> H;         ///< of the nuisances
-  Nuisance g;                                              ///< descent direction times H: J_n' w^2 (y - y(x))
-  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;     ///< fixed by nuisances
+  sensor::ChannelRows<kNuisances> N;                    ///< w dy/d(nuisances)
+  Eigen::Matrix<double, kNuisances, kNuisances> H;      ///< of the nuisances
+  Nuisance g;                                           ///< descent direction times H: J_n' w^2 (y - y(x))
+  Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;  ///< fixed by nuisances
   JointCost cost;
 };
 

@@ -25,9 +25,9 @@ namespace {
 const double kOneAxis = std::sin(to_rad(1.0));
 
 struct Aligned {
-  std::array<sensor::ScalarCalibration, kSensorCount> alone;
+  PerSensor<sensor::ScalarCalibration> alone;
   /// Sensor frame to the frame of sensor 1, reflections allowed.
-  std::array<Eigen::Matrix3d, kSensorCount> to_first;
+  PerSensor<Eigen::Matrix3d> to_first;
   std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
 };
 
@@ -42,16 +42,19 @@ Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
 Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
   Eigen::VectorXd f = Eigen::VectorXd::Constant(poses, f_nT);
-  Eigen::Matrix<double, sensor::kChannels, Eigen::Dynamic> y(sensor::kChannels, poses);
+  Eigen::MatrixXd y(problem.channels(), poses);
   for (Eigen::Index k = 0; k < poses; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
     y.col(k) = pose.y_nT;
     if (!problem.common_field) f[k] = pose.f_nT;
   }
   Aligned out;
-  std::array<Eigen::Matrix3Xd, kSensorCount> b_S_nT;
+  const std::size_t sensors = problem.geometry.sensors();
+  out.alone.resize(sensors);
+  out.to_first.resize(sensors);
+  PerSensor<Eigen::Matrix3Xd> b_S_nT(sensors);
   Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, poses);
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < sensors; ++i) {
     const Eigen::Matrix3Xd own = y.middleRows<3>(3 * static_cast<int>(i));
     const auto fitted = sensor::sensor_start(own, f);
     if (!fitted) {
@@ -61,7 +64,7 @@ Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
     out.alone[i] = *fitted;
     b_S_nT[i] = fitted->correct(own);
     out.to_first[i] = nearest_orthogonal(b_S_nT[0] * b_S_nT[i].transpose(), false);
-    sum += out.to_first[i] * b_S_nT[i] / kSensors;
+    sum += out.to_first[i] * b_S_nT[i] / static_cast<double>(sensors);
   }
   if (const auto ok = check_turned_together(b_S_nT, out.to_first); !ok) return tl::unexpected(ok.error());
   for (Eigen::Index k = 0; k < poses; ++k) out.u.emplace_back(sum.col(k));
@@ -190,7 +193,7 @@ AngleCoverage angle_coverage(const JointProblem& problem) {
   return turn.off_axis < kOneAxis ? AngleCoverage::one_axis : AngleCoverage::full;
 }
 
-JointState joint_state(const JointProblem& problem, const std::array<sensor::SensorModel, kSensors>& sensors,
+JointState joint_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
                        const Eigen::Vector3d& direction, double f_nT) {
   JointState state{.sensors = sensors,
                    .direction = direction,
@@ -202,8 +205,9 @@ JointState joint_state(const JointProblem& problem, const std::array<sensor::Sen
     if (pose.has_angles) {
       x[3] = pose.f_weight > 0 && !problem.common_field ? pose.f_nT : f_nT;
     } else {
-      for (int i = 0; i < kSensors; ++i)
-        x.head<3>() += sensors[static_cast<std::size_t>(i)].correct(pose.y_nT.segment<3>(3 * i)) / kSensors;
+      for (int i = 0; i < problem.sensors(); ++i)
+        x.head<3>() +=
+            sensors[static_cast<std::size_t>(i)].correct(pose.y_nT.segment<3>(3 * i)) / problem.sensors();
     }
     state.nuisances.push_back(x);
   }
@@ -219,23 +223,24 @@ Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   const double hand = handedness(*aligned);
   for (Eigen::Vector3d& u : aligned->u) u *= hand;
   const Placement p = best_placement(problem, aligned->u);
-  std::array<sensor::SensorModel, kSensors> sensors;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  PerSensor<sensor::SensorModel> sensors(problem.geometry.sensors());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
     sensors[i] =
         sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
   }
   return joint_state(problem, sensors, p.n, f_nT);
 }
 
-PlacedState placed_state(const JointProblem& problem,
-                         const std::array<sensor::SensorModel, kSensors>& sensors, double f_nT) {
+PlacedState placed_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
+                         double f_nT) {
   std::vector<Eigen::Vector3d> u(problem.poses.size(), Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < u.size(); ++k) {
-    for (std::size_t i = 0; i < kSensorCount; ++i)
-      u[k] += sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / kSensors;
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+      u[k] +=
+          sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / problem.sensors();
   }
   const Placement p = best_placement(problem, u);
-  std::array<sensor::SensorModel, kSensors> placed = sensors;
+  PerSensor<sensor::SensorModel> placed = sensors;
   for (sensor::SensorModel& sensor : placed) sensor = turned(sensor, p.Q);
   return {joint_state(problem, placed, p.n, f_nT), p.Q};
 }

@@ -23,7 +23,7 @@ enum class AngleCoverage { none, one_axis, full };
 
 /// A state around given sensors (a two-step result, an earlier calibration, another fold's fit).
 [[nodiscard]] JointState joint_state(const JointProblem& problem,
-                                     const std::array<sensor::SensorModel, kSensors>& sensors,
+                                     const PerSensor<sensor::SensorModel>& sensors,
                                      const Eigen::Vector3d& direction, double f_nT);
 
 /// The same around sensors of an earlier calibration that may stand turned on the table since: they are
@@ -33,6 +33,6 @@ struct PlacedState {
   Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
 };
 [[nodiscard]] PlacedState placed_state(const JointProblem& problem,
-                                       const std::array<sensor::SensorModel, kSensors>& sensors, double f_nT);
+                                       const PerSensor<sensor::SensorModel>& sensors, double f_nT);
 
 }  // namespace mgtd::calib::fit::joint

@@ -26,20 +26,20 @@ std::optional<calibration::AxisNoise> sample_noise(const PoseTable& table) {
 void weight_by_samples(JointProblem& problem, const calibration::AxisNoise& sample) {
   for (JointPose& pose : problem.poses) {
     const double n = pose.pose->n_eff ? *pose.pose->n_eff : pose.pose->n.value_or(1);
-    for (int c = 0; c < sensor::kChannels; ++c)
+    for (int c = 0; c < problem.channels(); ++c)
       set_weight(pose.weight[c], sample(c / 3, c % 3) / std::sqrt(n));
   }
 }
 
 void weight_by_pose(JointProblem& problem, const calibration::AxisNoise& pose_mean) {
   for (JointPose& pose : problem.poses) {
-    for (int c = 0; c < sensor::kChannels; ++c) set_weight(pose.weight[c], pose_mean(c / 3, c % 3));
+    for (int c = 0; c < problem.channels(); ++c) set_weight(pose.weight[c], pose_mean(c / 3, c % 3));
   }
 }
 
 void add_variance(JointProblem& problem, const Channels& nT2) {
   for (JointPose& pose : problem.poses) {
-    for (int c = 0; c < sensor::kChannels; ++c) {
+    for (int c = 0; c < problem.channels(); ++c) {
       if (nT2[c] > 0) set_weight(pose.weight[c], std::sqrt(nT2[c] + 1 / std::pow(pose.weight[c], 2)));
     }
   }

@@ -21,12 +21,15 @@ constexpr int kBadNeighbours = 7;
 /// limit and the limit must be fewer than kInTheGap of those beyond it.
 constexpr double kFew = 0.05, kNear = 0.6, kInTheGap = 0.2;
 
-constexpr unsigned long kAllReadings = (1UL << static_cast<unsigned>(sensor::kChannels)) - 1;
-bool disturbed(const Rows& rows) { return (rows.to_ulong() & kAllReadings) == kAllReadings; }
+unsigned long long all_readings(int channels) { return (1ULL << static_cast<unsigned>(channels)) - 1; }
+unsigned long long readings_of(int sensor) { return 0b111ULL << static_cast<unsigned>(3 * sensor); }
+bool disturbed(const Rows& rows, int channels) {
+  return (rows.to_ullong() & all_readings(channels)) == all_readings(channels);
+}
 /// The sensor that is left out as a whole; -1 where none or more than one is.
-int whole_sensor(const Rows& rows) {
-  for (int i = 0; i < kSensors; ++i)
-    if ((rows.to_ulong() & kAllReadings) == 0b111UL << static_cast<unsigned>(3 * i)) return i;
+int whole_sensor(const Rows& rows, int channels) {
+  for (int i = 0; 3 * i < channels; ++i)
+    if ((rows.to_ullong() & all_readings(channels)) == readings_of(i)) return i;
   return -1;
 }
 
@@ -60,16 +63,17 @@ void Outliers::leave_out(JointProblem& problem) {
     if (left_out_[k].none()) continue;
     JointPose& pose = problem.poses[k];
     weight_[k] = {pose.weight, pose.f_weight, pose.attitude_weight};
-    for (std::size_t c = 0; c < sensor::kChannels; ++c)
+    const auto channels = static_cast<std::size_t>(problem.channels());
+    for (std::size_t c = 0; c < channels; ++c)
       if (left_out_[k][c]) pose.weight[static_cast<Eigen::Index>(c)] = 0;
-    if (left_out_[k][kScalarRow]) pose.f_weight = 0;
-    if (left_out_[k][kAttitudeRow]) pose.attitude_weight = kLooseAttitude_per_rad;
+    if (left_out_[k][channels]) pose.f_weight = 0;
+    if (left_out_[k][channels + 1]) pose.attitude_weight = kLooseAttitude_per_rad;
   }
 }
 
 /// Where most poses of a stretch are disturbed in all sensors, or in one, the others of it are not trusted
 /// either.
-void Outliers::fill_stretches() {
+void Outliers::fill_stretches(int channels) {
   const std::vector<Rows> found = left_out_;
   const auto fill = [&](const Rows& rows, const auto& bad) {
     const auto n = static_cast<std::ptrdiff_t>(found.size());
@@ -81,17 +85,16 @@ void Outliers::fill_stretches() {
       if (count >= kBadNeighbours) left_out_[static_cast<std::size_t>(k)] |= rows;
     }
   };
-  fill(Rows(kAllReadings), [](const Rows& rows) { return disturbed(rows); });
-  for (int i = 0; i < kSensors; ++i) {
-    fill(Rows(0b111UL << static_cast<unsigned>(3 * i)),
-         [i](const Rows& rows) { return whole_sensor(rows) == i; });
+  fill(Rows(all_readings(channels)), [=](const Rows& rows) { return disturbed(rows, channels); });
+  for (int i = 0; 3 * i < channels; ++i) {
+    fill(Rows(readings_of(i)), [=](const Rows& rows) { return whole_sensor(rows, channels) == i; });
   }
 }
 
 /// A reading at the end of the range is wrong by an unknown amount, small ones too.
 void Outliers::fill_saturated(const JointProblem& problem) {
   constexpr int kCaught = 2;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (int c = 0; c < problem.channels(); ++c) {
     const auto row = static_cast<std::size_t>(c);
     const std::vector<std::size_t> stop = at_the_stop(problem, c);
     const auto caught =
@@ -115,12 +118,13 @@ std::vector<Rows> Outliers::blamed(const JointProblem& whole, const JointState& 
 bool Outliers::spare_tails(const PoseResiduals& residuals, const std::vector<Rows>& found,
                            BlameLimits& limits) {
   const auto before = tails_;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  const int channels = static_cast<int>(residuals.scalar_row());
+  for (int c = 0; c < channels; ++c) {
     const auto row = static_cast<std::size_t>(c);
     double lost = 0, near = 0;
     for (std::size_t k = 0; k < found.size(); ++k) {
       const double t = static_cast<double>(residuals.t(c, static_cast<Eigen::Index>(k))) / limits.spread[c];
-      if (found[k][row] && whole_sensor(found[k]) < 0 && !disturbed(found[k]))
+      if (found[k][row] && whole_sensor(found[k], channels) < 0 && !disturbed(found[k], channels))
         ++lost;
       else if (found[k].none() && t > kNear * limits.single)
         ++near;
@@ -133,7 +137,7 @@ bool Outliers::spare_tails(const PoseResiduals& residuals, const std::vector<Row
 
 /// No reading of these axes stands out any more.
 void Outliers::widen_tails(const PoseResiduals& residuals, BlameLimits& limits) const {
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (int c = 0; c < residuals.scalar_row(); ++c) {
     if (!tails_[static_cast<std::size_t>(c)]) continue;
     limits.spread[c] = std::max(limits.spread[c], static_cast<double>(residuals.t.row(c).maxCoeff()));
   }
@@ -152,8 +156,7 @@ bool Outliers::judge(JointProblem& problem, const JointState& state, const PoseR
   const std::vector<Rows> before = left_out_;
   std::vector<std::size_t> examined;  // poses that had something left out or stand out now
   for (std::size_t k = 0; k < n; ++k) {
-    const Eigen::Array<double, kObservations, 1> t =
-        residuals.t.col(static_cast<Eigen::Index>(k)).cast<double>().array() / limits.spread;
+    const Observations t = residuals.of_pose(static_cast<Eigen::Index>(k)) / limits.spread;
     if (before[k].any() || limits.excess(t) > 1) examined.push_back(k);
     if (before[k].none()) sigmas_[k] = t.maxCoeff();
   }
@@ -165,7 +168,7 @@ bool Outliers::judge(JointProblem& problem, const JointState& state, const PoseR
     if (before[k].any() && found[k] != before[k] && ++changed_[k] > kChanges) continue;
     left_out_[k] = found[k];
   }
-  fill_stretches();
+  fill_stretches(problem.channels());
   fill_saturated(problem);
   if (share() > most_) {
     too_many_ = share();
@@ -182,10 +185,10 @@ OutlierNode Outliers::node(const JointProblem& whole, const JointState& state, s
       .pose = pose.pose->number, .where = {}, .shift = 0, .unit = "nT", .sigmas = sigmas_[k], .place = k};
   PoseLinear linear;
   PoseModel(whole, state).linearise(pose, state.nuisances[k], linear);
-  if (row == kScalarRow) {
+  if (row == whole.channels()) {
     out.where = "scalar";
     out.shift = pose.f_nT - linear.f_nT;
-  } else if (row == kAttitudeRow) {
+  } else if (row == whole.channels() + 1) {
     out.where = "angles";
     out.unit = "deg";
     out.shift = to_deg(2 * std::atan(state.nuisances[k].head<3>().norm() / 2));
@@ -207,7 +210,7 @@ std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const Join
     alone.poses = {problem.poses[k]};
     JointState at = state;
     at.nuisances = {state.nuisances[k]};
-    const int sensor = whole_sensor(rows);
+    const int channels = problem.channels(), sensor = whole_sensor(rows, channels);
     const auto together = [&](std::string where, int first, int count) {
       PoseLinear linear;
       PoseModel(alone, at).linearise(alone.poses.front(), at.nuisances.front(), linear);
@@ -221,16 +224,16 @@ std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const Join
                      .place = k,
                      .cause = common_cause(problem, k, first, count)});
     };
-    if (disturbed(rows)) {
+    if (disturbed(rows, channels)) {
       // Its own best field: the table alone does not place the readings to better than its angles.
       alone.poses.front().weight = weight_[k].readings;
       refit_nuisances(alone, at);
-      together("pose", 0, sensor::kChannels);
+      together("pose", 0, channels);
     } else if (sensor >= 0) {
       together(fmt::format("s{}", sensor + 1), 3 * sensor, 3);
     }
-    for (int row = 0; row < kObservations; ++row) {
-      const bool covered = row < sensor::kChannels && (disturbed(rows) || sensor >= 0);
+    for (int row = 0; row < channels + 2; ++row) {
+      const bool covered = row < channels && (disturbed(rows, channels) || sensor >= 0);
       if (rows[static_cast<std::size_t>(row)] && !covered) out.push_back(node(problem, state, k, row));
     }
   }

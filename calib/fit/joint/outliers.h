@@ -47,15 +47,15 @@ class Outliers {
   [[nodiscard]] bool spare_tails(const PoseResiduals& residuals, const std::vector<Rows>& found,
                                  BlameLimits& limits);
   void widen_tails(const PoseResiduals& residuals, BlameLimits& limits) const;
-  void fill_stretches();
+  void fill_stretches(int channels);
   void fill_saturated(const JointProblem& problem);
 
   double most_;
-  std::vector<Rows> left_out_;            ///< by pose
-  std::vector<Weights> weight_;           ///< of every pose, before anything was left out
-  std::vector<int> changed_;              ///< how often the judgement of the pose did
-  std::vector<double> sigmas_;            ///< worst misfit of the pose when it was judged
-  std::bitset<sensor::kChannels> tails_;  ///< channels whose misfit has no gap: a law, not gross readings
+  std::vector<Rows> left_out_;                ///< by pose
+  std::vector<Weights> weight_;               ///< of every pose, before anything was left out
+  std::vector<int> changed_;                  ///< how often the judgement of the pose did
+  std::vector<double> sigmas_;                ///< worst misfit of the pose when it was judged
+  std::bitset<sensor::kMostChannels> tails_;  ///< channels whose misfit has no gap: a law, not gross readings
   double too_many_{0};
   int given_up_{0};  ///< how often there were too many
 };

@@ -49,11 +49,15 @@ double limit_of(const std::vector<double>& roots, double gaussian) {
   return group ? std::min(low, limit) : limit;
 }
 
-double root_of(const Eigen::Array<double, kObservations, 1>& t, int sensor) {
-  return t.segment<3>(3 * sensor).matrix().norm();
+double root_of(const Observations& t, int sensor) { return t.segment<3>(3 * sensor).matrix().norm(); }
+
+/// Of the readings and the scalar reference.
+double root_of_pose(const Observations& t) {
+  constexpr int kOfCross = sensor::kChannels + 1;
+  return t.size() == kOfCross + 1 ? t.head<kOfCross>().matrix().norm() : t.head(t.size() - 1).matrix().norm();
 }
 
-Rows rows_of_sensor(int sensor) { return Rows(0b111U << static_cast<unsigned>(3 * sensor)); }
+Rows rows_of_sensor(int sensor) { return Rows(0b111ULL << static_cast<unsigned>(3 * sensor)); }
 
 }  // namespace
 
@@ -61,10 +65,13 @@ BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows
   constexpr double kBeyond = std::numeric_limits<double>::infinity();
   BlameLimits out;
   out.single = kSingle;
+  out.spread = Observations::Ones(residuals.t.rows());
+  const int sensors = static_cast<int>(residuals.scalar_row() / 3);
+  out.sensor.resize(sensors);
   const auto is_out = [&](Eigen::Index k, int row) {
     return left_out[static_cast<std::size_t>(k)][static_cast<std::size_t>(row)];
   };
-  for (int row = 0; row < kObservations; ++row) {
+  for (int row = 0; row < residuals.t.rows(); ++row) {
     std::vector<double> values;
     for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
       if (is_out(k, row)) values.push_back(kBeyond);
@@ -74,27 +81,26 @@ BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows
     if ((spread > 1 || (spread > 0 && spread < kOverstated)) && std::isfinite(spread))
       out.spread[row] = spread;
   }
-  std::array<std::vector<double>, kSensors> sensors;
+  PerSensor<std::vector<double>> roots(static_cast<std::size_t>(sensors));
   std::vector<double> poses;
   for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
-    const Eigen::Array<double, kObservations, 1> t = residuals.t.col(k).cast<double>().array() / out.spread;
+    const Observations t = residuals.of_pose(k) / out.spread;
     bool any = false;
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < sensors; ++i) {
       const bool gone = (left_out[static_cast<std::size_t>(k)] & rows_of_sensor(i)).any();
-      sensors.at(static_cast<std::size_t>(i)).push_back(gone ? kBeyond : root_of(t, i));
+      roots.at(static_cast<std::size_t>(i)).push_back(gone ? kBeyond : root_of(t, i));
       any = any || gone;
     }
-    poses.push_back(any ? kBeyond : t.head<kAttitudeRow>().matrix().norm());
+    poses.push_back(any ? kBeyond : root_of_pose(t));
   }
-  for (int i = 0; i < kSensors; ++i)
-    out.sensor[i] = limit_of(sensors.at(static_cast<std::size_t>(i)), kSensor);
+  for (int i = 0; i < sensors; ++i) out.sensor[i] = limit_of(roots.at(static_cast<std::size_t>(i)), kSensor);
   out.pose = limit_of(poses, kPose);
   return out;
 }
 
-double BlameLimits::excess(const Eigen::Array<double, kObservations, 1>& t) const {
-  double worst = std::max(t.maxCoeff() / single, t.head<kAttitudeRow>().matrix().norm() / pose);
-  for (int i = 0; i < kSensors; ++i) worst = std::max(worst, root_of(t, i) / sensor[i]);
+double BlameLimits::excess(const Observations& t) const {
+  double worst = std::max(t.maxCoeff() / single, root_of_pose(t) / pose);
+  for (int i = 0; i < sensor.size(); ++i) worst = std::max(worst, root_of(t, i) / sensor[i]);
   return worst;
 }
 
@@ -110,9 +116,10 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
   constexpr double kSettled = 1e-6;
   JointPose& pose = alone_.poses.front();
   pose = whole_;
-  for (int c = 0; c < sensor::kChannels; ++c)
+  const int channels = problem_.channels();
+  for (int c = 0; c < channels; ++c)
     if (out[static_cast<std::size_t>(c)]) pose.weight[c] = 0;
-  if (out[kScalarRow]) pose.f_weight = 0;
+  if (out[static_cast<std::size_t>(channels)]) pose.f_weight = 0;
   for (int i = 0; i < kSteps; ++i) {
     assemble(alone_, model_, at_, 0, false, blocks_);
     const Nuisance step = blocks_.H.llt().solve(blocks_.g);
@@ -121,16 +128,16 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
   }
   assemble(alone_, model_, at_, 0, false, blocks_);
   const Eigen::LLT<Eigen::Matrix4d> H(blocks_.H);
-  Trial trial{.t = Eigen::Array<double, kObservations, 1>::Zero(),
+  Trial trial{.t = Observations::Zero(channels + 2),
               .chi2 = blocks_.cost.readings + blocks_.cost.scalar,
               .nuisance = at_.nuisances.front()};
   const auto whitened = [&](double residual, const Eigen::Matrix<double, 1, kNuisances>& row) {
     const double free = 1 - H.matrixL().solve(row.transpose()).squaredNorm();
     return free > 1e-6 ? std::abs(residual) / std::sqrt(free) : 0;
   };
-  for (int c = 0; c < sensor::kChannels; ++c)
+  for (int c = 0; c < channels; ++c)
     if (pose.weight[c] > 0) trial.t[c] = whitened(blocks_.residual[c], blocks_.N.row(c));
-  if (pose.f_weight > 0) trial.t[kScalarRow] = whitened(blocks_.scalar.residual, blocks_.scalar.nuisance);
+  if (pose.f_weight > 0) trial.t[channels] = whitened(blocks_.scalar.residual, blocks_.scalar.nuisance);
   return trial;
 }
 
@@ -155,14 +162,14 @@ Rows PoseBlame::readings_of(double limit) {
   };
   Candidate single, sensor;
   std::vector<Candidate> singles;
-  const int last = problem_.common_field ? sensor::kChannels : sensor::kChannels + 1;
+  const int channels = problem_.channels(), last = problem_.common_field ? channels : channels + 1;
   for (int row = 0; row < last; ++row) {
     Candidate one;
     consider(one, Rows().set(static_cast<std::size_t>(row)));
     singles.push_back(one);
     if (one.agrees != single.agrees ? one.agrees : one.chi2 < single.chi2) single = one;
   }
-  for (int i = 0; i < kSensors; ++i) consider(sensor, rows_of_sensor(i));
+  for (int i = 0; i < problem_.sensors(); ++i) consider(sensor, rows_of_sensor(i));
   const bool within = (single.rows & sensor.rows).any();
   if (single.agrees && !(sensor.agrees && within && sensor.chi2 < single.chi2 - kSensorInstead))
     return single.rows;
@@ -178,21 +185,23 @@ Rows PoseBlame::readings_of(double limit) {
     }
   }
   if (pair.agrees) return pair.rows;
-  return Rows((1U << static_cast<unsigned>(sensor::kChannels)) - 1);
+  return Rows((1ULL << static_cast<unsigned>(channels)) - 1);
 }
 
 Rows PoseBlame::of(std::size_t k, double strictness) {
+  const int channels = problem_.channels(), scalar_row = channels, attitude_row = channels + 1;
   whole_ = problem_.poses[k];
-  whole_.weight.array() /= limits_.spread.head<sensor::kChannels>();
-  whole_.f_weight /= limits_.spread[kScalarRow];
-  const double attitude_weight = whole_.attitude_weight / limits_.spread[kAttitudeRow];
+  whole_.weight.array() /= limits_.spread.head(channels);
+  whole_.f_weight /= limits_.spread[scalar_row];
+  const double attitude_weight = whole_.attitude_weight / limits_.spread[attitude_row];
   // The readings are judged without the table, which may be wrong by more than any of them.
   whole_.attitude_weight = std::min(whole_.attitude_weight, kLooseAttitude_per_rad);
   at_.nuisances.front() = state_.nuisances[k];
   Rows out = readings_of(strictness);
-  if (whole_.has_angles && !(out.count() >= sensor::kChannels)) {
+  if (whole_.has_angles && !(out.count() >= static_cast<std::size_t>(channels))) {
     const Trial rest = without(out);
-    out[kAttitudeRow] = rest.nuisance.head<3>().norm() * attitude_weight > strictness * kSingle;
+    out[static_cast<std::size_t>(attitude_row)] =
+        rest.nuisance.head<3>().norm() * attitude_weight > strictness * kSingle;
   }
   return out;
 }

@@ -11,15 +11,15 @@
 /// pose agree with it.
 namespace mgtd::calib::fit::joint {
 
-using Rows = std::bitset<kObservations>;  ///< readings, scalar, attitude
+using Rows = std::bitset<kMostObservations>;  ///< readings, scalar, attitude
 
 /// What a pose may show before something of it is left out, all in robust spreads of the run's own misfits
 /// (never of the nominal noise alone): a single observation, the three readings of a sensor, all of the pose.
 /// Sensors and poses are judged by the root of the sum of squares.
 struct BlameLimits {
-  Eigen::Array<double, kObservations, 1> spread{Eigen::Array<double, kObservations, 1>::Ones()};
+  Observations spread;
   double single{0};
-  Eigen::Array<double, kSensors, 1> sensor;
+  Eigen::Array<double, Eigen::Dynamic, 1, 0, kMostSensors, 1> sensor;
   double pose{0};
 
   /// Limits from the misfits of all poses; those of observations that are left out count as beyond any limit,
@@ -27,7 +27,7 @@ struct BlameLimits {
   [[nodiscard]] static BlameLimits of(const PoseResiduals& residuals, std::span<const Rows> left_out);
   /// The largest misfit over its limit; above one something of the pose is to be left out. `t` as in
   /// PoseResiduals, one pose.
-  [[nodiscard]] double excess(const Eigen::Array<double, kObservations, 1>& t) const;
+  [[nodiscard]] double excess(const Observations& t) const;
 };
 
 /// Judges poses against a fixed block that stays as it is.
@@ -41,7 +41,7 @@ class PoseBlame {
 
  private:
   struct Trial {
-    Eigen::Array<double, kObservations, 1> t;
+    Observations t;
     double chi2{0};
     Nuisance nuisance;
   };

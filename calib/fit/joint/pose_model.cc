@@ -51,7 +51,8 @@ PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
       tangents_(tangents(state.direction)),
       globals_(kGlobals + problem.coefficients()),
       common_field_(problem.common_field) {
-  for (std::size_t i = 0; i < kSensors; ++i) gains_[i] = gain_of(state.sensors[i]);
+  gains_.clear();
+  for (const sensor::SensorModel& sensor : state.sensors) gains_.push_back(gain_of(sensor));
 }
 
 PoseModel::SensorGain PoseModel::gain_of(const sensor::SensorModel& sensor) {
@@ -234,13 +235,17 @@ void PoseModel::read(const JointPose& pose, int sensor, const Field& field, Pose
 }
 
 void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const {
-  out.d_global.resize(sensor::kChannels, globals_);
+  const int sensors = static_cast<int>(gains_.size());
+  out.y_nT.resize(3 * sensors);
+  out.d_sensor.resize(3 * sensors, sensor::kSensorParameters);
+  out.d_nuisance.resize(3 * sensors, kNuisances);
+  out.d_global.resize(3 * sensors, globals_);
   Attitude a;
   set_attitude(pose, nuisance, a);
   scalar_field(pose, a, out);
   Field field;
-  for (int sensor = 0; sensor < kSensors; ++sensor) {
-    // Without site and platform effects the four sensors share one field.
+  for (int sensor = 0; sensor < sensors; ++sensor) {
+    // Without site and platform effects the sensors share one field.
     if (sensor == 0 || !site_.empty() || !platform_.empty()) {
       field_at(pose, a, sensor, field);
       add_platform(pose, a, sensor, field);

@@ -13,11 +13,10 @@ namespace mgtd::calib::fit::joint {
 struct PoseLinear {
   Channels y_nT;  ///< predicted readings
   /// Rows of sensor i by the parameters of sensor i.
-  Eigen::Matrix<double, sensor::kChannels, sensor::kSensorParameters> d_sensor;
-  Eigen::Matrix<double, sensor::kChannels, kNuisances> d_nuisance;
-  Eigen::Matrix<double, sensor::kChannels, Eigen::Dynamic>
-      d_global;    ///< by slots kSiteSlot .. of the fixed block
-  double f_nT{0};  ///< predicted |B(0)|
+  sensor::ChannelRows<sensor::kSensorParameters> d_sensor;
+  sensor::ChannelRows<kNuisances> d_nuisance;
+  Eigen::MatrixXd d_global;  ///< by slots kSiteSlot .. of the fixed block
+  double f_nT{0};            ///< predicted |B(0)|
   Eigen::Matrix<double, 1, kNuisances> f_nuisance;
   Eigen::RowVectorXd f_global;
 };
@@ -49,8 +48,8 @@ class PoseModel {
 
   const JointState& state_;
   effects::LevelTerms table_, site_, platform_, axis_, reference_;
-  std::array<SensorGain, kSensors> gains_;
-  std::array<Eigen::Vector3d, kSensors> positions_P_m_;
+  PerSensor<SensorGain> gains_;
+  PerSensor<Eigen::Vector3d> positions_P_m_;
   Eigen::Matrix<double, 3, 2> tangents_;
   int globals_;
   bool common_field_;

@@ -17,14 +17,14 @@ double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const Eigen::LLT
 }
 
 struct NoiseSums {
-  calibration::AxisNoise squares{calibration::AxisNoise::Zero()}, freedom{calibration::AxisNoise::Zero()};
+  calibration::AxisNoise squares, freedom;
   double attitude_squares{0}, attitude_trace{0};
   int attitudes{0};
 };
 
 void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::LLT<Eigen::Matrix4d>& H,
                       Eigen::Index k, NoiseSums& sums, PoseResiduals& out) {
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (int c = 0; c < pose.y_nT.size(); ++c) {
     if (!(pose.weight[c] > 0)) continue;
     const double free = freedom(b.N.row(c), H);
     sums.squares(c / 3, c % 3) += b.residual[c] * b.residual[c];
@@ -42,7 +42,7 @@ void observe_scalar(const JointProblem& problem, const JointPose& pose, const Po
   ++out.scalars;
   const double free = freedom(b.scalar.nuisance, H);
   if (free > kNothing)
-    out.t(kScalarRow, k) = static_cast<float>(std::abs(b.scalar.residual) / std::sqrt(free));
+    out.t(out.scalar_row(), k) = static_cast<float>(std::abs(b.scalar.residual) / std::sqrt(free));
 }
 
 void observe_attitude(const JointPose& pose, const Nuisance& x, const Eigen::LLT<Eigen::Matrix4d>& H,
@@ -55,7 +55,7 @@ void observe_attitude(const JointPose& pose, const Nuisance& x, const Eigen::LLT
   sums.attitude_trace += posterior;
   ++sums.attitudes;
   if (3 - posterior > kNothing)
-    out.t(kAttitudeRow, k) = static_cast<float>(std::sqrt(2 * squares / (3 - posterior)));
+    out.t(out.attitude_row(), k) = static_cast<float>(std::sqrt(2 * squares / (3 - posterior)));
 }
 
 /// Freedom of all attitudes together: the posterior traces leave 2 a pose where the prior is weak, and the
@@ -72,10 +72,12 @@ double PoseResiduals::unseen_nT() const { return std::sqrt(squares_nT2 / std::ma
 
 PoseResiduals pose_residuals(const JointProblem& problem, const JointState& state) {
   PoseResiduals out;
-  out.t.setZero(kObservations, static_cast<Eigen::Index>(problem.poses.size()));
+  out.t.setZero(problem.channels() + 2, static_cast<Eigen::Index>(problem.poses.size()));
   const PoseModel model(problem, state);
   PoseBlocks b;
   NoiseSums sums;
+  sums.squares = sums.freedom = calibration::AxisNoise::Zero(problem.sensors(), 3);
+  out.noise_ratio.resize(problem.sensors(), 3);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, false, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);
@@ -86,9 +88,9 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   }
   // Each reading is an affine form of the field: four unknowns of the fixed block a channel, and its share of
   // effects.
-  const double fitted = 4.0 + problem.coefficients() / double{sensor::kChannels};
-  out.fitted = sensor::kChannels * fitted;
-  for (int i = 0; i < kSensors; ++i) {
+  const double fitted = 4.0 + problem.coefficients() / static_cast<double>(problem.channels());
+  out.fitted = problem.channels() * fitted;
+  for (int i = 0; i < problem.sensors(); ++i) {
     for (int a = 0; a < 3; ++a) {
       const double free = sums.freedom(i, a) - fitted;
       out.noise_ratio(i, a) = free > 1 ? std::sqrt(sums.squares(i, a) / free) : 1;

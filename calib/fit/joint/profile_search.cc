@@ -180,7 +180,7 @@ class Search {
 /// Puts back, weighed as the others of their channel, the readings that a fit left out. False: there are
 /// none.
 bool bring_back(JointProblem& problem) {
-  Channels heaviest = Channels::Zero();
+  Channels heaviest = Channels::Zero(problem.channels());
   for (const JointPose& pose : problem.poses) heaviest = heaviest.cwiseMax(pose.weight);
   bool any = false;
   for (JointPose& pose : problem.poses) {

@@ -15,7 +15,7 @@ namespace mgtd::calib::fit::joint {
 namespace {
 
 Result<void> plausible(const JointState& state) {
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < state.sensors.size(); ++i) {
     const double gain = std::abs(state.sensors[i].response().determinant());
     if (gain > 0.125 && gain < 8) continue;  // each axis within a factor of two of nominal scale
     return fail(
@@ -82,7 +82,7 @@ struct AllReadings {
 
 AllReadings all_readings(const JointProblem& problem, double f_nT) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  AllReadings out{ReadingTable(sensor::kChannels, n), Eigen::VectorXd::Constant(n, f_nT)};
+  AllReadings out{ReadingTable(problem.channels(), n), Eigen::VectorXd::Constant(n, f_nT)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
     out.y_nT.col(k) = pose.y_nT;
@@ -124,7 +124,7 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
 double cost(const JointProblem& problem, const RobustFit& fit) {
   constexpr double kLeftOut = 3 * 3 / 2.0;
   double sum = 0;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (int c = 0; c < problem.channels(); ++c) {
     std::vector<double> misfits;
     double squares = 0, left_out = 0;
     for (std::size_t k = 0; k < problem.poses.size(); ++k) {

@@ -13,7 +13,7 @@ namespace mgtd::calib::fit::joint {
 /// field of strength F: root mean square over all attitudes. An error of the parameters shifts the corrected
 /// field of a sensor by -R (C A)^-1 dy/dp dp, linear in the field, so the mean over the sphere is that over
 /// six directions, exactly.
-[[nodiscard]] Gradient calibration_tensor_sd(const std::array<sensor::SensorModel, kSensors>& sensors,
+[[nodiscard]] Gradient calibration_tensor_sd(const PerSensor<sensor::SensorModel>& sensors,
                                              const sensor::Geometry& geometry,
                                              const Eigen::MatrixXd& covariance, double f_nT);
 

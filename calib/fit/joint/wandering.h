@@ -16,7 +16,7 @@
 namespace mgtd::calib::fit::joint {
 
 inline constexpr int kWanderingTerms = 16;
-using WanderingRates = Eigen::Matrix<double, sensor::kChannels, 1>;
+using WanderingRates = sensor::FieldVector;
 
 /// The terms of a walk of 1 nT per root hour over one run.
 class WanderingTerms {

@@ -26,7 +26,7 @@ constexpr int kPerDecade = 4;
 /// Columns of the channels that wander.
 std::vector<Eigen::Index> active(const Channels& theta) {
   std::vector<Eigen::Index> out;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (Eigen::Index c = 0; c < theta.size(); ++c) {
     for (int j = 0; theta[c] > 0 && j < kJ; ++j) out.push_back(c * kJ + j);
   }
   return out;
@@ -82,13 +82,12 @@ struct Place {
   double price;  ///< 2 ln of how many are alike
 };
 
-std::vector<Place> places() {
+std::vector<Place> places(int channels) {
   std::vector<Place> out{{"all", {}, 0}};
-  for (int c = 0; c < sensor::kChannels; ++c) out.front().channels.push_back(c);
-  for (int i = 0; i < kSensors; ++i)
-    out.push_back({fmt::format("s{}", i + 1), {3 * i, 3 * i + 1, 3 * i + 2}, 2 * std::log(kSensors)});
-  for (int c = 0; c < sensor::kChannels; ++c)
-    out.push_back({sensor::channel_name(c), {c}, 2 * std::log(sensor::kChannels)});
+  for (int c = 0; c < channels; ++c) out.front().channels.push_back(c);
+  for (int i = 0; channels > 3 && 3 * i < channels; ++i)
+    out.push_back({fmt::format("s{}", i + 1), {3 * i, 3 * i + 1, 3 * i + 2}, 2 * std::log(channels / 3)});
+  for (int c = 0; c < channels; ++c) out.push_back({sensor::channel_name(c), {c}, 2 * std::log(channels)});
   return out;
 }
 
@@ -125,9 +124,10 @@ Asked ask(const SlowSums& s, const Place& place) {
 /// Places one after the other, each given those before, while one is worth saying.
 Channels grow(const SlowSums& sums, WanderingEstimate& out) {
   constexpr int kMost = 6;
-  Channels theta = Channels::Zero();
+  const int channels = sums.channels();
+  Channels theta = Channels::Zero(channels);
   SlowSums left = sums;
-  const std::vector<Place> all = places();
+  const std::vector<Place> all = places(channels);
   for (int round = 0; round < kMost; ++round) {
     const Place* best = nullptr;
     Asked found{.evidence = kWanderingEvidence};
@@ -156,8 +156,8 @@ struct SlowEquations {
 
 /// Rows of the readings by the fixed block, weighted, of one pose.
 Eigen::MatrixXd fixed_rows(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(sensor::kChannels, problem.fixed());
-  for (int i = 0; i < kSensors; ++i)
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(problem.channels(), problem.fixed());
+  for (int i = 0; i < problem.sensors(); ++i)
     out.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
         b.linear.d_sensor.middleRows<3>(3 * i);
   out.rightCols(b.linear.d_global.cols()) = b.linear.d_global;
@@ -166,7 +166,7 @@ Eigen::MatrixXd fixed_rows(const JointProblem& problem, const JointPose& pose, c
 
 SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
                              const WanderingTerms& terms) {
-  constexpr Eigen::Index m = sensor::kChannels * kJ;
+  const Eigen::Index channels = problem.channels(), m = channels * kJ;
   SlowEquations out{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
                     .gram = Eigen::MatrixXd::Zero(m, m),
                     .by_residual = Eigen::VectorXd::Zero(m)};
@@ -176,15 +176,15 @@ SlowEquations slow_equations(const JointProblem& problem, const JointState& stat
     const JointPose& pose = problem.poses[k];
     assemble(problem, model, state, k, true, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);
-    const Eigen::Matrix<double, kNuisances, sensor::kChannels> solved = H.solve(b.N.transpose());
+    const sensor::ChannelColumns<kNuisances> solved = H.solve(b.N.transpose());
     // What a reading of a channel, moved by its standard deviation, does once the nuisances have followed.
     const auto w = pose.weight.asDiagonal();
-    const Eigen::Matrix<double, sensor::kChannels, sensor::kChannels> M =
-        w * (Eigen::Matrix<double, sensor::kChannels, sensor::kChannels>::Identity() - b.N * solved) * w;
+    const sensor::ChannelCovariance M =
+        w * (sensor::ChannelCovariance::Identity(channels, channels) - b.N * solved) * w;
     const Eigen::MatrixXd X = (fixed_rows(problem, pose, b).transpose() - b.U * solved) * w;
     const Channels r = w * (b.residual - solved.transpose() * b.g);
     const auto at = terms.at(pose.t_h);
-    for (int c = 0; c < sensor::kChannels; ++c) {
+    for (int c = 0; c < channels; ++c) {
       out.by_fixed.middleCols<kJ>(c * kJ) += X.col(c) * at.transpose();
       out.by_residual.segment<kJ>(c * kJ) += r[c] * at;
       for (int d = 0; d <= c; ++d) out.gram.block<kJ, kJ>(c * kJ, d * kJ) += M(c, d) * at * at.transpose();
@@ -241,14 +241,14 @@ void SlowLikelihood::climb(Channels& theta, int steps) const {
     const double sigma2 = at.Q / sums_.dof;
     // V^-1 seen by the columns: U'V^-1 U = D^-1 (I - B^-1) D^-1, U'V^-1 r = D^-1 B^-1 D h.
     const Eigen::VectorXd inverse = at.B.inverse().diagonal();
-    Channels squares = Channels::Zero(), trace = Channels::Zero();
+    Channels squares = Channels::Zero(theta.size()), trace = squares;
     for (std::size_t i = 0; i < at.columns.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const Eigen::Index c = at.columns[i] / kJ;
       squares[c] += std::pow(at.sol[k] / at.root[k], 2);
       trace[c] += (1 - inverse[k]) / (at.root[k] * at.root[k]);
     }
-    for (int c = 0; c < sensor::kChannels; ++c)
+    for (Eigen::Index c = 0; c < theta.size(); ++c)
       if (theta[c] > 0 && trace[c] > 0) theta[c] *= std::sqrt(squares[c] / sigma2 / trace[c]);
   }
 }
@@ -264,7 +264,8 @@ WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
   const double sigma2 = likelihood.noise_variance(theta);
   out.nT_per_sqrt_h = (theta * sigma2).cwiseSqrt();
   out.noise_scale2 = sigma2;
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  out.sd = WanderingRates::Zero(theta.size());
+  for (Eigen::Index c = 0; c < theta.size(); ++c) {
     if (!(theta[c] > 0)) continue;
     double freedom = 0;
     for (int j = 0; j < kJ; ++j) {
@@ -294,7 +295,7 @@ std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, co
   Eigen::MatrixXd errors = *inverse * slow_equations(fit.problem, fit.state, terms).by_fixed;
   Eigen::MatrixXd out = w.noise_scale2 * *inverse;
   const auto at_end = terms.at(terms.to_h());
-  for (int c = 0; c < sensor::kChannels; ++c) {
+  for (int c = 0; c < fit.problem.channels(); ++c) {
     const int offset = sensor::kSensorParameters * (c / 3) + sensor::ix + c % 3;
     errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
     errors.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];

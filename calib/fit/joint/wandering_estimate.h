@@ -26,6 +26,7 @@ struct SlowSums {
   Eigen::VectorXd by_residual;  ///< U' r
   double chi2{0};               ///< r' r
   double dof{0};                ///< dimensions of r
+  [[nodiscard]] int channels() const { return static_cast<int>(gram.rows()) / kWanderingTerms; }
 
   /// With the directions of some orthonormal columns taken out: `by_columns` = Q'U, `r` = Q'r.
   [[nodiscard]] SlowSums without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const;
@@ -55,7 +56,7 @@ class SlowLikelihood {
 };
 
 struct WanderingEstimate {
-  WanderingRates nT_per_sqrt_h{WanderingRates::Zero()}, sd{WanderingRates::Zero()};
+  WanderingRates nT_per_sqrt_h, sd;  ///< by channel; empty where nothing wanders
   double evidence{0};                ///< 2 ln odds against white noise, places priced
   double noise_scale2{1};            ///< variance of the white noise over that of the weights
   std::vector<std::string> where{};  ///< "all", or those that wander: "s2", "s3.z"

@@ -14,18 +14,19 @@
 namespace mgtd::calib::fit::two_step {
 namespace {
 
-using Distances = Eigen::Array<double, kSensors, Eigen::Dynamic>;
+using Distances = Eigen::ArrayXXd;
 
 /// Of each sensor's field from the middle two of the four, by component, nT.
 Distances distances(const FieldTable& b_nT) {
-  Distances out = Distances::Zero(kSensors, b_nT.cols());
+  Distances out = Distances::Zero(b_nT.rows() / 3, b_nT.cols());
   for (Eigen::Index k = 0; k < b_nT.cols(); ++k) {
     for (int a = 0; a < 3; ++a) {
-      std::array<double, kSensors> values{};
-      for (int i = 0; i < kSensors; ++i) values.at(static_cast<std::size_t>(i)) = b_nT(3 * i + a, k);
+      PerSensor<double> values(static_cast<std::size_t>(out.rows()));
+      for (Eigen::Index i = 0; i < out.rows(); ++i)
+        values.at(static_cast<std::size_t>(i)) = b_nT(3 * i + a, k);
       std::sort(values.begin(), values.end());
       const double middle = 0.5 * (values[1] + values[2]);
-      for (int i = 0; i < kSensors; ++i) out(i, k) += std::pow(b_nT(3 * i + a, k) - middle, 2);
+      for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, k) += std::pow(b_nT(3 * i + a, k) - middle, 2);
     }
   }
   return out.sqrt();
@@ -35,8 +36,9 @@ Distances distances(const FieldTable& b_nT) {
 
 AgreeingReadings agreeing_readings(const Readings& readings) {
   AgreeingReadings out{readings, {}};
-  ReadingTable y(sensor::kChannels, readings.poses());
-  for (int i = 0; i < kSensors; ++i) y.middleRows<3>(3 * i) = readings.y_nT[static_cast<std::size_t>(i)];
+  ReadingTable y(3 * static_cast<Eigen::Index>(readings.y_nT.size()), readings.poses());
+  for (std::size_t i = 0; i < readings.y_nT.size(); ++i)
+    y.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = readings.y_nT[i];
   if (!looks_spoilt(y)) return out;
   const auto agreeing = agreeing_poses(y, readings.f_nT);
   if (!agreeing) return out;
@@ -53,10 +55,10 @@ std::vector<OutlierNode> left_out_nodes(const Readings& readings, const Agreeing
   constexpr double kFar = 10;  // times what the poses kept show
   const Distances kept = distances(corrected_fields(agreeing.kept, fitted.sensors));
   const Distances all = distances(corrected_fields(readings, fitted.sensors));
-  const Eigen::Array<double, kSensors, 1> usual = kept.square().rowwise().mean().sqrt();
+  const Eigen::ArrayXd usual = kept.square().rowwise().mean().sqrt();
   std::vector<OutlierNode> out;
   for (const Eigen::Index k : agreeing.left_out) {
-    const Eigen::Array<double, kSensors, 1> ratio = all.col(k) / usual;
+    const Eigen::ArrayXd ratio = all.col(k) / usual;
     Eigen::Index worst = 0;
     const double sigmas = ratio.maxCoeff(&worst);
     const bool one = (ratio > kFar).count() == 1;

@@ -21,14 +21,14 @@ struct Tilted {
 };
 
 std::vector<Tilted> tilted_poses(const Readings& readings, const Alignment& alignment,
-                                 const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT) {
+                                 const PerSensor<Eigen::Matrix3Xd>& b_S_nT) {
   std::vector<Tilted> out;
   for (Eigen::Index k = 0; k < readings.poses(); ++k) {
     const auto& angles = readings.angles[static_cast<std::size_t>(k)];
     if (!is_tilted(angles)) continue;
     const Eigen::Matrix3d T = table_rotation(*angles);
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < kSensorCount; ++i) b += alignment.R_PS[i] * b_S_nT[i].col(k);
+    for (std::size_t i = 0; i < b_S_nT.size(); ++i) b += alignment.R_PS[i] * b_S_nT[i].col(k);
     out.push_back({T, b.normalized()});
   }
   return out;
@@ -89,7 +89,7 @@ bool is_tilted(const std::optional<TableAngles>& angles) {
 }
 
 AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignment,
-                             const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+                             const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                              std::optional<double> declination_rad) {
   AzimuthOrigin out;
   const std::vector<Tilted> tilted = tilted_poses(readings, alignment, b_S_nT);

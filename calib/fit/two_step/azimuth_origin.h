@@ -16,7 +16,7 @@ namespace mgtd::calib::fit::two_step {
 
 /// `alignment` has D = 0.
 [[nodiscard]] AzimuthOrigin azimuth_origin(const Readings& readings, const Alignment& alignment,
-                                           const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+                                           const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                                            std::optional<double> declination_rad);
 
 /// The same alignment with the field at azimuth zero in the direction D.

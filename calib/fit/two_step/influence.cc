@@ -12,15 +12,12 @@
 namespace mgtd::calib::fit::two_step {
 namespace {
 
-constexpr int kScalar = 9;                                  ///< parameters of step 1
-constexpr int kSine = calibration::kArrayParameters;        ///< slot of the sine of the inclination
-constexpr int kOrigin = calibration::kArrayParameters + 1;  ///< slot of the declination
-constexpr int kSlots = calibration::kArrayParameters + 2;
+constexpr int kScalar = 9;  ///< parameters of step 1
 
 /// Per sensor nine of step 1 and three of the turn w, then the two of the site. First only what reaches a
 /// slot directly; what comes through step 1 or through w is added at the end, by one matrix.
-using Slots = Eigen::Matrix<double, kSlots, 1>;
-using Mixing = Eigen::Matrix<double, kSlots, kSlots>;
+using Slots = Eigen::VectorXd;
+using Mixing = Eigen::MatrixXd;
 using ScalarRow = Eigen::Matrix<double, 1, kScalar>;
 using ScalarDerivative = Eigen::Matrix<double, 3, kScalar>;
 
@@ -69,17 +66,18 @@ class Propagation {
   const TwoStep& fitted_;
   const calibration::AxisNoise& noise_;
   double f_nT_;
-  Eigen::Vector3d site_;  ///< unit field at zero angles
-  std::array<Eigen::Matrix3d, kSensorCount> gain_;
-  std::array<Eigen::Matrix3Xd, kSensorCount> b_;  ///< corrected fields, platform frame
-  std::array<Eigen::Matrix3Xd, kSensorCount> m_;  ///< zero columns where the pose is not of the turn
-  std::array<Eigen::Matrix<double, kScalar, Eigen::Dynamic>, kSensorCount> weight_;  ///< dp per nT of |b| - F
+  Eigen::Vector3d site_;                 ///< unit field at zero angles
+  int sensors_, sine_, origin_, slots_;  ///< slots of the sine of the inclination and of the declination; all
+  PerSensor<Eigen::Matrix3d> gain_;
+  PerSensor<Eigen::Matrix3Xd> b_;  ///< corrected fields, platform frame
+  PerSensor<Eigen::Matrix3Xd> m_;  ///< zero columns where the pose is not of the turn
+  PerSensor<Eigen::Matrix<double, kScalar, Eigen::Dynamic>> weight_;  ///< dp per nT of |b| - F
   Eigen::Matrix3Xd
       origin_weight_;  ///< dD per unit of the direction; zero columns where the pose does not count
-  Mixing through_step1_{Mixing::Identity()};
-  Eigen::Matrix<double, 1, kSlots> origin_row_{Eigen::Matrix<double, 1, kSlots>::Unit(kOrigin)};
-  Mixing direct_{Mixing::Zero()};      ///< covariance of the directly reached
-  Slots common_field_{Slots::Zero()};  ///< of one nT of the field given by the operator
+  Mixing through_step1_;
+  Eigen::RowVectorXd origin_row_;
+  Mixing direct_;       ///< covariance of the directly reached
+  Slots common_field_;  ///< of one nT of the field given by the operator
 };
 
 Propagation::Propagation(const Readings& readings, const FitOptions& options, const TwoStep& fitted,
@@ -90,15 +88,27 @@ Propagation::Propagation(const Readings& readings, const FitOptions& options, co
       noise_(noise),
       f_nT_(readings.mean_f_nT()),
       site_(fitted.site_direction()),
-      origin_weight_(Eigen::Matrix3Xd::Zero(3, readings.poses())) {
-  for (std::size_t i = 0; i < kSensorCount; ++i) prepare_sensor(i);
+      sensors_(static_cast<int>(fitted.sensors.size())),
+      sine_(sensors_ * sensor::kSensorParameters),
+      origin_(sine_ + 1),
+      slots_(sine_ + 2),
+      gain_(fitted.sensors.size()),
+      b_(fitted.sensors.size()),
+      m_(fitted.sensors.size()),
+      weight_(fitted.sensors.size()),
+      origin_weight_(Eigen::Matrix3Xd::Zero(3, readings.poses())),
+      through_step1_(Mixing::Identity(slots_, slots_)),
+      origin_row_(Eigen::RowVectorXd::Unit(slots_, origin_)),
+      direct_(Mixing::Zero(slots_, slots_)),
+      common_field_(Slots::Zero(slots_)) {
+  for (std::size_t i = 0; i < fitted_.sensors.size(); ++i) prepare_sensor(i);
   if (fitted.origin.gauge == AzimuthGauge::table_frame) prepare_origin();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < fitted_.sensors.size(); ++i) {
     for (Eigen::Index k = 0; k < readings_.poses(); ++k) {
       const FieldRows rows = rows_of(i, k);
       const ScalarDerivative D = derivative(i, k);
       through_step1_.block<3, kScalar>(slot_of(i) + kScalar, slot_of(i)) += rows.turn * D;
-      through_step1_.block<1, kScalar>(kSine, slot_of(i)) += rows.sine * D;
+      through_step1_.block<1, kScalar>(sine_, slot_of(i)) += rows.sine * D;
       origin_row_.segment<kScalar>(slot_of(i)) += rows.origin * D;
       // The turn w_i moves every field of the sensor by w x b.
       origin_row_.segment<3>(slot_of(i) + kScalar) -= rows.origin * cross_matrix(b_[i].col(k));
@@ -146,7 +156,7 @@ void Propagation::prepare_origin() {
     origin_weight_.col(k) = -g;
   }
   origin_weight_ /= sum;
-  origin_row_[kSine] = sine / sum;
+  origin_row_[sine_] = sine / sum;
 }
 
 Propagation::FieldRows Propagation::rows_of(std::size_t i, Eigen::Index k) const {
@@ -154,9 +164,9 @@ Propagation::FieldRows Propagation::rows_of(std::size_t i, Eigen::Index k) const
   if (readings_.of_turn(k)) {
     const Eigen::Vector3d m = m_[i].col(k);
     rows.turn = -0.5 * cross_matrix(m);
-    rows.sine[2] = site_[2] * m[2] / kSensors;
+    rows.sine[2] = site_[2] * m[2] / sensors_;
   }
-  rows.origin = origin_weight_.col(k).transpose() / (kSensors * readings_.f_nT[k]);
+  rows.origin = origin_weight_.col(k).transpose() / (sensors_ * readings_.f_nT[k]);
   return rows;
 }
 
@@ -172,28 +182,29 @@ void Propagation::add_readings(Eigen::Index k, std::size_t i) {
       a * a.transpose();
   const int at = slot_of(i);
   direct_.block<sensor::kSensorParameters, sensor::kSensorParameters>(at, at) += c.topLeftCorner<12, 12>();
-  direct_.block<sensor::kSensorParameters, 2>(at, kSine) += c.topRightCorner<12, 2>();
-  direct_.block<2, sensor::kSensorParameters>(kSine, at) += c.bottomLeftCorner<2, 12>();
-  direct_.block<2, 2>(kSine, kSine) += c.bottomRightCorner<2, 2>();
+  direct_.block<sensor::kSensorParameters, 2>(at, sine_) += c.topRightCorner<12, 2>();
+  direct_.block<2, sensor::kSensorParameters>(sine_, at) += c.bottomLeftCorner<2, 12>();
+  direct_.block<2, 2>(sine_, sine_) += c.bottomRightCorner<2, 2>();
 }
 
 void Propagation::add_pose(Eigen::Index k) {
   const auto& angles = readings_.angles[static_cast<std::size_t>(k)];
-  Slots by_field = Slots::Zero();
-  Eigen::Matrix<double, kSlots, 3> by_table = Eigen::Matrix<double, kSlots, 3>::Zero();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  Slots by_field = Slots::Zero(slots_);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> by_table =
+      Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(slots_, 3);
+  for (std::size_t i = 0; i < fitted_.sensors.size(); ++i) {
     add_readings(k, i);
     const FieldRows rows = rows_of(i, k);
     // Step 2 sees the field divided by F_k.
     const Eigen::Vector3d relative = -b_[i].col(k) / readings_.f_nT[k];
     by_field.segment<kScalar>(slot_of(i)) = -weight_[i].col(k);
     by_field.segment<3>(slot_of(i) + kScalar) = rows.turn * relative;
-    by_field[kSine] += rows.sine.dot(relative);
+    by_field[sine_] += rows.sine.dot(relative);
     if (!angles) continue;
     const Eigen::Matrix3d turned = table_derivative(*angles, b_[i].col(k));
     by_table.middleRows<3>(slot_of(i) + kScalar) = rows.turn * turned;
-    by_table.row(kSine) += rows.sine * turned;
-    by_table.row(kOrigin) += rows.origin * turned;
+    by_table.row(sine_) += rows.sine * turned;
+    by_table.row(origin_) += rows.origin * turned;
   }
   by_table *= options_.table_sd_rad;
   if (angles) direct_ += by_table * by_table.transpose();
@@ -207,25 +218,25 @@ void Propagation::add_pose(Eigen::Index k) {
 
 /// The origin of the azimuth answers to the turns and the sine, which answer to step 1.
 Mixing Propagation::origin_from_all() const {
-  Mixing out = Mixing::Identity();
-  out.row(kOrigin) = origin_row_;
+  Mixing out = Mixing::Identity(slots_, slots_);
+  out.row(origin_) = origin_row_;
   if (fitted_.origin.gauge != AzimuthGauge::mean_gamma_zero) return out;
   // gamma answers to a turn about z by -1 in every sensor: the origin takes up the mean.
-  out.row(kOrigin).setZero();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  out.row(origin_).setZero();
+  for (std::size_t i = 0; i < fitted_.sensors.size(); ++i) {
     const Eigen::Matrix3d to_angles = calibration::turn_axes(fitted_.sensors[i]).inverse();
-    out.block<1, 3>(kOrigin, slot_of(i) + kScalar) = to_angles.row(2) / kSensors;
+    out.block<1, 3>(origin_, slot_of(i) + kScalar) = to_angles.row(2) / sensors_;
   }
   return out;
 }
 
 Mixing Propagation::angles_from_turns() const {
-  Mixing out = Mixing::Identity();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  Mixing out = Mixing::Identity(slots_, slots_);
+  for (std::size_t i = 0; i < fitted_.sensors.size(); ++i) {
     const Eigen::Matrix3d to_angles = calibration::turn_axes(fitted_.sensors[i]).inverse();
     const int at = slot_of(i) + kScalar;
     out.block<3, 3>(at, at) = to_angles;
-    out.block<3, 1>(at, kOrigin) = to_angles.col(2);
+    out.block<3, 1>(at, origin_) = to_angles.col(2);
   }
   return out;
 }
@@ -236,10 +247,10 @@ Influence Propagation::result() {
   const Mixing all = angles_from_turns() * origin_from_all() * through_step1_;
   const Mixing covariance = linear::propagated_covariance(all, direct_);
   Influence out;
-  out.covariance = covariance.topLeftCorner<calibration::kArrayParameters, calibration::kArrayParameters>();
+  out.covariance = covariance.topLeftCorner(sine_, sine_);
   out.covariance = 0.5 * (out.covariance + out.covariance.transpose()).eval();
-  out.inclination_sd_rad = std::sqrt(covariance(kSine, kSine)) / std::hypot(site_[0], site_[1]);
-  out.declination_sd_rad = std::sqrt(covariance(kOrigin, kOrigin));
+  out.inclination_sd_rad = std::sqrt(covariance(sine_, sine_)) / std::hypot(site_[0], site_[1]);
+  out.declination_sd_rad = std::sqrt(covariance(origin_, origin_));
   return out;
 }
 

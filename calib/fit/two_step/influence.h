@@ -17,7 +17,7 @@
 namespace mgtd::calib::fit::two_step {
 
 struct Influence {
-  calibration::ArrayCovariance covariance;  ///< of the parameters
+  Eigen::MatrixXd covariance;  ///< of the parameters
   double inclination_sd_rad{0}, declination_sd_rad{0};
 };
 

@@ -92,20 +92,20 @@ Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& M) {
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-Result<Alignment> align(const Readings& readings, const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+Result<Alignment> align(const Readings& readings, const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                         std::optional<double> bz_sign) {
   const auto turn = standard_turn(readings);
   if (!turn) return tl::unexpected(turn.error());
   Alignment out;
-  std::array<Rows, kSensorCount> rows;
+  PerSensor<Rows> rows(b_S_nT.size());
   double bz = 0, handedness = 0;
   const double f = readings.mean_f_nT();
   // A field that drifts during the turn would look like a tilt.
   const Eigen::VectorXd to_mean = f * readings.f_nT(turn->poses).cwiseInverse();
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < b_S_nT.size(); ++i) {
     rows[i] = rows_of(b_S_nT[i](Eigen::all, turn->poses) * to_mean.asDiagonal(), turn->azimuth_rad);
     out.condition = std::max(out.condition, rows[i].condition);
-    bz += rows[i].bz_nT / kSensors;
+    bz += rows[i].bz_nT / static_cast<double>(b_S_nT.size());
     handedness += rows[i].T.determinant() > 0 ? 1 : -1;
   }
   if (!(out.condition < kMaxCondition)) {
@@ -122,7 +122,7 @@ Result<Alignment> align(const Readings& readings, const std::array<Eigen::Matrix
   }
   // Bz < 0 turns every Tz over: what looked mirrored is then right-handed.
   const double sign = bz_sign.value_or(handedness >= 0 ? 1.0 : -1.0);
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < b_S_nT.size(); ++i) {
     rows[i].T.row(2) *= sign;
     out.R_PS[i] = nearest_orthogonal(rows[i].T);
   }

@@ -22,8 +22,8 @@
 namespace mgtd::calib::fit::two_step {
 
 struct Alignment {
-  std::array<Eigen::Matrix3d, kSensors> R_PS;  ///< nearest orthogonal matrices; determinant -1: mirrored
-  double bz_nT{0};                             ///< mean over the sensors, with its sign
+  PerSensor<Eigen::Matrix3d> R_PS;  ///< nearest orthogonal matrices; determinant -1: mirrored
+  double bz_nT{0};                  ///< mean over the sensors, with its sign
   double bh_nT{0};
   double condition{0};  ///< of P, worst sensor
 };
@@ -32,8 +32,7 @@ struct Alignment {
 /// known azimuth count. `bz_sign` +1 or -1 when known. Refuses fewer than five such poses, poses
 /// that are not level, a turn of less than 90 degrees, and a field within about three degrees of Z or of the
 /// horizontal plane, with the condition number.
-[[nodiscard]] Result<Alignment> align(const Readings& readings,
-                                      const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+[[nodiscard]] Result<Alignment> align(const Readings& readings, const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                                       std::optional<double> bz_sign);
 
 /// The orthogonal matrix nearest to M (Frobenius), determinant of either sign.

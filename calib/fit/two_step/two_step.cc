@@ -19,7 +19,7 @@ struct Placed {
   AzimuthOrigin origin;
 };
 
-Result<Placed> place(const Readings& readings, const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+Result<Placed> place(const Readings& readings, const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                      const FitOptions& options, std::optional<double> bz_sign) {
   auto alignment = align(readings, b_S_nT, bz_sign);
   if (!alignment) return tl::unexpected(alignment.error());
@@ -30,7 +30,7 @@ Result<Placed> place(const Readings& readings, const std::array<Eigen::Matrix3Xd
 
 /// The sign of Bz: from a known inclination, else the majority is right-handed, unless poses that tilt
 /// contradict it.
-Result<Placed> place(const Readings& readings, const std::array<Eigen::Matrix3Xd, kSensors>& b_S_nT,
+Result<Placed> place(const Readings& readings, const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                      const FitOptions& options) {
   if (options.inclination_rad)
     return place(readings, b_S_nT, options, *options.inclination_rad < 0 ? -1.0 : 1.0);
@@ -51,10 +51,13 @@ Eigen::Vector3d TwoStep::site_direction() const {
 
 Result<TwoStep> two_step(const Readings& readings, const FitOptions& options) {
   TwoStep out;
-  std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
+  const std::size_t sensors = readings.y_nT.size();
+  out.step1.resize(sensors);
+  out.sensors.resize(sensors);
+  PerSensor<Eigen::Matrix3Xd> b_S_nT(sensors);
   const auto step1 =
       options.method == Method::simplified ? sensor::simplified_calibration : sensor::scalar_calibration;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < sensors; ++i) {
     auto fitted = step1(readings.y_nT[i], readings.f_nT);
     if (!fitted) {
       return fail(fitted.error().code, fmt::format("sensor s{}: {}", i + 1, fitted.error().message),
@@ -68,7 +71,7 @@ Result<TwoStep> two_step(const Readings& readings, const FitOptions& options) {
   out.alignment = std::move(placed->alignment);
   out.origin = placed->origin;
   turn_to(out.alignment, out.origin.declination_rad);
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < sensors; ++i) {
     out.sensors[i] = sensor_from(out.step1[i].K, out.step1[i].offset_nT, out.alignment.R_PS[i]);
   }
   return out;

@@ -11,10 +11,10 @@
 namespace mgtd::calib::fit::two_step {
 
 struct TwoStep {
-  std::array<sensor::ScalarCalibration, kSensors> step1;
+  PerSensor<sensor::ScalarCalibration> step1;
   Alignment alignment;  ///< in the gauge of `origin`
   AzimuthOrigin origin;
-  std::array<sensor::SensorModel, kSensors> sensors;
+  PerSensor<sensor::SensorModel> sensors;
 
   /// Unit vector of the field in the platform frame at zero table angles.
   [[nodiscard]] Eigen::Vector3d site_direction() const;

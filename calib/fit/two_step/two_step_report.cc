@@ -41,26 +41,27 @@ Readings half_of(const Readings& readings, std::size_t parity) {
 }
 
 /// Step 1 is common to both halves, as in the paper's Table 5; only step 2 sees half of the standard set.
-Result<std::array<sensor::SensorModel, kSensors>> from_half(const Readings& readings, std::size_t parity,
-                                                            const TwoStep& whole) {
+Result<PerSensor<sensor::SensorModel>> from_half(const Readings& readings, std::size_t parity,
+                                                 const TwoStep& whole) {
   const Readings half = half_of(readings, parity);
-  std::array<Eigen::Matrix3Xd, kSensors> b_S_nT;
-  for (std::size_t i = 0; i < kSensorCount; ++i) b_S_nT[i] = whole.step1[i].correct(half.y_nT[i]);
+  PerSensor<Eigen::Matrix3Xd> b_S_nT(half.y_nT.size());
+  for (std::size_t i = 0; i < b_S_nT.size(); ++i) b_S_nT[i] = whole.step1[i].correct(half.y_nT[i]);
   auto alignment = align(half, b_S_nT, whole.alignment.bz_nT > 0 ? 1.0 : -1.0);
   if (!alignment) return tl::unexpected(alignment.error());
   turn_to(*alignment, whole.origin.declination_rad);
-  std::array<sensor::SensorModel, kSensors> out;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  PerSensor<sensor::SensorModel> out(b_S_nT.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = sensor_from(whole.step1[i].K, whole.step1[i].offset_nT, alignment->R_PS[i]);
   }
   return out;
 }
 
-double largest_angle_difference(const std::array<sensor::SensorModel, kSensors>& a,
-                                const std::array<sensor::SensorModel, kSensors>& b) {
+double largest_angle_difference(const PerSensor<sensor::SensorModel>& a,
+                                const PerSensor<sensor::SensorModel>& b) {
   double mean_gamma = 0, worst = 0;
-  for (std::size_t i = 0; i < kSensorCount; ++i) mean_gamma += (a[i].gamma_rad - b[i].gamma_rad) / kSensors;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  const auto sensors = static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) mean_gamma += (a[i].gamma_rad - b[i].gamma_rad) / sensors;
+  for (std::size_t i = 0; i < a.size(); ++i) {
     worst =
         std::max({worst, std::abs(a[i].alpha_rad - b[i].alpha_rad), std::abs(a[i].beta_rad - b[i].beta_rad),
                   std::abs(a[i].gamma_rad - b[i].gamma_rad - mean_gamma)});
@@ -80,7 +81,7 @@ std::optional<HalvesComparison> compare_halves(const Readings& readings, const T
 /// Every pose corrected by a fit that has not seen it.
 std::optional<ErrorSummary> hold_out(const Readings& readings, const FitOptions& options,
                                      const sensor::Geometry& geometry) {
-  FieldTable b(3 * kSensors, readings.poses());
+  FieldTable b(3 * static_cast<Eigen::Index>(readings.y_nT.size()), readings.poses());
   const Eigen::Index n = readings.poses();
   for (Eigen::Index fold = 0; fold < kFolds; ++fold) {
     const Eigen::Index from = fold * n / kFolds, to = (fold + 1) * n / kFolds;
@@ -101,7 +102,7 @@ calibration::AxisNoise effective_noise(const Readings& readings, const TwoStep& 
   const double dof = std::max(1.0, n - 9);
   const double by_chance = 1 + 3 * std::sqrt(2 / dof);
   const double scalar = readings.f_sd_nT.squaredNorm() / n;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  for (std::size_t i = 0; i < readings.y_nT.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double variance =
         std::max(0.0, step1.total_field_rmse_nT[i] * step1.total_field_rmse_nT[i] * n / dof - scalar);
@@ -114,12 +115,10 @@ calibration::AxisNoise effective_noise(const Readings& readings, const TwoStep& 
   return noise;
 }
 
-double rms(const calibration::AxisNoise& noise) { return std::sqrt(noise.array().square().mean()); }
-
 /// Step 1 only: sensors orthogonal and to scale, their frames left as they stand.
 ErrorSummary after_step1(const Readings& readings, const TwoStep& fitted, const sensor::Geometry& geometry) {
-  FieldTable b(3 * kSensors, readings.poses());
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  FieldTable b(3 * static_cast<Eigen::Index>(readings.y_nT.size()), readings.poses());
+  for (std::size_t i = 0; i < readings.y_nT.size(); ++i) {
     b.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         fitted.sensors[i].mounting * fitted.step1[i].correct(readings.y_nT[i]);
   }
@@ -131,14 +130,14 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
   calibration::Calibration& c = report.calibration;
   const calibration::AxisNoise effective = effective_noise(readings, fitted, report.after_step1);
   c.pose_noise_nT = (readings.pose_noise_nT.array() > 0).select(readings.pose_noise_nT, effective);
-  report.noise_nT = rms(c.pose_noise_nT);
+  report.noise_nT = calibration::root_mean_square(c.pose_noise_nT);
   report.noise_known = (readings.pose_noise_nT.array() > 0).all();
   const FieldTable b = corrected_fields(readings, fitted.sensors);
   report.chi2 = field_chi2(b, readings, fitted.sensors, c.pose_noise_nT);
   report.summary = {.termination = Termination::closed_form,
                     .initial_cost = field_chi2(raw_fields(readings), readings, {}, c.pose_noise_nT),
                     .final_cost = report.chi2};
-  report.dof = static_cast<double>(kSensors * (readings.poses() - 9));
+  report.dof = static_cast<double>(static_cast<Eigen::Index>(readings.y_nT.size()) * (readings.poses() - 9));
   const Influence spread = influence(readings, options, fitted, effective);
   c.covariance = spread.covariance;
   const Eigen::Vector3d site = fitted.site_direction();

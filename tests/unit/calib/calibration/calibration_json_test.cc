@@ -23,11 +23,11 @@ Calibration random_calibration(std::uint64_t seed) {
     sensor = sensor::SensorModel::from_parameters(p);
   }
   c.sensors[2].mounting << 0, -1, 0, 0, 0, 1, -1, 0, 0;
-  ArrayCovariance half;
+  Eigen::MatrixXd half(kArrayParameters, kArrayParameters);
   for (double& value : half.reshaped()) value = 1e-5 * normal(random);
   c.covariance = half * half.transpose();
   c.covariance = 0.5 * (c.covariance + c.covariance.transpose()).eval();
-  c.geometry.baseline_m = 0.4 + 1e-3 * normal(random);
+  c.geometry = sensor::Geometry(0.4 + 1e-3 * normal(random));
   c.sample_noise_nT.setConstant(0.1 / 3);
   c.pose_noise_nT.setConstant(1.0 / 7);
   c.gauge = "platform frame is the table frame; \"quoted\" and ±";
@@ -54,7 +54,7 @@ TEST(CalibrationJson, ReadsBackBitForBit) {
       EXPECT_EQ(again->sensors[i].mounting, c.sensors[i].mounting);
     }
     EXPECT_EQ(again->covariance, c.covariance);
-    EXPECT_EQ(again->geometry.baseline_m, c.geometry.baseline_m);
+    EXPECT_EQ(again->geometry, c.geometry);
     EXPECT_EQ(again->sample_noise_nT, c.sample_noise_nT);
     EXPECT_EQ(again->pose_noise_nT, c.pose_noise_nT);
     EXPECT_EQ(again->gauge, c.gauge);

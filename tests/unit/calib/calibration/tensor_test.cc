@@ -10,7 +10,7 @@ namespace {
 
 sensor::FieldVector linear_field(const Eigen::Vector3d& B, const Eigen::Matrix3d& G,
                                  const sensor::Geometry& geometry) {
-  sensor::FieldVector b;
+  sensor::FieldVector b(geometry.channels());
   const auto r = geometry.positions_P_m();
   for (std::size_t i = 0; i < r.size(); ++i) b.segment<3>(3 * static_cast<Eigen::Index>(i)) = B + G * r[i];
   return b;
@@ -50,10 +50,10 @@ TEST(Tensor, ACurlOrAnOddSensorDoesNotClose) {
 }
 
 TEST(Tensor, RowsSayTheSameAsTheArithmetic) {
-  const sensor::Geometry geometry{.baseline_m = 0.5};
+  const sensor::Geometry geometry(0.5);
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, 100);
-  sensor::FieldVector b;
+  sensor::FieldVector b(geometry.channels());
   for (double& value : b) value = normal(random);
   const auto got = field_and_gradient(b, geometry);
   const Eigen::Matrix<double, 6, 1> g = gradient_rows(geometry) * b;
@@ -140,7 +140,7 @@ TEST(TensorPipeline, StandardDeviationsAreThoseOfManySamples) {
 
 TEST(Tensor, WhatTheModelLeavesOutDoesNotAverageAway) {
   auto calibration = std::make_shared<Calibration>();
-  calibration->geometry.baseline_m = 0.4;
+  calibration->geometry = sensor::Geometry(0.4);
   calibration->sample_noise_nT.setConstant(0.3);
   const auto sd_of = [&](double pose_noise_nT, double samples) {
     calibration->pose_noise_nT.setConstant(pose_noise_nT);

@@ -61,7 +61,7 @@ inline PoseTable run_with(const Injection& in, const Scene& scene, std::uint64_t
   const Rig rig = table6_rig();
   const auto r = sensor::Geometry{}.positions_P_m();
   PoseTable table;
-  std::array<Eigen::Vector3d, kSensors> before;
+  PerSensor<Eigen::Vector3d> before;
   const int n = scene.standard + scene.random;
   for (int k = 0; k < n; ++k) {
     Pose pose;

@@ -13,7 +13,7 @@
 /// AngleAxis, not with the code under test.
 namespace mgtd::calib::testing {
 
-using Rig = std::array<sensor::SensorModel, kSensors>;
+using Rig = PerSensor<sensor::SensorModel>;
 
 inline sensor::SensorModel sensor(double theta_deg, double phi_deg, double psi_deg, Eigen::Vector3d c,
                                   Eigen::Vector3d i_nT, double alpha_deg, double beta_deg, double gamma_deg) {

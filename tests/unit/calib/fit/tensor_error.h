@@ -11,7 +11,7 @@ namespace mgtd::calib::testing {
 
 using Components = Eigen::Array<double, 6, 1>;  // xx yy zz xy xz yz
 
-inline Components tensor_of(const std::array<Eigen::Vector3d, kSensors>& b, double d_m) {
+inline Components tensor_of(const PerSensor<Eigen::Vector3d>& b, double d_m) {
   const Eigen::Vector3d by_x = (b[0] - b[2]) / d_m, by_y = (b[1] - b[3]) / d_m;
   return {by_x[0], by_y[1], -by_x[0] - by_y[1], (by_x[1] + by_y[0]) / 2, by_x[2], by_y[2]};
 }
@@ -31,7 +31,7 @@ inline Components tensor_mean_square(const Rig& estimate, const Rig& truth,
                                      const std::vector<Eigen::Vector3d>& fields, double d_m = 0.4) {
   Components sum = Components::Zero();
   for (const Eigen::Vector3d& b : fields) {
-    std::array<Eigen::Vector3d, kSensors> corrected;
+    PerSensor<Eigen::Vector3d> corrected;
     for (std::size_t i = 0; i < kSensors; ++i) corrected[i] = estimate[i].correct(truth[i].predict(b));
     sum += tensor_of(corrected, d_m).square() / static_cast<double>(fields.size());
   }
@@ -49,8 +49,8 @@ inline Components expected_mean_square(const Eigen::MatrixXd& covariance, const 
       const auto s = static_cast<std::size_t>(j / sensor::kSensorParameters);
       const int p = j % sensor::kSensorParameters;
       const double h = p >= sensor::ix && p <= sensor::iz ? 1.0 : 1e-6;
-      std::array<Eigen::Vector3d, kSensors> change{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
-                                                   Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+      PerSensor<Eigen::Vector3d> change{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
       const sensor::ParameterVector step = h * sensor::ParameterVector::Unit(p);
       const sensor::SensorModel up =
           sensor::SensorModel::from_parameters(truth[s].parameters() + step, truth[s].mounting);

@@ -19,7 +19,7 @@ constexpr double kPeriod_s = 0.02;
 /// was.
 struct World {
   std::vector<FieldReading> readings;
-  std::array<std::vector<FieldReading>, kSensors> delivered;
+  PerSensor<std::vector<FieldReading>> delivered;
 };
 
 World draw_world(bool late, bool losses) {
@@ -124,7 +124,7 @@ std::vector<Epoch> inner_epochs(const std::vector<EpochOrGap>& items) {
 RC_GTEST_PROP(SamplerProperty, OrderOfReadingTheFourPortsIsIrrelevant, ()) {
   World world = draw_world(false, false);
   const auto first = sampled(world);
-  std::array<double, kSensors> behind{};
+  PerSensor<double> behind{};
   for (double& b : behind) b = *rc::gen::inRange(0, 15) * 1e-3;
   std::stable_sort(world.readings.begin(), world.readings.end(), [&](const auto& a, const auto& b) {
     return true_time(a.arrival) + behind[static_cast<std::size_t>(a.slot)] <

@@ -70,7 +70,7 @@ inline double true_skew(const Epoch& epoch) {
 
 inline std::array<DeviceSim, kSensors> free_running() {
   std::array<DeviceSim, kSensors> d;
-  const std::array<double, kSensors> ppm{50, -50, 17, -33}, phase{0.001, 0.0153, 0.0071, 0.0118};
+  const PerSensor<double> ppm{50, -50, 17, -33}, phase{0.001, 0.0153, 0.0071, 0.0118};
   for (std::size_t i = 0; i < kSensors; ++i) {
     d[i].ppm = ppm[i];
     d[i].phase_s = phase[i];

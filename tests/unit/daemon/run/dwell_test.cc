@@ -36,7 +36,7 @@ struct Source {
   double ar;
   std::mt19937_64 random;
   std::normal_distribution<double> normal;
-  std::array<Eigen::Vector3d, kSensors> state{};
+  PerSensor<Eigen::Vector3d> state{};
   std::uint64_t seq{0};
 };
 

@@ -21,7 +21,7 @@ Stamp at(double t_s) { return {Instant{from_seconds(500 + t_s)}, WallTime{from_s
 struct Rig {
   double rate_hz{kRate_hz};
   double noise_nT{1};
-  std::array<double, kSensors> scale{1, 1, 1, 1};
+  PerSensor<double> scale{1, 1, 1, 1};
   int frozen_axis{-1};
   int saturated_from{1 << 30};
   double scatter_nT{0};

@@ -91,9 +91,9 @@ class RunBench {
   }
 
   FakeTable table;
-  std::set<Slot> lost;                  ///< devices whose port is gone
-  std::set<Slot> silent;                ///< devices that say nothing
-  std::array<bool, kSensors> frozen{};  ///< sensors that repeat their last value
+  std::set<Slot> lost;       ///< devices whose port is gone
+  std::set<Slot> silent;     ///< devices that say nothing
+  PerSensor<bool> frozen{};  ///< sensors that repeat their last value
   bool saturated{false};
   double disturbance_nT{0};
   bool disk_full{false}, disk_stalls{false}, propose_fails{false}, solve_stalls{false};
@@ -320,7 +320,7 @@ class RunBench {
   std::mt19937_64 engine_{7};
   std::uint64_t seq_{0};
   int ticks_{0};
-  std::array<Eigen::Vector3d, kSensors> last_nT_{};
+  PerSensor<Eigen::Vector3d> last_nT_{};
   std::optional<Pose> storing_;
   double answer_at_s_{0};
   std::optional<double> solve_at_s_, propose_at_s_;

@@ -16,8 +16,7 @@ using ::testing::IsEmpty;
 /// An operator with a magnet, and four sensors some of whose cables are swapped.
 class Hands {
  public:
-  explicit Hands(std::array<std::size_t, kSensors> sensor_on_arm = {0, 1, 2, 3})
-      : sensor_on_arm_(sensor_on_arm) {}
+  explicit Hands(PerSensor<std::size_t> sensor_on_arm = {0, 1, 2, 3}) : sensor_on_arm_(sensor_on_arm) {}
 
   double strength_nT{5000};  ///< at the near sensor
   double beside{0.05};       ///< of it at the others
@@ -48,7 +47,7 @@ class Hands {
   WiringProbe test{Instant{} + from_seconds(50)};
 
  private:
-  std::array<std::size_t, kSensors> sensor_on_arm_;
+  PerSensor<std::size_t> sensor_on_arm_;
   std::mt19937_64 random_{4};
   std::normal_distribution<double> gauss_{0, 5};
   double t_s_{0};

@@ -21,12 +21,12 @@ using ::testing::IsEmpty;
 
 /// Four raw sensors, misaligned by up to three degrees and with offsets of a percent, on a table.
 struct Array {
-  std::array<Matrix3d, kSensors> S{Matrix3d::Identity(), Matrix3d::Identity(), Matrix3d::Identity(),
-                                   Matrix3d::Identity()};
+  PerSensor<Matrix3d> S{Matrix3d::Identity(), Matrix3d::Identity(), Matrix3d::Identity(),
+                        Matrix3d::Identity()};
   Vector3d b_S_nT{26'000, -2'300, 46'000};
   std::mt19937_64 random{5};
-  std::array<Matrix3d, kSensors> tilt;
-  std::array<Vector3d, kSensors> offset_nT;
+  PerSensor<Matrix3d> tilt;
+  PerSensor<Vector3d> offset_nT;
 
   Array() {
     std::uniform_real_distribution<double> about(-1, 1);
@@ -36,9 +36,9 @@ struct Array {
       offset_nT[i] = 500 * Vector3d(about(random), about(random), about(random));
     }
   }
-  [[nodiscard]] std::array<Vector3d, kSensors> at(const TableAngles& a) const {
+  [[nodiscard]] PerSensor<Vector3d> at(const TableAngles& a) const {
     const Matrix3d R = calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
-    std::array<Vector3d, kSensors> y;
+    PerSensor<Vector3d> y;
     for (std::size_t i = 0; i < kSensors; ++i) y[i] = S[i] * (tilt[i] * (R * b_S_nT)) + offset_nT[i];
     return y;
   }

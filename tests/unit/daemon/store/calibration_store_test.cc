@@ -96,7 +96,7 @@ TEST(CalibrationStore, ImportRefusesWhatCannotBeUsed) {
   refused([](auto& c) { c.sensors[2].scale.y() = 0; }, "s3 has a scale of 0");
   refused([](auto& c) { c.sensors[0].phi_rad = 1.5; }, "s1 has a non-orthogonality");
   refused([](auto& c) { c.sensors[3].mounting(0, 1) = 1; }, "mounting of s4");
-  refused([](auto& c) { c.geometry.baseline_m = 0; }, "baseline of 0 m");
+  refused([](auto& c) { c.geometry = calib::sensor::Geometry(0); }, "baseline of 0 m");
   refused([](auto& c) { c.sample_noise_nT(0, 0) = -1; }, "noise is below zero");
   refused([](auto& c) { c.covariance(3, 4) = c.covariance(4, 3) = 1e-3; }, "covariance is none");
   refused([](auto& c) { c.effects = {{"axis.offset.temperature@s3.z", {}, {}}}; }, "has 0 coefficients");

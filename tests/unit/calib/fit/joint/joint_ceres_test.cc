@@ -41,8 +41,8 @@ Vec<T> reading(const T* p, const Vec<T>& b, const Eigen::Matrix3d& mounting) {
 
 struct PoseCost {
   const JointPose* pose;
-  std::array<Eigen::Matrix3d, kSensors> mounting;
-  std::array<Eigen::Vector3d, kSensors> r;
+  PerSensor<Eigen::Matrix3d> mounting;
+  PerSensor<Eigen::Vector3d> r;
   /// Sensors s1..s4, site (inclination, declination), gradient, attitude error, field strength.
   template <class T>
   bool operator()(const T* s1, const T* s2, const T* s3, const T* s4, const T* site, const T* g, const T* w,
@@ -78,7 +78,7 @@ struct PoseCost {
 
 double ceres_cost(const JointFit& fit, bool with_gradient, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
-  std::array<sensor::ParameterVector, kSensors> sensors;
+  PerSensor<sensor::ParameterVector> sensors;
   std::array<double, 2> site{std::asin(fit.state.direction[2]),
                              std::atan2(fit.state.direction[1], fit.state.direction[0])};
   std::array<double, 5> g{};

@@ -61,11 +61,10 @@ Honesty honesty(const Noise& noise, const FitOptions& options, const testing::Si
                                              1000 + static_cast<std::uint64_t>(run));
     const auto report = method_choice::fit(table, options);
     if (!report) throw std::runtime_error(report.error().text());
-    const calibration::ArrayCovariance& C = report->calibration.covariance;
+    const Eigen::MatrixXd& C = report->calibration.covariance;
     const Vector sd = C.diagonal().cwiseSqrt();
     const Vector e = (estimate_of(report->calibration) - truth).cwiseQuotient(sd);
-    const calibration::ArrayCovariance unit =
-        sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd unit = sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
     out.nees += e.dot(unit.llt().solve(e)) / kRuns;
     out.ratio += e.cwiseAbs2() / kRuns;
     const SiteField& s = report->site;
@@ -131,7 +130,7 @@ TEST(Influence, AGivenFieldIsOneErrorCommonToAllPoses) {
   options.field_sd_nT = 20;
   const auto report = method_choice::fit(table, options);
   ASSERT_TRUE(report);
-  const calibration::ArrayCovariance& C = report->calibration.covariance;
+  const Eigen::MatrixXd& C = report->calibration.covariance;
   const int a = sensor::cx, b = 2 * sensor::kSensorParameters + sensor::cz;
   EXPECT_NEAR(std::sqrt(C(a, a)), 0.999 * 20 / kSite.f_nT, 1e-6);
   EXPECT_NEAR(C(a, b) / std::sqrt(C(a, a) * C(b, b)), 1, 1e-3);
