@@ -122,6 +122,13 @@ TEST(FieldExpansion, OnAnotherAxisOtherComponentsAreDetermined) {
             (Flags6{false, false, true, false, true, true}));
 }
 
+/// The mean of three times 0.1 is not 0.1, which turns the principal axis by some 1e-17.
+TEST(FieldExpansion, ALineAlongAnAxisBesideTheOriginHasExactlyThatDirection) {
+  const FieldExpansion array = expansion_of({{0.1, 0.1, 0.7}, {0.1, 0.1, 0.2}, {0.1, 0.1, 0.3}});
+  ASSERT_EQ(array.derivatives_along().size(), 1U);
+  EXPECT_EQ(array.derivatives_along()[0].direction_P, Eigen::Vector3d::UnitZ());
+}
+
 TEST(FieldExpansion, TwoSensorsOnAnObliqueLineDetermineNoComponentButTheDerivativeAlongIt) {
   const Places places{{-0.3, -0.4, 0}, {0.3, 0.4, 0}};
   const FieldExpansion array = expansion_of(places);
