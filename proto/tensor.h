@@ -1,27 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "proto/flags.h"
+#include "proto/per_sensor.h"
 #include "proto/time.h"
 
-/// A TensorSample is the field and its gradient at the centre of the cross, in the platform frame.
+/// A TensorSample is the field and its gradient at the centre of the array, in the platform frame.
 namespace mgtd {
 
 /// The six components in the order of the stream: xx, yy, zz, xy, xz, yz. Symmetric and traceless by
-/// construction: zz = -(xx + yy); G(i,j) = dB_i/dx_j.
+/// construction: zz = -(xx + yy); G(i,j) = dB_i/dx_j. NaN: the array cannot tell this component.
 struct Gradient {
   double xx{0}, yy{0}, zz{0}, xy{0}, xz{0}, yz{0};
 };
+[[nodiscard]] inline std::array<double, 6> components(const Gradient& g) {
+  return {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz};
+}
 
-/// Four quantities that vanish for a uniform field plus a constant source-free gradient (method, section 1).
+/// Quantities that vanish for a uniform field plus a constant source-free gradient (method, section 1). The
+/// cross has four of them, by name; another array of N sensors has 3N less the number of components that it
+/// can tell, as independent combinations of its readings (FieldExpansion::closure_rows).
 struct Closure {
-  double curl_nT_per_m{0};                             ///< Bxy - Byx
-  Eigen::Vector3d center_nT{Eigen::Vector3d::Zero()};  ///< (B1+B3)/2 - (B2+B4)/2
-  double chi2{0};  ///< of the four, 4 degrees of freedom; NaN when no noise is known
+  double curl_nT_per_m{0};                             ///< of the cross: Bxy - Byx
+  Eigen::Vector3d center_nT{Eigen::Vector3d::Zero()};  ///< of the cross: (B1+B3)/2 - (B2+B4)/2
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3 * kMostSensors, 1>
+      combinations_nT{};  ///< of another array; empty for the cross
+  double chi2{0};         ///< of all of them; NaN when no noise is known, and where there are none
+  int dof{4};             ///< how many there are
 };
 
 struct TensorSample {

@@ -8,6 +8,7 @@
 
 #include "calib/calibration/effect_correction.h"
 #include "calib/calibration/field_derivative.h"
+#include "calib/calibration/field_expansion.h"
 #include "calib/linear/propagation.h"
 
 namespace mgtd::calib::calibration {
@@ -15,10 +16,26 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+using ClosureCovariance =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, sensor::kMostChannels,
+                  sensor::kMostChannels>;
+
 double closure_chi2(const Closure& closure, const Eigen::Matrix4d& covariance) {
   Eigen::Vector4d values;
   values << closure.curl_nT_per_m, closure.center_nT;
   return values.dot(covariance.llt().solve(values));
+}
+
+double closure_chi2(const Closure& closure, const ClosureCovariance& covariance) {
+  if (closure.dof == 0) return kNaN;
+  if (closure.combinations_nT.size() == 0) return closure_chi2(closure, Eigen::Matrix4d(covariance));
+  const sensor::FieldVector& values = closure.combinations_nT;
+  return covariance.llt().matrixL().solve(values).squaredNorm();
+}
+
+FieldExpansion expansion_of(const sensor::Geometry& geometry) {
+  const auto& places = geometry.positions_P_m();
+  return FieldExpansion::of({places.data(), places.size()}).value();
 }
 
 /// What a live sample knows of its circumstances.
@@ -26,13 +43,24 @@ Pose pose_of(const Epoch& epoch) {
   Pose pose;
   pose.y_nT = epoch.y_nT;
   pose.t_utc = epoch.t.wall;
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
+  pose.T_degC.resize(epoch.T_degC.size());
+  for (std::size_t i = 0; i < epoch.T_degC.size(); ++i) {
     if (std::isfinite(epoch.T_degC[i])) pose.T_degC[i] = epoch.T_degC[i];
   }
   return pose;
 }
 
 }  // namespace
+
+double root_mean_square(const Gradient& g) {
+  double sum = 0, count = 0;
+  for (const double x : components(g)) {
+    if (std::isnan(x)) continue;
+    sum += x * x;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : kNaN;
+}
 
 sensor::FieldVector stacked(const PerSensor<Eigen::Vector3d>& b) {
   sensor::FieldVector out(3 * static_cast<Eigen::Index>(b.size()));
@@ -41,7 +69,15 @@ sensor::FieldVector stacked(const PerSensor<Eigen::Vector3d>& b) {
 }
 
 sensor::ChannelColumns<6> gradient_rows(const sensor::Geometry& geometry) {
-  const double g = 1 / *geometry.cross_baseline_m();
+  const auto baseline_m = geometry.cross_baseline_m();
+  if (!baseline_m) {
+    const FieldExpansion expansion = expansion_of(geometry);
+    sensor::ChannelColumns<6> rows = expansion.gradient_rows();
+    for (Eigen::Index i = 0; i < 6; ++i)
+      if (!expansion.determined()[static_cast<std::size_t>(i)]) rows.row(i).setConstant(kNaN);
+    return rows;
+  }
+  const double g = 1 / *baseline_m;
   sensor::ChannelColumns<6> m = sensor::ChannelColumns<6>::Zero(6, sensor::kChannels);
   const auto difference = [&](int row, int axis, int plus, int minus, double weight) {
     m(row, 3 * plus + axis) += weight;
@@ -58,7 +94,9 @@ sensor::ChannelColumns<6> gradient_rows(const sensor::Geometry& geometry) {
 }
 
 Eigen::MatrixXd closure_rows(const sensor::Geometry& geometry) {
-  const double g = 1 / *geometry.cross_baseline_m();
+  const auto baseline_m = geometry.cross_baseline_m();
+  if (!baseline_m) return expansion_of(geometry).closure_rows();
+  const double g = 1 / *baseline_m;
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(4, sensor::kChannels);
   m(0, 3 * 1) = g, m(0, 3 * 3) = -g;  // Bxy
   m(0, 1) = -g, m(0, 3 * 2 + 1) = g;  // -Byx
@@ -86,21 +124,52 @@ FieldAndGradient field_and_gradient(const sensor::FieldVector& b, double baselin
   return out;
 }
 
-TensorPipeline::TensorPipeline(const sensor::Geometry& geometry)
-    : geometry_(geometry), baseline_m_(geometry.cross_baseline_m().value_or(0)) {
-  gain_.fill(Eigen::Matrix3d::Identity());
-  offset_nT_.fill(Eigen::Vector3d::Zero());
+/// What takes the corrected components of an array that is not the cross to field, gradient and closure.
+struct TensorPipeline::Rows {
+  sensor::ChannelColumns<3> field;
+  sensor::ChannelColumns<6> gradient;
+  ClosureCovariance closure;
+
+  [[nodiscard]] static std::shared_ptr<const Rows> of(const sensor::Geometry& geometry) {
+    if (geometry.cross_baseline_m()) return nullptr;
+    const FieldExpansion expansion = expansion_of(geometry);
+    return std::make_shared<const Rows>(
+        Rows{expansion.field_rows(), gradient_rows(geometry), expansion.closure_rows()});
+  }
+};
+
+FieldAndGradient TensorPipeline::expanded(const sensor::FieldVector& b) const {
+  if (!rows_) return field_and_gradient(b, baseline_m_);
+  FieldAndGradient out;
+  out.b_P_nT = rows_->field.lazyProduct(b);
+  const Eigen::Matrix<double, 6, 1> g = rows_->gradient.lazyProduct(b);
+  out.g_nT_per_m = {.xx = g[0], .yy = g[1], .zz = g[2], .xy = g[3], .xz = g[4], .yz = g[5]};
+  out.closure.curl_nT_per_m = kNaN;
+  out.closure.center_nT.setConstant(kNaN);
+  out.closure.combinations_nT = rows_->closure.lazyProduct(b);
+  out.closure.chi2 = kNaN;
+  out.closure.dof = static_cast<int>(rows_->closure.rows());
+  return out;
 }
+
+TensorPipeline::TensorPipeline(const sensor::Geometry& geometry)
+    : geometry_(geometry),
+      baseline_m_(geometry.cross_baseline_m().value_or(0)),
+      rows_(Rows::of(geometry)),
+      gain_(geometry.sensors(), Eigen::Matrix3d::Identity()),
+      offset_nT_(geometry.sensors(), Eigen::Vector3d::Zero()) {}
 
 TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, const PoseTable* run)
     : calibration_(std::move(calibration)),
       id_(std::shared_ptr<const std::string>(calibration_, &calibration_->id)),
       geometry_(calibration_->geometry),
-      baseline_m_(geometry_.cross_baseline_m().value_or(0)) {
-  for (std::size_t i = 0; i < kSensorCount; ++i) {
-    const sensor::SensorModel& sensor = calibration_->sensors[i];
-    gain_[i] = sensor.R_PS() * sensor.response().inverse();
-    offset_nT_[i] = sensor.offset_nT;
+      baseline_m_(geometry_.cross_baseline_m().value_or(0)),
+      rows_(Rows::of(geometry_)),
+      gain_(0),
+      offset_nT_(0) {
+  for (const sensor::SensorModel& sensor : calibration_->sensors) {
+    gain_.push_back(sensor.R_PS() * sensor.response().inverse());
+    offset_nT_.push_back(sensor.offset_nT);
   }
   if (!calibration_->effects.empty()) effects_ = std::make_shared<const EffectCorrection>(*calibration_, run);
   noise_known_ = (calibration_->sample_noise_nT.array() > 0).all();
@@ -109,10 +178,11 @@ TensorPipeline::TensorPipeline(std::shared_ptr<const Calibration> calibration, c
 
 void TensorPipeline::prepare_uncertainty() {
   // The derivative of the corrected fields is linear in q = (1, b): evaluate it at the four unit values of q.
-  using ParameterRows = Eigen::Matrix<double, 4, kArrayParameters>;  // rows: q components
-  const auto rows_of = [&](const Eigen::Matrix<double, 1, sensor::kChannels>& w) {
-    ParameterRows rows;
-    for (std::size_t i = 0; i < kSensorCount; ++i) {
+  using ParameterRows = Eigen::Matrix<double, 4, Eigen::Dynamic>;  // rows: q components
+  using Weights = sensor::ChannelColumns<1>;
+  const auto rows_of = [&](const Weights& w) {
+    ParameterRows rows(4, calibration_->covariance.cols());
+    for (std::size_t i = 0; i < gain_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const auto weight = w.segment<3>(3 * at);
       const auto constant =
@@ -128,7 +198,7 @@ void TensorPipeline::prepare_uncertainty() {
   const auto corrected = [&](const AxisNoise& of_reading_nT) {
     const Eigen::Index channels = geometry_.channels();
     sensor::ChannelCovariance out = sensor::ChannelCovariance::Zero(channels, channels);
-    for (std::size_t i = 0; i < kSensorCount; ++i) {
+    for (std::size_t i = 0; i < gain_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       out.block<3, 3>(3 * at, 3 * at) =
           gain_[i] * of_reading_nT.row(at).array().square().matrix().asDiagonal() * gain_[i].transpose();
@@ -137,8 +207,7 @@ void TensorPipeline::prepare_uncertainty() {
   };
   noise_ = corrected(calibration_->sample_noise_nT);
   const sensor::ChannelCovariance scatter = corrected(calibration_->pose_noise_nT);
-  const auto covariance = [&](const Eigen::Matrix<double, 1, sensor::kChannels>& u,
-                              const Eigen::Matrix<double, 1, sensor::kChannels>& v) {
+  const auto covariance = [&](const Weights& u, const Weights& v) {
     const Eigen::Matrix4d Q = rows_of(u) * calibration_->covariance * rows_of(v).transpose();
     const double noise = sensor::over_channels(
         u.size(), [&](auto n) { return u.head(n).dot(noise_.topLeftCorner(n, n) * v.head(n).transpose()); });
@@ -150,20 +219,20 @@ void TensorPipeline::prepare_uncertainty() {
     unmodelled_[static_cast<std::size_t>(i)] = linear::propagated_variance(G.row(i).transpose(), scatter);
   }
   const auto C = closure_rows(geometry_);
-  std::size_t pair = 0;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    for (Eigen::Index j = i; j < 4; ++j) closure_covariance_[pair++] = covariance(C.row(i), C.row(j));
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    for (Eigen::Index j = i; j < C.rows(); ++j) closure_covariance_.push_back(covariance(C.row(i), C.row(j)));
   }
 }
 
 sensor::FieldVector TensorPipeline::correct(const PerSensor<Eigen::Vector3d>& y_nT) const {
-  PerSensor<Eigen::Vector3d> b;
-  for (std::size_t i = 0; i < kSensorCount; ++i) b[i].noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
-  return stacked(b);
+  sensor::FieldVector b(geometry_.channels());
+  for (std::size_t i = 0; i < gain_.size(); ++i)
+    b.segment<3>(3 * static_cast<Eigen::Index>(i)).noalias() = gain_[i] * (y_nT[i] - offset_nT_[i]);
+  return b;
 }
 
 TensorSample TensorPipeline::sample(const sensor::FieldVector& b_P_nT) const {
-  const FieldAndGradient computed = field_and_gradient(b_P_nT, baseline_m_);
+  const FieldAndGradient computed = expanded(b_P_nT);
   TensorSample out;
   out.calibration_id = id_;
   out.b_P_nT = computed.b_P_nT;
@@ -183,10 +252,10 @@ void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   for (std::size_t i = 0; i < sd.size(); ++i)
     sd[i] = std::sqrt(gradient_variance_[i].by_parameters(q) + gradient_noise(i, samples));
   out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
-  Eigen::Matrix4d S;
+  ClosureCovariance S(out.closure.dof, out.closure.dof);
   std::size_t pair = 0;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = i; j < 4; ++j) S(i, j) = S(j, i) = closure_covariance_[pair++].at(q, samples);
+  for (int i = 0; i < S.rows(); ++i) {
+    for (int j = i; j < S.rows(); ++j) S(i, j) = S(j, i) = closure_covariance_[pair++].at(q, samples);
   }
   out.closure.chi2 = closure_chi2(out.closure, S);
 }
@@ -206,7 +275,7 @@ void TensorPipeline::add_uncertainty(const sensor::ChannelCovariance& covariance
   out.g_sd_nT_per_m = gradient_sd(covariance, samples);
   const auto C = closure_rows(geometry_);
   out.closure.chi2 =
-      closure_chi2(out.closure, linear::propagated_covariance(C, covariance + noise_ / samples));
+      closure_chi2(out.closure, ClosureCovariance(linear::propagated_covariance(C, covariance + noise_ / samples)));
 }
 
 TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "calib/calibration/calibration.h"
 #include "calib/sensor/channels.h"
@@ -11,11 +12,12 @@
 #include "proto/pose.h"
 #include "proto/tensor.h"
 
-/// Field, gradient tensor and closure of one set of four readings.
+/// Field, gradient tensor and closure of one set of readings.
 ///
-/// The 12 corrected components b_i (platform frame, sensor at r_i) are fitted by least squares to
+/// The 3N corrected components b_i (platform frame, sensor at r_i) are fitted by least squares to
 ///     b_i = B + G r_i,   G symmetric and traceless (5 numbers)
-/// which leaves 12 - 3 - 5 = 4 closure quantities. On the cross the six differences decide G:
+/// and what is left over are the closure quantities (field_expansion.h); what the places of the sensors cannot
+/// tell is NaN. On the cross the six differences decide G, and 12 - 3 - 5 = 4 quantities are left:
 ///     Bxx=(Bx1-Bx3)/d  Byx=(By1-By3)/d  Bzx=(Bz1-Bz3)/d  Bxy=(Bx2-Bx4)/d  Byy=(By2-By4)/d  Bzy=(Bz2-Bz4)/d
 ///     Gxx = Bxx, Gyy = Byy, Gzz = -(Bxx+Byy), Gxy = (Bxy+Byx)/2, Gxz = Bzx, Gyz = Bzy.
 /// Does not remove site effects: a gradient of the site is real field.
@@ -29,13 +31,18 @@ struct FieldAndGradient {
   Closure closure;  ///< chi2 is left NaN here: it needs the noise
 };
 
-/// The four vectors one below the other.
+/// Over the components that the array can tell (those that are no NaN); NaN where it can tell none.
+[[nodiscard]] double root_mean_square(const Gradient& g);
+
+/// The vectors of all sensors one below the other.
 [[nodiscard]] sensor::FieldVector stacked(const PerSensor<Eigen::Vector3d>& b);
 
+/// Of the cross, in closed form.
 [[nodiscard]] FieldAndGradient field_and_gradient(const sensor::FieldVector& b_P_nT, double baseline_m);
 
-/// The six gradient components (xx, yy, zz, xy, xz, yz) and the four closure quantities (curl, centre x, y,
-/// z) as linear functions of the corrected components.
+/// The six gradient components (xx, yy, zz, xy, xz, yz) and the closure quantities (of the cross curl, centre
+/// x, y, z) as linear functions of the corrected components. The row of a component that the array cannot tell
+/// is NaN.
 [[nodiscard]] sensor::ChannelColumns<6> gradient_rows(const sensor::Geometry& geometry);
 [[nodiscard]] Eigen::MatrixXd closure_rows(const sensor::Geometry& geometry);
 
@@ -66,7 +73,7 @@ class TensorPipeline {
   [[nodiscard]] TensorSample apply(const Pose& pose, double samples, bool remove_site = false,
                                    const Pose* previous = nullptr,
                                    sensor::FieldVector* fields_P_nT = nullptr) const;
-  /// The corrected field at each sensor, platform frame, by the 48 parameters alone.
+  /// The corrected field at each sensor, platform frame, by the parameters of the sensors alone.
   [[nodiscard]] sensor::FieldVector correct(const PerSensor<Eigen::Vector3d>& y_nT) const;
   /// Field, gradient and closure of corrected fields, without their uncertainty.
   [[nodiscard]] TensorSample sample(const sensor::FieldVector& b_P_nT) const;
@@ -91,6 +98,7 @@ class TensorPipeline {
   };
 
   void prepare_uncertainty();
+  [[nodiscard]] FieldAndGradient expanded(const sensor::FieldVector& b_P_nT) const;
   void add_uncertainty(double samples, TensorSample& out) const;
   void add_uncertainty(const sensor::ChannelCovariance& covariance, double samples, TensorSample& out) const;
   [[nodiscard]] double gradient_noise(std::size_t component, double samples) const {
@@ -100,7 +108,9 @@ class TensorPipeline {
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
   sensor::Geometry geometry_;
-  double baseline_m_;
+  double baseline_m_;  ///< of the cross; 0: another array, which has rows_
+  struct Rows;
+  std::shared_ptr<const Rows> rows_;
   PerSensor<Eigen::Matrix3d> gain_;  ///< R_PS (C A)^-1
   PerSensor<Eigen::Vector3d> offset_nT_;
   std::shared_ptr<const EffectCorrection> effects_;
@@ -110,7 +120,7 @@ class TensorPipeline {
   std::array<Variance, 6> gradient_variance_;
   std::array<double, 6> unmodelled_{};  ///< variance of a gradient by what scatters about the model
   /// Covariance of each pair of closure quantities, upper triangle by rows.
-  std::array<Variance, 10> closure_covariance_;
+  std::vector<Variance> closure_covariance_;
 };
 
 }  // namespace mgtd::calib::calibration

@@ -25,8 +25,13 @@ Gradient unknown() {
   return {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
 }
 
+/// Over the components that the array can tell; of an array that can tell none what is asked is the field.
 double mean_square(const Gradient& g) {
-  return (g.xx * g.xx + g.yy * g.yy + g.zz * g.zz + g.xy * g.xy + g.xz * g.xz + g.yz * g.yz) / 6;
+  const auto all = components(g);
+  double sum = 0, count = 0;
+  for (const double x : all)
+    if (!std::isnan(x)) sum += x * x, ++count;
+  return sum / std::max(1.0, count);
 }
 
 /// A room that warms up: fast at first, all of it by the end, so that temperature and time are not the same.

@@ -10,6 +10,7 @@
 #include "calib/fit/joint/joint_setup.h"
 #include "calib/report/experiment_power_report.h"
 #include "calib/report/json_number.h"
+#include "calib/report/shown_number.h"
 #include "calib/sensor/shown_parameters.h"
 #include "proto/units.h"
 
@@ -31,7 +32,7 @@ json angles_json(const TableAngles& a) {
 
 std::string tensor_row(std::string_view what, const Gradient& g) {
   std::string row = fmt::format("{:<34}", what);
-  for (const double sd : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += fmt::format("{:>9.3f}", sd);
+  for (const double sd : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += shown_number(sd, 9, 3);
   return row + "\n";
 }
 

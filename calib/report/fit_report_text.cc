@@ -10,9 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/calibration/tensor.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_summary_text.h"
 #include "calib/report/residual_words.h"
+#include "calib/report/shown_number.h"
 #include "calib/sensor/shown_parameters.h"
 #include "proto/units.h"
 
@@ -24,7 +26,9 @@ std::string error_row(std::string_view stage, const fit::ErrorSummary& errors) {
   for (const double rmse : errors.total_field_rmse_nT) row += fmt::format(" {:>8.3f}", rmse);
   row += "  ";
   const Gradient& g = errors.tensor_rmse_nT_per_m;
-  for (const double rmse : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += fmt::format(" {:>9.3f}", rmse);
+  const auto all = components(g);
+  if (std::all_of(all.begin(), all.end(), [](double rmse) { return std::isnan(rmse); })) return row + "\n";
+  for (const double rmse : all) row += " " + shown_number(rmse, 9, 3);
   return row + "\n";
 }
 
@@ -157,9 +161,15 @@ std::string rows_text(const fit::FitReport& report) {
 }
 
 std::string error_table(const fit::FitReport& report) {
-  std::string out = fmt::format("{:<12}{:^36}  {:^60}\n", "rms error", "total field, nT", "tensor, nT/m");
-  out += fmt::format("{:<12}{:>9}{:>9}{:>9}{:>9}  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "s1", "s2",
-                     "s3", "s4", "xx", "yy", "zz", "xy", "xz", "yz");
+  const std::size_t sensors = report.calibration.sensors.size();
+  const bool tensor = !std::isnan(calibration::root_mean_square(report.after.tensor_rmse_nT_per_m));
+  std::string out = fmt::format("{:<12}{:^{}}", "rms error", "total field, nT", std::max<std::size_t>(16, 9 * sensors));
+  if (tensor) out += fmt::format("  {:^60}", "tensor, nT/m");
+  out += fmt::format("\n{:<12}", "");
+  for (std::size_t i = 1; i <= sensors; ++i) out += fmt::format("{:>9}", fmt::format("s{}", i));
+  if (tensor)
+    out += fmt::format("  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "xx", "yy", "zz", "xy", "xz", "yz");
+  out += "\n";
   out += error_row("before", report.before);
   if (report.simplified) out += error_row("simplified", *report.simplified);
   out += error_row("step 1", report.after_step1);

@@ -77,7 +77,8 @@ std::string to_text(const criticism::search::ModelChange& c) {
   out += line("residual", c.rms_before_nT, c.rms_after_nT, "nT");
   if (c.held_out_before_nT && c.held_out_after_nT)
     out += line("on poses held out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
-  out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
+  if (!std::isnan(c.tensor_after_nT_per_m))
+    out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
   fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
   fmt::format_to(to, "chi-square {} by {:.5g} where {:.5g} was predicted; chance alone: {}{}\n",
                  c.adding ? "fell" : "rose", c.realised, c.predicted, stats::p_phrase(c.log10_p),

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "calib/report/shown_number.h"
 #include "calib/report/text_bar.h"
 
 namespace mgtd::calib::report {
@@ -43,7 +44,8 @@ std::string to_text(const criticism::search::Waterfall& w) {
   double top = w.without_nT;
   for (const criticism::search::WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
   const auto total = [&](const char* what, double nT, double nT_per_m) {
-    fmt::format_to(to, "{:<40} {:>9.3f} {:>9.3f}  {}\n", what, nT, nT_per_m, bar(nT, top, kBarWidth));
+    fmt::format_to(to, "{:<40} {:>9.3f} {}  {}\n", what, nT, shown_number(nT_per_m, 9, 3),
+                   bar(nT, top, kBarWidth));
   };
   fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
   total("without any effect", w.without_nT, w.without_nT_per_m);

@@ -72,8 +72,8 @@ void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
   out.chi2_after = after.fit.chi2, out.dof_after = after.fit.dof;
   out.rms_before_nT = before.errors.residual_nT, out.rms_after_nT = after.errors.residual_nT;
   out.noise_nT = (out.adding ? after : before).fit.noise_nT();
-  out.tensor_before_nT_per_m = tensor_rms(before.errors.summary.tensor_rmse_nT_per_m);
-  out.tensor_after_nT_per_m = tensor_rms(after.errors.summary.tensor_rmse_nT_per_m);
+  out.tensor_before_nT_per_m = calibration::root_mean_square(before.errors.summary.tensor_rmse_nT_per_m);
+  out.tensor_after_nT_per_m = calibration::root_mean_square(after.errors.summary.tensor_rmse_nT_per_m);
   out.held_out_before_nT = residual_of(before.held_out);
   out.held_out_after_nT = residual_of(after.held_out);
   // A model that is far off in another way has its chi-square fall by thousands for nothing.

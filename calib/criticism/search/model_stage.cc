@@ -69,10 +69,4 @@ VariancePrice variance_price(const fit::joint::JointFit& narrow, const fit::join
   return out;
 }
 
-double tensor_rms(const Gradient& g) {
-  double sum = 0;
-  for (const double x : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) sum += x * x;
-  return std::sqrt(sum / 6);
-}
-
 }  // namespace mgtd::calib::criticism::search

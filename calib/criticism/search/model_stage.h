@@ -37,7 +37,5 @@ struct VariancePrice {
 /// Largest rise of the error on held-out poses that may be chance: beyond it an effect is not added.
 inline constexpr double kHeldOutVeto = 1.01;
 
-/// One number for the tensor: rms over its six components.
-[[nodiscard]] double tensor_rms(const Gradient& g);
 
 }  // namespace mgtd::calib::criticism::search

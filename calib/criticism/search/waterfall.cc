@@ -14,7 +14,7 @@ struct ErrorLevel {
 };
 
 ErrorLevel level_of(const fit::joint::JointErrors& e) {
-  return {e.residual_nT, tensor_rms(e.summary.tensor_rmse_nT_per_m)};
+  return {e.residual_nT, calibration::root_mean_square(e.summary.tensor_rmse_nT_per_m)};
 }
 
 double beyond(double without, double with) {
@@ -30,11 +30,14 @@ Result<ErrorLevel> level_with(const PoseTable& table, const ModelStage& whole,
 
 /// Of the tensor when every corrected component has the noise of its pose means.
 double tensor_floor(const fit::joint::JointFit& fit) {
-  const auto rows = calibration::gradient_rows(fit.problem.geometry);
+  sensor::ChannelColumns<6> rows = calibration::gradient_rows(fit.problem.geometry);
+  const auto told = (rows.col(0).array() == rows.col(0).array()).count();
+  if (told == 0) return std::numeric_limits<double>::quiet_NaN();
+  rows = rows.array().isNaN().select(0.0, rows);
   double sum = 0;
   for (int c = 0; c < rows.cols(); ++c)
     sum += rows.col(c).squaredNorm() * std::pow(fit.pose_noise_nT(c / 3, c % 3), 2);
-  return std::sqrt(sum / 6);
+  return std::sqrt(sum / static_cast<double>(told));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/accuracy_so_far.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
@@ -9,8 +9,9 @@
 namespace mgtd::calib::fit::joint {
 
 double AccuracySoFar::worst_nT_per_m() const {
-  const Gradient& g = tensor_sd_nT_per_m;
-  return std::max({g.xx, g.yy, g.zz, g.xy, g.xz, g.yz});
+  double worst = 0;
+  for (const double sd : components(tensor_sd_nT_per_m)) worst = std::fmax(worst, sd);
+  return worst;
 }
 
 Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,

@@ -35,7 +35,9 @@ Gradient calibration_tensor_sd(const PerSensor<sensor::SensorModel>& sensors,
     }
     variance += linear::propagated_variances(J, covariance.topLeftCorner(block, block)) / 6;
   }
-  const Eigen::Matrix<double, 6, 1> sd = variance.cwiseMax(0).cwiseSqrt();
+  // NaN stays NaN: what the array cannot tell.
+  const Eigen::Matrix<double, 6, 1> sd =
+      (variance.array() < 0).select(Eigen::Array<double, 6, 1>::Zero(), variance.array()).sqrt();
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
 }
 
