@@ -201,28 +201,48 @@ bool looks_spoilt(const ReadingTable& y_nT) {
   return plane.variance[across - 1] > kUneven * plane.variance[across / 2];
 }
 
-std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT,
-                                                        const Eigen::VectorXd& f_nT) {
+namespace {
+
+/// The plane that most poses lie in; empty where they turn about one axis only, or are too few to tell.
+std::optional<Plane> common_plane(const ReadingTable& y_nT) {
   constexpr Eigen::Index kSubset = 5;
   constexpr int kDraws = 70;
-  if (y_nT.cols() < kFewestPoses) return std::nullopt;
   const ReadingTable some = y_nT(Eigen::all, searched(y_nT.cols()));
   Which all(static_cast<std::size_t>(some.cols()));
   std::iota(all.begin(), all.end(), 0);
   const double thickness = Plane(some, all).thickness();
   if (!(thickness > kOneTurn)) return std::nullopt;
-  if (y_nT.rows() == 3) return on_ellipsoid(y_nT, f_nT);
   const auto solid = [&](const Plane& plane) { return plane.thickness() > kFlat * thickness; };
   const auto plane = trimmed<Plane>(some, kSubset, kDraws, solid);
   if (!plane) return std::nullopt;
-  Which near = within(plane->squares(y_nT), kNearPlane);
-  const Plane refined(y_nT, near);
-  near = within(refined.squares(y_nT), kNearPlane);
-  const Which kept = on_ellipsoid(refined.places(y_nT)(Eigen::all, near), f_nT(near));
-  std::vector<Eigen::Index> out;
+  return Plane(y_nT, within(plane->squares(y_nT), kNearPlane));
+}
+
+std::optional<Which> if_most(Which which, Eigen::Index of) {
+  if (static_cast<double>(which.size()) < 0.5 * static_cast<double>(of)) return std::nullopt;
+  return which;
+}
+
+}  // namespace
+
+std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT) {
+  if (y_nT.cols() < kFewestPoses) return std::nullopt;
+  const auto plane = common_plane(y_nT);
+  if (!plane) return std::nullopt;
+  return if_most(within(plane->squares(y_nT), kNearPlane), y_nT.cols());
+}
+
+std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT,
+                                                        const Eigen::VectorXd& f_nT) {
+  if (y_nT.cols() < kFewestPoses) return std::nullopt;
+  if (y_nT.rows() == 3) return if_most(on_ellipsoid(y_nT, f_nT), y_nT.cols());
+  const auto plane = common_plane(y_nT);
+  if (!plane) return std::nullopt;
+  const Which near = within(plane->squares(y_nT), kNearPlane);
+  const Which kept = on_ellipsoid(plane->places(y_nT)(Eigen::all, near), f_nT(near));
+  Which out;
   for (const Eigen::Index j : kept) out.push_back(near[static_cast<std::size_t>(j)]);
-  if (static_cast<double>(out.size()) < 0.5 * static_cast<double>(y_nT.cols())) return std::nullopt;
-  return out;
+  return if_most(std::move(out), y_nT.cols());
 }
 
 }  // namespace mgtd::calib::fit

@@ -29,5 +29,8 @@ using ReadingTable = Eigen::MatrixXd;  ///< a row for each channel, a column for
 /// there is none. Empty where the poses turn about one axis only or are too few to tell.
 [[nodiscard]] std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT,
                                                                       const Eigen::VectorXd& f_nT);
+/// By the plane alone: where the field is known as a vector, its three components stand below the readings
+/// and it need not have one strength.
+[[nodiscard]] std::optional<std::vector<Eigen::Index>> agreeing_poses(const ReadingTable& y_nT);
 
 }  // namespace mgtd::calib::fit

@@ -95,14 +95,18 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
   out.f_sd_nT.resize(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Pose& pose = *used[static_cast<std::size_t>(k)];
-    if (!pose.f_nT && !options.field_nT) {
+    if (!pose.f_nT && !pose.ref_nT && !options.field_nT) {
       return fail(
           ErrorCode::refused, fmt::format("pose {} has no f_nT and no field is given", pose.number),
           "give the total field of the site with --field NT, or measure it with a scalar magnetometer");
     }
-    out.f_nT[k] = pose.f_nT.value_or(options.field_nT.value_or(0));
-    out.f_sd_nT[k] = pose.f_nT ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT) : 0.0;
-    if (!(out.f_nT[k] > 1000 && out.f_nT[k] < 200'000)) {
+    out.f_nT[k] = pose.f_nT     ? *pose.f_nT
+                  : pose.ref_nT ? pose.ref_nT->norm()
+                                : options.field_nT.value_or(0);
+    out.f_sd_nT[k] = pose.f_nT     ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
+                     : pose.ref_nT ? pose.ref_sd_nT.value_or(kDefaultScalarSd_nT)
+                                   : 0.0;
+    if (!pose.ref_nT && !(out.f_nT[k] > 1000 && out.f_nT[k] < 200'000)) {
       return fail(ErrorCode::refused,
                   fmt::format("pose {}: a total field of {} nT", pose.number, out.f_nT[k]),
                   "it must be in nT, between 1000 and 200000; check f_nT or --field");

@@ -170,8 +170,8 @@ std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
   const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
   std::vector<double> out;
   for (Eigen::Index k = 0; k < residual.poses(); ++k)
-    out.push_back(sensor::over_channels(residual.channels(), [&](auto rows) {
-      return product.segment(k * residual.channels(), rows).sum();
+    out.push_back(sensor::over_channels(residual.rows_per_pose(), [&](auto rows) {
+      return product.segment(k * residual.rows_per_pose(), rows).sum();
     }));
   return out;
 }

@@ -22,6 +22,7 @@ class Residual {
   [[nodiscard]] const Whitener& whitener() const { return whitener_; }
   [[nodiscard]] Eigen::Index poses() const { return poses_; }
   /// Rows of value() for one pose.
+  [[nodiscard]] Eigen::Index rows_per_pose() const { return whitener_.rows_per_pose(); }
   [[nodiscard]] Eigen::Index channels() const { return whitener_.channels(); }
 
   /// From now on everything is in units of noise with `scale2` times the variance of the weights.

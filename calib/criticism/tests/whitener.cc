@@ -85,20 +85,24 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
     mine.bottomRows(channels_) = felt(order_[k], step.now);
     step.first = linear::triangularising_rotation(last);
     if (k > 0) log_det_ += log_det_of(step.first * last);
-    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + channels_ + fit::joint::kNuisances, U);
+    const Eigen::Index others = pose_rows_ - channels_;
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + pose_rows_, U);
     left.topRows(W + channels_) = (step.first * mine).bottomRows(W + channels_);
-    left.bottomRightCorner<fit::joint::kNuisances, fit::joint::kNuisances>() =
-        nuisance.middleRows<fit::joint::kNuisances>(order_[k] * pose_rows_ + channels_);
+    left.bottomRightCorner(others, fit::joint::kNuisances) =
+        nuisance.middleRows(order_[k] * pose_rows_ + channels_, others);
     step.second = linear::triangularising_rotation(left);
     carried = (step.second * left).topRows(U);
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
-    rank_ += static_cast<int>((pose.weight.array() > 0).count()) - (pose.f_weight > 0 ? 0 : 1);
+    // Readings, scalar reference, and what stands in the place of the attitude, less the pose's own unknowns.
+    const int beside = pose.has_angles ? 3 - 4 : pose.reference_weight > 0 ? 3 - 3 : 0 - 3;
+    rank_ += static_cast<int>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + beside;
   }
 }
 
 Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& rows) const {
   const Eigen::Index n = rows.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * channels_, n);
+  const Eigen::Index others = pose_rows_ - channels_, left_rows = rows_per_pose();
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * left_rows, n);
   Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + W + channels_, n), turned(in.rows(), n);
   Eigen::MatrixXd left(W + pose_rows_, n), emitted(W + pose_rows_, n);
   for (std::size_t k = 0; k < order_.size(); ++k) {
@@ -112,10 +116,10 @@ Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& rows) const {
     }
     turned.noalias() = step.first * in;
     left.topRows(W + channels_) = turned.bottomRows(W + channels_);
-    left.bottomRows<fit::joint::kNuisances>() = rows.middleRows<fit::joint::kNuisances>(row + channels_);
+    left.bottomRows(others) = rows.middleRows(row + channels_, others);
     emitted.noalias() = step.second * left;
     in.topRows(U) = emitted.topRows(U);
-    out.middleRows(order_[k] * channels_, channels_) = emitted.bottomRows(channels_);
+    out.middleRows(order_[k] * left_rows, left_rows) = emitted.bottomRows(left_rows);
   }
   return out;
 }

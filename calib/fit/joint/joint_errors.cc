@@ -91,7 +91,7 @@ Counted counted(const JointProblem& problem) {
     out.tensor[k] = true;
     for (int i = 0; i < problem.sensors(); ++i) {
       const bool there = pose.weight.segment<3>(3 * i).minCoeff() > 0;
-      out.field(i, k) = there && pose.f_weight > 0;
+      out.field(i, k) = there && (pose.f_weight > 0 || pose.reference_weight > 0);
       out.tensor[k] = out.tensor[k] && there;
     }
   }

@@ -25,7 +25,7 @@ double most_left_out(const JointProblem& problem, const JointOptions& options) {
 
 void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, JointFit& fit) {
   const JointProblem& problem = fit.problem;
-  fit.chi2 = (reduced.cost.readings + reduced.cost.scalar) * fit.noise_inflation * fit.noise_inflation;
+  fit.chi2 = reduced.cost.of_model() * fit.noise_inflation * fit.noise_inflation;
   fit.chi2_table = reduced.cost.attitude;
   fit.dof_table = residuals.attitude_freedom;
   double unknowns = problem.slots().sensor_block() + problem.coefficients() + (problem.common_field ? 1 : 0) +
@@ -35,8 +35,8 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
                     (problem.has_angles && problem.known_declination_rad ? 1 : 0);
   for (const JointPose& pose : problem.poses) {
     // Of a pose without angles and without readings only the size of its field is asked.
-    unknowns += pose.has_angles ? 4 : pose.weight.isZero(0) ? 1 : 3;
-    observed += (pose.has_angles ? 3 : 0) + (problem.common_field ? 1 : 0);
+    unknowns += pose.has_angles ? 4 : pose.weight.isZero(0) && !problem.has_reference ? 1 : 3;
+    observed += (pose.has_angles ? 3 : 0) + (pose.reference_weight > 0 ? 3 : 0) + (problem.common_field ? 1 : 0);
   }
   fit.dof = observed - unknowns - fit.dof_table;
   // Three standard deviations of a chi-square: wider than noise alone would make it, so the uncertainties
@@ -52,6 +52,7 @@ Eigen::MatrixXd widened_information(const JointFit& fit) {
   for (JointPose& pose : wide.poses) {
     pose.weight *= fit.noise_inflation / fit.birge_ratio;
     pose.f_weight *= fit.noise_inflation / fit.birge_ratio;
+    pose.reference_weight *= fit.noise_inflation / fit.birge_ratio;
   }
   return reduce(wide, fit.state, 0).S;
 }
@@ -88,7 +89,10 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   noise.more_nT2 = fit.quantisation.variance_nT2.reshaped<Eigen::RowMajor>().matrix();
   if (options.more_nT2.size() > 0) noise.more_nT2 += options.more_nT2;
   fit.noise_inflation = noise.noise_inflation = noise.sample_nT ? options.noise_inflation : 1;
-  for (JointPose& pose : fit.problem.poses) pose.f_weight /= fit.noise_inflation;
+  for (JointPose& pose : fit.problem.poses) {
+    pose.f_weight /= fit.noise_inflation;
+    pose.reference_weight /= fit.noise_inflation;
+  }
   const double most = most_left_out(fit.problem, options);
   auto found = warm_start != nullptr
                    ? robust_fit_from(fit.problem, *std::move(state), noise, most, unsettled)

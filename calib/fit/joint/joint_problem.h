@@ -19,6 +19,8 @@
 ///     3N readings  y_i = axis(C_i A_i R_i' b_i) + I_i,   b_i = platform(R_k B(R_k' r_i))
 ///      1 scalar    F_k = |B(0)|; without a scalar reference F_k = F, one unknown for all poses
 ///      3 attitude  R_k = turn_by(w_k) T(table angles of k), w_k near 0
+///      3 vector    b_k itself, where it was measured beside the sensors or made by a coil cage; the platform
+///                  frame is then that of the reference, and the angles of the sensors are their misalignment
 /// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of
 /// effects) and four nuisances a pose: w_k (3) and F_k where B(0) = F_k n; or, for a pose without table
 /// angles, the field b_k (3) itself in the platform frame and one idle slot.
@@ -51,6 +53,8 @@ struct JointPose {
   Channels y_nT;
   Channels weight;              ///< 1/sd of each reading; 0 leaves it out (outlier node)
   double f_nT{0}, f_weight{0};  ///< scalar reference of this pose; with `common_field` its spread about F
+  Eigen::Vector3d reference_nT{Eigen::Vector3d::Zero()};  ///< the field as a known vector, frame P
+  double reference_weight{0};                             ///< 1/nT, of each component; 0: not known
   bool has_angles{false};
   Eigen::Matrix3d T{Eigen::Matrix3d::Identity()};  ///< table rotation at the recorded angles
   double attitude_weight{0};                       ///< 1/rad, of each component of w_k
@@ -73,6 +77,7 @@ struct JointProblem {
   std::vector<JointPose> poses;
   bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
   bool has_angles{false};           ///< at least one pose has table angles
+  bool has_reference{false};        ///< of every pose the field is known as a vector
   std::vector<LinearPrior> priors;  ///< gauge, coefficients, known field
   /// Of the site's field, from the operator; and the weight of both, 1/rad.
   std::optional<double> known_inclination_rad, known_declination_rad;
@@ -83,8 +88,9 @@ struct JointProblem {
   [[nodiscard]] FixedSlots slots() const { return {static_cast<int>(geometry.sensors())}; }
   [[nodiscard]] int sensors() const { return slots().sensors; }
   [[nodiscard]] int channels() const { return slots().channels(); }
-  /// Rows of a pose in the linearised fit: its readings, the scalar reference, the attitude.
-  [[nodiscard]] int pose_rows() const { return channels() + kNuisances; }
+  /// Rows of a pose in the linearised fit: its readings, the scalar reference, the attitude; with a vector
+  /// reference that in the place of the attitude, and one row more for the idle slot.
+  [[nodiscard]] int pose_rows() const { return channels() + kNuisances + (has_reference ? 1 : 0); }
   [[nodiscard]] int fixed() const { return slots().effects() + coefficients(); }
 };
 

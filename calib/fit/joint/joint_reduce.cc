@@ -123,7 +123,7 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   out.H += out.scalar.nuisance.transpose() * out.scalar.nuisance;
   out.g += out.scalar.residual * out.scalar.nuisance.transpose();
   out.cost.scalar = out.scalar.residual * out.scalar.residual;
-  out.cost.attitude = out.cost.priors = 0;
+  out.cost.attitude = out.cost.priors = out.cost.reference = 0;
   if (pose.has_angles) {
     const double w2 = pose.attitude_weight * pose.attitude_weight;
     out.H.diagonal().head<3>().array() += w2;
@@ -131,7 +131,15 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
     out.cost.attitude = w2 * state.nuisances[k].head<3>().squaredNorm();
   } else {
     out.H(3, 3) += 1;                                                    // the idle slot
-    if (pose.weight.isZero(0)) out.H.diagonal().head<3>().array() += 1;  // nothing tells its field
+    const bool known = pose.reference_weight > 0;
+    if (known) {
+      const double w2 = pose.reference_weight * pose.reference_weight;
+      const Eigen::Vector3d off_nT = pose.reference_nT - state.nuisances[k].head<3>();
+      out.H.diagonal().head<3>().array() += w2;
+      out.g.head<3>() += w2 * off_nT;
+      out.cost.reference = w2 * off_nT.squaredNorm();
+    }
+    if (pose.weight.isZero(0) && !known) out.H.diagonal().head<3>().array() += 1;  // nothing tells its field
   }
   if (!with_border) return;
   const Eigen::Index globals = out.linear.d_global.cols();
@@ -168,6 +176,7 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
     out.cost.readings += b.cost.readings;
     out.cost.scalar += b.cost.scalar;
     out.cost.attitude += b.cost.attitude;
+    out.cost.reference += b.cost.reference;
     b.H.diagonal() *= 1 + damping;
     const Eigen::LLT<Eigen::Matrix4d> llt(b.H);
     auto Y = batch.middleCols<kNuisances>(filled * kNuisances);

@@ -25,7 +25,12 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   out.t_h = time.hours(pose);
   out.y_nT = calibration::stacked(pose.y_nT);
   out.weight = Channels::Constant(out.y_nT.size(), 1 / kStartNoise_nT);
-  if (common_field) {
+  if (pose.ref_nT && !pose.angles()) {
+    out.reference_nT = *pose.ref_nT;
+    out.reference_weight = 1 / std::max(pose.ref_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
+    out.f_nT = pose.f_nT.value_or(pose.ref_nT->norm());
+    if (pose.f_nT) out.f_weight = 1 / std::max(pose.f_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
+  } else if (common_field) {
     out.f_weight = 1 / kCommonFieldSpread_nT;
   } else {
     const double sd = pose.f_nT ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
@@ -69,6 +74,26 @@ void add_coefficient_priors(JointProblem& problem) {
 
 }  // namespace
 
+namespace {
+
+Result<void> check_reference(const PoseTable& table, std::ptrdiff_t with_reference, std::ptrdiff_t total,
+                             const auto& fitted) {
+  if (with_reference == 0) return {};
+  if (with_reference != total)
+    return fail(ErrorCode::refused,
+                fmt::format("{} of {} poses have the field as a vector (ref_x_nT ...)", with_reference, total),
+                "give it for every pose, or take the columns out");
+  const auto turned = std::find_if(table.poses.begin(), table.poses.end(),
+                                   [&](const Pose& p) { return fitted(p) && p.angles(); });
+  if (turned == table.poses.end()) return {};
+  return fail(ErrorCode::refused,
+              fmt::format("pose {} has table angles and the field as a vector", turned->number),
+              "the vector must be in a frame fixed to the sensors: turn it by the table's angles yourself and "
+              "leave the columns azimuth_deg, pitch_deg and roll_deg out");
+}
+
+}  // namespace
+
 Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options, PoseUse use) {
   JointProblem problem;
   problem.geometry = options.geometry;
@@ -92,7 +117,11 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
     return fail(ErrorCode::refused, fmt::format("{} of {} poses have a scalar reference f_nT", with_f, total),
                 "give f_nT for every pose, or give the field of the others with --field");
   }
-  problem.common_field = with_f == 0;
+  const auto with_reference = std::count_if(table.poses.begin(), table.poses.end(),
+                                            [&](const Pose& p) { return fitted(p) && p.ref_nT; });
+  if (auto ok = check_reference(table, with_reference, total, fitted); !ok) return tl::unexpected(ok.error());
+  problem.has_reference = with_reference > 0;
+  problem.common_field = with_f == 0 && !problem.has_reference;
   problem.means = std::make_shared<const effects::CovariateMeans>(effects::covariate_means(table));
   const poses::RunTime time = poses::RunTime::of(table);
   const Pose* previous = nullptr;
@@ -121,7 +150,8 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
     problem.known_declination_rad = options.declination_rad;
     problem.direction_weight = 1 / options.table_sd_rad;
   }
-  if (gauge.angles == AngleCoverage::none) {
+  gauge.by_reference = problem.has_reference;
+  if (gauge.angles == AngleCoverage::none && !gauge.by_reference) {
     for (const int p : {sensor::alpha, sensor::beta, sensor::gamma})
       problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
     gauge.constraints += 3;

@@ -48,6 +48,7 @@ inline constexpr double kStartNoise_nT = 1.0;
 struct Gauge {
   AngleCoverage angles{AngleCoverage::none};
   bool declination_known{false};
+  bool by_reference{false};  ///< the frame is that of a vector reference
   bool scale_known{false};
   int constraints{0};  ///< freedoms fixed by convention
 };

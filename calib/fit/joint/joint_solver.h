@@ -14,10 +14,13 @@
 /// in the poses and nothing per pose is kept but its four nuisances.
 namespace mgtd::calib::fit::joint {
 
-/// Chi-squares, kept apart: readings and scalar reference decide about the model, attitude about the table.
+/// Chi-squares, kept apart: readings, scalar and vector reference decide about the model, attitude about
+/// the table.
 struct JointCost {
-  double readings{0}, scalar{0}, attitude{0}, priors{0};
-  [[nodiscard]] double total() const { return readings + scalar + attitude + priors; }
+  double readings{0}, scalar{0}, attitude{0}, priors{0}, reference{0};
+  [[nodiscard]] double total() const { return readings + scalar + attitude + priors + reference; }
+  /// What decides about the model: all but the table and the priors.
+  [[nodiscard]] double of_model() const { return readings + scalar + reference; }
 };
 
 /// The scalar observation of a pose, whitened: of its own magnetometer, or of the field F common to all

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "calib/fit/joint/data_faults.h"
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/orientation.h"
+#include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/sensor/sensor_equations.h"
 #include "calib/sensor/sensor_start.h"
@@ -204,6 +206,8 @@ JointState joint_state(const JointProblem& problem, const PerSensor<sensor::Sens
     Nuisance x = Nuisance::Zero();
     if (pose.has_angles) {
       x[3] = pose.f_weight > 0 && !problem.common_field ? pose.f_nT : f_nT;
+    } else if (pose.reference_weight > 0) {
+      x.head<3>() = pose.reference_nT;
     } else {
       for (int i = 0; i < problem.sensors(); ++i)
         x.head<3>() +=
@@ -215,9 +219,50 @@ JointState joint_state(const JointProblem& problem, const PerSensor<sensor::Sens
   return state;
 }
 
+namespace {
+
+/// Readings are an affine map of a field that is known as a vector, y = M r + o: least squares for each sensor,
+/// and M^-1 = R K with R orthogonal, K upper triangular with positive diagonal (QR).
+Result<JointState> start_from_reference(const JointProblem& problem, double f_nT) {
+  const auto poses = static_cast<Eigen::Index>(problem.poses.size());
+  Eigen::MatrixXd r(poses, 4), y(poses, problem.channels());
+  for (Eigen::Index k = 0; k < poses; ++k) {
+    const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+    r.row(k) << pose.reference_nT.transpose() / f_nT, 1;
+    y.row(k) = pose.y_nT;
+  }
+  PerSensor<sensor::SensorModel> sensors(problem.geometry.sensors());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    Eigen::Matrix<double, 4, 3> map;
+    for (int a = 0; a < 3; ++a) {
+      const auto solved = linear::unique_least_squares(r, y.col(3 * static_cast<Eigen::Index>(i) + a));
+      if (!solved)
+        return fail(ErrorCode::refused, "the vectors of the reference lie in a plane",
+                    "give fields in more directions: along x, y and z of the cage, and without field");
+      map.col(a) = *solved;
+    }
+    const Eigen::Matrix3d M = map.topRows<3>().transpose() / f_nT;
+    if (!(std::abs(M.determinant()) > 0))
+      return fail(ErrorCode::refused, fmt::format("sensor {}: an axis does not follow the reference", i + 1),
+                  "check this sensor, its cable and its channels of the digitiser");
+    const Eigen::HouseholderQR<Eigen::Matrix3d> qr(M.inverse());
+    Eigen::Matrix3d R = qr.householderQ(), K = qr.matrixQR().triangularView<Eigen::Upper>();
+    for (int a = 0; a < 3; ++a) {
+      if (K(a, a) > 0) continue;
+      K.row(a) *= -1;
+      R.col(a) *= -1;
+    }
+    sensors[i] = sensor_from(K, map.row(3).transpose(), R);
+  }
+  return joint_state(problem, sensors, Eigen::Vector3d::UnitZ(), f_nT);
+}
+
+}  // namespace
+
 Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   if (const auto ok = check_units(problem, f_nT); !ok) return tl::unexpected(ok.error());
   if (const auto ok = check_copies(problem); !ok) return tl::unexpected(ok.error());
+  if (problem.has_reference) return start_from_reference(problem, f_nT);
   auto aligned = align_sensors(problem, f_nT);
   if (!aligned) return tl::unexpected(aligned.error());
   const double hand = handedness(*aligned);

@@ -82,10 +82,13 @@ struct AllReadings {
 
 AllReadings all_readings(const JointProblem& problem, double f_nT) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  AllReadings out{ReadingTable(problem.channels(), n), Eigen::VectorXd::Constant(n, f_nT)};
+  const int channels = problem.channels();
+  AllReadings out{ReadingTable(channels + (problem.has_reference ? 3 : 0), n),
+                  Eigen::VectorXd::Constant(n, f_nT)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
-    out.y_nT.col(k) = pose.y_nT;
+    out.y_nT.col(k).head(channels) = pose.y_nT;
+    if (problem.has_reference) out.y_nT.col(k).tail<3>() = pose.reference_nT;
     if (!problem.common_field) out.f_nT[k] = pose.f_nT;
   }
   return out;
@@ -95,7 +98,8 @@ AllReadings all_readings(const JointProblem& problem, double f_nT) {
 /// nothing comes of it.
 std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings& all, double f_nT,
                                        const FitNoise& noise, double most_left_out) {
-  const auto agreeing = agreeing_poses(all.y_nT, all.f_nT);
+  // A field that is known as a vector lies in the same plane as the readings, and on no ellipsoid.
+  const auto agreeing = problem.has_reference ? agreeing_poses(all.y_nT) : agreeing_poses(all.y_nT, all.f_nT);
   if (!agreeing) return std::nullopt;
   JointProblem some = problem;
   some.poses.clear();
