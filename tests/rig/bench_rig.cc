@@ -20,42 +20,42 @@ namespace {
 constexpr double kClockStep_s = 3;     ///< leap seconds learnt late
 constexpr double kDelivery_s = 0.016;  ///< of a USB converter as it comes from the maker
 constexpr double kReplug_s = 1;        ///< from one instrument to another
-constexpr std::size_t kTable = 4;
 constexpr std::array kLasting{FaultKind::stranger, FaultKind::unplug,  FaultKind::torn,      FaultKind::half,
                               FaultKind::twice,    FaultKind::swap,    FaultKind::freeze,    FaultKind::stall,
                               FaultKind::mute,     FaultKind::late,    FaultKind::saturate,  FaultKind::power,
                               FaultKind::turn,     FaultKind::runaway, FaultKind::backwards, FaultKind::limit,
                               FaultKind::slow,     FaultKind::step};
 
-/// Whether what is behind this port can have the fault at all.
-bool can_have(std::size_t port, FaultKind kind) {
-  if (kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit)
-    return port == kTable;
-  return kind != FaultKind::turn || port < kTable;
-}
-
 }  // namespace
 
+bool BenchRig::can_have(std::size_t port, FaultKind kind) const {
+  if (kind == FaultKind::runaway || kind == FaultKind::backwards || kind == FaultKind::limit)
+    return port == table_port();
+  return kind != FaultKind::turn || port < table_port();
+}
+
 BenchRig::BenchRig(Scenario scenario, double utc_s) : world_(std::move(scenario)) {
-  for (int slot = 0; slot < 4; ++slot) {
-    auto digitiser = std::make_unique<ObsdaqInstrument>(world_, slot, utc_s);
+  for (std::size_t slot = 0; slot < world_.sensors(); ++slot) {
+    auto digitiser = std::make_unique<ObsdaqInstrument>(world_, static_cast<int>(slot), utc_s);
     if (world_.scenario().autostart) digitiser->autostart(0);
     instruments_.push_back(std::move(digitiser));
   }
   instruments_.push_back(std::make_unique<Gcs2Instrument>(world_));
-  names_.assign(kPortNames.begin(), kPortNames.begin() + kTable + 1);
+  names_ = port_names(world_.sensors());
+  names_.resize(table_port() + 1);
   if (world_.scenario().scalar) {
     instruments_.push_back(std::make_unique<GsmInstrument>(world_, utc_s));
-    names_.push_back("scalar");
+    names_.emplace_back("scalar");
   }
   if (auto inputs = on_module(world_.scenario().covariates); !inputs.empty()) {
     instruments_.push_back(std::make_unique<DconInstrument>(std::move(inputs)));
-    names_.push_back("auxiliary");
+    names_.emplace_back("auxiliary");
   }
   for (std::size_t i = 0; i < instruments_.size(); ++i)
     wires_.emplace_back(instruments_[i]->baud(), world_.scenario().seed + i);
   for (std::size_t i = 0; i < ports(); ++i)
-    whose_.push_back(i < kTable ? static_cast<std::size_t>(world_.scenario().plugs.at(i) - 1) : i);
+    whose_.push_back(i < table_port() ? static_cast<std::size_t>(of_sensor(world_.scenario().plugs, i) - 1)
+                                      : i);
   for (std::size_t i = 0; i < ports(); ++i) set_delivery(i, own_delivery_s(i));
   plugged_.assign(ports(), true);
   strange_.assign(ports(), false);
@@ -141,12 +141,12 @@ tl::expected<void, std::string> BenchRig::apply(const Fault& fault, double now_s
 }
 
 double BenchRig::own_delivery_s(std::size_t port) const {
-  return port < kTable ? world_.scenario().delivery_s[port] : 0;
+  return port < table_port() ? of_sensor(world_.scenario().delivery_s, port) : 0;
 }
 
 /// The timers of the ports tick at different moments.
 void BenchRig::set_delivery(std::size_t port, double step_s) {
-  const double slow = port < kTable ? 1 + 1e-6 * world_.scenario().delivery_ppm[port] : 1;
+  const double slow = port < table_port() ? 1 + 1e-6 * of_sensor(world_.scenario().delivery_ppm, port) : 1;
   const double phase_s = step_s * static_cast<double>(port) / static_cast<double>(ports());
   wires_[port].set_delivery(step_s * slow, phase_s);
 }
@@ -198,7 +198,7 @@ void BenchRig::set(std::size_t port, FaultKind kind, bool on, double now_s) {
 }
 
 void BenchRig::set_table(FaultKind kind, bool on, double now_s) {
-  auto& table = dynamic_cast<Gcs2Instrument&>(*instruments_[kTable]);
+  auto& table = dynamic_cast<Gcs2Instrument&>(*instruments_[table_port()]);
   if (kind == FaultKind::runaway) world_.set_runaway(on, now_s);
   if (kind == FaultKind::backwards) table.set_backwards(on);
   if (kind == FaultKind::limit) table.set_at_limit(on);
@@ -211,7 +211,7 @@ void BenchRig::forget_endings(std::size_t port, FaultKind kind) {
 void BenchRig::run_script(double now_s) {
   const auto& script = world_.scenario().faults;
   for (; next_fault_ < script.size() && script[next_fault_].at_s <= now_s; ++next_fault_) {
-    const auto fault = parse_fault(script[next_fault_].text);
+    const auto fault = parse_fault(script[next_fault_].text, world_.sensors());
     // The scenario's words were checked when it was read; a port it has not got is not there to fail.
     if (fault) static_cast<void>(apply(*fault, now_s));
   }

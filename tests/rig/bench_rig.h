@@ -10,7 +10,7 @@
 #include "tests/rig/wire.h"
 #include "tests/rig/world.h"
 
-/// This is the whole rig in virtual time: one world, six instruments, six cables. Tests drive it byte by
+/// This is the whole rig in virtual time: one world, and a cable to each instrument. Tests drive it byte by
 /// byte; the server puts it on ptys. The same scenario and the same bytes at the same times give the same
 /// bytes back.
 namespace mgtd::rig {
@@ -20,7 +20,7 @@ class BenchRig {
   /// `utc_s`: the hour on the instruments' clocks when the rig is switched on.
   BenchRig(Scenario scenario, double utc_s);
 
-  /// In the order of kPortNames; the scalar reference and the auxiliary inputs are left out where the
+  /// In the order of port_names(); the scalar reference and the auxiliary inputs are left out where the
   /// scenario has none.
   [[nodiscard]] std::size_t ports() const { return instruments_.size(); }
   [[nodiscard]] std::string_view name(std::size_t port) const { return names_.at(port); }
@@ -75,8 +75,13 @@ class BenchRig {
   void out_for_a_second(std::size_t port, double now_s);
   void set_table(FaultKind kind, bool on, double now_s);
 
+  /// The digitisers' ports come first, then the table's.
+  [[nodiscard]] std::size_t table_port() const { return world_.sensors(); }
+  /// Whether what is behind this port can have the fault at all.
+  [[nodiscard]] bool can_have(std::size_t port, FaultKind kind) const;
+
   World world_;
-  std::vector<std::string_view> names_;
+  std::vector<std::string> names_;
   std::vector<std::unique_ptr<Instrument>> instruments_, stranger_;
   std::vector<std::size_t> whose_;  ///< number of the instrument whose plug is in a port
   std::vector<Wire> wires_;

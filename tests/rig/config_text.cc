@@ -30,6 +30,14 @@ std::string sensor(const Scenario& s, int slot, const std::string& port) {
   return out;
 }
 
+std::string places(const Scenario& s) {
+  if (s.is_cross()) return fmt::format("baseline_m = {}\n", s.baseline_m);
+  std::string list;
+  for (const Eigen::Vector3d& x_m : s.positions_m)
+    list += fmt::format("{}[{}, {}, {}]", list.empty() ? "" : ", ", x_m[0], x_m[1], x_m[2]);
+  return fmt::format("positions_m = [{}]\n", list);
+}
+
 std::string table(const Scenario& s, const std::string& dir) {
   if (s.hands == "table") return "\n[table]\ndriver = \"hand\"\n";
   const std::string axes = s.hands == "mount"
@@ -56,10 +64,10 @@ std::string auxiliary(const std::vector<Covariate>& inputs, const std::string& d
 
 std::string config_text(const Scenario& s, const std::string& dir, const std::string& state_dir,
                         double speed_up, const std::string& tcp) {
-  std::string out =
-      fmt::format("# For the simulated rig '{}'.\n[rig]\nname = \"{}\"\nbaseline_m = {}\nrate_hz = {}\n",
-                  s.name, s.name, s.baseline_m, s.rate_hz);
-  for (int i = 0; i < 4; ++i) out += sensor(s, i, fmt::format("{}/fluxgate{}", dir, i + 1));
+  std::string out = fmt::format("# For the simulated rig '{}'.\n[rig]\nname = \"{}\"\n{}rate_hz = {}\n",
+                                s.name, s.name, places(s), s.rate_hz);
+  for (int i = 0; i < static_cast<int>(s.sensors()); ++i)
+    out += sensor(s, i, fmt::format("{}/fluxgate{}", dir, i + 1));
   out += table(s, dir);
   if (s.scalar) {
     out += fmt::format("\n[scalar]\ndriver = \"gsm\"\nport = \"{}/scalar\"\nbaud = 115200\n", dir);

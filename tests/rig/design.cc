@@ -81,6 +81,25 @@ Design grid_of_5832() {
   return out;
 }
 
+Design cage_fields(const Cage& cage, std::uint64_t seed) {
+  constexpr double kGolden_deg =
+      137.50776405003785;  // 360 (3 - sqrt 5)/2: a spiral that fills a sphere evenly
+  std::mt19937_64 random(seed ^ 0xbf58476d1ce4e5b9U);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Design out;
+  out.record_path = false;
+  for (std::uint64_t k = 0; k < cage.poses; ++k) {
+    const double of_all = (static_cast<double>(k) + 0.5) / static_cast<double>(cage.poses);
+    const double z = 2 * (cage.sphere ? of_all : unit(random)) - 1;
+    const double around_deg = cage.sphere ? kGolden_deg * static_cast<double>(k) : 360 * unit(random);
+    const double share = cage.sphere ? static_cast<double>(k % 4 + 1) / 4 : unit(random);
+    const double across = std::sqrt(1 - z * z);
+    const Eigen::Vector3d u(across * std::cos(around_deg * kDeg), across * std::sin(around_deg * kDeg), z);
+    out.poses.push_back({.set = "cage", .cage_nT = (k == 0 ? 0 : share * cage.max_nT) * u});
+  }
+  return out;
+}
+
 Design remounted_turns(const std::vector<Eigen::Matrix3d>& mounts, std::size_t azimuths, std::uint64_t seed) {
   std::mt19937_64 random(seed ^ 0xd1b54a32d192ed03U);
   Design out;

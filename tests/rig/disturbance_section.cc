@@ -15,17 +15,17 @@ Vehicle read_vehicle(Section& section) {
   return v;
 }
 
-DroppedMagnet read_magnet(Section& section, double baseline_m) {
+DroppedMagnet read_magnet(Section& section, double reach_m) {
   DroppedMagnet m;
   section.read("at_s", m.at_s, {0, 1e9});
   section.read("until_s", m.until_s, {0, 1e9});
   section.read("moment_Am2", m.moment_Am2);
   section.read("at_m", m.at_m);
   const double away_m = Eigen::Vector3d(m.at_m.data()).norm();
-  if (away_m < baseline_m)
+  if (away_m < reach_m)
     section.complain("at_m", fmt::format("at_m is {} m from the centre of the array and must be {} m or "
                                          "more, so that the magnet lies outside of it",
-                                         away_m, baseline_m));
+                                         away_m, reach_m));
   return m;
 }
 

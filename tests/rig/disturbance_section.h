@@ -10,8 +10,8 @@
 namespace mgtd::rig {
 
 [[nodiscard]] Vehicle read_vehicle(Section& section);
-/// It must lie outside an array of that baseline.
-[[nodiscard]] DroppedMagnet read_magnet(Section& section, double baseline_m);
+/// It must lie outside an array with that reach about its centre.
+[[nodiscard]] DroppedMagnet read_magnet(Section& section, double reach_m);
 [[nodiscard]] GrossReading read_gross(Section& section);
 
 }  // namespace mgtd::rig

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 /// An Effect is something that the rig does and the estimator is not told. It acts at one physical level,
@@ -23,9 +24,11 @@ struct Scenario;
 
 inline constexpr double kF0_nT = 50'000;  ///< normaliser of the nonlinear terms
 inline constexpr double kT0_degC = 20;
+inline constexpr std::size_t kMostPlaces = 16;  ///< sensors that an array can have
+inline constexpr std::size_t kCross = 4;        ///< sensors of the cross
 
 struct AxisContext {
-  int sensor{0};  ///< 0 .. 3
+  int sensor{0};  ///< counted from 0
   int axis{0};    ///< 0 .. 2
   double t_s{0};
   double T_degC{kT0_degC};
@@ -56,8 +59,8 @@ struct PlatformContext {
   double T_degC{kT0_degC};
   Eigen::Vector3d g{0, 0, 1};
   Eigen::Matrix3d mount{Eigen::Matrix3d::Identity()};  ///< table frame to platform frame
-  std::array<Eigen::Vector3d, 4> b_nT{};               ///< of every sensor before this level
-  std::array<Eigen::Vector3d, 4> position_m{};         ///< platform frame
+  std::span<const Eigen::Vector3d> b_nT{};             ///< of every sensor before this level
+  std::span<const Eigen::Vector3d> position_m{};       ///< platform frame
 };
 
 class Effect {
@@ -110,8 +113,8 @@ class EffectOf : public Effect {
 class Where {
  public:
   Where() = default;
-  /// Empty optional when the text names none.
-  [[nodiscard]] static std::optional<Where> parse(const std::string& text);
+  /// Empty optional when the text names none of so many sensors.
+  [[nodiscard]] static std::optional<Where> parse(const std::string& text, std::size_t sensors = kCross);
   [[nodiscard]] bool covers_sensor(int sensor) const { return sensor_ < 0 || sensor == sensor_; }
   [[nodiscard]] bool covers(const AxisContext& c) const {
     return covers_sensor(c.sensor) && (axis_ < 0 || c.axis == axis_);

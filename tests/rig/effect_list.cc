@@ -22,8 +22,8 @@ std::string names() {
   return out;
 }
 
-std::string random_where(Scope scope, std::mt19937_64& random) {
-  std::uniform_int_distribution<int> sensor(1, 4), axis(0, 2);
+std::string random_where(Scope scope, std::mt19937_64& random, std::size_t sensors) {
+  std::uniform_int_distribution<int> sensor(1, static_cast<int>(sensors)), axis(0, 2);
   std::string out = fmt::format("s{}", sensor(random));
   if (scope == Scope::axis) out += fmt::format(".{}", "xyz"[axis(random)]);
   return out;
@@ -65,7 +65,7 @@ std::shared_ptr<const Effect> read_effect(Section& s) {
   }
   const Where where = kind->scope == Scope::none ? Where{} : s.where();
   if (kind->scope == Scope::sensor && where.one_axis())
-    s.complain("where", fmt::format("{} acts on a whole sensor: all or s1 .. s4", name));
+    s.complain("where", fmt::format("{} acts on a whole sensor: all or s1 .. s{}", name, s.sensors()));
   if (kind->needs_covariate) {
     s.read("of", of);
     if (of.empty()) s.complain("", "of is missing: the name of a [[covariate]]");
@@ -79,11 +79,12 @@ std::shared_ptr<const Effect> read_effect(Section& s) {
   return make_effect(*kind, where, std::move(numbers), of);
 }
 
-tl::expected<std::shared_ptr<const Effect>, std::string> effect_of(std::string_view toml) {
+tl::expected<std::shared_ptr<const Effect>, std::string> effect_of(std::string_view toml,
+                                                                   std::size_t sensors) {
   try {
     const toml::table table = toml::parse(toml);
     std::vector<Mistake> mistakes;
-    Section section(&table, "effect", mistakes);
+    Section section(&table, "effect", mistakes, sensors);
     auto effect = read_effect(section);
     section.refuse_rest();
     if (!mistakes.empty()) return tl::unexpected(mistakes.front().text);
@@ -93,9 +94,11 @@ tl::expected<std::shared_ptr<const Effect>, std::string> effect_of(std::string_v
   }
 }
 
-std::string random_effect(const EffectKind& kind, double size, std::mt19937_64& random, std::string_view of) {
+std::string random_effect(const EffectKind& kind, double size, std::mt19937_64& random, std::string_view of,
+                          std::size_t sensors) {
   std::string out = fmt::format("name = \"{}\"\n", kind.name);
-  if (kind.scope != Scope::none) out += fmt::format("where = \"{}\"\n", random_where(kind.scope, random));
+  if (kind.scope != Scope::none)
+    out += fmt::format("where = \"{}\"\n", random_where(kind.scope, random, sensors));
   if (kind.needs_covariate) out += fmt::format("of = \"{}\"\n", of);
   for (const Key& key : kind.keys) {
     if (key.name == nullptr) break;

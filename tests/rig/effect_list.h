@@ -18,12 +18,13 @@ namespace mgtd::rig {
 [[nodiscard]] std::shared_ptr<const Effect> read_effect(Section& section);
 
 /// The same from the lines of one: "name = 'axis.cubic'\nwhere = 's2.x'\nnT_at_F0 = 12".
-[[nodiscard]] tl::expected<std::shared_ptr<const Effect>, std::string> effect_of(std::string_view toml);
+[[nodiscard]] tl::expected<std::shared_ptr<const Effect>, std::string> effect_of(
+    std::string_view toml, std::size_t sensors = kCross);
 
 /// Such lines at random: `size` times the typical size of each coefficient, either sign, somewhere its scope
 /// allows; `of` where a covariate is needed.
 [[nodiscard]] std::string random_effect(const EffectKind& kind, double size, std::mt19937_64& random,
-                                        std::string_view of = "motor_A");
+                                        std::string_view of = "motor_A", std::size_t sensors = kCross);
 
 /// "axis.cubic  where nT_at_F0" and so on, for the help.
 [[nodiscard]] std::vector<std::string> effect_help();

@@ -48,7 +48,14 @@ std::optional<double> seconds(std::string_view text) {
 
 }  // namespace
 
-tl::expected<Fault, std::string> parse_fault(std::string_view text) {
+std::vector<std::string> port_names(std::size_t sensors) {
+  std::vector<std::string> out;
+  for (std::size_t i = 1; i <= sensors; ++i) out.push_back(fmt::format("fluxgate{}", i));
+  for (const char* name : {"table", "scalar", "auxiliary"}) out.emplace_back(name);
+  return out;
+}
+
+tl::expected<Fault, std::string> parse_fault(std::string_view text, std::size_t sensors) {
   std::istringstream in{std::string(text)};
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
@@ -61,9 +68,10 @@ tl::expected<Fault, std::string> parse_fault(std::string_view text) {
   const auto* const found =
       std::find_if(kWords.begin(), kWords.end(), [&](const Word& w) { return w.name == words[0]; });
   if (found == kWords.end()) return usage(fmt::format("no fault '{}'", words[0]));
+  const std::vector<std::string> names = port_names(sensors);
   for (std::size_t i = 1; i <= ports; ++i) {
-    if (std::find(kPortNames.begin(), kPortNames.end(), words[i]) == kPortNames.end())
-      return usage(fmt::format("no port '{}'; there are: {}", words[i], fmt::join(kPortNames, ", ")));
+    if (std::find(names.begin(), names.end(), words[i]) == names.end())
+      return usage(fmt::format("no port '{}'; there are: {}", words[i], fmt::join(names, ", ")));
     if (of_the_sensors(found->kind) && !words[i].starts_with("fluxgate"))
       return usage(fmt::format("only a fluxgate has the fault '{}'", found->name));
   }

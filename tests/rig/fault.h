@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
+
+#include "tests/rig/effect.h"
 
 /// A Fault is something that goes wrong with a cable or an instrument on demand.
 ///   unplug PORT [for S]    the port vanishes; it comes back after S simulated seconds, or by `restore`
@@ -33,11 +35,11 @@
 ///
 /// A fault of an instrument (freeze, stall, saturate, clock, rate, power, turn) goes with the instrument when
 /// its plug is in another port.
-/// Ports: fluxgate1 .. fluxgate4, table, scalar, auxiliary.
+/// Ports: fluxgate1 .. fluxgate4 (one for each sensor of the array), table, scalar, auxiliary.
 namespace mgtd::rig {
 
-inline constexpr std::array<std::string_view, 7> kPortNames{
-    "fluxgate1", "fluxgate2", "fluxgate3", "fluxgate4", "table", "scalar", "auxiliary"};
+/// fluxgate1, fluxgate2, ... table, scalar, auxiliary.
+[[nodiscard]] std::vector<std::string> port_names(std::size_t sensors);
 
 enum class FaultKind {
   unplug,
@@ -80,6 +82,7 @@ inline constexpr const char* kFaultUsage =
     "exchange PORT PORT [for SECONDS], "
     "runaway|backwards|limit table [for SECONDS], or garbage|clock|rate|restore PORT";
 
-[[nodiscard]] tl::expected<Fault, std::string> parse_fault(std::string_view text);
+[[nodiscard]] tl::expected<Fault, std::string> parse_fault(std::string_view text,
+                                                           std::size_t sensors = kCross);
 
 }  // namespace mgtd::rig

@@ -13,6 +13,7 @@
 #include "tests/rig/fault_client.h"
 #include "tests/rig/operator.h"
 #include "tests/rig/pose_writer.h"
+#include "tests/rig/recording.h"
 #include "tests/rig/rig_server.h"
 #include "tests/rig/seal.h"
 #include "tests/rig/simulated_table.h"
@@ -22,8 +23,8 @@ namespace {
 using namespace mgtd::rig;
 
 constexpr const char* kDescription =
-    R"(mgt-rig: a simulated rig on serial ports: four fluxgates behind ObsDAQ digitisers, a three-axis table (PI GCS 2)
-and a GSM-90 scalar magnetometer. Its physics is its own; what it hides, the estimator has to find.
+    R"(mgt-rig: a simulated rig on serial ports: four fluxgates (or 1 to 16) behind ObsDAQ digitisers, a three-axis table
+(PI GCS 2) and a GSM-90 scalar magnetometer. Its physics is its own; what it hides, the estimator has to find.
 
   mgt-rig run --rig table6 --dir /tmp/rig --speed-up 30          ports in /tmp/rig until Ctrl-C
   mgt-rig config --rig table6 --dir /tmp/rig --speed-up 30 > mgtd.toml
@@ -35,7 +36,10 @@ and a GSM-90 scalar magnetometer. Its physics is its own; what it hides, the est
 
 constexpr const char* kScenarioHelp =
     R"(A scenario is a TOML file; every key has a default:
-  [rig]          name, parameters (table3, table6, ideal, random), seed, baseline_m
+  [rig]          name, parameters (table3, table6: of the cross only; ideal, random), seed, baseline_m
+  [array]        positions_m = [[x, y, z], ...]: 1 to 16 sensors s1, s2, ... on the platform, in the place of the cross
+                 (four, s1 at +X, s2 at +Y, s3 at -X, s4 at -Y, baseline_m apart). A list [4] below then has one
+                 value for each sensor, and s4 stands for the last
   [s1] .. [s4]   theta_deg phi_deg psi_deg cx cy cz ix_nT iy_nT iz_nT alpha_deg beta_deg gamma_deg, where they differ
                  from the named rig; mounting = "y -x z": where the sensor's x, y, z point on the platform
   [site]         f_nT, inclination_deg, declination_deg, drift_nT_per_h, diurnal_nT, diurnal_period_h,
@@ -56,13 +60,21 @@ constexpr const char* kScenarioHelp =
   [table]        accuracy_deg, velocity_deg_per_s, acceleration_deg_per_s2, tilt_limit_deg,
                  hands = "mount" (one axis, the array is mounted by hand) or "table" (no motors)
   [scalar]       present, noise_nT, period_s, bad_every
+  [reference]    vector = true: columns ref_x_nT ref_y_nT ref_z_nT ref_sd_nT in a table; sd_nT, misalignment_deg =
+                 [rx, ry, rz] (R ref = b with R = Rz Ry Rx), frame = "platform" (fixed to what holds the sensors) or
+                 "site" (beside the table), angles (default: true with "site"), scalar (whether f_nT is there too)
+  [cage]         fields = "sphere" or "random", max_nT, poses: a coil cage makes the fields of the table, the array
+                 stands still in it; needs [reference] vector = true. f_nT only where scalar = true
+  [recording]    motion = "hand", "flight", "level" or "one-axis", rate_hz (10), duration_s (300), rest_s (5, at the
+                 start and at the end), ar (correlation of neighbouring samples), angles (false), scalar (true):
+                 one row for each sample
   [[fault]]      at_s, do = "unplug fluxgate2 for 3"
   [[vehicle]]    at_s, nearest_m, speed_m_per_s, stands_s, moment_Am2: passes, or stands for a while
   [[magnet]]     at_s, until_s, moment_Am2 = [3], at_m = [3]: put down near the array; stays without until_s
   [[gross]]      pose, poses, where, do = "off" (by nT), "stuck" or "saturated": readings of a table
   [[covariate]]  name, mean, amplitude, wave (toggle, sine, ramp), every_s, recorded, pattern; input = "s2.q", unit,
                  per_V, at_0V: on the auxiliary input of a digitiser instead of the input module
-  [[effect]]     name and coefficients; where = all, s1 .. s4, s1.x .. s4.z (default all):
+  [[effect]]     name and coefficients; where = all, s1 .. s4, s1.x .. s4.z (of the array's sensors; default all):
 )";
 
 std::string footer() {
@@ -77,7 +89,7 @@ struct Arguments {
   std::string scenario, rig = "table6", dir = "/tmp/mgt-rig", state, output, poses = "run157",
                         tcp = "127.0.0.1:7450", seal;
   int hide{0};
-  bool samples{false};
+  bool samples{false}, poses_given{false};
   std::uint64_t seed{1};
   double speed_up{1};
   bool print_config{false};
@@ -166,7 +178,23 @@ DesignOptions options_of(const std::string& poses, const Scenario& s) {
   return out;
 }
 
+/// A recording or a cage says itself which rows there are.
+int own_rows(const Arguments& args, Scenario s) {
+  if (args.poses_given) {
+    fmt::print(stderr, "mgt-rig: {} says itself which rows there are; leave --poses out\n",
+               s.recording ? "[recording]" : "[cage]");
+    return 2;
+  }
+  if (s.recording) return write(args.output, pose_table_csv(simulated_recording(std::move(s))));
+  const Design design = cage_fields(*s.cage, s.seed);
+  const std::uint64_t seed = s.seed;
+  return write(args.output,
+               pose_table_csv(simulated_survey(std::move(s), design, seed,
+                                               args.samples ? Sampling::samples : Sampling::means)));
+}
+
 int table(const Arguments& args, Scenario s) {
+  if (s.recording || s.cage) return own_rows(args, std::move(s));
   const bool grid = args.poses == "grid5832";
   if (args.poses == "octant157" && s.tilt_limit_deg < 90) {
     fmt::print(stderr, "mgt-rig: octant157 tilts the array by up to 90 degrees; tilt_limit_deg = {}\n",
@@ -177,8 +205,25 @@ int table(const Arguments& args, Scenario s) {
   const Design design = grid ? grid_of_5832() : run_of_157(options_of(args.poses, s), s.seed);
   const std::uint64_t seed = s.seed;
   return write(args.output,
-               pose_table_csv(simulated_table(std::move(s), design, seed,
-                                              args.samples ? Sampling::samples : Sampling::means)));
+               pose_table_csv(simulated_survey(std::move(s), design, seed,
+                                               args.samples ? Sampling::samples : Sampling::means)));
+}
+
+/// Only what stands behind a serial port can be run.
+int run_rig(const Arguments& args, const Scenario& s) {
+  if (args.print_config) return write("", args.config(s));
+  if (s.reference || s.cage || s.recording) {
+    fmt::print(stderr,
+               "mgt-rig: [{}] is of a table and has no serial port; write one with: mgt-rig table "
+               "--scenario {}\n",
+               s.recording ? "recording"
+               : s.cage    ? "cage"
+                           : "reference",
+               args.scenario);
+    return 2;
+  }
+  const auto rig = prepared(args, s);
+  return rig ? serve(*rig, {args.absolute_dir(), args.speed_up}) : 2;
 }
 
 int open(const Arguments& args) {
@@ -256,7 +301,9 @@ void add_hands(CLI::App& app, Arguments& args) {
   CLI::App* const magnet = add(app, "magnet", "hold a magnet to the end of an arm", args,
                                [](const Arguments& a) { return ask(a, fmt::format("magnet {}", a.arm)); });
   magnet->add_option("DIR", args.dir, "directory of the rig")->required();
-  magnet->add_option("ARM", args.arm, "1 to 4; 0 puts it away")->required()->check(CLI::Range(0, 4));
+  magnet->add_option("ARM", args.arm, "number of its sensor; 0 puts it away")
+      ->required()
+      ->check(CLI::Range(0, 16));
   CLI::App* const operate_command =
       add(app, "operate", "do what a daemon asks its operator to do, until the run ends", args,
           [](const Arguments& a) { return operate(a.hands); });
@@ -270,12 +317,7 @@ void add_hands(CLI::App& app, Arguments& args) {
 }
 
 void add_commands(CLI::App& app, Arguments& args) {
-  CLI::App* const run = add_scenario(app, "run", "put the rig on serial ports until Ctrl-C", args,
-                                     [](const Arguments& a, const Scenario& s) {
-                                       if (a.print_config) return write("", a.config(s));
-                                       const auto rig = prepared(a, s);
-                                       return rig ? serve(*rig, {a.absolute_dir(), a.speed_up}) : 2;
-                                     });
+  CLI::App* const run = add_scenario(app, "run", "put the rig on serial ports until Ctrl-C", args, &run_rig);
   add_game(run, args);
   add_place(run, args);
   run->add_flag("--print-config", args.print_config, "print the mgtd.toml for this rig instead");
@@ -294,6 +336,7 @@ void add_commands(CLI::App& app, Arguments& args) {
                    "run157 (36 standard and 121 random poses), octant157 (the field in one octant only) or "
                    "grid5832")
       ->check(CLI::IsMember({"run157", "octant157", "grid5832"}))
+      ->each([&args](const std::string&) { args.poses_given = true; })
       ->capture_default_str();
   poses->add_option("-o,--output", args.output, "file; standard output when absent");
   add_scenario(app, "truth", "print what the rig really is, as JSON", args,

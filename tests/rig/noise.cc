@@ -19,6 +19,9 @@ std::vector<SlowProcess> slow_parts(const SampleNoise& n) {
   return out;
 }
 
+/// 4 to 6 are of other instruments, 16 to 19 of the cross's visits, 32 to 47 of what else is drawn.
+std::uint32_t stream_of(std::uint32_t sensor) { return sensor < kCross ? sensor : 64 + sensor; }
+
 }  // namespace
 
 std::mt19937_64 noise_stream(std::uint64_t seed, std::uint32_t which) {
@@ -27,12 +30,12 @@ std::mt19937_64 noise_stream(std::uint64_t seed, std::uint32_t which) {
 }
 
 SensorNoise::SensorNoise(const SampleNoise& sample, const VisitNoise& visit, std::uint64_t seed,
-                         std::uint32_t which)
+                         std::uint32_t sensor)
     : noise_(sample),
       visit_noise_(visit),
-      random_(noise_stream(seed, which)),
-      visit_random_(noise_stream(seed, which + 16)),
-      sensor_(static_cast<int>(which)) {
+      random_(noise_stream(seed, stream_of(sensor))),
+      visit_random_(noise_stream(seed, stream_of(sensor) + 16)),
+      sensor_(static_cast<int>(sensor)) {
   slow_.fill(slow_parts(sample));
 }
 

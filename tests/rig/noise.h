@@ -47,7 +47,7 @@ struct VisitNoise {
 /// A stream per sensor, so that how often one is read does not change the others.
 class SensorNoise {
  public:
-  SensorNoise(const SampleNoise& sample, const VisitNoise& visit, std::uint64_t seed, std::uint32_t which);
+  SensorNoise(const SampleNoise& sample, const VisitNoise& visit, std::uint64_t seed, std::uint32_t sensor);
 
   /// The table has moved.
   void visit() { visit_due_ = true; }

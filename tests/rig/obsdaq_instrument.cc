@@ -51,12 +51,13 @@ ObsdaqInstrument::ObsdaqInstrument(World& world, int slot, double utc_s)
       utc_s_(utc_s),
       palmacq_(world.scenario().palmacq),
       inputs_(on_digitiser(world.scenario().covariates, slot)) {
-  // Spread over the allowed range so that no two of the four agree.
-  constexpr std::array<double, 4> kShare{-1.0, 0.6, -0.2, 1.0};
+  // Spread over the allowed range so that no two agree.
+  constexpr std::array<double, kMostPlaces> kShare{-1.0, 0.6,  -0.2, 1.0, -0.6, 0.2,  0.8, -0.8,
+                                                   0.4,  -0.4, 0.1,  0.9, -0.9, -0.1, 0.5, -0.5};
   const Scenario& s = world.scenario();
   const auto i = static_cast<std::size_t>(slot);
   oscillator_ = s.common_trigger ? 1.0 : 1.0 + 1e-6 * s.oscillator_ppm * kShare.at(i);
-  oscillator_ /= 1 + s.rate_error_percent.at(i) / 100;
+  oscillator_ /= 1 + of_sensor(s.rate_error_percent, i) / 100;
 }
 
 double ObsdaqInstrument::period_s() const { return ticks_ * kTick_s * oscillator_ * (slow_ ? kSlow : 1); }

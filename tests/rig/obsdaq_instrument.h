@@ -21,8 +21,8 @@ namespace mgtd::rig {
 
 class ObsdaqInstrument final : public Instrument {
  public:
-  /// `slot` 0 .. 3. The device has its own oscillator and its own moment of switching on. The PalmAcq's clock
-  /// shows `utc_s` at time 0.
+  /// `slot` from 0 on. The device has its own oscillator and its own moment of switching on. The PalmAcq's
+  /// clock shows `utc_s` at time 0.
   ObsdaqInstrument(World& world, int slot, double utc_s);
 
   void receive(std::string_view bytes, double now_s) override;

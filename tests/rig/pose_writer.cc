@@ -14,26 +14,47 @@ namespace {
 
 using Buffer = fmt::memory_buffer;
 
-std::set<std::string> covariates(const PoseTable& table) {
+std::set<std::string> covariates(const Survey& survey) {
   std::set<std::string> out;
-  for (const Pose& pose : table.poses)
-    for (const auto& [name, value] : pose.covariates) out.insert(name);
+  for (const SurveyRow& row : survey.rows)
+    for (const auto& [name, value] : row.covariates) out.insert(name);
   return out;
 }
 
-bool remounted(const PoseTable& table) {
-  return !table.poses.empty() && table.poses.front().mount.has_value();
-}
+/// Which columns there are.
+struct Columns {
+  explicit Columns(const Survey& survey)
+      : sensors(survey.sensors),
+        dwells(survey.dwells),
+        turned(survey.turned),
+        angles(survey.angles),
+        scalar(survey.scalar),
+        reference(!survey.rows.empty() && survey.rows.front().ref_nT.has_value()),
+        mount(!survey.rows.empty() && survey.rows.front().mount.has_value()),
+        names(covariates(survey)) {}
+  std::size_t sensors;
+  bool dwells, turned, angles, scalar, reference, mount;
+  std::set<std::string> names;
+};
 
-void header(Buffer& out, const PoseTable& table) {
+void header(Buffer& out, const Columns& columns) {
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "pose,set,t_s,azimuth_deg,pitch_deg,roll_deg,f_nT,f_sd_nT,n,n_eff");
-  for (int i = 1; i <= kSensors; ++i) fmt::format_to(to, ",s{0}_x_nT,s{0}_y_nT,s{0}_z_nT", i);
-  for (int i = 1; i <= kSensors; ++i) fmt::format_to(to, ",s{0}_sd_x_nT,s{0}_sd_y_nT,s{0}_sd_z_nT", i);
-  for (int i = 1; i <= kSensors; ++i) fmt::format_to(to, ",s{}_T_degC", i);
-  fmt::format_to(to, ",sense,dwell_s,since_stop_s");
-  if (remounted(table)) fmt::format_to(to, ",mount");
-  for (const std::string& name : covariates(table)) fmt::format_to(to, ",{}", name);
+  fmt::format_to(to, "pose{},t_s", columns.dwells ? ",set" : "");
+  if (columns.angles) fmt::format_to(to, ",azimuth_deg,pitch_deg,roll_deg");
+  if (columns.scalar) fmt::format_to(to, ",f_nT{}", columns.dwells ? ",f_sd_nT" : "");
+  if (columns.dwells) fmt::format_to(to, ",n,n_eff");
+  if (columns.reference) fmt::format_to(to, ",ref_x_nT,ref_y_nT,ref_z_nT,ref_sd_nT");
+  for (std::size_t i = 1; i <= columns.sensors; ++i) fmt::format_to(to, ",s{0}_x_nT,s{0}_y_nT,s{0}_z_nT", i);
+  if (columns.dwells) {
+    for (std::size_t i = 1; i <= columns.sensors; ++i)
+      fmt::format_to(to, ",s{0}_sd_x_nT,s{0}_sd_y_nT,s{0}_sd_z_nT", i);
+    for (std::size_t i = 1; i <= columns.sensors; ++i) fmt::format_to(to, ",s{}_T_degC", i);
+  }
+  if (columns.turned) fmt::format_to(to, ",sense");
+  if (columns.dwells) fmt::format_to(to, ",dwell_s");
+  if (columns.turned) fmt::format_to(to, ",since_stop_s");
+  if (columns.mount) fmt::format_to(to, ",mount");
+  for (const std::string& name : columns.names) fmt::format_to(to, ",{}", name);
   out.push_back('\n');
 }
 
@@ -44,38 +65,54 @@ void cell(Buffer& out, const std::optional<Number>& value, int decimals, double 
     fmt::format_to(std::back_inserter(out), "{:.{}f}", static_cast<double>(*value) * factor, decimals);
 }
 
-void row(Buffer& out, const Pose& pose, const std::set<std::string>& names, bool with_mount) {
-  fmt::format_to(std::back_inserter(out), "{},{}", pose.number, pose.set);
-  cell(out, pose.t_s, 3);
-  for (const auto& angle : {pose.azimuth_rad, pose.pitch_rad, pose.roll_rad}) cell(out, angle, 6, 1 / kDeg);
-  cell(out, pose.f_nT, 4);
-  cell(out, pose.f_sd_nT, 4);
-  cell(out, pose.n, 0);
-  cell(out, pose.n_eff, 1);
-  for (const auto& y : pose.y_nT)
+void readings(Buffer& out, const SurveyRow& row, const Columns& columns) {
+  for (const auto& y : row.y_nT)
     for (int a = 0; a < 3; ++a) cell(out, std::optional(y[a]), 5);
-  for (const auto& sensor : pose.sd_nT)
+  if (!columns.dwells) return;
+  for (const auto& sensor : row.sd_nT)
     for (const auto& sd : sensor) cell(out, sd, 5);
-  for (const auto& T : pose.T_degC) cell(out, T, 4);
-  cell(out, pose.sense, 0);
-  cell(out, pose.dwell_s, 1);
-  cell(out, pose.since_stop_s, 3);
-  if (with_mount) cell(out, pose.mount, 0);
-  for (const std::string& name : names) {
-    const auto found = pose.covariates.find(name);
-    cell(out, found == pose.covariates.end() ? std::optional<double>() : found->second, 5);
+  for (const auto& T : row.T_degC) cell(out, T, 4);
+}
+
+void write(Buffer& out, const SurveyRow& row, const Columns& columns) {
+  fmt::format_to(std::back_inserter(out), "{}", row.number);
+  if (columns.dwells) fmt::format_to(std::back_inserter(out), ",{}", row.set);
+  cell(out, row.t_s, columns.dwells ? 3 : 6);
+  if (columns.angles) {
+    for (const auto& angle : {row.azimuth_rad, row.pitch_rad, row.roll_rad}) cell(out, angle, 6, 1 / kDeg);
+  }
+  if (columns.scalar) cell(out, row.f_nT, 4);
+  if (columns.scalar && columns.dwells) cell(out, row.f_sd_nT, 4);
+  if (columns.dwells) {
+    cell(out, row.n, 0);
+    cell(out, row.n_eff, 1);
+  }
+  if (columns.reference) {
+    for (int a = 0; a < 3; ++a) cell(out, row.ref_nT ? std::optional((*row.ref_nT)[a]) : std::nullopt, 5);
+    cell(out, row.ref_sd_nT, 4);
+  }
+  readings(out, row, columns);
+  if (columns.turned) cell(out, row.sense, 0);
+  if (columns.dwells) cell(out, row.dwell_s, 1);
+  if (columns.turned) cell(out, row.since_stop_s, 3);
+  if (columns.mount) cell(out, row.mount, 0);
+  for (const std::string& name : columns.names) {
+    const auto found = row.covariates.find(name);
+    cell(out, found == row.covariates.end() ? std::optional<double>() : found->second, 5);
   }
   out.push_back('\n');
 }
 
 }  // namespace
 
-std::string pose_table_csv(const PoseTable& table) {
+std::string pose_table_csv(const Survey& survey) {
   Buffer out;
-  header(out, table);
-  const auto names = covariates(table);
-  for (const Pose& pose : table.poses) row(out, pose, names, remounted(table));
+  const Columns columns(survey);
+  header(out, columns);
+  for (const SurveyRow& row : survey.rows) write(out, row, columns);
   return fmt::to_string(out);
 }
+
+std::string pose_table_csv(const PoseTable& table) { return pose_table_csv(survey_of(table)); }
 
 }  // namespace mgtd::rig

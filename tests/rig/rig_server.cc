@@ -181,7 +181,10 @@ std::string Server::reply_to(const std::string& line) {
   if (line == "status") return status();
   if (line == "field") return field();
   if (rig_.mount(line, now_s()) || magnet(line)) return "ok";
-  const auto fault = parse_fault(line);
+  if (line.starts_with("magnet "))
+    return fmt::format("this array has the sensors 1 to {}, and 0 puts the magnet away",
+                       rig_.world().sensors());
+  const auto fault = parse_fault(line, rig_.world().sensors());
   if (!fault) return fault.error();
   const auto applied = rig_.apply(*fault, now_s());
   return applied ? "ok" : applied.error();
@@ -192,7 +195,8 @@ bool Server::magnet(const std::string& line) {
   std::istringstream in(line);
   std::string word;
   int arm = -1;
-  if (!(in >> word >> arm) || word != "magnet" || arm < 0 || arm > 4) return false;
+  if (!(in >> word >> arm) || word != "magnet" || arm < 0 || arm > static_cast<int>(rig_.world().sensors()))
+    return false;
   rig_.world().hold_magnet(arm);
   return true;
 }

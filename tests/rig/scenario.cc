@@ -8,11 +8,13 @@
 #include <cmath>
 #include <set>
 
+#include "tests/rig/array_section.h"
 #include "tests/rig/disturbance_section.h"
 #include "tests/rig/effect_list.h"
 #include "tests/rig/effects/site_record.h"
 #include "tests/rig/effects/temperature_law.h"
 #include "tests/rig/fault.h"
+#include "tests/rig/known_field_section.h"
 #include "tests/rig/noise_section.h"
 #include "tests/rig/rotations.h"
 #include "tests/rig/section.h"
@@ -36,15 +38,16 @@ class Reader {
   [[nodiscard]] std::vector<Mistake> mistakes() &&;
 
  private:
-  Section section(std::string_view name) { return {root_.get(name), std::string(name), mistakes_}; }
+  Section section(std::string_view name) { return {root_.get(name), std::string(name), mistakes_, sensors_}; }
   void refuse_unknown_sections();
+  void read_array(Scenario& s);
   void read_rig(Scenario& s);
   void read_sensor(std::size_t i, SensorTruth& truth);
   void read_site(Scenario& s);
   void read_record(Section& site, Scenario& s);
   void read_temperature(Scenario& s);
   void read_sensors(Scenario& s);
-  static void read_order(Section& sensors, const char* key, std::array<int, 4>& order);
+  static void read_order(Section& sensors, const char* key, std::vector<int>& order);
   void read_table(Scenario& s);
   void read_scalar(Scenario& s);
   void read_covariates(Scenario& s);
@@ -55,18 +58,27 @@ class Reader {
 
   const toml::table& root_;
   std::vector<Mistake> mistakes_;
+  std::size_t sensors_{kCross};
 };
 
 void Reader::refuse_unknown_sections() {
-  static const std::set<std::string_view> kSections{
-      "rig",   "site",   "temperature", "sensors", "s1",    "s2",      "s3",     "s4",   "visit",
-      "table", "scalar", "covariate",   "effect",  "fault", "vehicle", "magnet", "gross"};
+  std::set<std::string> sections{"rig",       "site",   "temperature", "sensors", "array",     "visit",
+                                 "table",     "scalar", "reference",   "cage",    "recording", "effect",
+                                 "covariate", "fault",  "vehicle",     "magnet",  "gross"};
+  for (std::size_t i = 1; i <= sensors_; ++i) sections.insert(fmt::format("s{}", i));
   for (const auto& [key, node] : root_) {
-    if (!kSections.contains(key.str())) {
+    if (!sections.contains(std::string(key.str()))) {
       mistakes_.push_back({node.source().begin.line, fmt::format("unknown section '{}'; there are: {}",
-                                                                 key.str(), fmt::join(kSections, ", "))});
+                                                                 key.str(), fmt::join(sections, ", "))});
     }
   }
+}
+
+void Reader::read_array(Scenario& s) {
+  Section array = section("array");
+  s.positions_m = read_positions(array);
+  if (!s.is_cross()) sensors_ = s.positions_m.size();
+  array.refuse_rest();
 }
 
 void Reader::read_rig(Scenario& s) {
@@ -75,8 +87,16 @@ void Reader::read_rig(Scenario& s) {
   rig.read("parameters", s.rig);
   rig.read("seed", s.seed);
   rig.read("baseline_m", s.baseline_m, {0.01, 100});
-  if (const auto truth = rig_named(s.rig, s.seed)) {
+  if (!s.is_cross() && rig.has("baseline_m"))
+    rig.complain("baseline_m",
+                 "baseline_m is of the cross; here [array] positions_m says where the sensors are");
+  s.truth = RigTruth(sensors_);
+  if (const auto truth = rig_named(s.rig, s.seed, sensors_)) {
     s.truth = *truth;
+  } else if (of_the_cross(s.rig)) {
+    rig.complain("parameters",
+                 fmt::format("parameters = '{}' are of four sensors, the array has {}; say ideal or random",
+                             s.rig, sensors_));
   } else {
     rig.complain("parameters",
                  fmt::format("parameters = '{}' must be table3, table6, ideal or random", s.rig));
@@ -146,7 +166,8 @@ void Reader::read_temperature(Scenario& s) {
   } else if (!law.empty()) {
     temperature.complain("law", fmt::format("law = '{}' must be calib1520", law));
   }
-  if (script.pulse_head > 4) temperature.complain("pulse_head", "pulse_head must be 1 .. 4, or 0 for all");
+  if (script.pulse_head > sensors_)
+    temperature.complain("pulse_head", fmt::format("pulse_head must be 1 .. {}, or 0 for all", sensors_));
   temperature.refuse_rest();
 }
 
@@ -157,7 +178,8 @@ void Reader::read_sensors(Scenario& s) {
   read_order(sensors, "plugs", s.plugs);
   sensors.read("tells_serial", s.tells_serial);
   sensors.read("copied", s.copied);
-  if (s.copied > 4) sensors.complain("copied", "copied must be 1 .. 4, or 0 for none");
+  if (s.copied > sensors_)
+    sensors.complain("copied", fmt::format("copied must be 1 .. {}, or 0 for none", sensors_));
   sensors.read("apart", s.apart);
   sensors.read("rate_hz", s.rate_hz, {1, 1000});
   sensors.read("range_V", s.range_V);
@@ -181,13 +203,14 @@ void Reader::read_sensors(Scenario& s) {
   sensors.refuse_rest();
 }
 
-void Reader::read_order(Section& sensors, const char* key, std::array<int, 4>& order) {
-  std::array<double, 4> read{1, 2, 3, 4};
+void Reader::read_order(Section& sensors, const char* key, std::vector<int>& order) {
+  std::vector<double> all, read;
+  for (std::size_t i = 1; i <= sensors.sensors(); ++i) all.push_back(static_cast<double>(i));
+  read = all;
   sensors.read(key, read);
-  std::set<double> seen(read.begin(), read.end());
-  if (seen != std::set<double>{1, 2, 3, 4})
-    sensors.complain(key, fmt::format("{} must be 1 to 4 in some order", key));
-  std::transform(read.begin(), read.end(), order.begin(), [](double w) { return static_cast<int>(w); });
+  if (std::set<double>(read.begin(), read.end()) != std::set<double>(all.begin(), all.end()))
+    sensors.complain(key, fmt::format("{} must be 1 to {} in some order", key, all.size()));
+  for (const double w : read) order.push_back(static_cast<int>(w));
 }
 
 void Reader::read_table(Scenario& s) {
@@ -222,7 +245,7 @@ void Reader::for_each(std::string_view name, Body body) {
     return;
   }
   for (const toml::node& item : *node->as_array()) {
-    Section section(&item, std::string(name), mistakes_);
+    Section section(&item, std::string(name), mistakes_, sensors_);
     body(section);
     section.refuse_rest();
   }
@@ -237,15 +260,19 @@ void read_input(Section& section, Covariate& c) {
   section.read("per_V", input.per_V);
   section.read("at_0V", input.at_0V);
   if (of.empty()) return;
-  const bool known = of.size() == 4 && of[0] == 's' && of[1] >= '1' && of[1] <= '4' && of[2] == '.' &&
-                     (of[3] == 'q' || of[3] == 'r');
-  if (!known)
+  const auto dot = of.find('.');
+  const std::string letter = dot == std::string::npos ? "" : of.substr(dot + 1);
+  const auto sensor = Where::parse(of.substr(0, dot), section.sensors());
+  const bool known = sensor && of[0] == 's' && (letter == "q" || letter == "r");
+  if (!known) {
     section.complain("input",
-                     fmt::format("input = '{}': s1.q, s1.r .. s4.q, s4.r; the thermometer is on p", of));
+                     fmt::format("input = '{0}': s1.q, s1.r .. s{1}.q, s{1}.r; the thermometer is on p", of,
+                                 section.sensors()));
+  }
   if (input.per_V == 0) section.complain("per_V", "per_V must not be 0");
   if (!known || input.per_V == 0) return;
-  input.slot = of[1] - '1';
-  input.letter = of[3];
+  while (!sensor->covers_sensor(input.slot)) ++input.slot;
+  input.letter = letter[0];
   c.input = std::move(input);
 }
 
@@ -286,7 +313,8 @@ void Reader::read_faults(Scenario& s) {
     TimedFault timed;
     section.read("at_s", timed.at_s, {0, 1e9});
     section.read("do", timed.text);
-    if (const auto parsed = parse_fault(timed.text); !parsed) section.complain("do", parsed.error());
+    if (const auto parsed = parse_fault(timed.text, sensors_); !parsed)
+      section.complain("do", parsed.error());
     s.faults.push_back(std::move(timed));
   });
   std::stable_sort(s.faults.begin(), s.faults.end(),
@@ -295,6 +323,7 @@ void Reader::read_faults(Scenario& s) {
 
 Scenario Reader::read() {
   Scenario scenario;
+  read_array(scenario);
   refuse_unknown_sections();
   read_rig(scenario);
   read_site(scenario);
@@ -305,12 +334,14 @@ Scenario Reader::read() {
   visit.refuse_rest();
   read_table(scenario);
   read_scalar(scenario);
+  Section cage = section("cage"), reference = section("reference"), recording = section("recording");
+  read_known_field(cage, reference, recording, scenario);
   read_covariates(scenario);
   read_effects(scenario);
   read_faults(scenario);
   for_each("vehicle", [&](Section& section) { scenario.vehicles.push_back(read_vehicle(section)); });
   for_each("magnet",
-           [&](Section& section) { scenario.magnets.push_back(read_magnet(section, scenario.baseline_m)); });
+           [&](Section& section) { scenario.magnets.push_back(read_magnet(section, scenario.reach_m())); });
   for_each("gross", [&](Section& section) { scenario.gross.push_back(read_gross(section)); });
   return scenario;
 }
@@ -322,6 +353,20 @@ std::vector<Mistake> Reader::mistakes() && {
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> Scenario::places_m() const {
+  if (!is_cross()) return positions_m;
+  const double h = baseline_m / 2;
+  return {{h, 0, 0}, {0, h, 0}, {-h, 0, 0}, {0, -h, 0}};
+}
+
+double Scenario::reach_m() const {
+  constexpr double kLeast_m = 0.1;
+  if (is_cross()) return baseline_m;
+  double out = kLeast_m;
+  for (const Eigen::Vector3d& x_m : positions_m) out = std::max(out, 2 * x_m.norm());
+  return out;
+}
 
 Eigen::Vector3d Scenario::field_direction() const {
   const double inclination = inclination_deg * kDeg, declination = declination_deg * kDeg;

@@ -65,7 +65,7 @@ Scenario with_hidden(Scenario scenario, int effects, std::mt19937_64& random) {
   if (scenario.temperature.ramp_degC_per_h == 0) {
     scenario.temperature.start_degC = 18.5;
     scenario.temperature.ramp_degC_per_h = 5;
-    scenario.temperature.head_degC = {0.0, 0.4, -0.3, 0.2};
+    scenario.temperature.head_degC = {0.0, 0.4, -0.3, 0.2};  // any further one: none
   }
   scenario.covariates.push_back({.name = "motor_A", .mean = 1, .amplitude = 1, .pattern = random() % 1000});
   scenario.covariates.push_back(
@@ -79,7 +79,8 @@ Scenario with_hidden(Scenario scenario, int effects, std::mt19937_64& random) {
   for (int k = 0; k < effects && k < static_cast<int>(kinds.size()); ++k) {
     const EffectKind& kind = *kinds[static_cast<std::size_t>(k)];
     const std::string of = kind.unnamed ? "battery_V" : "motor_A";
-    const auto effect = effect_of(random_effect(kind, std::exp(log_size(random)), random, of));
+    const auto effect = effect_of(
+        random_effect(kind, std::exp(log_size(random)), random, of, scenario.sensors()), scenario.sensors());
     if (effect) scenario.effects.push_back(*effect);
   }
   return scenario;

@@ -7,8 +7,9 @@
 
 namespace mgtd::rig {
 
-Section::Section(const toml::node* node, std::string name, std::vector<Mistake>& mistakes)
-    : node_(node), name_(std::move(name)), mistakes_(mistakes) {
+Section::Section(const toml::node* node, std::string name, std::vector<Mistake>& mistakes,
+                 std::size_t sensors)
+    : node_(node), name_(std::move(name)), mistakes_(mistakes), sensors_(sensors) {
   if (node_ == nullptr) return;
   table_ = node_->as_table();
   if (table_ == nullptr) complain("", "must be a table of keys");
@@ -75,6 +76,34 @@ void Section::read_list(std::string_view key, double* value, std::size_t n) {
   if (!good) complain(key, fmt::format("{} must be a list of {} numbers", key, n));
 }
 
+void Section::read(std::string_view key, std::vector<double>& value) {
+  if (find(key) == nullptr) return;
+  value.resize(sensors_);
+  read_list(key, value.data(), sensors_);
+}
+
+bool Section::read_places(std::string_view key, std::vector<Eigen::Vector3d>& value) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return false;
+  const toml::array* const list = node->as_array();
+  bool good = list != nullptr;
+  std::vector<Eigen::Vector3d> read;
+  for (std::size_t i = 0; good && i < list->size(); ++i) {
+    const toml::array* const place = list->get(i)->as_array();
+    good = place != nullptr && place->size() == 3;
+    Eigen::Vector3d x(0, 0, 0);
+    for (std::size_t a = 0; good && a < 3; ++a) {
+      const toml::node& item = *place->get(a);
+      good = item.is_number() && std::isfinite(*item.value<double>());
+      if (good) x[static_cast<Eigen::Index>(a)] = *item.value<double>();
+    }
+    if (good) read.push_back(x);
+  }
+  if (!good) complain(key, fmt::format("{} must be a list of places, each [x, y, z]", key));
+  if (good) value = std::move(read);
+  return good;
+}
+
 std::vector<double> Section::numbers(std::string_view key, std::size_t count, double fallback) {
   std::vector<double> out(count, std::isnan(fallback) ? 0 : fallback);
   if (std::isnan(fallback)) need(key);
@@ -89,8 +118,10 @@ std::vector<double> Section::numbers(std::string_view key, std::size_t count, do
 Where Section::where(std::string_view key) {
   std::string text = "all";
   read(key, text);
-  const auto where = Where::parse(text);
-  if (!where) complain(key, fmt::format("{} = '{}' must be all, s1 .. s4 or s1.x .. s4.z", key, text));
+  const auto where = Where::parse(text, sensors_);
+  if (!where) {
+    complain(key, fmt::format("{0} = '{1}' must be all, s1 .. s{2} or s1.x .. s{2}.z", key, text, sensors_));
+  }
   return where.value_or(Where{});
 }
 

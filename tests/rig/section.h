@@ -28,8 +28,15 @@ struct Limits {
 
 class Section {
  public:
-  /// `node` null: the section is not there and every key keeps its value.
-  Section(const toml::node* node, std::string name, std::vector<Mistake>& mistakes);
+  /// `node` null: the section is not there and every key keeps its value. `sensors`: of the array.
+  Section(const toml::node* node, std::string name, std::vector<Mistake>& mistakes,
+          std::size_t sensors = kCross);
+
+  [[nodiscard]] std::size_t sensors() const { return sensors_; }
+  [[nodiscard]] bool is_there() const { return node_ != nullptr; }
+  [[nodiscard]] bool has(std::string_view key) const {
+    return table_ != nullptr && table_->get(key) != nullptr;
+  }
 
   /// An absent key leaves the value as it is.
   void read(std::string_view key, std::string& value);
@@ -40,6 +47,11 @@ class Section {
   void read(std::string_view key, std::array<double, N>& value) {
     read_list(key, value.data(), N);
   }
+
+  /// A list with one number for each sensor.
+  void read(std::string_view key, std::vector<double>& value);
+  /// A list of places: lists of three numbers each. False: absent, or a mistake was noted.
+  [[nodiscard]] bool read_places(std::string_view key, std::vector<Eigen::Vector3d>& value);
 
   /// A number or a list of `count`; absent: as many fallbacks, or a mistake when the fallback is NaN.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, double fallback);
@@ -61,6 +73,7 @@ class Section {
   const toml::table* table_{nullptr};
   std::string name_;
   std::vector<Mistake>& mistakes_;
+  std::size_t sensors_;
   std::set<std::string> asked_;
   bool accept_rest_{false};
 };

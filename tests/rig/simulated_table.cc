@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 #include <utility>
 
 #include "tests/rig/rotations.h"
 #include "tests/rig/world.h"
+#include "tests/rig/wrong_rows.h"
 
 namespace mgtd::rig {
 namespace {
@@ -23,61 +22,29 @@ constexpr std::array<Node, 5> kNodes{{{0.04691007703066800, 0.11846344252809454}
                                       {0.95308992296933200, 0.11846344252809454}}};
 constexpr double kOvershoot_deg = 10;
 constexpr double kScalarResolution_nT = 1e-3;
-constexpr double kPathStep_s = 0.25;  ///< of the recorded path
+constexpr double kScalarLeast_nT = 20'000;  ///< a scalar magnetometer shows nothing below
+constexpr double kPathStep_s = 0.25;        ///< of the recorded path
 
-/// Sensors 2 to 4 get the rows of other poses, each in an order of its own.
-void turn_apart(PoseTable& table, std::uint64_t seed) {
-  for (std::size_t i = 1; i < 4; ++i) {
-    std::mt19937_64 random = noise_stream(seed, static_cast<std::uint32_t>(32 + i));
-    std::vector<std::size_t> order(table.poses.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::shuffle(order.begin(), order.end(), random);
-    const std::vector<Pose> from = table.poses;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      table.poses[k].y_nT.at(i) = from[order[k]].y_nT.at(i);
-      table.poses[k].sd_nT.at(i) = from[order[k]].sd_nT.at(i);
-      table.poses[k].T_degC.at(i) = from[order[k]].T_degC.at(i);
-    }
-  }
-}
-
-void spoil(PoseTable& table, const GrossReading& gross, const Scenario& scenario) {
-  const double rail_nT = 1000 * scenario.uT_full_scale;
-  for (std::size_t k = gross.pose - 1; k < std::min(table.poses.size(), gross.pose - 1 + gross.poses); ++k) {
-    for (AxisContext c; c.sensor < 4; ++c.sensor) {
-      for (c.axis = 0; c.axis < 3; ++c.axis) {
-        if (!gross.where.covers(c)) continue;
-        const auto i = static_cast<std::size_t>(c.sensor);
-        double& y_nT = table.poses[k].y_nT.at(i)[c.axis];
-        auto& sd_nT = table.poses[k].sd_nT.at(i).at(static_cast<std::size_t>(c.axis));
-        if (gross.kind == Gross::off) y_nT += gross.nT;
-        if (gross.kind == Gross::stuck && k > 0) y_nT = table.poses[k - 1].y_nT.at(i)[c.axis];
-        if (gross.kind == Gross::saturated) y_nT = y_nT < 0 ? -rail_nT : rail_nT;
-        if (gross.kind != Gross::off && sd_nT) sd_nT = 0;
-      }
-    }
-  }
-}
-
-void round_means(PoseTable& table, double step_nT) {
-  for (Pose& pose : table.poses)
-    for (Eigen::Vector3d& y_nT : pose.y_nT) y_nT = step_nT * (y_nT / step_nT).array().round().matrix();
+void round_means(Survey& survey, double step_nT) {
+  for (SurveyRow& row : survey.rows)
+    for (Eigen::Vector3d& y_nT : row.y_nT) y_nT = step_nT * (y_nT / step_nT).array().round().matrix();
 }
 
 class Surveyor {
  public:
   Surveyor(Scenario scenario, const Design& design, Sampling sampling)
       : world_(std::move(scenario)), design_(design), sampling_(sampling) {}
-  [[nodiscard]] PoseTable survey();
+  [[nodiscard]] Survey survey();
 
  private:
   void go(const PlannedPose& pose);
   void move_to(const std::array<double, 3>& target_deg);
   void record_path(double until_s);
-  void measure(const PlannedPose& planned, Pose& pose);
-  void by_means(int i, const PlannedPose& planned, int n, Pose& pose);
-  void by_samples(int i, int n, Pose& pose);
-  void scalar(const PlannedPose& planned, Pose& pose);
+  void measure(const PlannedPose& planned, SurveyRow& pose);
+  void by_means(int i, const PlannedPose& planned, int n, SurveyRow& pose);
+  void by_samples(int i, int n, SurveyRow& pose);
+  void scalar(const PlannedPose& planned, SurveyRow& pose);
+  void reference(const PlannedPose& planned, SurveyRow& pose);
   [[nodiscard]] TableAngles recorded_angles(double t_s) const;
   [[nodiscard]] const Scenario& scenario() const { return world_.scenario(); }
 
@@ -113,6 +80,11 @@ void Surveyor::move_to(const std::array<double, 3>& target_deg) {
 
 void Surveyor::go(const PlannedPose& pose) {
   now_s_ += pose.pause_s;
+  if (pose.cage_nT) {
+    world_.set_cage(*pose.cage_nT, now_s_);
+    now_s_ += design_.settle_s;
+    return;
+  }
   const auto mount = static_cast<std::size_t>(pose.mount - 1);
   if (mount != std::exchange(mount_, mount)) world_.remount(design_.mounts.at(mount), now_s_);
   const double here_deg = world_.axis(azimuth).indicated_deg(now_s_);
@@ -126,7 +98,7 @@ void Surveyor::go(const PlannedPose& pose) {
   now_s_ += design_.settle_s;
 }
 
-void Surveyor::by_means(int i, const PlannedPose& planned, int n, Pose& pose) {
+void Surveyor::by_means(int i, const PlannedPose& planned, int n, SurveyRow& pose) {
   const auto s = static_cast<std::size_t>(i);
   const double length_s = planned.dwell_s;
   Eigen::Vector3d mean(0, 0, 0), spread(0, 0, 0);
@@ -147,7 +119,7 @@ void Surveyor::by_means(int i, const PlannedPose& planned, int n, Pose& pose) {
   }
 }
 
-void Surveyor::by_samples(int i, int n, Pose& pose) {
+void Surveyor::by_samples(int i, int n, SurveyRow& pose) {
   const auto s = static_cast<std::size_t>(i);
   Eigen::Vector3d sum(0, 0, 0), squares(0, 0, 0), first(0, 0, 0);
   for (int k = 0; k < n; ++k) {
@@ -164,21 +136,33 @@ void Surveyor::by_samples(int i, int n, Pose& pose) {
 }
 
 /// Its readings come once a period; their mean.
-void Surveyor::scalar(const PlannedPose& planned, Pose& pose) {
+void Surveyor::scalar(const PlannedPose& planned, SurveyRow& pose) {
   if (!scenario().scalar) return;
   const double readings = std::max(1.0, std::floor(planned.dwell_s / scenario().scalar_period_s));
   double mean = 0;
   for (const Node& node : kNodes)
     mean += node.weight * world_.quiet_scalar(now_s_ + node.at * planned.dwell_s);
   const double sd_nT = scenario().scalar_noise_nT / std::sqrt(readings);
+  if (planned.cage_nT && mean < kScalarLeast_nT) return;
   pose.f_nT = mean + sd_nT * world_.scalar_noise();
   pose.f_sd_nT = std::max(kScalarResolution_nT, sd_nT);
 }
 
-void Surveyor::measure(const PlannedPose& planned, Pose& pose) {
+/// Over the dwell as the others; its noise is that of the mean.
+void Surveyor::reference(const PlannedPose& planned, SurveyRow& pose) {
+  if (!scenario().reference) return;
+  Eigen::Vector3d mean(0, 0, 0);
+  for (const Node& node : kNodes)
+    mean += node.weight * world_.quiet_reference(now_s_ + node.at * planned.dwell_s);
+  const double sd_nT = scenario().reference->sd_nT;
+  pose.ref_nT = mean + sd_nT * world_.reference_noise();
+  pose.ref_sd_nT = std::max(kScalarResolution_nT, sd_nT);
+}
+
+void Surveyor::measure(const PlannedPose& planned, SurveyRow& pose) {
   const double middle_s = now_s_ + planned.dwell_s / 2;
   const int n = std::max(1, static_cast<int>(std::lround(planned.dwell_s * scenario().rate_hz)));
-  for (int i = 0; i < kSensors; ++i) {
+  for (int i = 0; i < static_cast<int>(world_.sensors()); ++i) {
     if (i > 0 && scenario().copied > 0) {
       pose.y_nT.at(static_cast<std::size_t>(i)) = pose.y_nT[0];
       pose.sd_nT.at(static_cast<std::size_t>(i)) = pose.sd_nT[0];
@@ -190,10 +174,13 @@ void Surveyor::measure(const PlannedPose& planned, Pose& pose) {
     pose.T_degC.at(static_cast<std::size_t>(i)) = world_.head_degC(i, middle_s);
   }
   scalar(planned, pose);
-  const TableAngles angles = recorded_angles(middle_s);
-  pose.azimuth_rad = angles.azimuth_rad;
-  pose.pitch_rad = angles.pitch_rad;
-  pose.roll_rad = angles.roll_rad;
+  reference(planned, pose);
+  if (scenario().angles) {
+    const TableAngles angles = recorded_angles(middle_s);
+    pose.azimuth_rad = angles.azimuth_rad;
+    pose.pitch_rad = angles.pitch_rad;
+    pose.roll_rad = angles.roll_rad;
+  }
   pose.t_s = middle_s;
   pose.n = n;
   const double rho = scenario().noise.ar1_rho;
@@ -201,7 +188,7 @@ void Surveyor::measure(const PlannedPose& planned, Pose& pose) {
     pose.n_eff = std::max(1.0, n * (1 - rho) / (1 + rho));
   if (const int sense = world_.axis(azimuth).sense(); sense != 0) pose.sense = sense;
   pose.dwell_s = planned.dwell_s;
-  pose.since_stop_s = design_.settle_s + planned.dwell_s / 2;
+  if (!planned.cage_nT) pose.since_stop_s = design_.settle_s + planned.dwell_s / 2;
   for (const Covariate& c : scenario().covariates) {
     double mean = 0;
     for (const Node& node : kNodes) mean += node.weight * c.at(now_s_ + node.at * planned.dwell_s);
@@ -209,19 +196,22 @@ void Surveyor::measure(const PlannedPose& planned, Pose& pose) {
   }
 }
 
-PoseTable Surveyor::survey() {
-  PoseTable out;
+Survey Surveyor::survey() {
+  Survey out{.sensors = world_.sensors(), .rows = {}};
+  out.turned = design_.poses.empty() || !design_.poses.front().cage_nT;
+  out.angles = scenario().angles;
+  out.scalar = scenario().scalar || !scenario().reference;
   const bool remounted = design_.mounts.size() > 1;
   world_.remount(design_.mounts.at(0), 0);
   for (const PlannedPose& planned : design_.poses) {
     go(planned);
-    Pose pose;
-    pose.number = static_cast<int>(out.poses.size()) + 1;
+    SurveyRow pose(world_.sensors());
+    pose.number = static_cast<int>(out.rows.size()) + 1;
     pose.set = planned.set;
     measure(planned, pose);
     if (remounted) pose.mount = planned.mount;
     now_s_ += planned.dwell_s;
-    out.poses.push_back(std::move(pose));
+    out.rows.push_back(std::move(pose));
   }
   if (scenario().apart) turn_apart(out, scenario().seed);
   for (const GrossReading& gross : scenario().gross) spoil(out, gross, scenario());
@@ -237,9 +227,13 @@ TableAngles recorded_angles_of(const Eigen::Matrix3d& R) {
           std::atan2(-R(2, 1), R(2, 2))};
 }
 
-PoseTable simulated_table(Scenario scenario, const Design& design, std::uint64_t seed, Sampling sampling) {
+Survey simulated_survey(Scenario scenario, const Design& design, std::uint64_t seed, Sampling sampling) {
   scenario.seed = seed;
   return Surveyor(std::move(scenario), design, sampling).survey();
+}
+
+PoseTable simulated_table(Scenario scenario, const Design& design, std::uint64_t seed, Sampling sampling) {
+  return pose_table_of(simulated_survey(std::move(scenario), design, seed, sampling));
 }
 
 }  // namespace mgtd::rig

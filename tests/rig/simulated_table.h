@@ -9,6 +9,7 @@
 
 #include "proto/pose.h"
 #include "tests/rig/scenario.h"
+#include "tests/rig/survey.h"
 
 /// This makes a run straight from the physics, without ports or daemon: the table goes its real way from pose
 /// to pose, and what the dwells would have given is written down. For the many runs of a benchmark:
@@ -25,6 +26,8 @@ struct PlannedPose {
   int sense{0};       ///< of the azimuth's approach: +1, -1; 0: the short way
   int mount{1};       ///< which of Design::mounts
   double pause_s{0};  ///< waited before the table sets off
+  /// The table stands still, and a cage makes this field, platform frame.
+  std::optional<Eigen::Vector3d> cage_nT{};
 };
 
 struct Design {
@@ -60,6 +63,9 @@ struct DesignOptions {
 [[nodiscard]] Design remounted_turns(const std::vector<Eigen::Matrix3d>& mounts, std::size_t azimuths,
                                      std::uint64_t seed);
 
+/// One field after the other; the array stands still.
+[[nodiscard]] Design cage_fields(const Cage& cage, std::uint64_t seed);
+
 enum class Sampling {
   means,   ///< physics at five instants of a dwell (Gauss and Legendre), noise of the mean from its
            ///< distribution
@@ -67,6 +73,9 @@ enum class Sampling {
 };
 
 /// `seed` replaces that of the scenario: noise, the table's errors and random effects, not the parameters.
+[[nodiscard]] Survey simulated_survey(Scenario scenario, const Design& design, std::uint64_t seed,
+                                      Sampling sampling = Sampling::means);
+/// The same of the cross, as the programs hold it.
 [[nodiscard]] PoseTable simulated_table(Scenario scenario, const Design& design, std::uint64_t seed,
                                         Sampling sampling = Sampling::means);
 

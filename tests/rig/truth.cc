@@ -16,10 +16,10 @@ SensorTruth sensor(double theta, double phi, double psi, double cx, double cy, d
   return {theta, phi, psi, {cx, cy, cz}, {ix, iy, iz}, alpha, beta, gamma, Eigen::Matrix3d::Identity()};
 }
 
-RigTruth random_rig(std::uint64_t seed) {
+RigTruth random_rig(std::uint64_t seed, std::size_t sensors) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
-  RigTruth rig;
+  RigTruth rig(sensors);
   for (SensorTruth& s : rig) {
     s = sensor(3 * unit(random), 3 * unit(random), 3 * unit(random), 1 + 0.05 * unit(random),
                1 + 0.05 * unit(random), 1 + 0.05 * unit(random), 400 * unit(random), 400 * unit(random),
@@ -39,9 +39,12 @@ Eigen::Matrix3d SensorTruth::matrix() const {
   return scale.asDiagonal() * axes * to_platform.transpose();
 }
 
-std::optional<RigTruth> rig_named(std::string_view name, std::uint64_t seed) {
-  if (name == "ideal") return RigTruth{};
-  if (name == "random") return random_rig(seed);
+bool of_the_cross(std::string_view name) { return name == "table3" || name == "table6"; }
+
+std::optional<RigTruth> rig_named(std::string_view name, std::uint64_t seed, std::size_t sensors) {
+  if (name == "ideal") return RigTruth(sensors);
+  if (name == "random") return random_rig(seed, sensors);
+  if (sensors != kCross) return std::nullopt;
   if (name == "table3") {
     return RigTruth{sensor(-1.9, 1.6, 2.3, 0.988, 1.105, 1.054, 234, 114, -218, 2.5, -2.2, 1.7),
                     sensor(1.8, 1.1, 3.2, 0.991, 1.152, 0.897, -312, 154, 98, -2.0, 1.7, 3.3),

@@ -7,8 +7,11 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-/// The truth is what the four sensors really are: the parameters of the paper's tables, in the units of those
+#include "tests/rig/effect.h"
+
+/// The truth is what the sensors really are: the parameters of the paper's tables, in the units of those
 /// tables.
 namespace mgtd::rig {
 
@@ -25,11 +28,16 @@ struct SensorTruth {
   [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
-using RigTruth = std::array<SensorTruth, 4>;
+using RigTruth = std::vector<SensorTruth>;
 
 /// "table3" (the paper's simulation), "table6" (its experiment, first site), "ideal", or "random" (drawn from
-/// the seed: scales within 5 %, angles within 3 degrees, offsets within 400 nT).
-[[nodiscard]] std::optional<RigTruth> rig_named(std::string_view name, std::uint64_t seed);
+/// the seed: scales within 5 %, angles within 3 degrees, offsets within 400 nT; one sensor after the other,
+/// so that the first four are the same in every array). The two tables are of four sensors: nothing for any
+/// other number.
+[[nodiscard]] std::optional<RigTruth> rig_named(std::string_view name, std::uint64_t seed,
+                                                std::size_t sensors = kCross);
+/// Whether these parameters exist for the cross only.
+[[nodiscard]] bool of_the_cross(std::string_view name);
 
 /// The twelve parameters under the names of the results: theta_deg .. psi_deg, cx .. cz, ix_nT .. iz_nT,
 /// alpha_deg .. gamma_deg.

@@ -64,9 +64,38 @@ nlohmann::json sensor_json(SensorTruth truth) {
   return out;
 }
 
-}  // namespace
+/// One for each sensor, whether or not the scenario has said so.
+template <class Value>
+std::vector<Value> whole(const std::vector<Value>& given, std::size_t sensors) {
+  std::vector<Value> out;
+  for (std::size_t i = 0; i < sensors; ++i) out.push_back(of_sensor(given, i));
+  return out;
+}
 
-nlohmann::json truth_json(const Scenario& s) {
+nlohmann::json place_json(const Eigen::Vector3d& x_m) { return {x_m[0], x_m[1], x_m[2]}; }
+
+/// What only some rigs have.
+void add_rest(const Scenario& s, nlohmann::json& out) {
+  if (!s.is_cross()) out["positions_m"] = list(s.positions_m, &place_json);
+  if (s.reference) {
+    out["reference"] = {{"sd_nT", s.reference->sd_nT},
+                        {"misalignment_deg", s.reference->misalignment_deg},
+                        {"frame", s.reference->on_platform ? "platform" : "site"}};
+  }
+  if (s.cage) {
+    out["cage"] = {{"fields", s.cage->sphere ? "sphere" : "random"},
+                   {"max_nT", s.cage->max_nT},
+                   {"poses", s.cage->poses}};
+  }
+  if (s.recording) {
+    out["recording"] = {{"motion", motion_name(s.recording->motion)},
+                        {"rate_hz", s.rate_hz},
+                        {"duration_s", s.recording->duration_s},
+                        {"rest_s", s.recording->rest_s}};
+  }
+}
+
+nlohmann::json of_every_rig(const Scenario& s) {
   return {{"schema", "mgt-rig.truth/1"},
           {"scenario", s.name},
           {"rig", s.rig},
@@ -80,9 +109,9 @@ nlohmann::json truth_json(const Scenario& s) {
             {"diurnal_nT", s.diurnal_nT}}},
           {"clocks",
            {{"oscillator_ppm", s.oscillator_ppm},
-            {"rate_error_percent", s.rate_error_percent},
-            {"delivery_s", s.delivery_s},
-            {"delivery_ppm", s.delivery_ppm}}},
+            {"rate_error_percent", whole(s.rate_error_percent, s.sensors())},
+            {"delivery_s", whole(s.delivery_s, s.sensors())},
+            {"delivery_ppm", whole(s.delivery_ppm, s.sensors())}}},
           {"noise_nT", s.noise.noise_nT},
           {"noise", name_of(s.noise.kind)},
           {"more_noise",
@@ -104,8 +133,8 @@ nlohmann::json truth_json(const Scenario& s) {
             {"cycle_nT", s.visit.cycle_nT},
             {"cycle_visits", s.visit.cycle_visits},
             {"cycle_where", s.visit.cycle_where.text()}}},
-          {"wiring", s.wiring},
-          {"plugs", s.plugs},
+          {"wiring", whole(s.wiring, s.sensors())},
+          {"plugs", whole(s.plugs, s.sensors())},
           {"tells_serial", s.tells_serial},
           {"copied", s.copied},
           {"apart", s.apart},
@@ -122,6 +151,14 @@ nlohmann::json truth_json(const Scenario& s) {
                             return nlohmann::json{{"at_s", f.at_s}, {"do", f.text}};
                           })},
           {"gross", list(s.gross, &gross_json)}};
+}
+
+}  // namespace
+
+nlohmann::json truth_json(const Scenario& s) {
+  nlohmann::json out = of_every_rig(s);
+  add_rest(s, out);
+  return out;
 }
 
 }  // namespace mgtd::rig

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "tests/rig/rotations.h"
 
@@ -13,6 +14,7 @@ namespace {
 /// Longest step of the path that an effect with memory is shown while the table moves.
 constexpr double kPathEvery_s = 0.05;
 constexpr double kTurned_deg = 90.7;
+constexpr double kCross_m = 0.2;  ///< arm of the cross that would measure any other array's gradient
 constexpr double kMagnet_Am2 = 1, kMagnetBeyond_m = 0.2;
 
 AxisMotion make_axis(const Scenario& s) {
@@ -27,17 +29,20 @@ World::World(Scenario scenario)
     : scenario_(std::move(scenario)),
       axes_{make_axis(scenario_), make_axis(scenario_), make_axis(scenario_)},
       scalar_random_(noise_stream(scenario_.seed, 4)),
-      table_random_(noise_stream(scenario_.seed, 5)) {
+      table_random_(noise_stream(scenario_.seed, 5)),
+      reference_random_(noise_stream(scenario_.seed, 6)) {
   for (const auto& effect : scenario_.effects) {
     effects_.push_back(effect->fresh());
     effects_.back()->begin(scenario_);
     if (effects_.back()->remembers()) remembering_.push_back(effects_.back().get());
   }
-  const double h = scenario_.baseline_m / 2;
-  position_m_ = {Eigen::Vector3d{h, 0, 0}, Eigen::Vector3d{0, h, 0}, Eigen::Vector3d{-h, 0, 0},
-                 Eigen::Vector3d{0, -h, 0}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    matrix_.at(i) = scenario_.truth.at(i).matrix();
+  position_m_ = scenario_.places_m();
+  if (position_m_.size() != scenario_.sensors())
+    throw std::invalid_argument("a scenario needs one place for each of its sensors");
+  moment_.b_nT.resize(sensors());
+  followed_s_.resize(sensors());
+  for (std::size_t i = 0; i < sensors(); ++i) {
+    matrix_.push_back(scenario_.truth[i].matrix());
     noise_.emplace_back(scenario_.noise, scenario_.visit, scenario_.seed, static_cast<std::uint32_t>(i));
   }
   direction_ = scenario_.field_direction();
@@ -51,6 +56,17 @@ void World::moved() {
 void World::remount(const Eigen::Matrix3d& table_to_platform, double now_s) {
   follow_all(now_s);
   mount_ = table_to_platform;
+  moved();
+}
+
+void World::carry(std::shared_ptr<const Motion> motion) {
+  motion_ = std::move(motion);
+  moved();
+}
+
+void World::set_cage(const Eigen::Vector3d& field_nT, double now_s) {
+  follow_all(now_s);
+  cage_nT_ = field_nT;
   moved();
 }
 
@@ -96,6 +112,7 @@ void World::set_runaway(bool runaway, double now_s) {
 }
 
 bool World::moving(double t_s) const {
+  if (motion_ != nullptr) return true;
   return std::any_of(axes_.begin(), axes_.end(), [&](const AxisMotion& axis) { return axis.moving(t_s); });
 }
 
@@ -103,8 +120,7 @@ double World::arrival_s() const {
   return std::max({axes_[azimuth].end_s(), axes_[pitch].end_s(), axes_[roll].end_s()});
 }
 
-const World::Moment& World::moment(double t_s) const {
-  if (moment_.known && moment_.t_s == t_s) return moment_;
+void World::turn(double t_s) const {
   TableContext table;
   for (std::size_t a = 0; a < 3; ++a) {
     table.angle_deg.at(a) = axes_.at(a).true_deg(t_s);
@@ -117,26 +133,47 @@ const World::Moment& World::moment(double t_s) const {
     for (std::size_t a = 0; a < 3; ++a) angle_deg.at(a) += error.angle_deg.at(a);
     tilt += kDeg * Eigen::Vector3d(error.tilt_x_deg, error.tilt_y_deg, 0);
   }
-  moment_.t_s = t_s;
-  moment_.known = true;
   moment_.azimuth_deg = angle_deg[azimuth];
   moment_.R = mount_ * about_z(angle_deg[azimuth]) * turned_by(tilt) * about_y(angle_deg[pitch]) *
               about_x(angle_deg[roll]);
-  for (std::size_t i = 0; i < 4; ++i)
-    moment_.b_nT.at(i) = moment_.R * site_field(t_s, moment_.R.transpose() * position_m_.at(i));
-  if (magnet_at_ > 0) {
-    const Eigen::Vector3d& arm_m = position_m_.at(at(magnet_at_ - 1));
-    const Eigen::Vector3d magnet_m = arm_m + kMagnetBeyond_m * arm_m.normalized();
-    for (std::size_t i = 0; i < 4; ++i)
-      moment_.b_nT.at(i) += dipole_nT(kMagnet_Am2 * Eigen::Vector3d::UnitZ(), position_m_.at(i) - magnet_m);
+}
+
+const World::Moment& World::moment(double t_s) const {
+  if (moment_.known && moment_.t_s == t_s) return moment_;
+  moment_.t_s = t_s;
+  moment_.known = true;
+  if (motion_ != nullptr) {
+    moment_.R = motion_->attitude(t_s);
+    moment_.azimuth_deg = std::atan2(-moment_.R(1, 0), moment_.R(0, 0)) / kDeg;
+  } else {
+    turn(t_s);
   }
+  for (std::size_t i = 0; i < sensors(); ++i) moment_.b_nT[i] = field_at(t_s, position_m_[i]);
   return moment_;
 }
 
+Eigen::Vector3d World::field_at(double t_s, const Eigen::Vector3d& r_m) const {
+  Eigen::Vector3d b_nT = moment_.R * site_field(t_s, moment_.R.transpose() * r_m);
+  if (magnet_at_ > 0) b_nT += hand_magnet_nT(r_m);
+  return b_nT;
+}
+
+Eigen::Vector3d World::hand_magnet_nT(const Eigen::Vector3d& r_m) const {
+  const Eigen::Vector3d& arm_m = position_m_.at(at(magnet_at_ - 1));
+  const Eigen::Vector3d out = arm_m.norm() > 0 ? arm_m.normalized() : Eigen::Vector3d::UnitX();
+  return dipole_nT(kMagnet_Am2 * Eigen::Vector3d::UnitZ(), r_m - (arm_m + kMagnetBeyond_m * out));
+}
+
 std::array<double, 6> World::true_gradient_nT_per_m(double t_s) const {
-  const auto& b_nT = moment(t_s).b_nT;
-  const Eigen::Vector3d along_x = (b_nT[0] - b_nT[2]) / (position_m_[0] - position_m_[2]).norm();
-  const Eigen::Vector3d along_y = (b_nT[1] - b_nT[3]) / (position_m_[1] - position_m_[3]).norm();
+  std::vector<Eigen::Vector3d> b_nT = moment(t_s).b_nT, r_m = position_m_;
+  if (!scenario_.is_cross()) {
+    r_m = {kCross_m * Eigen::Vector3d::UnitX(), kCross_m * Eigen::Vector3d::UnitY(),
+           -kCross_m * Eigen::Vector3d::UnitX(), -kCross_m * Eigen::Vector3d::UnitY()};
+    b_nT.clear();
+    for (const Eigen::Vector3d& r : r_m) b_nT.push_back(field_at(t_s, r));
+  }
+  const Eigen::Vector3d along_x = (b_nT[0] - b_nT[2]) / (r_m[0] - r_m[2]).norm();
+  const Eigen::Vector3d along_y = (b_nT[1] - b_nT[3]) / (r_m[1] - r_m[3]).norm();
   return {along_x[0], along_y[1], -along_x[0] - along_y[1], (along_x[1] + along_y[0]) / 2,
           along_x[2], along_y[2]};
 }
@@ -145,7 +182,7 @@ Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const 
   const double hours = t_s / 3600;
   const double day = std::sin(2 * std::numbers::pi * hours / scenario_.diurnal_period_h);
   const double f_nT = scenario_.f_nT + scenario_.field_drift_nT_per_h * hours + scenario_.diurnal_nT * day;
-  Eigen::Vector3d B = f_nT * direction_;
+  Eigen::Vector3d B = cage_nT_.value_or(f_nT * direction_);
   for (const auto& effect : effects_) B += effect->site_nT(t_s, x_m);
   for (const DroppedMagnet& magnet : scenario_.magnets) B += magnet.field_nT(t_s, x_m);
   return B + vehicles_nT(t_s, x_m);
@@ -188,10 +225,10 @@ void World::follow(int i, double t_s) {
 
 void World::follow_all(double t_s) {
   if (remembering_.empty()) return;
-  // In step, so that the four share what is above the sensors.
+  // In step, so that they share what is above the sensors.
   for (double t = *std::min_element(followed_s_.begin(), followed_s_.end()); t < t_s;) {
     t = moving(t) ? std::min(t_s, t + kPathEvery_s) : t_s;
-    for (int i = 0; i < 4; ++i) follow(i, t);
+    for (std::size_t i = 0; i < sensors(); ++i) follow(static_cast<int>(i), t);
   }
 }
 
@@ -213,7 +250,7 @@ Eigen::Vector3d World::read_sensor(int i, double t_s) {
 
 double World::temperature(int sensor, double t_s) const {
   const TemperatureScript& s = scenario_.temperature;
-  double out = s.start_degC + s.ramp_degC_per_h * t_s / 3600 + s.head_degC.at(at(sensor));
+  double out = s.start_degC + s.ramp_degC_per_h * t_s / 3600 + of_sensor(s.head_degC, at(sensor));
   const double since = (t_s - s.pulse_at_s) / s.pulse_tau_s;
   if (since > 0 && (s.pulse_head == 0 || s.pulse_head == at(sensor) + 1))
     out += s.pulse_degC * since * std::exp(1 - since);
@@ -227,6 +264,19 @@ double World::quiet_scalar(double t_s) const {
   const Eigen::Vector3d u = moment(t_s).R * B.normalized();
   double out = B.norm();
   for (const auto& effect : effects_) out += effect->reference_nT(u);
+  return out;
+}
+
+Eigen::Vector3d World::quiet_reference(double t_s) const {
+  const VectorReference reference = scenario_.reference.value_or(VectorReference{});
+  const Eigen::Vector3d B = site_field(t_s, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d seen = reference.on_platform ? Eigen::Vector3d(moment(t_s).R * B) : B;
+  return reference.R().transpose() * seen;
+}
+
+Eigen::Vector3d World::reference_noise() {
+  Eigen::Vector3d out;
+  for (double& component : out) component = reference_normal_(reference_random_);
   return out;
 }
 

@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "tests/rig/axis_motion.h"
+#include "tests/rig/motion.h"
 #include "tests/rig/noise.h"
 #include "tests/rig/scenario.h"
 
@@ -15,7 +17,8 @@
 ///
 ///   B(t, x)                                     site frame, x from the centre of the array
 ///   b_i = R B(t, R' r_i)                        R = M Rz(azimuth) Ry(pitch) Rx(roll), the angles as they
-///                                               truly are, M the mounting of the array on the table
+///                                               truly are, M the mounting of the array on the table;
+///                                               or a Motion
 ///   y_i = C A R_i' b_i + I_i + noise            SensorTruth; effects at their levels (effect.h)
 namespace mgtd::rig {
 
@@ -32,24 +35,29 @@ class World {
   void move(TableAxis which, double target_deg, double now_s);
   void halt(TableAxis which, double now_s);
   void set_jammed(bool jammed, double now_s);
-  /// Sensor i (0 .. 3) is turned by a quarter about the platform's z, and 0.7 deg more.
+  /// Sensor i (from 0 on) is turned by a quarter about the platform's z, and 0.7 deg more.
   void set_turned(int i, bool turned, double now_s);
   /// The azimuth turns by itself.
   void set_runaway(bool runaway, double now_s);
   [[nodiscard]] bool moving(double t_s) const;
   /// When the last of the axes stands.
   [[nodiscard]] double arrival_s() const;
-  /// A bar magnet of 1 A m2 in a hand, 0.2 m beyond the end of an arm (1 .. 4); 0: put away.
+  /// A bar magnet of 1 A m2 in a hand, 0.2 m beyond the end of the arm of a sensor (from 1 on); 0: put
+  /// away. A sensor at the centre has its arm along X.
   void hold_magnet(int arm) {
     magnet_at_ = arm;
     moment_.known = false;
   }
   /// What passing vehicles add at the centre of the array, site frame.
   [[nodiscard]] Eigen::Vector3d vehicles_nT(double t_s, const Eigen::Vector3d& x_m) const;
+  /// It is no table that carries the array from now on: R = Motion::attitude(t).
+  void carry(std::shared_ptr<const Motion> motion);
+  /// A cage makes this field in the place of the site's own; effects of the site remain.
+  void set_cage(const Eigen::Vector3d& field_nT, double now_s);
   /// Puts the array on the table in another way, the table standing.
   void remount(const Eigen::Matrix3d& table_to_platform, double now_s);
 
-  /// Noisy reading of connector i (0 .. 3) at time t, nT at nominal scale. Times of one sensor must not go
+  /// Noisy reading of connector i (from 0 on) at time t, nT at nominal scale. Times of one sensor must not go
   /// back.
   [[nodiscard]] Eigen::Vector3d read_sensor(int i, double t_s);
   /// The same without noise.
@@ -60,10 +68,15 @@ class World {
   [[nodiscard]] double read_scalar(double t_s);
   [[nodiscard]] double quiet_scalar(double t_s) const;
   [[nodiscard]] double scalar_noise() { return normal_(scalar_random_); }
-  /// What a perfect cross would say of the field right now, platform frame: xx, yy, zz, xy, xz, yz.
+  /// What the vector reference reads, in its own axes, without noise; and what its noise is drawn from.
+  [[nodiscard]] Eigen::Vector3d quiet_reference(double t_s) const;
+  [[nodiscard]] Eigen::Vector3d reference_noise();
+  /// What a perfect cross would say of the field right now, platform frame: xx, yy, zz, xy, xz, yz. Of any
+  /// other array: what a cross of 0.4 m at its centre would say.
   [[nodiscard]] std::array<double, 6> true_gradient_nT_per_m(double t_s) const;
   /// Site frame to platform frame, by the true angles.
   [[nodiscard]] Eigen::Matrix3d attitude(double t_s) const { return moment(t_s).R; }
+  [[nodiscard]] std::size_t sensors() const { return position_m_.size(); }
 
  private:
   /// Everything above the sensors at one time.
@@ -72,10 +85,15 @@ class World {
     bool known{false};
     double azimuth_deg{0};
     Eigen::Matrix3d R{Eigen::Matrix3d::Identity()};
-    std::array<Eigen::Vector3d, 4> b_nT{};
+    std::vector<Eigen::Vector3d> b_nT;
   };
 
   [[nodiscard]] const Moment& moment(double t_s) const;
+  /// Attitude and azimuth by the table's true angles and the effects on them.
+  void turn(double t_s) const;
+  /// The field at a place in the platform frame, and that of the magnet in a hand.
+  [[nodiscard]] Eigen::Vector3d field_at(double t_s, const Eigen::Vector3d& r_m) const;
+  [[nodiscard]] Eigen::Vector3d hand_magnet_nT(const Eigen::Vector3d& r_m) const;
   [[nodiscard]] Eigen::Vector3d site_field(double t_s, const Eigen::Vector3d& x_m) const;
   /// C A R' b of sensor i with the platform's effects, nothing added.
   [[nodiscard]] Eigen::Vector3d seen(int i, double t_s) const;
@@ -83,7 +101,7 @@ class World {
   [[nodiscard]] double temperature(int sensor, double t_s) const;
   [[nodiscard]] std::size_t sensor_at(int connector) const {
     if (scenario_.copied > 0) return scenario_.copied - 1;
-    return static_cast<std::size_t>(scenario_.wiring.at(static_cast<std::size_t>(connector)) - 1);
+    return static_cast<std::size_t>(of_sensor(scenario_.wiring, static_cast<std::size_t>(connector)) - 1);
   }
   /// Shows what sensor i saw on the way up to t to the effects that remember.
   void follow(int i, double t_s);
@@ -93,15 +111,17 @@ class World {
   Scenario scenario_;
   std::vector<std::unique_ptr<Effect>> effects_;
   std::vector<Effect*> remembering_;
-  std::array<double, 4> followed_s_{};
+  std::vector<double> followed_s_;
   std::array<AxisMotion, 3> axes_;
-  std::array<Eigen::Matrix3d, 4> matrix_;
-  std::array<Eigen::Vector3d, 4> position_m_;
+  std::vector<Eigen::Matrix3d> matrix_;
+  std::vector<Eigen::Vector3d> position_m_;
   Eigen::Vector3d direction_;
   Eigen::Matrix3d mount_{Eigen::Matrix3d::Identity()};
   std::vector<SensorNoise> noise_;
-  std::mt19937_64 scalar_random_, table_random_;
-  std::normal_distribution<double> normal_;
+  std::mt19937_64 scalar_random_, table_random_, reference_random_;
+  std::normal_distribution<double> normal_, reference_normal_;
+  std::shared_ptr<const Motion> motion_;
+  std::optional<Eigen::Vector3d> cage_nT_;
   mutable Moment moment_;
   int magnet_at_{0};
 };

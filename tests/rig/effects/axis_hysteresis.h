@@ -30,7 +30,7 @@ class AxisHysteresis final : public EffectOf<AxisHysteresis> {
 
   Where where_;
   double h_nT_, width_;
-  std::array<double, 12> play_{};
+  std::array<double, 3 * kMostPlaces> play_{};
 };
 
 }  // namespace mgtd::rig

@@ -35,7 +35,7 @@ class AxisSettling final : public EffectOf<AxisSettling> {
 
   Where where_;
   double eta_nT_, tau_s_;
-  std::array<State, 12> state_{};
+  std::array<State, 3 * kMostPlaces> state_{};
 };
 
 }  // namespace mgtd::rig

@@ -14,7 +14,10 @@ namespace mgtd::rig {
 class OffsetWalk final : public EffectOf<OffsetWalk> {
  public:
   OffsetWalk(Where where, double nT_per_sqrt_h) : where_(std::move(where)), nT_per_sqrt_h_(nT_per_sqrt_h) {}
-  void begin(const Scenario& scenario) override { random_.seed(scenario.seed ^ 0x51ed270b0a1f39c1U); }
+  void begin(const Scenario& scenario) override {
+    random_.seed(scenario.seed ^ 0x51ed270b0a1f39c1U);
+    axes_ = 3 * scenario.truth.size();
+  }
   [[nodiscard]] double axis_nT(const AxisContext& c) const override {
     if (!where_.covers(c) || c.t_s < 0) return 0;
     const auto step = static_cast<std::size_t>(c.t_s / kStep_s);
@@ -29,9 +32,9 @@ class OffsetWalk final : public EffectOf<OffsetWalk> {
 
  private:
   static constexpr double kStep_s = 10;
-  using Axes = std::array<double, 12>;
+  using Axes = std::vector<double>;
   [[nodiscard]] Axes next() const {
-    if (path_.empty()) return {};
+    if (path_.empty()) return Axes(axes_);
     Axes out = path_.back();
     std::normal_distribution<double> normal(0, nT_per_sqrt_h_ * std::sqrt(kStep_s / 3600));
     for (double& offset : out) offset += normal(random_);
@@ -40,6 +43,7 @@ class OffsetWalk final : public EffectOf<OffsetWalk> {
 
   Where where_;
   double nT_per_sqrt_h_;
+  std::size_t axes_{3 * kCross};
   mutable std::mt19937_64 random_;
   mutable std::vector<Axes> path_;  ///< grows as far as it is asked for
 };

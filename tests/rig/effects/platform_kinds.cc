@@ -16,10 +16,10 @@ Eigen::Matrix3d matrix(const Numbers& n) {
 Eigen::Vector3d crosstalk(const PlatformContext& c, const Numbers& n) {
   Eigen::Vector3d out(0, 0, 0);
   const auto i = static_cast<std::size_t>(c.sensor);
-  for (std::size_t j = 0; j < 4; ++j) {
+  for (std::size_t j = 0; j < c.b_nT.size(); ++j) {
     if (j == i) continue;
-    const Eigen::Vector3d r = c.position_m.at(i) - c.position_m.at(j);
-    const Eigen::Vector3d u = r.normalized(), b = c.b_nT.at(j);
+    const Eigen::Vector3d r = c.position_m[i] - c.position_m[j];
+    const Eigen::Vector3d u = r.normalized(), b = c.b_nT[j];
     out += n[0] / (r.squaredNorm() * r.norm()) * (3 * b.dot(u) * u - b);
   }
   return out;
@@ -62,7 +62,7 @@ constexpr std::array kPlatformKinds{
                .scope = Scope::sensor,
                .keys = {{{"share", 9, 0.001}}},
                .platform = [](const PlatformContext& c, const Numbers& n) -> Eigen::Vector3d {
-                 return matrix(n) * c.b_nT.at(static_cast<std::size_t>(c.sensor));
+                 return matrix(n) * c.b_nT[static_cast<std::size_t>(c.sensor)];
                }},
     EffectKind{.name = "platform.crosstalk",
                .scope = Scope::sensor,

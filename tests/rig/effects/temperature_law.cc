@@ -57,7 +57,7 @@ Eigen::Matrix3d axes(const SensorLaw& law, double T_degC) {
 double TemperatureLaw::axis_nT(const AxisContext& c) const {
   Change& change = change_.at(static_cast<std::size_t>(c.sensor));
   if (change.T_degC != c.T_degC) {
-    const SensorLaw& law = kLaws.at(static_cast<std::size_t>(c.sensor));
+    const SensorLaw& law = kLaws.at(static_cast<std::size_t>(c.sensor) % kLaws.size());
     change.T_degC = c.T_degC;
     change.gain = axes(law, c.T_degC) * axes(law, kT0_degC).inverse();
     for (int a = 0; a < 3; ++a) {

@@ -16,6 +16,7 @@ namespace mgtd::rig {
 /// parameters hold at T0:
 ///     y += [S(T) S(T0)^-1 Q(T) Q(T0)^-1 - 1] v + o(T) - o(T0)
 ///     Q = [1 0 0; -sin u1 cos u1 0; sin u2 sin u3 sqrt(1 - sin^2 u2 - sin^2 u3)]
+/// A fifth sensor has the law of the first again, and so on.
 class TemperatureLaw final : public EffectOf<TemperatureLaw> {
  public:
   [[nodiscard]] double axis_nT(const AxisContext& c) const override;
@@ -29,7 +30,7 @@ class TemperatureLaw final : public EffectOf<TemperatureLaw> {
     Eigen::Matrix3d gain{Eigen::Matrix3d::Zero()};  ///< less one
     Eigen::Vector3d offset_nT{0, 0, 0};
   };
-  mutable std::array<Change, 4> change_{};  ///< three axes ask at one temperature
+  mutable std::array<Change, kMostPlaces> change_{};  ///< three axes ask at one temperature
 };
 
 }  // namespace mgtd::rig

@@ -43,7 +43,7 @@ class ThermometerLag final : public EffectOf<ThermometerLag> {
   };
   Where where_;
   double nT_per_degC_, tau_s_;
-  std::array<Core, 4> core_{};
+  std::array<Core, kMostPlaces> core_{};
 };
 
 }  // namespace mgtd::rig

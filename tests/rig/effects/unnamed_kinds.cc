@@ -131,8 +131,8 @@ constexpr std::array kUnnamedKinds{
                .keys = {{{"nT_at_F0", 3, 5}, {"power", 1, 0, 0, 0, 2}}},
                .unnamed = true,
                .platform = [](const PlatformContext& c, const Numbers& n) -> Eigen::Vector3d {
-                 const auto next = static_cast<std::size_t>((c.sensor + 1) % 4);
-                 return std::pow(c.b_nT.at(next)[0] / kF0_nT, n[3]) * n.vector();
+                 const auto next = static_cast<std::size_t>(c.sensor + 1) % c.b_nT.size();
+                 return std::pow(c.b_nT[next][0] / kF0_nT, n[3]) * n.vector();
                }},
     EffectKind{.name = "hidden.beat",  // two excitation frequencies nearly alike
                .scope = Scope::axis,

@@ -37,5 +37,26 @@ TEST(BenchRig, ReadingsThatWaitAreOfTheMomentTheyWereTakenAt) {
   EXPECT_EQ(sent(false, 1.2), read_at_once);
 }
 
+/// Six sensors: six digitisers with ports of their own, then the table; every one talks, no two at one time.
+TEST(BenchRig, EverySensorOfAnArrayHasAPort) {
+  Scenario scenario = talkative();
+  scenario.faults.clear();
+  scenario.truth = rig_named("ideal", 1, 6).value();
+  for (int i = 0; i < 6; ++i) scenario.positions_m.emplace_back(0.1 * i, 0, 0);
+  scenario.plugs = {1, 2, 3, 4, 6, 5};
+  BenchRig rig(scenario, 0);
+  ASSERT_EQ(rig.ports(), 8U);
+  EXPECT_EQ(rig.name(5), "fluxgate6");
+  EXPECT_EQ(rig.instrument(5), "fluxgate5");
+  EXPECT_EQ(rig.name(6), "table");
+  EXPECT_EQ(rig.name(7), "scalar");
+  ASSERT_TRUE(rig.apply(*parse_fault("unplug fluxgate6", 6), 0.5));
+  for (std::size_t port = 0; port < 6; ++port)
+    EXPECT_EQ(rig.read(port, 1).empty(), port == 5) << rig.name(port);
+  EXPECT_FALSE(rig.apply(*parse_fault("unplug fluxgate7", 7), 1).has_value());
+  ASSERT_TRUE(rig.apply(*parse_fault("runaway table", 6), 1));
+  EXPECT_TRUE(rig.world().moving(2));
+}
+
 }  // namespace
 }  // namespace mgtd::rig

@@ -46,6 +46,36 @@ TEST(EffectList, EveryEffectChangesTheReadings) {
   }
 }
 
+/// Each is drawn for, and does something in, an array of two.
+TEST(EffectList, EveryEffectFindsTheSensorsOfAnArray) {
+  Scenario quiet;
+  quiet.truth = rig_named("ideal", 1, 2).value();
+  quiet.positions_m = {{0.3, 0, 0}, {-0.1, 0.2, 0.1}};
+  quiet.noise.noise_nT = 0;
+  quiet.scalar_noise_nT = 0;
+  quiet.table_accuracy_deg = 0;
+  quiet.temperature.ramp_degC_per_h = 5;
+  quiet.covariates.push_back({});
+  const Design design = run_of_157({.random = 30, .revisits = 0, .senses = true, .pause_s = 60}, 1);
+  const Survey without = simulated_survey(quiet, design, 1);
+  std::mt19937_64 random(8);
+  for (const EffectKind* kind : all_kinds()) {
+    Scenario hidden = quiet;
+    const auto effect = effect_of(random_effect(*kind, 1, random, "motor_A", 2), 2);
+    ASSERT_TRUE(effect.has_value()) << kind->name << ": " << (effect ? "" : effect.error());
+    hidden.effects.push_back(*effect);
+    const Survey with = simulated_survey(hidden, design, 1);
+    double change_nT = 0;
+    for (std::size_t k = 0; k < with.rows.size(); ++k) {
+      for (std::size_t i = 0; i < 2; ++i)
+        change_nT += (with.rows[k].y_nT[i] - without.rows[k].y_nT[i]).norm();
+      change_nT += std::abs(*with.rows[k].f_nT - *without.rows[k].f_nT);
+    }
+    EXPECT_GT(change_nT, 1) << kind->name;
+    EXPECT_TRUE(std::isfinite(change_nT)) << kind->name;
+  }
+}
+
 TEST(EffectList, MistakesAreNamed) {
   EXPECT_EQ(effect_of("name = 'axis.cubic'").error(), "[effect] nT_at_F0 is missing");
   EXPECT_NE(effect_of("name = 'axis.qubic'").error().find("no effect 'axis.qubic'"), std::string::npos);
@@ -82,6 +112,13 @@ TEST(TemperatureLaw, IsTheMeasuredOne) {
   const double offset_y_nT = -4.6222 * 3 + 0.048285 * (23.0 * 23 - 400);
   EXPECT_NEAR(law.axis_nT({.axis = 1, .T_degC = 23, .v_nT = {50'000, 0, 0}}) - offset_y_nT, 50'000 * lean,
               0.01);  // products of angles and scales of a thousandth
+}
+
+/// There are four measured laws: the fifth sensor has the first one again, each its own temperature.
+TEST(TemperatureLaw, BeginsAgainAfterFourSensors) {
+  const TemperatureLaw law;
+  EXPECT_EQ(law.axis_nT({.sensor = 4, .T_degC = 23}), law.axis_nT({.sensor = 0, .T_degC = 23}));
+  EXPECT_NE(law.axis_nT({.sensor = 5, .T_degC = 23}), law.axis_nT({.sensor = 4, .T_degC = 23}));
 }
 
 /// What the observatory's file says changed from 18:00 to 18:10 of the storm day.

@@ -41,6 +41,26 @@ TEST(World, AGradientActsWhereTheSensorReallyIs) {
   EXPECT_NEAR(world.read_sensor(0, 100)[0], -(50'000 - 20), kRounding_nT * 50);
 }
 
+/// A cross has it from its own sensors, any other array from the field round its centre.
+TEST(World, TheTrueGradientIsThatOfTheSite) {
+  Scenario scenario = ideal();
+  scenario.effects.push_back(
+      std::make_shared<SiteGradient>(SiteGradient::Five{100, -30, 5, 7, 9}, SiteGradient::Five{}));
+  const World cross(scenario);
+  scenario.truth = rig_named("ideal", 1, 1).value();
+  scenario.positions_m = {{0, 0, 0.1}};
+  World one(scenario);
+  constexpr std::array<double, 6> kExpected{100, -30, -70, 5, 7, 9};
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(cross.true_gradient_nT_per_m(0)[k], kExpected.at(k), 1e-6) << k;
+    EXPECT_NEAR(one.true_gradient_nT_per_m(0)[k], kExpected.at(k), 1e-6) << k;
+  }
+  // By hand: 1 A m2 along z, 0.2 m beyond: across its moment 100/0.008 nT against it.
+  const Eigen::Vector3d before = one.read_sensor(0, 0);
+  one.hold_magnet(1);
+  EXPECT_NEAR((one.read_sensor(0, 1) - before).norm(), 2 * 100 / 0.008, 1e-6);  // its arm is along z
+}
+
 TEST(World, PlayFollowsThePath) {
   // w = 0.1, h = 8, by hand: up to x = 0.5 the play hangs 0.1 below, coming back to 0.45 it has not moved
   // yet.
