@@ -24,7 +24,10 @@ bool one_place(const criticism::tests::CandidateEffect& candidate_effect,
                                                         : &h == &candidate_effect.hypotheses.front();
 }
 
-bool of_array(const criticism::tests::Hypothesis& h) { return h.axes == sensor::kChannels; }
+bool of_array(const criticism::tests::Hypothesis& h) {
+  const auto where = effects::Where::parse(h.where);
+  return h.axes > 1 && !(where && where->sensor >= 0);
+}
 
 /// `b` acts where `a` does, and is no mere sum of effects of many places.
 bool reaches(const criticism::tests::Hypothesis& b, const criticism::tests::Hypothesis& a,
@@ -32,7 +35,7 @@ bool reaches(const criticism::tests::Hypothesis& b, const criticism::tests::Hypo
   if (b.where == a.where) return true;
   if (of_array(a)) return of_array(b);
   if (of_array(b)) return level_b != effects::Level::axis;
-  return b.where == a.where.substr(0, 2);
+  return b.where == a.where.substr(0, a.where.find('.'));
 }
 
 /// Everything an effect could be on these poses.

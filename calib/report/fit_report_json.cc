@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-json components(const Gradient& g) {
+json components_json(const Gradient& g) {
   return {{"xx", g.xx}, {"yy", g.yy}, {"zz", g.zz}, {"xy", g.xy}, {"xz", g.xz}, {"yz", g.yz}};
 }
 
@@ -108,7 +108,7 @@ void add_joint(const fit::FitReport& report, json& out) {
   out["held_out_residual_nT"] = or_null(report.held_out_residual_nT);
   out["outliers"] = outliers_json(report.outliers);
   out["weak"] = weak_texts(report);
-  out["tensor_sd_nT_per_m"] = components(report.tensor_sd_nT_per_m);
+  out["tensor_sd_nT_per_m"] = components_json(report.tensor_sd_nT_per_m);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ json to_json(const fit::FitSummary& summary) {
 
 json to_json(const fit::ErrorSummary& errors) {
   return {{"total_field_rmse_nT", errors.total_field_rmse_nT},
-          {"tensor_rmse_nT_per_m", components(errors.tensor_rmse_nT_per_m)}};
+          {"tensor_rmse_nT_per_m", components_json(errors.tensor_rmse_nT_per_m)}};
 }
 
 json to_json(const fit::FitReport& report) {

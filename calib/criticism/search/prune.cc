@@ -23,7 +23,10 @@ std::set<std::string> significant_axes(const fit::joint::JointFit& fit, const ef
     const double sd =
         std::sqrt(fit.covariance(fit.problem.slots().effects() + slot, fit.problem.slots().effects() + slot));
     if (std::abs(fit.state.coefficients[slot]) > kSignificant * sd)
-      out.insert(effect.coefficients()[j].name.substr(0, 4));
+      {
+      const std::string& name = effect.coefficients()[j].name;
+      out.insert(name.substr(0, name.find('.') + 2));
+    }
   }
   return out;
 }

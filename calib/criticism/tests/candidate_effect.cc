@@ -8,6 +8,8 @@
 #include <map>
 
 #include "calib/effects/where.h"
+#include "calib/sensor/channels.h"
+#include "proto/number.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -20,11 +22,14 @@ struct NamedPlace {
 
 NamedPlace place_of(const std::string& name) {
   NamedPlace out{.suffix = name};
-  if (name.size() < 4 || name[0] != 's' || name[2] != '.' || name[1] < '1' || name[1] > '4') return out;
-  out.sensor = name[1] - '1';
-  const auto axis = std::string_view("xyz").find(name[3]);
+  const std::size_t dot = name.find('.');
+  if (dot == std::string::npos || dot + 1 >= name.size() || name.front() != 's') return out;
+  const auto number = parse_integer(std::string_view(name).substr(1, dot - 1));
+  if (!number || *number < 1 || *number > kMostSensors) return out;
+  out.sensor = static_cast<int>(*number) - 1;
+  const auto axis = std::string_view("xyz").find(name[dot + 1]);
   if (axis != std::string_view::npos) out.axis = static_cast<int>(axis);
-  out.suffix = out.axis < 0 ? name.substr(3) : name.substr(4);
+  out.suffix = name.substr(out.axis < 0 ? dot + 1 : dot + 2);
   return out;
 }
 
@@ -46,45 +51,46 @@ Hypothesis summed(std::string where, int axes, int alike, Eigen::Index finest, c
   return out;
 }
 
-Hypothesis everything(const effects::Effect& effect, std::string where) {
+Hypothesis everything(const effects::Effect& effect, int sensors, std::string where) {
   const auto n = static_cast<Eigen::Index>(effect.coefficients().size());
   Hypothesis out{
-      .where = std::move(where), .axes = 12, .combine = Eigen::MatrixXd::Identity(n, n), .names = {}};
+      .where = std::move(where), .axes = 3 * sensors, .combine = Eigen::MatrixXd::Identity(n, n), .names = {}};
   for (const effects::Coefficient& c : effect.coefficients()) out.names.push_back(c.name);
   return out;
 }
 
 /// An effect of site, table or platform as a whole and, where each sensor has coefficients of its own, sensor
 /// by sensor.
-std::vector<Hypothesis> whole_and_sensors(const effects::Effect& effect) {
+std::vector<Hypothesis> whole_and_sensors(const effects::Effect& effect, int sensors) {
   const bool site = effect.level() == effects::Level::site || effect.level() == effects::Level::reference;
   std::vector<Hypothesis> out{
-      everything(effect, site ? "site" : std::string(effects::to_string(effect.level())))};
+      everything(effect, sensors, site ? "site" : std::string(effects::to_string(effect.level())))};
   const auto& coefficients = effect.coefficients();
   const auto n = static_cast<Eigen::Index>(coefficients.size());
-  std::array<Groups, 4> sensor;
+  PerSensor<Groups> sensor(static_cast<std::size_t>(sensors));
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
     const NamedPlace p = place_of(name);
-    if (p.sensor < 0) return out;
+    if (p.sensor < 0 || sensors == 1) return out;
     sensor[static_cast<std::size_t>(p.sensor)][name].push_back(i);
   }
   for (std::size_t s = 0; s < sensor.size(); ++s) {
-    if (!sensor[s].empty()) out.push_back(summed(fmt::format("s{}", s + 1), 3, 4, n, sensor[s]));
+    if (!sensor[s].empty()) out.push_back(summed(fmt::format("s{}", s + 1), 3, sensors, n, sensor[s]));
   }
   return out;
 }
 
 }  // namespace
 
-std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest) {
-  if (finest.level() != effects::Level::axis) return whole_and_sensors(finest);
-  std::vector<Hypothesis> out{everything(finest, "each-axis")};
+std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest, int sensors) {
+  if (finest.level() != effects::Level::axis) return whole_and_sensors(finest, sensors);
+  const int channels = 3 * sensors;
+  std::vector<Hypothesis> out{everything(finest, sensors, "each-axis")};
   const auto& coefficients = finest.coefficients();
   const auto n = static_cast<Eigen::Index>(coefficients.size());
-  Groups all, sensors;
-  std::array<Groups, 4> sensor;
-  std::array<Groups, 12> axis;
+  Groups all, each_sensor;
+  PerSensor<Groups> sensor(static_cast<std::size_t>(sensors));
+  std::vector<Groups> axis(static_cast<std::size_t>(channels));
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::string& name = coefficients[static_cast<std::size_t>(i)].name;
     const NamedPlace p = place_of(name);
@@ -92,21 +98,23 @@ std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest) {
     const auto s = static_cast<std::size_t>(p.sensor);
     const std::string of_sensor = fmt::format("s{}{}", p.sensor + 1, p.suffix);
     all["all" + p.suffix].push_back(i);
-    sensors[of_sensor].push_back(i);
+    each_sensor[of_sensor].push_back(i);
     sensor[s][of_sensor].push_back(i);
     axis[3 * s + static_cast<std::size_t>(p.axis)][name].push_back(i);
   }
   for (std::size_t a = 0; a < axis.size(); ++a) {
-    out.push_back(summed(sensor::channel_name(static_cast<int>(a)), 1, 12, n, axis[a]));
+    out.push_back(summed(sensor::channel_name(static_cast<int>(a)), 1, channels, n, axis[a]));
   }
   const bool alike = std::all_of(coefficients.begin(), coefficients.end(), [](const effects::Coefficient& c) {
-    return c.name.size() == 4 || c.name[4] == '.';
+    const std::size_t end = c.name.find('.') + 2;  // of the axis
+    return c.name.size() == end || c.name[end] == '.';
   });
   if (!alike) return out;
-  out.push_back(summed("each-sensor", 12, 1, n, sensors));
-  for (std::size_t s = 0; s < sensor.size(); ++s)
-    out.push_back(summed(fmt::format("s{}", s + 1), 3, 4, n, sensor[s]));
-  out.push_back(summed("all", 12, 1, n, all));
+  // Of one sensor these are the same as all.
+  if (sensors > 1) out.push_back(summed("each-sensor", channels, 1, n, each_sensor));
+  for (std::size_t s = 0; sensors > 1 && s < sensor.size(); ++s)
+    out.push_back(summed(fmt::format("s{}", s + 1), 3, sensors, n, sensor[s]));
+  out.push_back(summed("all", channels, 1, n, all));
   return out;
 }
 

@@ -57,7 +57,7 @@ struct CandidateEffects {
 };
 
 /// Hypotheses of an effect at its finest scale. Effects of the axes have coefficients "s3.z" or "s3.z.name".
-[[nodiscard]] std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest);
+[[nodiscard]] std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest, int sensors);
 
 /// Every effect of the library on this run, less those called like one of `left_out`.
 [[nodiscard]] CandidateEffects library_candidates(const PoseTable& table,

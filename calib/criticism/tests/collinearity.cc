@@ -64,7 +64,9 @@ void tell_coefficients(const CandidateEffect& candidate_effect, const ScoredFami
 
 double FormulaExamination::d() const { return std::sqrt(std::max(0.0, S - rank)); }
 
-Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula) {
+Result<CandidateEffect> formula_candidate(const effects::EffectSpec& given, int sensors) {
+  effects::EffectSpec formula = given;
+  formula.sensors = sensors;
   const auto scan = effects::formula::open_scan(formula);
   CandidateEffect out{.name = formula.name};
   const std::vector<double> values = scan ? effects::formula::scan_values(*scan) : std::vector<double>{0};
@@ -86,7 +88,7 @@ Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula) {
   Hypothesis everything{.where = whole ? std::string(effects::to_string(out.level)) : own->where->text(),
                         .axes = !whole && own->where->axis >= 0     ? 1
                                 : !whole && own->where->sensor >= 0 ? 3
-                                                                    : 12,
+                                                                    : 3 * sensors,
                         .combine = Eigen::MatrixXd::Identity(n, n),
                         .names = {}};
   for (const effects::Coefficient& c : first.coefficients()) everything.names.push_back(c.name);
@@ -101,7 +103,8 @@ Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula) {
 
 Result<FormulaExamination> examine_formula(const PoseTable& table, const fit::FitOptions& options,
                                            const effects::EffectSpec& formula) {
-  const auto candidate_effect = formula_candidate(formula);
+  const int sensors = table.poses.empty() ? kSensors : static_cast<int>(table.poses.front().y_nT.size());
+  const auto candidate_effect = formula_candidate(formula, sensors);
   if (!candidate_effect) return tl::unexpected(candidate_effect.error());
   for (const effects::EffectPtr& variant : candidate_effect->variants) {
     if (const auto ok = variant->check(table); !ok) return tl::unexpected(ok.error());

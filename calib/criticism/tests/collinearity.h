@@ -39,6 +39,6 @@ struct FormulaExamination {
                                                          const effects::EffectSpec& formula);
 
 /// A formula as one of the candidates of explain(), at the scale it was given.
-[[nodiscard]] Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula);
+[[nodiscard]] Result<CandidateEffect> formula_candidate(const effects::EffectSpec& formula, int sensors);
 
 }  // namespace mgtd::calib::criticism::tests

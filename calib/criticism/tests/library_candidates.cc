@@ -80,7 +80,7 @@ CandidateEffect candidate_effect_of(const effects::library::EffectFamily& family
     out.values.push_back(value);
   }
   if (family.scan) out.parameter = family.scan->parameter;
-  if (!out.variants.empty()) out.hypotheses = hypotheses_of(*out.variants.front());
+  if (!out.variants.empty()) out.hypotheses = hypotheses_of(*out.variants.front(), context.sensors());
   out.make = [&family, context](const Hypothesis* h, const std::optional<double>& value) {
     return effects::library::make(family, h == nullptr ? std::nullopt : where_of(*h), value, context);
   };

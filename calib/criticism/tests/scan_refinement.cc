@@ -67,7 +67,7 @@ void refine_place(const fit::joint::JointProblem& problem, const fit::joint::Joi
   });
   if (!found) return;
   if (found->signature.columns.cols() != wider.hypotheses.front().combine.rows())
-    wider.hypotheses.push_back(hypotheses_of(*found->effect).front());
+    wider.hypotheses.push_back(hypotheses_of(*found->effect, problem.sensors()).front());
   add_variant(value, found->effect, std::move(found->signature), noise, wider, family);
   family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
 }

@@ -72,7 +72,7 @@ inline criticism::tests::CandidateEffect candidate_effect(const std::string& nam
                                                           const AxisLaw::Shape& shape) {
   criticism::tests::CandidateEffect out{
       .name = name, .variants = {AxisLaw::finest(name, shape)}, .values = {std::nullopt}};
-  out.hypotheses = criticism::tests::hypotheses_of(*out.variants.front());
+  out.hypotheses = criticism::tests::hypotheses_of(*out.variants.front(), kSensors);
   out.make = [name, shape](const criticism::tests::Hypothesis* part,
                            const std::optional<double>&) -> Result<effects::EffectPtr> {
     if (part == nullptr) return AxisLaw::finest(name, shape);
