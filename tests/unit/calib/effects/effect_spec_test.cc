@@ -35,7 +35,8 @@ TEST(EffectSpec, NonsenseIsRefusedWithWhatIsKnown) {
     return effect ? std::string("accepted") : effect.error().text();
   };
   EXPECT_THAT(message("axis.cubik"), HasSubstr("no effect is called 'axis.cubik'"));
-  EXPECT_THAT(message("axis.gain.drift@s5"), HasSubstr("'s5' is no place"));
+  EXPECT_THAT(message("axis.gain.drift@s5"), HasSubstr("the array has 4 sensors"));
+  EXPECT_THAT(message("axis.gain.drift@s17"), HasSubstr("'s17' is no place"));
   EXPECT_THAT(message("axis.gain.drift@site"), HasSubstr("cannot be laid over"));
   EXPECT_THAT(message("site.gradient@s2"), HasSubstr("leave the part after '@' out"));
   EXPECT_THAT(message("axis.gain.drift,w=1"), HasSubstr("no parameter 'w'"));
