@@ -83,11 +83,11 @@ Foretold foretold(const Scene& scene, int runs) {
   request.sensors = truth;
   const auto planned = calib::design::evaluate_design(request);
   if (!planned || !planned->determined) throw std::runtime_error("the plan does not determine the rig");
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(calib::fit::joint::kSensorBlock);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(calib::fit::joint::FixedSlots{}.sensor_block());
   for (int run = 0; run < runs; ++run) {
     const auto fit = calib::fit::joint::fit_joint(simulate(200'000 + static_cast<std::uint64_t>(run)), {});
     if (!fit) throw std::runtime_error(fit.error().text());
-    for (int j = 0; j < calib::fit::joint::kSensorBlock; ++j) {
+    for (int j = 0; j < calib::fit::joint::FixedSlots{}.sensor_block(); ++j) {
       const auto i = static_cast<std::size_t>(j / calib::sensor::kSensorParameters);
       const int p = j % calib::sensor::kSensorParameters;
       const calib::design::Expected& expected = planned->parameters[static_cast<std::size_t>(j)];

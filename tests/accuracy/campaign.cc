@@ -15,7 +15,7 @@
 namespace mgtd::testing {
 namespace {
 
-using calib::fit::joint::kSensorBlock;
+using calib::fit::joint::FixedSlots;
 using calib::sensor::kSensorParameters;
 using calib::sensor::SensorModel;
 
@@ -52,7 +52,7 @@ Components tensor_of(const std::array<Eigen::Vector3d, 4>& b, double d_m) {
   return {by_x[0], by_y[1], -by_x[0] - by_y[1], (by_x[1] + by_y[0]) / 2, by_x[2], by_y[2]};
 }
 
-Components mean_square(const std::array<SensorModel, 4>& estimate, const Scene& scene,
+Components mean_square(const PerSensor<SensorModel>& estimate, const Scene& scene,
                        const std::vector<Eigen::Vector3d>& fields) {
   Components sum = Components::Zero();
   for (const Eigen::Vector3d& b : fields) {
@@ -91,26 +91,28 @@ Components bound_square(const PoseTable& table, const Scene& scene) {
 Eigen::VectorXd error_of(const calib::fit::joint::JointFit& fit, const Scene& scene) {
   const auto truth = models_of(scene.rig);
   const Eigen::Index m = fit.state.coefficients.size();
-  Eigen::VectorXd e(kSensorBlock + m);
+  Eigen::VectorXd e(FixedSlots{}.sensor_block() + m);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     e.segment<kSensorParameters>(static_cast<Eigen::Index>(i) * kSensorParameters) =
         fit.state.sensors[i].parameters() - truth[i].parameters();
   }
   for (Eigen::Index j = 0; j < m; ++j)
-    e[kSensorBlock + j] = fit.state.coefficients[j] - kGradient.at(static_cast<std::size_t>(j));
+    e[FixedSlots{}.sensor_block() + j] =
+        fit.state.coefficients[j] - kGradient.at(static_cast<std::size_t>(j));
   return e;
 }
 
 Eigen::MatrixXd covariance_of_errors(const calib::fit::joint::JointFit& fit) {
   std::vector<Eigen::Index> slots;
   for (Eigen::Index slot = 0; slot < fit.covariance.rows(); ++slot) {
-    if (slot < kSensorBlock || slot >= calib::fit::joint::kEffectSlot) slots.push_back(slot);
+    if (slot < FixedSlots{}.sensor_block() || slot >= calib::fit::joint::FixedSlots{}.effects())
+      slots.push_back(slot);
   }
   return fit.covariance(slots, slots);
 }
 
 std::string name_of(Eigen::Index j) {
-  if (j >= kSensorBlock) return "site.gradient";
+  if (j >= FixedSlots{}.sensor_block()) return "site.gradient";
   return "s" + std::to_string(j / kSensorParameters + 1) + " " +
          std::string(calib::sensor::kParameterNames.at(static_cast<std::size_t>(j % kSensorParameters)));
 }
@@ -128,7 +130,7 @@ PoseTable Scene::run(std::uint64_t seed) const {
   return table;
 }
 
-Components tensor_mean_square(const std::array<SensorModel, 4>& estimate, const Scene& scene) {
+Components tensor_mean_square(const PerSensor<SensorModel>& estimate, const Scene& scene) {
   return mean_square(estimate, scene, clean_fields(scene.site.f_nT));
 }
 
@@ -181,8 +183,8 @@ Consistency consistency(const Scene& scene, int runs) {
   return out;
 }
 
-std::array<SensorModel, 4> models_of(const RigTruth& rig) {
-  std::array<SensorModel, 4> out;
+PerSensor<SensorModel> models_of(const RigTruth& rig) {
+  PerSensor<SensorModel> out;
   for (std::size_t i = 0; i < rig.size(); ++i) {
     calib::sensor::ParameterVector p;
     for (int j = 0; j < kSensorParameters; ++j) {

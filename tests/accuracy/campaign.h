@@ -34,7 +34,7 @@ struct TensorErrors {
 };
 [[nodiscard]] TensorErrors tensor_errors(const Scene& scene, int seeds);
 /// Of one calibration: mean square over the same clean attitudes.
-[[nodiscard]] Components tensor_mean_square(const std::array<calib::sensor::SensorModel, 4>& estimate,
+[[nodiscard]] Components tensor_mean_square(const PerSensor<calib::sensor::SensorModel>& estimate,
                                             const Scene& scene);
 
 /// Reported covariance against real errors.
@@ -51,6 +51,6 @@ struct Consistency {
 [[nodiscard]] Consistency consistency(const Scene& scene, int runs);
 
 /// The sensors as calib knows them.
-[[nodiscard]] std::array<calib::sensor::SensorModel, 4> models_of(const RigTruth& rig);
+[[nodiscard]] PerSensor<calib::sensor::SensorModel> models_of(const RigTruth& rig);
 
 }  // namespace mgtd::testing

@@ -46,7 +46,7 @@ std::bitset<12> channels_hit(Gross kind, std::mt19937_64& random) {
 }
 
 /// Least squares at the true weights without what is bad.
-std::array<calib::sensor::SensorModel, 4> oracle(const Spoilt& run, const Scene& scene) {
+PerSensor<calib::sensor::SensorModel> oracle(const Spoilt& run, const Scene& scene) {
   calib::fit::joint::JointOptions options;
   options.table_sd_rad = to_rad(scene.table_sd_deg);
   auto problem = calib::fit::joint::joint_problem(run.table, options);

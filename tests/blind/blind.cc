@@ -130,13 +130,13 @@ double crb_of(const HiddenLaw& law, int sensor, int axis, std::uint64_t seed) {
   const auto fit = fit::joint::fit_joint(table, {});
   if (!fit) throw std::runtime_error(fit.error().text());
   const criticism::tests::Residual residual(fit->problem, fit->state, 0);
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(residual.poses() * criticism::tests::kPoseRows, 1);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(residual.poses() * fit->problem.pose_rows(), 1);
   for (Eigen::Index k = 0; k < residual.poses(); ++k) {
     const fit::joint::JointPose& pose = fit->problem.poses[static_cast<std::size_t>(k)];
     const Eigen::Vector3d v =
         pose.y_nT.segment<3>(3 * sensor) - fit->state.sensors[static_cast<std::size_t>(sensor)].offset_nT;
     const int c = 3 * sensor + axis;
-    rows(k * criticism::tests::kPoseRows + c, 0) = pose.weight[c] * law.law(*pose.pose, sensor, axis, v);
+    rows(k * fit->problem.pose_rows() + c, 0) = pose.weight[c] * law.law(*pose.pose, sensor, axis, v);
   }
   return 1 / residual.project(rows).projected.norm();
 }

@@ -40,17 +40,17 @@ rig::Scenario scenario() {
 /// By pose, what the effect adds to the readings and to the scalar reference, in standard deviations.
 Eigen::MatrixXd signature(const fit::joint::JointFit& fit, const PoseTable& with, const PoseTable& without) {
   const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n * criticism::tests::kPoseRows, 1);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n * fit.problem.pose_rows(), 1);
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto p = static_cast<std::size_t>(k);
     const fit::joint::JointPose& pose = fit.problem.poses[p];
     for (int c = 0; c < sensor::kChannels; ++c) {
       const auto s = static_cast<std::size_t>(c / 3);
-      rows(k * criticism::tests::kPoseRows + c, 0) =
+      rows(k * fit.problem.pose_rows() + c, 0) =
           pose.weight[c] * (with.poses[p].y_nT[s] - without.poses[p].y_nT[s])[c % 3];
     }
     if (without.poses[p].f_nT)
-      rows(k * criticism::tests::kPoseRows + sensor::kChannels, 0) =
+      rows(k * fit.problem.pose_rows() + sensor::kChannels, 0) =
           (*with.poses[p].f_nT - *without.poses[p].f_nT) * pose.f_weight;
   }
   return rows;

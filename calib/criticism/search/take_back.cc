@@ -14,6 +14,7 @@ namespace {
 void loosen(const fit::joint::JointFit& fit, const std::string& place, fit::joint::JointOptions& options) {
   const auto where = effects::Where::parse(place);
   if (!where) return;
+  if (options.more_nT2.size() == 0) options.more_nT2 = fit::joint::Channels::Zero(fit.problem.channels());
   const calibration::AxisNoise ratio = fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio;
   for (int axis = 0; axis < 3; ++axis) {
     if (!where->covers(where->sensor, axis)) continue;

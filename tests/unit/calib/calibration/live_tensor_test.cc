@@ -25,7 +25,7 @@ std::shared_ptr<const Calibration> with(const std::vector<std::pair<std::string,
   c.reference.t_utc = start;
   for (const auto& [spec, value] : effects) {
     CalibratedEffect e{spec, {}, {}};
-    e.size_nT.fill(4);
+    e.size_nT = sensor::FieldVector::Constant(sensor::kChannels, 4);
     const effects::EffectPtr effect = *effects::library::make_effect(spec);
     for (const effects::Coefficient& k : effect->coefficients())
       e.coefficients.push_back({k.name, value, 0, k.unit});

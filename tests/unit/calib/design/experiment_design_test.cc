@@ -35,7 +35,7 @@ TEST(Plan, ForetellsWhatTheFitThenReports) {
   ASSERT_TRUE(foretold->determined);
   const auto fit = fit::joint::fit_joint(table, {});
   ASSERT_TRUE(fit);
-  for (int p = 0; p < fit::joint::kSensorBlock; ++p) {
+  for (int p = 0; p < fit::joint::FixedSlots{}.sensor_block(); ++p) {
     const Expected& e = foretold->parameters[static_cast<std::size_t>(p)];
     // The fit estimates noise and table from the data: each axis to 7 %, the table to 4 %.
     EXPECT_NEAR(e.sd / fitted_sd(*fit, e, p), 1, 0.25) << e.name;
@@ -72,14 +72,14 @@ TEST(Plan, ForetoldErrorsAreTheRealOnes) {
       table.poses.push_back(measure(sim, *pose.angles(), pose.number, 0, rng));
     const auto fit = fit::joint::fit_joint(table, options);
     ASSERT_TRUE(fit);
+    const auto sensor_block = static_cast<std::size_t>(fit::joint::FixedSlots{}.sensor_block());
     for (std::size_t j = 0; j < sum.size(); ++j) {
       const auto s = j / sensor::kSensorParameters;
       const auto p = static_cast<Eigen::Index>(j % sensor::kSensorParameters);
-      const double error =
-          j < fit::joint::kSensorBlock
-              ? fit->state.sensors[s].parameters()[p] - sim.rig[s].parameters()[p]
-              : fit->state.coefficients[static_cast<Eigen::Index>(j) - fit::joint::kSensorBlock] -
-                    truth[j - fit::joint::kSensorBlock];
+      const double error = j < sensor_block
+                               ? fit->state.sensors[s].parameters()[p] - sim.rig[s].parameters()[p]
+                               : fit->state.coefficients[static_cast<Eigen::Index>(j - sensor_block)] -
+                                     truth[j - sensor_block];
       const double sd =
           foretold->parameters[j].sd * (foretold->parameters[j].unit == "deg" ? kRadiansPerDegree : 1);
       sum[j] += error * error / (sd * sd) / kRuns;

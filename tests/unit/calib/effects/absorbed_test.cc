@@ -25,7 +25,7 @@ double information_left(const PoseTable& table, const std::string& spec) {
   for (fit::joint::LinearPrior& prior : fit->problem.priors)
     prior.row.conservativeResizeLike(Eigen::VectorXd::Zero(fit->problem.fixed()));
   const Eigen::MatrixXd S = fit::joint::reduce(fit->problem, fit->state, 0).S;
-  const Eigen::Index m = fit->problem.coefficients(), n = fit::joint::kEffectSlot;
+  const Eigen::Index m = fit->problem.coefficients(), n = fit::joint::FixedSlots{}.effects();
   const Eigen::MatrixXd own = S.bottomRightCorner(m, m), cross = S.bottomLeftCorner(m, n);
   const Eigen::VectorXd d = S.diagonal().head(n).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd base = d.asDiagonal() * S.topLeftCorner(n, n) * d.asDiagonal();

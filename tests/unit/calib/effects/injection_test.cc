@@ -292,7 +292,8 @@ TEST(SiteStep, BesideAScalarReferenceTellsWhatLiesAcrossTheField) {
   ASSERT_TRUE(fit) << fit.error().text();
   EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof));
   const Vector3d found = fit->state.coefficients.head<3>();
-  const Eigen::Matrix3d C = fit->covariance.block<3, 3>(fit::joint::kEffectSlot, fit::joint::kEffectSlot);
+  const Eigen::Matrix3d C =
+      fit->covariance.block<3, 3>(fit::joint::FixedSlots{}.effects(), fit::joint::FixedSlots{}.effects());
   const Vector3d n = scene.direction;
   EXPECT_GT(std::sqrt(n.dot(C * n)), 900) << "along the field only the prior of 1000 nT is known";
   EXPECT_LT(std::abs(n.dot(found)), 1);
@@ -328,7 +329,8 @@ TEST_P(Injected, IsFoundWithinItsUncertainty) {
     }
     ASSERT_EQ(fit->state.coefficients.size(), static_cast<Eigen::Index>(c.truth.size()));
     for (Eigen::Index i = 0; i < fit->state.coefficients.size(); ++i) {
-      const double sd = std::sqrt(fit->covariance(fit::joint::kEffectSlot + i, fit::joint::kEffectSlot + i));
+      const double sd = std::sqrt(
+          fit->covariance(fit::joint::FixedSlots{}.effects() + i, fit::joint::FixedSlots{}.effects() + i));
       const double pull = (fit->state.coefficients[i] - c.truth[static_cast<std::size_t>(i)]) / sd;
       pulls += pull * pull;
       worst = std::max(worst, std::abs(pull));

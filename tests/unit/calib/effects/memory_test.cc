@@ -121,8 +121,8 @@ TEST(Tune, FindsADipoleFromTheGrid) {
   EXPECT_NEAR(fit->chi2 / fit->dof, 1, 3.5 * std::sqrt(2 / fit->dof));
   const auto spec = *EffectSpec::parse(effects->front()->spec());
   for (int i = 0; i < 3; ++i) {
-    const double sd =
-        std::sqrt(fit->covariance(fit::joint::kEffectSlot + 3 + i, fit::joint::kEffectSlot + 3 + i));
+    const double sd = std::sqrt(fit->covariance(fit::joint::FixedSlots{}.effects() + 3 + i,
+                                                fit::joint::FixedSlots{}.effects() + 3 + i));
     EXPECT_NEAR(*spec.number(std::string(1, "xyz"[i]), 0, -10, 10) + fit->state.coefficients[3 + i], place[i],
                 5 * sd + 1e-3);
   }

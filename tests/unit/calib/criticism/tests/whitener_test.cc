@@ -24,18 +24,19 @@ fit::joint::JointFit fit_of(const PoseTable& table) {
 /// nuisances.
 double dense_chi2(const fit::joint::JointProblem& problem, const LinearRows& rows, double rho) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
-  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n * kPoseRows, n * fit::joint::kNuisances);
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(n * problem.pose_rows(), n * fit::joint::kNuisances);
   for (Eigen::Index k = 0; k < n; ++k) {
-    N.block(k * kPoseRows, k * fit::joint::kNuisances, kPoseRows, fit::joint::kNuisances) =
-        rows.nuisance.middleRows(k * kPoseRows, kPoseRows);
+    N.block(k * problem.pose_rows(), k * fit::joint::kNuisances, problem.pose_rows(),
+            fit::joint::kNuisances) = rows.nuisance.middleRows(k * problem.pose_rows(), problem.pose_rows());
   }
   Eigen::MatrixXd A(N.rows(), N.cols() + 1);
   A << N, rows.residual;
   const Eigen::MatrixXd plain = A;
   for (Eigen::Index k = 1; k < n; ++k) {
     for (int c = 0; c < sensor::kChannels; ++c) {
-      A.row(k * kPoseRows + c) = (plain.row(k * kPoseRows + c) - rho * plain.row((k - 1) * kPoseRows + c)) /
-                                 std::sqrt(1 - rho * rho);
+      A.row(k * problem.pose_rows() + c) =
+          (plain.row(k * problem.pose_rows() + c) - rho * plain.row((k - 1) * problem.pose_rows() + c)) /
+          std::sqrt(1 - rho * rho);
     }
   }
   const Eigen::VectorXd y = A.rightCols(1);

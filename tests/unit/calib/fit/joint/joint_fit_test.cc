@@ -18,7 +18,7 @@ using testing::Simulation;
 Simulation real_rig() { return {.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05, .f_drift_nT = 30}; }
 
 Eigen::VectorXd parameter_error(const JointFit& fit, const testing::Rig& truth) {
-  Eigen::VectorXd e(kSensorBlock);
+  Eigen::VectorXd e(FixedSlots{}.sensor_block());
   for (int i = 0; i < kSensors; ++i) {
     const auto s = static_cast<std::size_t>(i);
     e.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
@@ -66,10 +66,12 @@ TEST(JointFit, ReportedCovarianceIsTheRealOne) {
     const PoseTable table = simulate(sim, 36, 121, 100 + static_cast<std::uint64_t>(run));
     const JointFit fit = must_fit(table);
     const Eigen::VectorXd e = parameter_error(fit, sim.rig);
-    sum += e.dot(fit.covariance.topLeftCorner(kSensorBlock, kSensorBlock).llt().solve(e));
+    sum += e.dot(fit.covariance.topLeftCorner(FixedSlots{}.sensor_block(), FixedSlots{}.sensor_block())
+                     .llt()
+                     .solve(e));
   }
-  const double sd = std::sqrt(2.0 * kSensorBlock / kRuns);
-  EXPECT_NEAR(sum / kRuns, kSensorBlock, 3.29 * sd);
+  const double sd = std::sqrt(2.0 * FixedSlots{}.sensor_block() / kRuns);
+  EXPECT_NEAR(sum / kRuns, FixedSlots{}.sensor_block(), 3.29 * sd);
 }
 
 TEST(JointFit, GradientOfTheSiteIsFoundWithItsUncertainty) {
@@ -115,7 +117,9 @@ TEST(JointFit, OffsetsLargerThanTheFieldConverge) {
     sim.rig[i].offset_nT = Eigen::Vector3d{150'000, -120'000, 90'000} * (i % 2 == 0 ? 1 : -1);
   const JointFit fit = must_fit(simulate(sim, 36, 121, 9));
   const Eigen::VectorXd e = parameter_error(fit, sim.rig);
-  EXPECT_LT(e.dot(fit.covariance.topLeftCorner(kSensorBlock, kSensorBlock).llt().solve(e)),
+  EXPECT_LT(e.dot(fit.covariance.topLeftCorner(FixedSlots{}.sensor_block(), FixedSlots{}.sensor_block())
+                      .llt()
+                      .solve(e)),
             48 + 3.3 * std::sqrt(96));
 }
 
@@ -143,7 +147,9 @@ TEST(JointFit, BadPosesBecomeListedNodes) {
     }
   }
   const Eigen::VectorXd e = parameter_error(fit, sim.rig);
-  EXPECT_LT(e.dot(fit.covariance.topLeftCorner(kSensorBlock, kSensorBlock).llt().solve(e)),
+  EXPECT_LT(e.dot(fit.covariance.topLeftCorner(FixedSlots{}.sensor_block(), FixedSlots{}.sensor_block())
+                      .llt()
+                      .solve(e)),
             48 + 3.3 * std::sqrt(96));
 }
 
@@ -191,7 +197,9 @@ TEST(JointFit, WithoutAFieldTheScaleIsConvention) {
   options.field_nT = sim.f_nT;
   const JointFit known = must_fit(table, options);
   const Eigen::VectorXd e = parameter_error(known, sim.rig);
-  EXPECT_LT(e.dot(known.covariance.topLeftCorner(kSensorBlock, kSensorBlock).llt().solve(e)),
+  EXPECT_LT(e.dot(known.covariance.topLeftCorner(FixedSlots{}.sensor_block(), FixedSlots{}.sensor_block())
+                      .llt()
+                      .solve(e)),
             48 + 3.3 * std::sqrt(96));
 }
 
@@ -212,7 +220,9 @@ TEST(JointFit, StandardAnglesOnlyLeaveTheAzimuthOpen) {
   options.declination_rad = sim.declination_rad;
   const JointFit given = must_fit(table, options);
   const Eigen::VectorXd e = parameter_error(given, sim.rig);
-  EXPECT_LT(e.dot(given.covariance.topLeftCorner(kSensorBlock, kSensorBlock).llt().solve(e)),
+  EXPECT_LT(e.dot(given.covariance.topLeftCorner(FixedSlots{}.sensor_block(), FixedSlots{}.sensor_block())
+                      .llt()
+                      .solve(e)),
             48 + 3.3 * std::sqrt(96));
 }
 

@@ -82,7 +82,7 @@ constexpr std::array kSteps{1.0, 1e-2, 1e-3, 1e-4, 1e-5};
 constexpr double kTolerance = 1e-7;
 
 struct Column {
-  Channels y{Channels::Zero()};
+  Channels y{Channels::Zero(sensor::kChannels)};
   double f{0};
 };
 
@@ -112,11 +112,12 @@ double worst_derivative(const Case& c) {
   double worst = 0;
   for (int slot = 0; slot < c.problem.fixed(); ++slot) {
     Column column;
-    if (slot < kSensorBlock) {
+    if (slot < FixedSlots{}.sensor_block()) {
       const int row = 3 * (slot / sensor::kSensorParameters);
       column.y.segment<3>(row) = linear.d_sensor.block<3, 1>(row, slot % sensor::kSensorParameters);
     } else {
-      column = {linear.d_global.col(slot - kSensorBlock), linear.f_global[slot - kSensorBlock]};
+      const int global = slot - FixedSlots{}.sensor_block();
+      column = {.y = linear.d_global.col(global), .f = linear.f_global[global]};
     }
     worst = std::max(worst, derivative_error(c, column, [&](double h) {
                        return std::pair(c.state.moved(h * Eigen::VectorXd::Unit(c.problem.fixed(), slot)), x);
