@@ -75,7 +75,7 @@ enum class Sampling {
 /// `seed` replaces that of the scenario: noise, the table's errors and random effects, not the parameters.
 [[nodiscard]] Survey simulated_survey(Scenario scenario, const Design& design, std::uint64_t seed,
                                       Sampling sampling = Sampling::means);
-/// The same of the cross, as the programs hold it.
+/// The same as the programs hold it.
 [[nodiscard]] PoseTable simulated_table(Scenario scenario, const Design& design, std::uint64_t seed,
                                         Sampling sampling = Sampling::means);
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/survey.h"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
-
 namespace mgtd::rig {
 namespace {
 
@@ -26,20 +22,17 @@ void copy_row(const From& from, To& to) {
   to.dwell_s = from.dwell_s;
   to.since_stop_s = from.since_stop_s;
   to.covariates = from.covariates;
-  for (std::size_t i = 0; i < to.y_nT.size(); ++i) {
-    to.y_nT.at(i) = from.y_nT.at(i);
-    to.sd_nT.at(i) = from.sd_nT.at(i);
-    to.T_degC.at(i) = from.T_degC.at(i);
-  }
+  to.ref_nT = from.ref_nT;
+  to.ref_sd_nT = from.ref_sd_nT;
+  to.y_nT.assign(from.y_nT.begin(), from.y_nT.end());
+  to.sd_nT.assign(from.sd_nT.begin(), from.sd_nT.end());
+  to.T_degC.assign(from.T_degC.begin(), from.T_degC.end());
 }
 
 }  // namespace
 
 PoseTable pose_table_of(const Survey& survey) {
   PoseTable out;
-  if (survey.sensors != Pose{}.y_nT.size())
-    throw std::invalid_argument(
-        fmt::format("this pose table is of the cross, the survey of {} sensors", survey.sensors));
   out.path = survey.path;
   for (const SurveyRow& row : survey.rows) copy_row(row, out.poses.emplace_back());
   return out;

@@ -43,7 +43,7 @@ struct Survey {
   bool angles{true}, scalar{true};
 };
 
-/// The same as the programs hold it. Of the cross; without the vector reference.
+/// The same as the programs hold it.
 [[nodiscard]] PoseTable pose_table_of(const Survey& survey);
 [[nodiscard]] Survey survey_of(const PoseTable& table);
 
