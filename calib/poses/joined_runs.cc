@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "calib/poses/pose_columns.h"
 #include "calib/poses/run_time.h"
 
 namespace mgtd::calib::poses {
@@ -57,6 +58,11 @@ Result<PoseTable> joined(const PoseTable& a, const PoseTable& b) {
   if (a.poses.empty() || b.poses.empty())
     return fail(ErrorCode::refused, fmt::format("{} has no poses", a.poses.empty() ? a.source : b.source),
                 "leave it out");
+  if (sensors_of(a) != sensors_of(b))
+    return fail(ErrorCode::refused,
+                fmt::format("{} has {} sensors and {} has {}: this is another array", a.source, sensors_of(a),
+                            b.source, sensors_of(b)),
+                "judge them one by one");
   if (timeless(a) && timeless(b)) return behind(a, b, 0);
   const RunTime of_a = RunTime::of(a), of_b = RunTime::of(b);
   if (!tells_time(a) || !tells_time(b) || of_a.start.has_value() != of_b.start.has_value())

@@ -15,7 +15,8 @@
 /// table between the runs is not known: hysteresis is followed as if the table had gone straight on.
 namespace mgtd::calib::poses {
 
-/// Refuses runs that overlap in time, and a pair of which only one records time.
+/// Refuses arrays with unlike numbers of sensors, runs that overlap in time, and a pair of which only one
+/// records time.
 [[nodiscard]] Result<PoseTable> joined(const PoseTable& a, const PoseTable& b);
 
 }  // namespace mgtd::calib::poses

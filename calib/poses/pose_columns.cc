@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -39,6 +41,7 @@ PoseColumn whole(std::string name, std::optional<int> Pose::*member) {
 constexpr double kMostReading_nT = 1e7, kLeastField_nT = 1'000, kMostField_nT = 200'000;
 constexpr double kColdest_degC = -100, kHottest_degC = 150;
 
+constexpr std::string_view kAxes = "xyz";
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 const PoseColumn::Limits kAboveZero{.low = 0, .high = kNoLimit, .without_low = true};
 
@@ -47,7 +50,21 @@ PoseColumn within(PoseColumn column, PoseColumn::Limits limits) {
   return column;
 }
 
-std::vector<PoseColumn> make_columns() {
+/// NaN stands for components that were not given.
+PoseColumn reference(std::size_t axis) {
+  const auto a = static_cast<Eigen::Index>(axis);
+  return {fmt::format("ref_{}_nT", kAxes[axis]),
+          false,
+          [a](Pose& p, double v) {
+            if (!p.ref_nT) p.ref_nT = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+            (*p.ref_nT)[a] = v;
+          },
+          [a](const Pose& p) { return p.ref_nT ? std::optional((*p.ref_nT)[a]) : std::nullopt; },
+          false,
+          {.low = -kMostReading_nT, .high = kMostReading_nT}};
+}
+
+std::vector<PoseColumn> make_columns(std::size_t sensors) {
   std::vector<PoseColumn> columns{
       plain("t_s", &Pose::t_s),
       angle("azimuth_deg", &Pose::azimuth_rad),
@@ -55,39 +72,45 @@ std::vector<PoseColumn> make_columns() {
       angle("roll_deg", &Pose::roll_rad),
       within(plain("f_nT", &Pose::f_nT), {.low = kLeastField_nT, .high = kMostField_nT}),
       within(plain("f_sd_nT", &Pose::f_sd_nT), kAboveZero),
+      reference(0),
+      reference(1),
+      reference(2),
+      within(plain("ref_sd_nT", &Pose::ref_sd_nT), kAboveZero),
       within(plain("n", &Pose::n), {.low = 1}),
       within(plain("n_eff", &Pose::n_eff), kAboveZero)};
-  constexpr std::string_view kAxes = "xyz";
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < sensors; ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
-      columns.push_back(
-          {fmt::format("s{}_{}_nT", i + 1, kAxes[a]),
-           true,
-           [i, a](Pose& p, double v) { p.y_nT.at(i)[static_cast<Eigen::Index>(a)] = v; },
-           [i, a](const Pose& p) { return std::optional(p.y_nT.at(i)[static_cast<Eigen::Index>(a)]); },
-           false,
-           {.low = -kMostReading_nT, .high = kMostReading_nT}});
+      columns.push_back({fmt::format("s{}_{}_nT", i + 1, kAxes[a]),
+                         true,
+                         [i, a](Pose& p, double v) { p.y_nT.at(i)[static_cast<Eigen::Index>(a)] = v; },
+                         [i, a](const Pose& p) {
+                           return i < p.y_nT.size() ? std::optional(p.y_nT[i][static_cast<Eigen::Index>(a)])
+                                                    : std::nullopt;
+                         },
+                         false,
+                         {.low = -kMostReading_nT, .high = kMostReading_nT}});
     }
   }
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < sensors; ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
-      columns.push_back({fmt::format("s{}_sd_{}_nT", i + 1, kAxes[a]),
-                         false,
-                         [i, a](Pose& p, double v) { p.sd_nT.at(i).at(a) = v; },
-                         [i, a](const Pose& p) { return p.sd_nT.at(i).at(a); },
-                         false,
-                         {.low = 0, .high = kNoLimit}});  // 0: a stuck axis
+      columns.push_back(
+          {fmt::format("s{}_sd_{}_nT", i + 1, kAxes[a]),
+           false,
+           [i, a](Pose& p, double v) { p.sd_nT.at(i).at(a) = v; },
+           [i, a](const Pose& p) { return i < p.sd_nT.size() ? p.sd_nT[i].at(a) : std::nullopt; },
+           false,
+           {.low = 0, .high = kNoLimit}});  // 0: a stuck axis
     }
   }
   columns.push_back(whole("mount", &Pose::mount));
   columns.push_back(within(whole("sense", &Pose::sense), {.low = -1, .high = 1, .only_ends = true}));
   columns.push_back(within(plain("dwell_s", &Pose::dwell_s), kAboveZero));
   columns.push_back(plain("since_stop_s", &Pose::since_stop_s));
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < sensors; ++i) {
     columns.push_back({fmt::format("s{}_T_degC", i + 1),
                        false,
                        [i](Pose& p, double v) { p.T_degC.at(i) = v; },
-                       [i](const Pose& p) { return p.T_degC.at(i); },
+                       [i](const Pose& p) { return i < p.T_degC.size() ? p.T_degC[i] : std::nullopt; },
                        false,
                        {.low = kColdest_degC, .high = kHottest_degC}});
   }
@@ -107,9 +130,27 @@ std::string PoseColumn::Limits::words() const {
   return fmt::format("from {} to {}", low, high);
 }
 
-const std::vector<PoseColumn>& pose_columns() {
-  static const std::vector<PoseColumn> kColumns = make_columns();
-  return kColumns;
+const std::vector<PoseColumn>& pose_columns(std::size_t sensors) {
+  static const auto kColumns = [] {
+    std::array<std::vector<PoseColumn>, kMostSensors + 1> all;
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = make_columns(n);
+    return all;
+  }();
+  return kColumns.at(sensors);
+}
+
+PoseColumn::Limits field_limits_beside_reference() { return {.low = 0, .high = kMostField_nT}; }
+
+Pose unmeasured_pose(std::size_t sensors) {
+  Pose pose;
+  pose.y_nT = no_readings(sensors);
+  pose.sd_nT = PerSensor<std::array<std::optional<double>, 3>>(sensors);
+  pose.T_degC = PerSensor<std::optional<double>>(sensors);
+  return pose;
+}
+
+std::size_t sensors_of(const PoseTable& table) {
+  return table.poses.empty() ? kSensorCount : table.poses.front().y_nT.size();
 }
 
 }  // namespace mgtd::calib::poses

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -28,8 +29,17 @@ struct PoseColumn {
   } limits{};
 };
 
-/// In the order they are written. `pose`, `set` and `t_utc` are not numbers of this kind and stand before
-/// them.
-[[nodiscard]] const std::vector<PoseColumn>& pose_columns();
+/// Those of an array of 0 to kMostSensors sensors, in the order they are written. `pose`, `set` and `t_utc`
+/// are not numbers of this kind and stand before them. Made once; references stay valid.
+[[nodiscard]] const std::vector<PoseColumn>& pose_columns(std::size_t sensors);
+
+/// Of f_nT where the field is given as a vector beside it: a coil cage can make it nearly zero.
+[[nodiscard]] PoseColumn::Limits field_limits_beside_reference();
+
+/// A pose of an array of so many sensors at which nothing was measured.
+[[nodiscard]] Pose unmeasured_pose(std::size_t sensors);
+
+/// How many sensors the array of a table has; those of the cross where it has no pose.
+[[nodiscard]] std::size_t sensors_of(const PoseTable& table);
 
 }  // namespace mgtd::calib::poses

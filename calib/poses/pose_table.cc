@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -43,10 +45,33 @@ bool is_angle(std::string_view name) {
   return name == "azimuth_deg" || name == "pitch_deg" || name == "roll_deg";
 }
 
+/// Of a column that belongs to one sensor: which, from 1, and whether it is one of its readings.
+struct OfSensor {
+  std::size_t number{0};
+  bool reading{false};
+};
+
+/// Empty for any other column. The number may be one that no array has.
+std::optional<OfSensor> of_sensor(std::string_view name) {
+  const std::size_t end = name.find('_');
+  if (!name.starts_with('s') || end == std::string_view::npos || end < 2 || end > 4) return std::nullopt;
+  const std::string_view digits = name.substr(1, end - 1), what = name.substr(end + 1);
+  if (digits.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
+  if (digits.size() > 1 && digits.front() == '0') return std::nullopt;
+  const bool reading = what == "x_nT" || what == "y_nT" || what == "z_nT";
+  if (!reading && what != "sd_x_nT" && what != "sd_y_nT" && what != "sd_z_nT" && what != "T_degC")
+    return std::nullopt;
+  return OfSensor{static_cast<std::size_t>(parse_integer(digits).value_or(0)), reading};
+}
+
+constexpr std::array<std::string_view, 3> kReference{"ref_x_nT", "ref_y_nT", "ref_z_nT"};
+
 /// Reads line by line; knows where it is for every complaint.
 class Reader {
  public:
-  Reader(std::string_view text, std::string_view file, Rows rows) : text_(text), file_(file), rows_(rows) {
+  /// `sensors`: of the array for which poses are planned; a measured table tells its own.
+  Reader(std::string_view text, std::string_view file, Rows rows, std::size_t sensors)
+      : text_(text), file_(file), rows_(rows), sensors_(sensors) {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
   [[nodiscard]] Result<PoseTable> read();
@@ -58,6 +83,12 @@ class Reader {
  private:
   bool next_line();
   Result<void> read_header();
+  Result<void> count_sensors(const std::vector<Cell>& header);
+  Result<void> refuse_missing();
+  Result<void> refuse_part_of_reference(const Pose& pose, const std::vector<Cell>& cells);
+  [[nodiscard]] PoseColumn::Limits limits_of(const PoseColumn& column) const {
+    return column.name == "f_nT" && with_reference_ ? field_limits_beside_reference() : column.limits;
+  }
   Result<Pose> read_row(const std::vector<Cell>& cells);
   Result<void> read_names(Pose& pose, const std::vector<Cell>& cells);
   [[nodiscard]] tl::unexpected<Error> complain(std::size_t column, std::string message,
@@ -78,6 +109,8 @@ class Reader {
 
   std::string_view text_, file_, line_;
   Rows rows_;
+  std::size_t sensors_;
+  bool with_reference_{false};
   std::size_t line_number_{0};
   std::vector<int> lines_;
   std::vector<std::string> notes_;  ///< beside lines_
@@ -120,30 +153,93 @@ Result<void> Reader::read_header() {
         ErrorCode::bad_input, fmt::format("{}: {}", file_, what),
         "give a *.mgtrun, or a pose table in CSV: commas between the columns, a decimal point, UTF-8");
   }
-  for (const Cell& cell : cells_of(line_)) {
+  const std::vector<Cell> header = cells_of(line_);
+  for (const Cell& cell : header) {
     if (cell.text.empty()) return complain(cell.column, "a column has no name", "name it in the header row");
     if (column_of(cell.text) != kNowhere) {
       return complain(cell.column, fmt::format("column '{}' stands here twice", cell.text),
                       "remove or rename one of them");
     }
     names_.emplace_back(cell.text);
-    const auto& columns = pose_columns();
+  }
+  if (auto counted = count_sensors(header); !counted) return counted;
+  const auto& columns = pose_columns(sensors_);
+  for (const std::string& name : names_) {
     const auto found =
-        std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == cell.text; });
+        std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
     known_.push_back(found == columns.end() ? nullptr : &*found);
   }
+  return refuse_missing();
+}
+
+/// As many sensors as the readings name. Where they name none, those of the cross are missed.
+Result<void> Reader::count_sensors(const std::vector<Cell>& header) {
+  std::size_t most = 0;
+  for (const Cell& cell : header) {
+    const auto of = of_sensor(cell.text);
+    if (of && (of->number < 1 || of->number > kMostSensors)) {
+      return complain(cell.column, fmt::format("{}: there is no sensor s{}", cell.text, of->number),
+                      fmt::format("number the sensors s1, s2, ...; an array has at most {}", kMostSensors));
+    }
+    if (of && of->reading) most = std::max(most, of->number);
+  }
+  if (rows_ == Rows::measured) sensors_ = most > 0 ? most : kSensorCount;
+  for (const Cell& cell : header) {
+    const auto of = of_sensor(cell.text);
+    if (!of || of->number <= sensors_) continue;
+    if (rows_ == Rows::planned)
+      return complain(
+          cell.column, fmt::format("{}: the array has {} sensors", cell.text, sensors_),
+          "leave the column out, or describe the array that is meant: mgt plan --array FILE.toml");
+    return complain(cell.column,
+                    fmt::format("{0}: there are no readings of s{1} (s{1}_x_nT, s{1}_y_nT, s{1}_z_nT)",
+                                cell.text, of->number),
+                    "add them, or rename this column when it is of no sensor");
+  }
+  return {};
+}
+
+Result<void> Reader::refuse_missing() {
   std::string missing;
-  for (const PoseColumn& column : pose_columns()) {
+  for (const PoseColumn& column : pose_columns(sensors_)) {
     if (required(&column) && column_of(column.name) == kNowhere)
       missing += (missing.empty() ? "" : ", ") + column.name;
   }
   if (column_of("pose") == kNowhere) missing = "pose" + (missing.empty() ? "" : ", " + missing);
   if (!missing.empty()) {
+    std::size_t read = 0;  // sensors of which there is any reading
+    for (std::size_t i = 1; i <= sensors_; ++i)
+      read += std::any_of(names_.begin(), names_.end(), [i](const std::string& name) {
+        const auto of = of_sensor(name);
+        return of && of->reading && of->number == i;
+      });
+    if (rows_ == Rows::measured && read > 0 && read < sensors_)
+      return complain(1, fmt::format("missing column: {} (there is an s{})", missing, sensors_),
+                      "number the sensors s1, s2, ... without a gap, each with x, y and z");
     return complain(
         1, fmt::format("missing column: {}", missing),
         column_of("s1_x_uT") == kNowhere
             ? "add it to the header row; docs/pose-table.md lists every column"
             : "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...");
+  }
+  const auto there = std::count_if(kReference.begin(), kReference.end(),
+                                   [&](std::string_view name) { return column_of(name) != kNowhere; });
+  with_reference_ = there == 3;
+  if (with_reference_ || (there == 0 && column_of("ref_sd_nT") == kNowhere)) return {};
+  for (const std::string_view name : kReference)
+    if (column_of(name) == kNowhere) missing += (missing.empty() ? "" : ", ") + std::string(name);
+  return complain(1, fmt::format("missing column: {}", missing),
+                  "the reference field is a vector: give ref_x_nT, ref_y_nT and ref_z_nT, or none of them");
+}
+
+/// In a row the reference is there or not.
+Result<void> Reader::refuse_part_of_reference(const Pose& pose, const std::vector<Cell>& cells) {
+  if (!pose.ref_nT || pose.ref_nT->allFinite()) return {};
+  for (const std::string_view name : kReference) {
+    const Cell& cell = cells[column_of(name)];
+    if (cell.text.empty())
+      return complain(cell.column, fmt::format("{} is empty, but not the whole reference field", name),
+                      "give all three of ref_x_nT, ref_y_nT and ref_z_nT, or leave all three empty");
   }
   return {};
 }
@@ -172,7 +268,7 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
         1, fmt::format("{} cells, but the header names {} columns", cells.size(), names_.size()),
         "give every row as many commas as the header; leave a cell empty when nothing was measured");
   }
-  Pose pose;
+  Pose pose = unmeasured_pose(sensors_);
   if (auto read = read_names(pose, cells); !read) return tl::unexpected(read.error());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string& name = names_[i];
@@ -194,10 +290,10 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
                       fmt::format("{} in column {} is not a whole number", cells[i].text, name),
                       "write it without decimals, or leave the cell empty");
     }
-    if (known_[i] != nullptr && !known_[i]->limits.hold(*value)) {
+    if (known_[i] != nullptr && !limits_of(*known_[i]).hold(*value)) {
       return complain(cells[i].column,
                       fmt::format("{} in column {} is not possible: it must be {}", cells[i].text, name,
-                                  known_[i]->limits.words()),
+                                  limits_of(*known_[i]).words()),
                       known_[i]->required
                           ? "check unit and column; leave the whole pose out when it is wrong"
                           : "check unit and column; leave the cell empty when it was not measured");
@@ -208,6 +304,7 @@ Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
       pose.covariates[name] = *value;
     }
   }
+  if (auto whole = refuse_part_of_reference(pose, cells); !whole) return tl::unexpected(whole.error());
   return pose;
 }
 
@@ -238,15 +335,15 @@ Result<PoseTable> Reader::read() {
 }  // namespace
 
 Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file) {
-  return Reader(text, file, Rows::measured).read();
+  return Reader(text, file, Rows::measured, kSensorCount).read();
 }
 
-Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file) {
-  return Reader(text, file, Rows::planned).read();
+Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file, std::size_t sensors) {
+  return Reader(text, file, Rows::planned, sensors).read();
 }
 
 Result<PoseList> read_pose_list(std::string_view text, std::string_view file) {
-  Reader reader(text, file, Rows::planned);
+  Reader reader(text, file, Rows::planned, kSensorCount);
   auto table = reader.read();
   if (!table) return tl::unexpected(table.error());
   return PoseList{*std::move(table), reader.lines(), reader.notes()};
@@ -256,7 +353,7 @@ std::string format_pose_table(const PoseTable& table) {
   const auto any = [&](const auto& has) { return std::any_of(table.poses.begin(), table.poses.end(), has); };
   const bool with_utc = any([](const Pose& p) { return p.t_utc.has_value(); });
   std::vector<const PoseColumn*> columns;
-  for (const PoseColumn& column : pose_columns()) {
+  for (const PoseColumn& column : pose_columns(sensors_of(table))) {
     if (any([&](const Pose& p) { return column.get(p).has_value(); })) columns.push_back(&column);
   }
   std::set<std::string> covariates;

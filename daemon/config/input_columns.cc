@@ -28,7 +28,8 @@ bool means_something_else(const std::string& column) {
 }  // namespace
 
 InputColumns::InputColumns() {
-  for (const calib::poses::PoseColumn& column : calib::poses::pose_columns())
+  for (const calib::poses::PoseColumn& column :
+       calib::poses::pose_columns(static_cast<std::size_t>(kMostSensors)))
     if (!drivers::sensor_of(column.name)) fixed_.insert(column.name);
 }
 

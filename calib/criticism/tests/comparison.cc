@@ -13,6 +13,7 @@
 #include "calib/criticism/tests/criticism.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/poses/kept_columns.h"
 #include "calib/stats/chi_square.h"
 #include "calib/stats/f_distribution.h"
 
@@ -51,7 +52,8 @@ std::vector<Covariate> covariates(const fit::joint::JointProblem& problem) {
   });
   std::set<std::string> columns;
   for (const fit::joint::JointPose& pose : problem.poses)
-    for (const auto& [name, value] : pose.pose->covariates) columns.insert(name);
+    for (const auto& [name, value] : pose.pose->covariates)
+      if (!poses::never_fitted(name)) columns.insert(name);
   for (const std::string& column : columns) {
     add(column, [&](const fit::joint::JointPose& p) {
       const auto found = p.pose->covariates.find(column);

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calib/criticism/tests/site_maps.h"
+#include "calib/poses/kept_columns.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -173,7 +174,8 @@ void add_mount(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
 void add_columns(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
   std::map<std::string, Range> columns;
   for (const fit::joint::JointPose& pose : problem.poses) {
-    for (const auto& [name, value] : pose.pose->covariates) columns[name].add(value);
+    for (const auto& [name, value] : pose.pose->covariates)
+      if (!poses::never_fitted(name)) columns[name].add(value);
   }
   for (const auto& [name, range] : columns) {
     if (!range.varies()) continue;

@@ -35,7 +35,7 @@ std::optional<std::size_t> coefficient_index(std::string_view name) {
 
 /// Readings are what a formula explains; it cannot be made of them.
 const poses::PoseColumn* format_column(const std::string& name) {
-  const auto& all = poses::pose_columns();
+  const auto& all = poses::pose_columns(static_cast<std::size_t>(kMostSensors));
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const poses::PoseColumn& c) { return c.name == name && !c.required; });
   return found == all.end() ? nullptr : &*found;
@@ -77,10 +77,11 @@ FormulaName formula_name(const std::string& name, Level level, const std::option
   } else if (const auto at = std::find(known.inputs.begin(), known.inputs.end(), name);
              at != known.inputs.end()) {
     out.source = Source::input, out.index = static_cast<std::size_t>(at - known.inputs.begin());
-  } else if (const poses::PoseColumn* column = format_column(name)) {
-    out.get = column->get;
   } else {
-    out.get = [name](const Pose& pose) {
+    // A temperature of a sensor that the array does not have may be a column of the user's own.
+    out.get = [name, column = format_column(name)](const Pose& pose) {
+      if (column != nullptr)
+        if (const auto there = column->get(pose)) return there;
       const auto found = pose.covariates.find(name);
       return found == pose.covariates.end() ? std::nullopt : std::optional(found->second);
     };
@@ -90,8 +91,9 @@ FormulaName formula_name(const std::string& name, Level level, const std::option
 
 std::vector<std::string> usable_columns(const PoseTable& table) {
   std::set<std::string> found;
+  const auto& columns = poses::pose_columns(poses::sensors_of(table));
   for (const Pose& pose : table.poses) {
-    for (const poses::PoseColumn& column : poses::pose_columns()) {
+    for (const poses::PoseColumn& column : columns) {
       if (!column.required && !column.name.ends_with("_nT") && column.get(pose)) found.insert(column.name);
     }
     if (pose.f_nT) found.insert("f_nT");
