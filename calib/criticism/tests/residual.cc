@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/tests/residual.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/linear/qr.h"
@@ -10,6 +11,18 @@ namespace {
 
 /// Columns shorter than this against their own length before elimination are rounding.
 constexpr double kRankTolerance = 1e-9;
+
+/// Ten times the noise of a reading over the field.
+double absorbed_in(const fit::joint::JointProblem& problem) {
+  constexpr double kNoises = 10;
+  if (problem.sensors() > 1 || problem.poses.empty()) return kAbsorbed;
+  double largest = 0;
+  for (const fit::joint::JointPose& pose : problem.poses) {
+    const double weight = pose.weight.maxCoeff(), size_nT = pose.y_nT.norm();
+    if (weight > 0 && size_nT > 0) largest = std::max(largest, 1 / (weight * size_nT));
+  }
+  return std::max(kAbsorbed, std::min(0.1, kNoises * largest));
+}
 
 }  // namespace
 
@@ -21,6 +34,7 @@ Residual::Residual(const fit::joint::JointProblem& problem, const fit::joint::Jo
                    const LinearRows& rows, double rho, const fit::joint::WanderingRates& nT_per_sqrt_h)
     : whitener_(problem, rows.nuisance, rho, nT_per_sqrt_h),
       poses_(static_cast<Eigen::Index>(problem.poses.size())) {
+  absorbed_ = absorbed_in(problem);
   const PriorRows priors = prior_rows(problem, state);
   Eigen::MatrixXd all(rows.fixed.rows(), rows.fixed.cols() + 1);
   all << rows.fixed, rows.residual;

@@ -10,6 +10,9 @@
 /// is left, `dof` dimensions of it.
 namespace mgtd::calib::criticism::tests {
 
+/// Singular values below this share of a column's length before projection are rounding: absorbed.
+inline constexpr double kAbsorbed = 1e-6;
+
 class Residual {
  public:
   Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
@@ -24,6 +27,11 @@ class Residual {
   /// Rows of value() for one pose.
   [[nodiscard]] Eigen::Index rows_per_pose() const { return whitener_.rows_per_pose(); }
   [[nodiscard]] Eigen::Index channels() const { return whitener_.channels(); }
+
+  /// Share of its length below which a projected column says nothing. Laws are functions of the readings, which
+  /// are known to their noise only: with single samples of one sensor that is more than rounding, and what is
+  /// left of an absorbed law is the noise that the residual has too.
+  [[nodiscard]] double absorbed() const { return absorbed_; }
 
   /// From now on everything is in units of noise with `scale2` times the variance of the weights.
   void measure_by(double scale2);
@@ -48,6 +56,7 @@ class Residual {
   Eigen::VectorXd value_;
   double chi2_{0}, dof_{0};
   double unit_{1};
+  double absorbed_{kAbsorbed};
 };
 
 }  // namespace mgtd::calib::criticism::tests

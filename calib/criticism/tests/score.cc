@@ -23,7 +23,8 @@ Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows) {
   Signature out{.columns = std::move(columns.projected),
                 .norms = std::move(columns.norms),
                 .gram = {},
-                .by_residual = {}};
+                .by_residual = {},
+                .absorbed = residual.absorbed()};
   const Eigen::Index m = out.columns.cols();
   out.gram = Eigen::MatrixXd::Zero(m, m);
   out.gram.selfadjointView<Eigen::Lower>().rankUpdate(out.columns.transpose());
@@ -40,7 +41,7 @@ OneStep one_step(const Signature& s, const Hypothesis& h) {
   const Eigen::MatrixXd M = scale.asDiagonal() * (T.transpose() * s.gram * T) * scale.asDiagonal();
   const linear::SymmetricEigen eigen = linear::symmetric_eigen(M);
   const Eigen::VectorXd& values = eigen.values;
-  const auto absorbed = (values.array() < kAbsorbed * kAbsorbed).count();
+  const auto absorbed = (values.array() < s.absorbed * s.absorbed).count();
   const Eigen::Index rank = values.size() - absorbed;
   const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors.rightCols(rank) *
                             values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -60,7 +61,7 @@ Score score_one(const Signature& s, const Hypothesis& h) {
   }
   const auto t = h.combine.col(0);
   const double whole = t.cwiseAbs2().dot(s.norms.cwiseAbs2()), left = t.dot(s.gram * t);
-  if (left < kAbsorbed * kAbsorbed * whole || !(left > 0)) return out;
+  if (left < s.absorbed * s.absorbed * whole || !(left > 0)) return out;
   out.k = 1;
   out.S = std::pow(t.dot(s.by_residual), 2) / left;
   return out;

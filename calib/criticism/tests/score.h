@@ -18,8 +18,6 @@
 /// Cramer-Rao bound with calibration and nuisances free.
 namespace mgtd::calib::criticism::tests {
 
-/// Singular values below this share of a column's length before projection are rounding: absorbed.
-inline constexpr double kAbsorbed = 1e-6;
 
 /// How S becomes a probability.
 struct NoiseReference {
@@ -49,6 +47,7 @@ struct Signature {
   Eigen::VectorXd norms{};    ///< before
   Eigen::MatrixXd gram{};
   Eigen::VectorXd by_residual{};
+  double absorbed{kAbsorbed};  ///< Residual::absorbed()
 };
 
 /// Coefficients of one hypothesis. `basis` maps the finest columns to orthonormal ones.

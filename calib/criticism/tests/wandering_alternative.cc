@@ -30,11 +30,12 @@ Eigen::MatrixXd slow_rows(const fit::joint::JointProblem& problem) {
   return out;
 }
 
-fit::joint::SlowSums sums_of(const Residual& residual, const Eigen::MatrixXd& slow) {
+fit::joint::SlowSums sums_of(const Residual& residual, const Eigen::VectorXd& value,
+                             const Eigen::MatrixXd& slow, double per_effective) {
   fit::joint::SlowSums out{.gram = Eigen::MatrixXd::Zero(slow.cols(), slow.cols()),
-                           .by_residual = slow.transpose() * residual.value(),
-                           .chi2 = residual.chi2(),
-                           .dof = residual.dof()};
+                           .by_residual = slow.transpose() * value,
+                           .chi2 = residual.chi2() / per_effective,
+                           .dof = residual.dof() / per_effective};
   out.gram.selfadjointView<Eigen::Lower>().rankUpdate(slow.transpose());
   out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
   return out;
@@ -63,8 +64,10 @@ WanderingAlternative::WanderingAlternative(const fit::joint::JointFit& bare)
     : problem_(bare.problem),
       state_(bare.state),
       residual_(problem_, state_, 0),
-      slow_(residual_.project(slow_rows(problem_)).projected),
-      likelihood_(sums_of(residual_, slow_)),
+      per_effective_(bare.samples_per_effective),
+      value_(residual_.value() / std::sqrt(per_effective_)),
+      slow_(residual_.project(slow_rows(problem_)).projected / std::sqrt(per_effective_)),
+      likelihood_(sums_of(residual_, value_, slow_, per_effective_)),
       estimate_(fit::joint::estimate_wandering(likelihood_)),
       theta_(fit::joint::Channels::Zero(problem_.channels())) {
   if (!estimate_.any()) return;
@@ -77,7 +80,7 @@ WanderingAlternative::Ratio WanderingAlternative::ratio(const Eigen::MatrixXd& r
   const Eigen::MatrixXd Q = basis_of(rows);
   if (Q.cols() == 0) return {};
   const fit::joint::SlowLikelihood with(
-      likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * residual_.value()));
+      likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * value_));
   const auto deviance = [&](const fit::joint::Channels& at) { return deviance_with(with, at); };
   // From rates that are too high the likelihood is climbed slowly: begin with those of the others, and with
   // none, too.
@@ -107,7 +110,7 @@ double WanderingAlternative::curve_instead(int channel) const {
   constexpr int kCurve = 8;
   const Eigen::MatrixXd columns = slow_.middleCols(channel * fit::joint::kWanderingTerms, kCurve);
   const Eigen::MatrixXd Q = linear::orthonormal(columns);
-  const Eigen::VectorXd r = Q.transpose() * residual_.value();
+  const Eigen::VectorXd r = Q.transpose() * value_;
   const fit::joint::SlowLikelihood with(likelihood_.sums().without(Q.transpose() * slow_, r));
   fit::joint::Channels others = theta_;
   others[channel] = 0;
@@ -118,7 +121,7 @@ double WanderingAlternative::curve_instead(int channel) const {
 fit::joint::WanderingEstimate WanderingAlternative::beside(const Eigen::MatrixXd& rows) const {
   const Eigen::MatrixXd Q = basis_of(rows);
   return fit::joint::estimate_wandering(fit::joint::SlowLikelihood(
-      likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * residual_.value())));
+      likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * value_)));
 }
 
 Eigen::MatrixXd WanderingAlternative::basis_of(const Eigen::MatrixXd& rows) const {

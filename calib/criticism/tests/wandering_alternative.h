@@ -51,7 +51,9 @@ class WanderingAlternative {
   fit::joint::JointProblem problem_;
   fit::joint::JointState state_;
   Residual residual_;     ///< nuisances and the model's own parameters out, poses uncorrelated
-  Eigen::MatrixXd slow_;  ///< projected columns of the wandering
+  double per_effective_;   ///< JointFit::samples_per_effective: what follows is thinned by it
+  Eigen::VectorXd value_;  ///< of the residual
+  Eigen::MatrixXd slow_;   ///< projected columns of the wandering
   fit::joint::SlowLikelihood likelihood_;
   fit::joint::WanderingEstimate estimate_;
   fit::joint::Channels theta_;  ///< where the likelihood is largest without any law

@@ -32,6 +32,8 @@ struct JointFit {
   double table_sd_rad{0};     ///< estimated; 0 without angles
   double chi2{0}, dof{0};     ///< readings and scalar reference
   double chi2_table{0}, dof_table{0};
+  /// Of a recording of single samples: how many of them count as one (sample_correlation.h). In the covariance.
+  double samples_per_effective{1};
   double birge_ratio{1};  ///< sqrt(chi2/dof) where significantly above one, else 1
   Termination termination{Termination::converged};
   int rounds{0}, iterations{0};  ///< FitSummary
@@ -48,6 +50,8 @@ struct JointFit {
 
 /// Poses that a fit needs; in general position, and better sixty.
 inline constexpr std::size_t kFewestPoses = 12;
+/// So many poses of which none says how many samples it is the mean of are a recording of single samples.
+inline constexpr std::size_t kRecording = 300;
 
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options);
 /// The same with a warm start (another fold, the run before the last pose). Nuisances are refitted.

@@ -203,6 +203,14 @@ SlowSums SlowSums::without(const Eigen::MatrixXd& by_columns, const Eigen::Vecto
           .dof = dof - static_cast<double>(r.size())};
 }
 
+SlowSums SlowSums::thinned(double per_effective) const {
+  if (per_effective == 1) return *this;
+  return {.gram = gram / per_effective,
+          .by_residual = by_residual / per_effective,
+          .chi2 = chi2 / per_effective,
+          .dof = dof / per_effective};
+}
+
 WanderingTerms wandering_terms(const JointProblem& problem) {
   const auto [first, last] =
       std::minmax_element(problem.poses.begin(), problem.poses.end(),
@@ -280,11 +288,11 @@ WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
 double unequal_noise_evidence(const JointFit& fit) {
   const Eigen::ArrayXd squares =
       pose_residuals(fit.problem, fit.state).noise_ratio.reshaped().array().square();
-  return std::max(0.0, fit.dof * (std::log(squares.mean()) - squares.log().mean()));
+  return std::max(0.0, fit.dof / fit.samples_per_effective * (std::log(squares.mean()) - squares.log().mean()));
 }
 
 WanderingEstimate wandering_of(const JointFit& fit) {
-  WanderingEstimate out = estimate_wandering(SlowLikelihood(slow_sums(fit)));
+  WanderingEstimate out = estimate_wandering(SlowLikelihood(slow_sums(fit).thinned(fit.samples_per_effective)));
   return out.evidence < kWanderingEvidence + unequal_noise_evidence(fit) ? WanderingEstimate{} : out;
 }
 

@@ -27,6 +27,9 @@ struct SlowSums {
   double chi2{0};               ///< r' r
   double dof{0};                ///< dimensions of r
   [[nodiscard]] int channels() const { return static_cast<int>(gram.rows()) / kWanderingTerms; }
+  /// The sums of as many independent samples as the correlated ones are worth, `per_effective` of which count
+  /// as one: a walk is slow, and meets their noise as it is at low frequencies.
+  [[nodiscard]] SlowSums thinned(double per_effective) const;
 
   /// With the directions of some orthonormal columns taken out: `by_columns` = Q'U, `r` = Q'r.
   [[nodiscard]] SlowSums without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const;

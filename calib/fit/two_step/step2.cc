@@ -97,6 +97,7 @@ Result<Alignment> align(const Readings& readings, const PerSensor<Eigen::Matrix3
   const auto turn = standard_turn(readings);
   if (!turn) return tl::unexpected(turn.error());
   Alignment out;
+  out.R_PS.resize(b_S_nT.size());
   PerSensor<Rows> rows(b_S_nT.size());
   double bz = 0, handedness = 0;
   const double f = readings.mean_f_nT();
