@@ -39,7 +39,8 @@ plan::PlanOptions plan_options(const config::Config& config, const RunRequest& r
 
 store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
   store::RunOptions out;
-  out.baseline_m = c.baseline_m;
+  out.geometry = c.geometry();
+  out.sensor_names = store::numbered_sensors(out.geometry.sensors());
   out.field_nT = c.field_nT;
   if (c.field_nT) out.field_sd_nT = c.field_sd_nT;
   if (c.inclination_deg) out.inclination_rad = to_rad(*c.inclination_deg);

@@ -14,7 +14,7 @@ calib::fit::FitOptions fit_options(const store::RunOptions& options) {
   out.field_sd_nT = options.field_sd_nT.value_or(out.field_sd_nT);
   out.inclination_rad = options.inclination_rad;
   out.declination_rad = options.declination_rad;
-  out.geometry = calib::sensor::Geometry(options.baseline_m);
+  out.geometry = options.geometry;
   out.table_sd_rad = options.table_sd_rad.value_or(out.table_sd_rad);
   return out;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -24,7 +25,7 @@ PoseColumn whole(const char* name) {
           [](Pose& p, int, double v) { p.*Member = static_cast<int>(std::lround(v)); }};
 }
 
-std::vector<PoseColumn> make() {
+std::vector<PoseColumn> make(int sensors) {
   std::vector<PoseColumn> columns{real<&Pose::t_s>("t_s"),
                                   real<&Pose::azimuth_rad>("azimuth_rad"),
                                   real<&Pose::pitch_rad>("pitch_rad"),
@@ -37,17 +38,17 @@ std::vector<PoseColumn> make() {
                                   whole<&Pose::sense>("sense"),
                                   real<&Pose::dwell_s>("dwell_s"),
                                   real<&Pose::since_stop_s>("since_stop_s")};
-  for (int i = 0; i < 3 * kSensors; ++i) {
+  for (int i = 0; i < 3 * sensors; ++i) {
     columns.push_back({fmt::format("s{}_{}_nT", i / 3 + 1, "xyz"[i % 3]),
                        [](const Pose& p, int at) { return std::optional<double>(p.y_nT[slot(at)][at % 3]); },
                        [](Pose& p, int at, double v) { p.y_nT[slot(at)][at % 3] = v; }, i, true});
   }
-  for (int i = 0; i < 3 * kSensors; ++i) {
+  for (int i = 0; i < 3 * sensors; ++i) {
     columns.push_back({fmt::format("s{}_sd_{}_nT", i / 3 + 1, "xyz"[i % 3]),
                        [](const Pose& p, int at) { return p.sd_nT[slot(at)][axis(at)]; },
                        [](Pose& p, int at, double v) { p.sd_nT[slot(at)][axis(at)] = v; }, i});
   }
-  for (int i = 0; i < kSensors; ++i) {
+  for (int i = 0; i < sensors; ++i) {
     columns.push_back({fmt::format("s{}_T_degC", i + 1),
                        [](const Pose& p, int at) { return p.T_degC[static_cast<std::size_t>(at)]; },
                        [](Pose& p, int at, double v) { p.T_degC[static_cast<std::size_t>(at)] = v; }, i});
@@ -57,9 +58,13 @@ std::vector<PoseColumn> make() {
 
 }  // namespace
 
-std::span<const PoseColumn> pose_columns() {
-  static const std::vector<PoseColumn> columns = make();
-  return columns;
+std::span<const PoseColumn> pose_columns(std::size_t sensors) {
+  static const auto columns = [] {
+    std::array<std::vector<PoseColumn>, kMostSensors + 1> all;
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] = make(static_cast<int>(n));
+    return all;
+  }();
+  return columns.at(sensors);
 }
 
 }  // namespace mgtd::daemon::store

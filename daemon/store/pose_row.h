@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,7 +18,8 @@ struct PoseColumn {
   bool required{false};
 };
 
-/// `number`, `set`, `t_utc` and covariates are not among them.
-[[nodiscard]] std::span<const PoseColumn> pose_columns();
+/// Of an array of 0 to kMostSensors sensors. `number`, `set`, `t_utc`, covariates and the reference field are
+/// not among them.
+[[nodiscard]] std::span<const PoseColumn> pose_columns(std::size_t sensors);
 
 }  // namespace mgtd::daemon::store

@@ -23,6 +23,25 @@ bool is_database(const std::filesystem::path& path) {
   return in && start == kSqliteMagic;
 }
 
+/// Two runs of one array, as far as their files tell.
+Result<void> same_array(const std::filesystem::path& first, const std::optional<RunHeader>& a,
+                        const std::string& second, const std::optional<RunHeader>& b) {
+  if (!a || !b || a->options.geometry == b->options.geometry) return {};
+  constexpr const char* kRemedy = "judge them one by one";
+  const auto a_m = a->options.geometry.cross_baseline_m(), b_m = b->options.geometry.cross_baseline_m();
+  if (a_m && b_m)
+    return fail(ErrorCode::refused,
+                fmt::format("the sensors of {} are {} m apart and those of {} {} m: this is another array",
+                            first.string(), *a_m, second, *b_m),
+                kRemedy);
+  return fail(
+      ErrorCode::refused,
+      fmt::format("{} has {} sensors and {} has {}, and not all stand at the same places: this is "
+                  "another array",
+                  first.string(), a->options.geometry.sensors(), second, b->options.geometry.sensors()),
+      kRemedy);
+}
+
 }  // namespace
 
 Result<PoseSource> read_run(const std::filesystem::path& path) {
@@ -58,12 +77,8 @@ Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vect
     if (!out) return out;
     const auto other = read_run(path);
     if (!other) return tl::unexpected(other.error());
-    if (out->header && other->header && out->header->options.baseline_m != other->header->options.baseline_m)
-      return fail(ErrorCode::refused,
-                  fmt::format("the sensors of {} are {} m apart and those of {} {} m: this is another array",
-                              first.string(), out->header->options.baseline_m, path,
-                              other->header->options.baseline_m),
-                  "judge them one by one");
+    if (auto same = same_array(first, out->header, path, other->header); !same)
+      return tl::unexpected(same.error());
     auto both = calib::poses::joined(out->table, other->table);
     if (!both) return tl::unexpected(both.error());
     out->table = std::move(*both);

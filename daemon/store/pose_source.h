@@ -23,7 +23,7 @@ struct PoseSource {
 
 [[nodiscard]] Result<PoseSource> read_run(const std::filesystem::path& path);
 /// The first run with the poses of the others (calib/poses/joined_runs.h); its own header, model and formulas
-/// count. Refuses runs whose sensors stand at another distance.
+/// count. Refuses runs whose sensors stand at other places.
 [[nodiscard]] Result<PoseSource> read_runs(const std::filesystem::path& first,
                                            const std::vector<std::string>& others);
 [[nodiscard]] Result<PoseTable> read_poses(const std::filesystem::path& path);

@@ -51,9 +51,31 @@ Result<void> create_private(const std::filesystem::path& path) {
   return {};
 }
 
-Result<void> insert_pose(Database& db, const Pose& pose) {
+/// Beside the pose, which a program that does not know of it must not read without it.
+Result<void> insert_reference(Database& db, const Pose& pose) {
+  if (!pose.ref_nT && !pose.ref_sd_nT) return {};
+  if (auto ok = db.execute(fmt::format("CREATE TABLE IF NOT EXISTS reference(pose INTEGER PRIMARY KEY "
+                                       "REFERENCES pose(ord), x_nT REAL, y_nT REAL, z_nT REAL, sd_nT REAL);"
+                                       "PRAGMA user_version={}",
+                                       kRunSchemaVersion));
+      !ok)
+    return ok;
+  auto row =
+      db.prepare("INSERT INTO reference VALUES((SELECT ord FROM pose WHERE number=?1), ?2, ?3, ?4, ?5)");
+  if (!row) return tl::unexpected(row.error());
+  row->bind(1, std::int64_t{pose.number});
+  for (int a = 0; a < 3; ++a) row->bind(2 + a, pose.ref_nT ? std::optional((*pose.ref_nT)[a]) : std::nullopt);
+  return row->bind(5, pose.ref_sd_nT).run();
+}
+
+Result<void> insert_pose(Database& db, const Pose& pose, std::size_t sensors) {
+  if (pose.y_nT.size() != sensors || pose.sd_nT.size() != sensors || pose.T_degC.size() != sensors)
+    return fail(
+        ErrorCode::refused,
+        fmt::format("pose {} has {} sensors, the run file {}", pose.number, pose.y_nT.size(), sensors),
+        "describe the array that was measured: --array FILE.toml");
   std::string names, marks;
-  for (const PoseColumn& c : pose_columns()) {
+  for (const PoseColumn& c : pose_columns(sensors)) {
     names += ", " + c.name;
     marks += ", ?";
   }
@@ -63,7 +85,7 @@ Result<void> insert_pose(Database& db, const Pose& pose) {
   row->bind(1, std::int64_t{pose.number}).bind(2, std::string_view(pose.set));
   if (pose.t_utc) row->bind(3, pose.t_utc->ns);
   int at = 4;
-  for (const PoseColumn& c : pose_columns()) row->bind(at++, c.get(pose, c.index));
+  for (const PoseColumn& c : pose_columns(sensors)) row->bind(at++, c.get(pose, c.index));
   if (auto ok = row->run(); !ok) {
     ok.error().message += fmt::format(" (pose {})", pose.number);
     return ok;
@@ -76,7 +98,7 @@ Result<void> insert_pose(Database& db, const Pose& pose) {
     if (auto ok = covariate->bind(1, number).bind(2, std::string_view(name)).bind(3, value).run(); !ok)
       return ok;
   }
-  return {};
+  return insert_reference(db, pose);
 }
 
 }  // namespace
@@ -125,18 +147,22 @@ Result<void> RunFile::append_pose(const Pose& pose) { return append_poses({&pose
 Result<void> RunFile::append_poses(std::span<const Pose> poses) {
   return db_->atomically([&]() -> Result<void> {
     for (const Pose& pose : poses) {
-      if (auto ok = insert_pose(*db_, pose); !ok) return ok;
+      if (auto ok = insert_pose(*db_, pose, header_.options.geometry.sensors()); !ok) return ok;
     }
     return {};
   });
 }
 
 Result<void> RunFile::remove_poses(std::span<const int> numbers) {
+  const auto reference = db_->integer("SELECT count(*) FROM sqlite_master WHERE name='reference'");
+  if (!reference) return tl::unexpected(reference.error());
+  std::vector<const char*> steps{"DELETE FROM covariate WHERE pose IN (SELECT ord FROM pose WHERE number=?)",
+                                 "DELETE FROM pose WHERE number=?"};
+  if (*reference != 0)
+    steps.insert(steps.begin(), "DELETE FROM reference WHERE pose IN (SELECT ord FROM pose WHERE number=?)");
   return db_->atomically([&]() -> Result<void> {
     for (const int number : numbers) {
-      for (const char* const sql :
-           {"DELETE FROM covariate WHERE pose IN (SELECT ord FROM pose WHERE number=?)",
-            "DELETE FROM pose WHERE number=?"}) {
+      for (const char* const sql : steps) {
         auto row = db_->prepare(sql);
         if (!row) return tl::unexpected(row.error());
         row->bind(1, std::int64_t{number});

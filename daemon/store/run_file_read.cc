@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "calib/poses/pose_columns.h"
 #include "daemon/store/database.h"
 #include "daemon/store/pose_row.h"
 #include "daemon/store/run_file.h"
@@ -29,13 +30,13 @@ Stamp stamp(const Statement& row, int column) {
   return {Instant{Duration{row.integer(column)}}, WallTime{row.integer(column + 1)}};
 }
 
-Pose pose_of(const Statement& row) {
-  Pose pose;
+Pose pose_of(const Statement& row, std::size_t sensors) {
+  Pose pose = calib::poses::unmeasured_pose(sensors);
   pose.number = static_cast<int>(row.integer(0));
   pose.set = row.text(1);
   if (!row.null(2)) pose.t_utc = WallTime{row.integer(2)};
   int at = 3;
-  for (const PoseColumn& c : pose_columns()) {
+  for (const PoseColumn& c : pose_columns(sensors)) {
     if (const auto value = row.optional_real(at++)) c.set(pose, c.index, *value);
   }
   return pose;
@@ -54,12 +55,33 @@ std::vector<PathPoint> path_in_run(const PoseTable& table, const std::vector<Tab
   return out;
 }
 
+/// Into the poses; none in a file without a reference field.
+Result<void> read_references(const Database& db, const std::map<int, Pose*>& by_number) {
+  const auto known = db.integer("SELECT count(*) FROM sqlite_master WHERE name='reference'");
+  if (!known) return tl::unexpected(known.error());
+  if (*known == 0) return {};
+  const auto read =
+      rows<bool>(db, "SELECT number, x_nT, y_nT, z_nT, sd_nT FROM reference JOIN pose ON ord=pose",
+                 [&](const Statement& row) {
+                   const auto pose = by_number.find(static_cast<int>(row.integer(0)));
+                   if (pose == by_number.end()) return false;
+                   if (!row.null(1) && !row.null(2) && !row.null(3))
+                     pose->second->ref_nT = Eigen::Vector3d{row.real(1), row.real(2), row.real(3)};
+                   pose->second->ref_sd_nT = row.optional_real(4);
+                   return true;
+                 });
+  if (!read) return tl::unexpected(read.error());
+  return {};
+}
+
 }  // namespace
 
 Result<PoseTable> RunFile::poses() const {
+  const std::size_t sensors = header_.options.geometry.sensors();
   std::string columns = "number, \"set\", t_utc_ns";
-  for (const PoseColumn& c : pose_columns()) columns += ", " + c.name;
-  auto found = rows<Pose>(*db_, "SELECT " + columns + " FROM pose ORDER BY ord", pose_of);
+  for (const PoseColumn& c : pose_columns(sensors)) columns += ", " + c.name;
+  auto found = rows<Pose>(*db_, "SELECT " + columns + " FROM pose ORDER BY ord",
+                          [sensors](const Statement& row) { return pose_of(row, sensors); });
   if (!found) return tl::unexpected(found.error());
   PoseTable table{std::move(*found), path_.string(), {}};
   std::map<int, Pose*> by_number;
@@ -72,6 +94,7 @@ Result<PoseTable> RunFile::poses() const {
                                        return true;
                                      });
   if (!covariates) return tl::unexpected(covariates.error());
+  if (auto read = read_references(*db_, by_number); !read) return tl::unexpected(read.error());
   const auto readings = path_readings();
   if (!readings) return tl::unexpected(readings.error());
   table.path = path_in_run(table, *readings);

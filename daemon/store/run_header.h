@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/sensor/geometry.h"
 #include "proto/reading.h"
 #include "proto/time.h"
 
@@ -13,13 +14,16 @@ namespace mgtd::daemon::store {
 
 /// What a later fit of the same file must know to give the same answer. Empty: not stated.
 struct RunOptions {
-  double baseline_m{0.4};
+  calib::sensor::Geometry geometry;             ///< also tells how many sensors a pose has
   std::optional<double> field_nT, field_sd_nT;  ///< of the site, when no scalar reference is in the poses
   std::optional<double> inclination_rad, declination_rad;
   std::optional<double> table_sd_rad;
   std::optional<double> until_tensor_sd_nT_per_m;  ///< at which the run was to end; a resumed one still does
-  PerSensor<std::string> sensor_names{"s1", "s2", "s3", "s4"};
+  PerSensor<std::string> sensor_names{"s1", "s2", "s3", "s4"};  ///< as many as the geometry has places
 };
+
+/// s1, s2, ...
+[[nodiscard]] PerSensor<std::string> numbered_sensors(std::size_t sensors);
 
 struct RunHeader {
   std::string run_id;  ///< made by the caller; also the stem of the file's name

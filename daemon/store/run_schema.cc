@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "daemon/store/pose_row.h"
 #include "proto/number.h"
@@ -11,9 +12,9 @@
 namespace mgtd::daemon::store {
 namespace {
 
-std::string schema() {
+std::string schema(const RunOptions& options) {
   std::string pose_columns_sql;
-  for (const PoseColumn& c : pose_columns()) {
+  for (const PoseColumn& c : pose_columns(options.geometry.sensors())) {
     pose_columns_sql += fmt::format(", {} REAL{}", c.name, c.required ? " NOT NULL" : "");
   }
   return fmt::format(
@@ -37,13 +38,37 @@ std::string schema() {
       "WITHOUT ROWID;"
       "CREATE TABLE document(name TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;"
       "INSERT INTO progress VALUES(1, 'idle', '')",
-      kRunApplicationId, kRunSchemaVersion, pose_columns_sql);
+      kRunApplicationId, options.geometry.cross_baseline_m() ? kCrossSchemaVersion : kRunSchemaVersion,
+      pose_columns_sql);
 }
 
 using Meta = std::map<std::string, std::string, std::less<>>;
 
 void put(Meta& meta, const char* key, const std::optional<double>& value) {
   if (value) meta[key] = fmt::format("{}", *value);
+}
+
+/// [[x, y, z], ...], metres, bit for bit.
+std::string places_text(const calib::sensor::Geometry& geometry) {
+  nlohmann::json places = nlohmann::json::array();
+  for (const Eigen::Vector3d& r_P_m : geometry.positions_P_m())
+    places.push_back({r_P_m[0], r_P_m[1], r_P_m[2]});
+  return places.dump();
+}
+
+std::optional<calib::sensor::Geometry> places_from(const std::string& text) {
+  const nlohmann::json places = nlohmann::json::parse(text, nullptr, false);
+  if (!places.is_array() || places.empty() || places.size() > static_cast<std::size_t>(kMostSensors))
+    return std::nullopt;
+  PerSensor<Eigen::Vector3d> out(places.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!places[i].is_array() || places[i].size() != 3) return std::nullopt;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!places[i][a].is_number()) return std::nullopt;
+      out[i][static_cast<Eigen::Index>(a)] = places[i][a].get<double>();
+    }
+  }
+  return calib::sensor::Geometry(out);
 }
 
 Meta to_meta(const RunHeader& h) {
@@ -56,14 +81,16 @@ Meta to_meta(const RunHeader& h) {
             {"plan", h.plan},
             {"seed", fmt::format("{}", h.seed)},
             {"source", h.source}};
-  put(meta, "baseline_m", h.options.baseline_m);
+  put(meta, "baseline_m", h.options.geometry.cross_baseline_m());
+  if (!h.options.geometry.cross_baseline_m()) meta["positions_m"] = places_text(h.options.geometry);
   put(meta, "field_nT", h.options.field_nT);
   put(meta, "field_sd_nT", h.options.field_sd_nT);
   put(meta, "inclination_rad", h.options.inclination_rad);
   put(meta, "declination_rad", h.options.declination_rad);
   put(meta, "table_sd_rad", h.options.table_sd_rad);
   put(meta, "until_tensor_sd_nT_per_m", h.options.until_tensor_sd_nT_per_m);
-  for (std::size_t i = 0; i < kSensors; ++i) meta[fmt::format("s{}_name", i + 1)] = h.options.sensor_names[i];
+  for (std::size_t i = 0; i < h.options.sensor_names.size(); ++i)
+    meta[fmt::format("s{}_name", i + 1)] = h.options.sensor_names[i];
   return meta;
 }
 
@@ -76,7 +103,7 @@ std::optional<double> number_of(const Meta& meta, const std::string& key) {
   return parse_number(text_of(meta, key));
 }
 
-RunHeader from_meta(const Meta& meta) {
+Result<RunHeader> from_meta(const Meta& meta, const std::string& file) {
   RunHeader h;
   h.run_id = text_of(meta, "run_id");
   h.rig = text_of(meta, "rig");
@@ -86,14 +113,23 @@ RunHeader from_meta(const Meta& meta) {
   h.plan = text_of(meta, "plan");
   h.seed = std::strtoull(text_of(meta, "seed").c_str(), nullptr, 10);
   h.source = text_of(meta, "source");
-  h.options.baseline_m = number_of(meta, "baseline_m").value_or(h.options.baseline_m);
+  if (const auto baseline_m = number_of(meta, "baseline_m"))
+    h.options.geometry = calib::sensor::Geometry(*baseline_m);
+  if (const std::string text = text_of(meta, "positions_m"); !text.empty()) {
+    const auto places = places_from(text);
+    if (!places)
+      return fail(ErrorCode::bad_input, fmt::format("{}: the places of the sensors cannot be read", file),
+                  "make the run file again: mgt import POSES.csv --array FILE.toml -o RUN.mgtrun");
+    h.options.geometry = *places;
+  }
+  h.options.sensor_names = numbered_sensors(h.options.geometry.sensors());
   h.options.field_nT = number_of(meta, "field_nT");
   h.options.field_sd_nT = number_of(meta, "field_sd_nT");
   h.options.inclination_rad = number_of(meta, "inclination_rad");
   h.options.declination_rad = number_of(meta, "declination_rad");
   h.options.table_sd_rad = number_of(meta, "table_sd_rad");
   h.options.until_tensor_sd_nT_per_m = number_of(meta, "until_tensor_sd_nT_per_m");
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < h.options.sensor_names.size(); ++i) {
     const std::string name = text_of(meta, fmt::format("s{}_name", i + 1));
     if (!name.empty()) h.options.sensor_names[i] = name;
   }
@@ -137,9 +173,15 @@ Result<void> check_identity(const Database& db, const std::string& file) {
 
 }  // namespace
 
+PerSensor<std::string> numbered_sensors(std::size_t sensors) {
+  PerSensor<std::string> out(sensors);
+  for (std::size_t i = 0; i < sensors; ++i) out[i] = fmt::format("s{}", i + 1);
+  return out;
+}
+
 Result<void> create_run_schema(Database& db, const RunHeader& header) {
   return db.atomically([&]() -> Result<void> {
-    if (auto ok = db.execute(schema()); !ok) return ok;
+    if (auto ok = db.execute(schema(header.options)); !ok) return ok;
     auto insert = db.prepare("INSERT INTO meta VALUES(?1, ?2)");
     if (!insert) return tl::unexpected(insert.error());
     for (const auto& [key, value] : to_meta(header)) {
@@ -162,7 +204,7 @@ Result<RunHeader> check_run_schema(const Database& db, const std::string& file) 
   }
   auto meta = read_meta(db);
   if (!meta) return tl::unexpected(meta.error());
-  return from_meta(*meta);
+  return from_meta(*meta, file);
 }
 
 }  // namespace mgtd::daemon::store
