@@ -83,5 +83,9 @@ int main(int argc, char** argv) {
     fmt::print("{}: good\n", config_file);
     return 0;
   }
+  if (const auto reason = mgtd::daemon::config::not_served(*config)) {
+    std::ignore = report({reason->code, config_file + ": " + reason->message, reason->remedy});
+    return kExitConfig;
+  }
   return run_service(*std::move(config));
 }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "calib/effects/library/library.h"
+#include "daemon/config/array_places.h"
 #include "daemon/config/input_columns.h"
 #include "daemon/config/tcp_address.h"
 #include "daemon/config/toml_settings.h"
@@ -37,6 +38,7 @@ class Reader {
   void read_disturbance(Settings& s, RunDefaults& r);
   void read_run(const toml::table& root);
   void read_service(const toml::table& root);
+  void read_array(const toml::table& root);
   void read_sensors(const toml::table& root);
   void read_auxiliary(const toml::table& root);
   void warn_without_field();
@@ -52,9 +54,9 @@ class Reader {
   InputColumns inputs_;
 };
 
-constexpr std::array<std::string_view, 12> kSections{"rig",       "sensor", "table",       "scalar",
-                                                     "auxiliary", "site",   "calibration", "run",
-                                                     "store",     "stream", "control",     "daemon"};
+constexpr std::array<std::string_view, 13> kSections{"rig",       "array",   "sensor",      "table", "scalar",
+                                                     "auxiliary", "site",    "calibration", "run",   "store",
+                                                     "stream",    "control", "daemon"};
 
 Settings Reader::section(const toml::table& root, std::string_view name) {
   const toml::node* const node = root.get(name);
@@ -261,15 +263,35 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
   return device;
 }
 
+void Reader::read_array(const toml::table& root) {
+  const std::size_t before = errors_.size();
+  config_.array = config::read_array(root, errors_);
+  const toml::node* const section = root.get("array");
+  if (section == nullptr || errors_.size() > before) return;
+  if (root["rig"]["baseline_m"])
+    complain(place_of(section->source()),
+             "[array]: baseline_m in [rig] says the places of a cross; leave one of the two out");
+  if (const auto baseline_m = config_.array->cross_baseline_m()) config_.baseline_m = *baseline_m;
+}
+
 void Reader::read_sensors(const toml::table& root) {
   const toml::array* const list = root.get("sensor") == nullptr ? nullptr : root.get("sensor")->as_array();
   const std::size_t count = list == nullptr ? 0 : list->size();
-  if (count != kSensors) {
-    complain(list == nullptr ? drivers::Place() : place_of(list->source()),
-             fmt::format("four [[sensor]] sections are needed, s1 to s4 in this order; found {}", count));
+  const bool array_is_wrong = root.get("array") != nullptr && !config_.array;
+  const std::size_t needed =
+      array_is_wrong ? std::clamp<std::size_t>(count, 1, kMostSensors) : config_.geometry().sensors();
+  if (count != needed) {
+    complain(
+        list == nullptr ? drivers::Place() : place_of(list->source()),
+        config_.array
+            ? fmt::format("[array] has {} places, so {} [[sensor]] sections are needed, s1 to "
+                          "s{} in this order; found {}",
+                          needed, needed, needed, count)
+            : fmt::format("four [[sensor]] sections are needed, s1 to s4 in this order; found {}", count));
     if (count == 0) return;
   }
-  for (std::size_t i = 0; i < std::min<std::size_t>(count, kSensors); ++i) {
+  config_.sensors.resize(needed);
+  for (std::size_t i = 0; i < std::min(count, needed); ++i) {
     const toml::table* const table = list->get(i)->as_table();
     const std::string name = fmt::format("s{}", i + 1);
     if (table == nullptr) {
@@ -308,6 +330,7 @@ void Reader::refuse_unknown_sections(const toml::table& root) {
 void Reader::read(const toml::table& root) {
   refuse_unknown_sections(root);
   read_rig(root);
+  read_array(root);
   read_sensors(root);
   if (const toml::node* table = root.get("table"); table != nullptr && table->is_table()) {
     config_.table = read_device(to_settings(*table->as_table(), "[table]"), "table", Role::table, 0);
@@ -323,6 +346,8 @@ void Reader::read(const toml::table& root) {
   read_run(root);
   read_service(root);
   warn_without_field();
+  if (const auto reason = not_served(config_))
+    config_.warnings.push_back(fmt::format("{}: warning: {}", config_.file, reason->message));
 }
 
 /// The size of the field fixes the scale of all sensors.
@@ -341,6 +366,16 @@ std::vector<drivers::SettingError> Reader::take_errors() {
 }
 
 }  // namespace
+
+std::optional<Error> not_served(const Config& config) {
+  if (!config.array || config.array->cross_baseline_m()) return std::nullopt;
+  return Error{ErrorCode::refused,
+               fmt::format("[array] describes {}, and mgtd drives the cross of four sensors alone",
+                           config.array->sensors() == kSensorCount
+                               ? std::string("four sensors that are no cross")
+                               : fmt::format("an array of {}", config.array->sensors())),
+               "record with another program, and calibrate with mgt fit POSES.csv --array FILE.toml"};
+}
 
 tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file) {
   Config config;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/sensor/geometry.h"
 #include "drivers/device.h"
 #include "drivers/settings.h"
 #include "proto/error.h"
@@ -50,14 +51,18 @@ struct Config {
   std::string file;
   std::string text;  ///< as read: kept in every run file
   std::string rig_name{"rig"};
-  double baseline_m{0.4};
-  double rate_hz{50};  ///< of the epochs; every sensor must deliver it
-  PerSensor<DeviceConfig> sensors;
+  double baseline_m{0.4};                        ///< of the cross
+  std::optional<calib::sensor::Geometry> array;  ///< [array]; empty: the cross
+  double rate_hz{50};                            ///< of the epochs; every sensor must deliver it
+  PerSensor<DeviceConfig> sensors;               ///< as many as the array has
   DeviceConfig table;
   std::optional<DeviceConfig> scalar;
   std::vector<DeviceConfig> auxiliary;
   std::vector<TableAngles> mounts;  ///< ways in which the array is mounted on the table by hand; may be empty
 
+  [[nodiscard]] calib::sensor::Geometry geometry() const {
+    return array.value_or(calib::sensor::Geometry(baseline_m));
+  }
   /// The table is turned by hand.
   [[nodiscard]] bool by_hand() const { return table.driver == "hand"; }
 
@@ -91,6 +96,9 @@ struct Config {
 struct ConfigErrors {
   std::vector<std::string> lines;
 };
+
+/// Why mgtd does not run a rig with this array; empty where it does. Everything offline takes any array.
+[[nodiscard]] std::optional<Error> not_served(const Config& config);
 
 [[nodiscard]] tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file);
 [[nodiscard]] tl::expected<Config, ConfigErrors> load_config(const std::string& path);

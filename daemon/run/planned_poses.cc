@@ -90,7 +90,7 @@ Result<PoseTable> planned_poses(const plan::PlanOptions& options, const drivers:
 
 void assume(const config::Config& config, calib::design::DesignRequest& request) {
   request.candidates = reachable(config, std::move(request.candidates));
-  request.geometry = calib::sensor::Geometry(config.baseline_m);
+  request.geometry = config.geometry();
   request.table_sd_rad = to_rad(config.table_sd_deg);
   request.f_nT = config.field_nT.value_or(request.f_nT);
   if (!config.scalar) request.scalar_sd_nT = std::nullopt;
