@@ -49,6 +49,8 @@ int run_apply(const Session& session, const ApplyArguments& args) {
   if (!calibration) return report(session, calibration.error());
   const auto table = store::read_poses(args.run);
   if (!table) return report(session, table.error());
+  if (auto same = same_sensors(*calibration, args.calibration, *table); !same)
+    return report(session, same.error());
   const auto rows = calib::calibration::apply(*calibration, *table, args.options);
   if (!rows) return report(session, rows.error());
   const std::string csv = calib::calibration::format_applied(*rows);

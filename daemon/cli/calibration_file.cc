@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/cli/calibration_file.h"
 
+#include <fmt/format.h>
+
+#include "calib/poses/pose_columns.h"
 #include "daemon/cli/command.h"
 
 namespace mgtd::daemon::cli {
@@ -34,6 +37,16 @@ Result<calib::calibration::Calibration> calibration_of(const std::string& path, 
     return tl::unexpected(std::move(error));
   }
   return std::move(fitted->calibration);
+}
+
+Result<void> same_sensors(const calib::calibration::Calibration& calibration, const std::string& file,
+                          const PoseTable& table) {
+  const std::size_t sensors = calib::poses::sensors_of(table);
+  if (calibration.sensors.size() == sensors) return {};
+  return fail(ErrorCode::bad_input,
+              fmt::format("{} is the calibration of {} sensors, and {} has readings of {}", file,
+                          calibration.sensors.size(), table.source, sensors),
+              "name a calibration of the array that was read");
 }
 
 }  // namespace mgtd::daemon::cli

@@ -14,4 +14,8 @@ namespace mgtd::daemon::cli {
 [[nodiscard]] Result<calib::calibration::Calibration> calibration_of(const std::string& path,
                                                                      const FitFlags& flags);
 
+/// Refuses a calibration (of `file`) of more or fewer sensors than the table has readings of.
+[[nodiscard]] Result<void> same_sensors(const calib::calibration::Calibration& calibration,
+                                        const std::string& file, const PoseTable& table);
+
 }  // namespace mgtd::daemon::cli

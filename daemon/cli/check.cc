@@ -34,6 +34,8 @@ int run_check(const Session& session, const CheckArguments& args) {
   if (!calibration) return report(session, calibration.error());
   const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
+  if (auto same = same_sensors(*calibration, args.calibration, source->table); !same)
+    return report(session, same.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
   const auto checked = calib::validity::check(*calibration, source->table, *options);
@@ -66,6 +68,7 @@ void add_check(CLI::App& app, Session& session) {
   command->add_option("CAL", args->calibration, "CAL.json of mgt fit -o")->required();
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   args->flags = std::make_shared<FitFlags>();
+  args->flags->places_needed = false;
   command
       ->add_option("--with", args->flags->with,
                    "effect of the site to allow for, by name; may be given again")

@@ -30,6 +30,11 @@ int run_diff(const Session& session, const DiffArguments& args) {
   if (!a) return report(session, a.error());
   const auto b = calibration_of(args.b, *args.flags);
   if (!b) return report(session, b.error());
+  if (a->sensors.size() != b->sensors.size())
+    return report(session, {ErrorCode::bad_input,
+                            fmt::format("{} is of {} sensors and {} of {}: this is another array", args.a,
+                                        a->sensors.size(), args.b, b->sensors.size()),
+                            "compare calibrations of one array"});
   for (const auto* c : {&*a, &*b}) {
     if (!c->accepted_by_checks)
       fmt::print(stderr, "warning: {} fails its own checks; see mgt fit\n", c == &*a ? args.a : args.b);

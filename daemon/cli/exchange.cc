@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"
 #include "calib/poses/table_import.h"
+#include "daemon/cli/array_flags.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/import_map_file.h"
 #include "daemon/store/pose_source.h"
@@ -17,21 +19,25 @@ namespace {
 
 struct ExchangeArguments {
   std::string from, to, columns;
+  ArrayFlags array;
 };
 
-store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args) {
+store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args,
+                           const calib::sensor::Geometry& geometry) {
   store::RunHeader header;
   header.run_id = std::filesystem::path(args.to).stem().string();
   header.rig = "imported";
   if (!table.poses.empty() && table.poses.front().t_utc) header.started_utc = *table.poses.front().t_utc;
   header.software = "mgtd " MGTD_VERSION;
+  header.options.geometry = geometry;
+  header.options.sensor_names = store::numbered_sensors(geometry.sensors());
   header.source = std::filesystem::path(args.from).filename().string();
   return header;
 }
 
 /// What stands in the file, its columns as the map says where there is one.
-Result<PoseTable> imported(const ExchangeArguments& args) {
-  if (args.columns.empty()) return store::read_poses(args.from);
+Result<store::PoseSource> imported(const ExchangeArguments& args) {
+  if (args.columns.empty()) return store::read_run(args.from);
   const auto map_text = read_file(args.columns);
   if (!map_text) return tl::unexpected(map_text.error());
   const auto map = import_map_from_text(*map_text, args.columns);
@@ -40,18 +46,25 @@ Result<PoseTable> imported(const ExchangeArguments& args) {
   if (!text) return tl::unexpected(text.error());
   const auto table = calib::poses::import_table(*text, args.from, *map);
   if (!table) return tl::unexpected(table.error());
-  return calib::poses::parse_pose_table(*table, args.from);
+  auto poses = calib::poses::parse_pose_table(*table, args.from);
+  if (!poses) return tl::unexpected(poses.error());
+  return store::PoseSource{*std::move(poses), std::nullopt, {}, {}};
 }
 
 int run_import(const Session& session, const ExchangeArguments& args) {
-  const auto table = imported(args);
-  if (!table) return report(session, table.error());
-  if (auto done = store::import_poses(*table, args.to, header_of(*table, args)); !done)
+  const auto source = imported(args);
+  if (!source) return report(session, source.error());
+  const PoseTable& table = source->table;
+  const std::optional<calib::sensor::Geometry> own =
+      source->header ? std::optional(source->header->options.geometry) : std::nullopt;
+  const auto geometry = array_for(args.array, calib::poses::sensors_of(table), args.from, own);
+  if (!geometry) return report(session, geometry.error());
+  if (auto done = store::import_poses(table, args.to, header_of(table, args, *geometry)); !done)
     return report(session, done.error());
   if (session.json) {
-    print_json({{"schema", "mgt.import/1"}, {"poses", table->poses.size()}, {"output", args.to}});
+    print_json({{"schema", "mgt.import/1"}, {"poses", table.poses.size()}, {"output", args.to}});
   } else {
-    fmt::print("{} poses in {}\n", table->poses.size(), args.to);
+    fmt::print("{} poses in {}\n", table.poses.size(), args.to);
   }
   return 0;
 }
@@ -89,6 +102,7 @@ void add_import(CLI::App& app, Session& session) {
   command->add_option(
       "--columns", args->columns,
       "MAP.toml: which column of the file is which, its unit, sign and time (docs/import.md)");
+  add_array_flags(command, args->array);
   command->add_option("-o,--output", args->to, "RUN.mgtrun; must not exist")->required();
 }
 

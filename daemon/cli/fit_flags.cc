@@ -9,6 +9,7 @@
 
 #include "calib/effects/common_axis.h"
 #include "calib/effects/library/library.h"
+#include "calib/poses/pose_columns.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/run/solver.h"
 #include "proto/units.h"
@@ -35,8 +36,7 @@ void add_further(CLI::App* command, FitFlags& f) {
 
 void add_site_flags(CLI::App* command, FitFlags& f) {
   add_field_flags(command, f);
-  command->add_option("--baseline", f.baseline_m, "distance between opposite sensors in m (0.4)")
-      ->check(in_range(0.05, 10, "m"));
+  add_array_flags(command, f.array);
   command
       ->add_option("--inclination", f.inclination_deg,
                    "of the field in the platform frame at zero table angles, deg, positive towards +Z")
@@ -142,7 +142,14 @@ Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::P
   }
   if (flags.field_nT) out.field_nT = flags.field_nT;
   if (flags.field_sd_nT) out.field_sd_nT = *flags.field_sd_nT;
-  if (flags.baseline_m) out.geometry = calib::sensor::Geometry(*flags.baseline_m);
+  if (flags.places_needed) {
+    const std::optional<calib::sensor::Geometry> own =
+        source.header ? std::optional(source.header->options.geometry) : std::nullopt;
+    const auto geometry =
+        array_for(flags.array, calib::poses::sensors_of(source.table), source.table.source, own);
+    if (!geometry) return tl::unexpected(geometry.error());
+    out.geometry = *geometry;
+  }
   if (flags.inclination_deg) out.inclination_rad = to_rad(*flags.inclination_deg);
   if (flags.declination_deg) out.declination_rad = to_rad(*flags.declination_deg);
   if (flags.table_sd_deg) out.table_sd_rad = to_rad(*flags.table_sd_deg);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/fit/method_choice/fit.h"
+#include "daemon/cli/array_flags.h"
 #include "daemon/store/pose_source.h"
 
 /// Every command with a fit understands these options; this also says how they combine with what a run file
@@ -17,8 +18,10 @@ struct FitFlags {
   std::string method{"joint"};
   std::vector<std::string> further;  ///< runs that are judged together with the first
   std::vector<std::string> with;     ///< effects by name; "none" leaves the model that the run file keeps
-  std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
+  std::optional<double> field_nT, field_sd_nT, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;
+  ArrayFlags array;
+  bool places_needed{true};  ///< false: the places are those of a calibration
 };
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);

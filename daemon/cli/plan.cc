@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_table.h"
 #include "calib/report/experiment_design_report.h"
+#include "daemon/cli/array_flags.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/in_range.h"
@@ -37,7 +40,8 @@ struct PlanArguments {
   std::vector<std::string> with;
   double noise_nT{1}, warming_degC{2}, scalar_sd_nT{kDefaultScalarSd_nT};
   bool no_scalar{false};
-  std::optional<double> field_nT, field_sd_nT, baseline_m, inclination_deg, declination_deg, table_sd_deg;
+  std::optional<double> field_nT, field_sd_nT, inclination_deg, declination_deg, table_sd_deg;
+  ArrayFlags array;
 };
 
 /// The run that a configuration describes.
@@ -76,9 +80,26 @@ Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   }
   const auto text = read_file(args.poses);
   if (!text) return tl::unexpected(text.error());
-  auto poses = calib::poses::parse_pose_list(*text, args.poses);
+  auto poses = calib::poses::parse_pose_list(*text, args.poses, request.geometry.sensors());
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);
+  return {};
+}
+
+/// Sensors and poses are as many as the array has places: nominal ones where no calibration tells them.
+Result<void> size_by_array(const PlanArguments& args, calib::design::DesignRequest& r) {
+  const std::size_t sensors = r.geometry.sensors();
+  if (!args.calibration.empty() && r.sensors.size() != sensors)
+    return fail(ErrorCode::bad_input,
+                fmt::format("{} is the calibration of {} sensors, and the array has {}", args.calibration,
+                            r.sensors.size(), sensors),
+                "leave --cal out, or name a calibration of this array");
+  r.sensors.resize(sensors);
+  for (Pose& pose : r.poses.poses) {
+    pose.y_nT.resize(sensors, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    pose.sd_nT.resize(sensors);
+    pose.T_degC.resize(sensors);
+  }
   return {};
 }
 
@@ -96,6 +117,9 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
     r.geometry = calibration->geometry;
     r.f_nT = calibration->reference.f_nT.value_or(r.f_nT);
   }
+  const auto array = array_of(args.array);
+  if (!array) return tl::unexpected(array.error());
+  if (*array) r.geometry = **array;  // how many sensors a list may name
   if (auto taken = take_poses(args, out); !taken) return tl::unexpected(taken.error());
   for (const std::string& name : args.with) {
     auto effect = calib::effects::library::make_effect(name);
@@ -108,7 +132,8 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
     r.field_known = true;
   }
   if (args.field_sd_nT) r.field_sd_nT = *args.field_sd_nT;
-  if (args.baseline_m) r.geometry = calib::sensor::Geometry(*args.baseline_m);
+  if (*array) r.geometry = **array;
+  if (auto sized = size_by_array(args, r); !sized) return tl::unexpected(sized.error());
   if (args.inclination_deg) r.inclination_rad = to_rad(*args.inclination_deg);
   if (args.declination_deg) r.declination_rad = to_rad(*args.declination_deg);
   if (args.table_sd_deg) r.table_sd_rad = to_rad(*args.table_sd_deg);
@@ -170,8 +195,7 @@ void add_plan(CLI::App& app, Session& session) {
       ->check(in_range(1'000, 200'000, "nT"));
   command->add_option("--field-sd", args->field_sd_nT, "its standard uncertainty in nT")
       ->check(above_zero(10'000, "nT"));
-  command->add_option("--baseline", args->baseline_m, "distance between opposite sensors in m (0.4)")
-      ->check(in_range(0.05, 10, "m"));
+  add_array_flags(command, args->array);
   command
       ->add_option("--inclination", args->inclination_deg,
                    "inclination of the field at zero table angles, deg (60)")

@@ -82,7 +82,9 @@ std::string limits_section(const ReportContent& c) {
 }
 
 std::string parameters_section(const ReportContent& c) {
-  std::vector<std::string> head{"", "s1", "s2", "s3", "s4"};
+  const int sensors = static_cast<int>(c.fit.calibration.sensors.size());
+  std::vector<std::string> head{""};
+  for (int s = 1; s <= sensors; ++s) head.push_back(fmt::format("s{}", s));
   Rows rows;
   for (int k = 0; k < calib::sensor::kSensorParameters; ++k) {
     const bool scale = k >= calib::sensor::cx && k <= calib::sensor::cz,
@@ -91,7 +93,7 @@ std::string parameters_section(const ReportContent& c) {
                                  (scale    ? ""
                                   : offset ? ", nT"
                                            : ", deg")};
-    for (int s = 0; s < kSensors; ++s) {
+    for (int s = 0; s < sensors; ++s) {
       const int slot = s * calib::sensor::kSensorParameters + k;
       double value = c.fit.calibration.sensors[static_cast<std::size_t>(s)].parameters()[k];
       double sd = std::sqrt(c.fit.calibration.covariance(slot, slot));
