@@ -75,11 +75,13 @@ void require(Settings& s, std::string_view key, bool ok, std::string_view rule) 
   if (!ok) s.object(key, fmt::format("must be {}", rule));
 }
 
+bool is_baseline(double baseline_m) { return baseline_m >= 0.05 && baseline_m <= 10; }
+
 void Reader::read_rig(const toml::table& root) {
   Settings s = section(root, "rig");
   config_.rig_name = s.text("name", config_.rig_name);
   config_.baseline_m = s.number("baseline_m", config_.baseline_m);
-  require(s, "baseline_m", config_.baseline_m >= 0.05 && config_.baseline_m <= 10, "between 0.05 and 10 m");
+  require(s, "baseline_m", is_baseline(config_.baseline_m), "between 0.05 and 10 m");
   config_.rate_hz = s.number("rate_hz", config_.rate_hz);
   require(s, "rate_hz", config_.rate_hz > 0 && config_.rate_hz <= 1000, "above 0 and at most 1000 Hz");
   close(s);
@@ -271,7 +273,8 @@ void Reader::read_array(const toml::table& root) {
   if (root["rig"]["baseline_m"])
     complain(place_of(section->source()),
              "[array]: baseline_m in [rig] says the places of a cross; leave one of the two out");
-  if (const auto baseline_m = config_.array->cross_baseline_m()) config_.baseline_m = *baseline_m;
+  if (const auto baseline_m = config_.array->cross_baseline_m(); baseline_m && is_baseline(*baseline_m))
+    config_.baseline_m = *baseline_m;
 }
 
 void Reader::read_sensors(const toml::table& root) {
@@ -368,7 +371,7 @@ std::vector<drivers::SettingError> Reader::take_errors() {
 }  // namespace
 
 std::optional<Error> not_served(const Config& config) {
-  if (!config.array || config.array->cross_baseline_m()) return std::nullopt;
+  if (config.geometry() == calib::sensor::Geometry(config.baseline_m)) return std::nullopt;
   return Error{ErrorCode::refused,
                fmt::format("[array] describes {}, and mgtd drives the cross of four sensors alone",
                            config.array->sensors() == kSensorCount

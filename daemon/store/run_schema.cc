@@ -115,8 +115,8 @@ Result<RunHeader> from_meta(const Meta& meta, const std::string& file) {
   h.source = text_of(meta, "source");
   if (const auto baseline_m = number_of(meta, "baseline_m"))
     h.options.geometry = calib::sensor::Geometry(*baseline_m);
-  if (const std::string text = text_of(meta, "positions_m"); !text.empty()) {
-    const auto places = places_from(text);
+  if (meta.contains("positions_m")) {
+    const auto places = places_from(text_of(meta, "positions_m"));
     if (!places)
       return fail(ErrorCode::bad_input, fmt::format("{}: the places of the sensors cannot be read", file),
                   "make the run file again: mgt import POSES.csv --array FILE.toml -o RUN.mgtrun");
