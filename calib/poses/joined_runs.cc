@@ -60,8 +60,8 @@ Result<PoseTable> joined(const PoseTable& a, const PoseTable& b) {
                 "leave it out");
   if (sensors_of(a) != sensors_of(b))
     return fail(ErrorCode::refused,
-                fmt::format("{} has {} sensors and {} has {}: this is another array", a.source, sensors_of(a),
-                            b.source, sensors_of(b)),
+                fmt::format("{} has {} and {} has {}: this is another array", a.source,
+                            counted(sensors_of(a)), b.source, counted(sensors_of(b))),
                 "judge them one by one");
   if (timeless(a) && timeless(b)) return behind(a, b, 0);
   const RunTime of_a = RunTime::of(a), of_b = RunTime::of(b);

@@ -149,6 +149,10 @@ Pose unmeasured_pose(std::size_t sensors) {
   return pose;
 }
 
+std::string counted(std::size_t sensors) {
+  return fmt::format("{} sensor{}", sensors, sensors == 1 ? "" : "s");
+}
+
 std::size_t sensors_of(const PoseTable& table) {
   return table.poses.empty() ? kSensorCount : table.poses.front().y_nT.size();
 }

@@ -42,4 +42,7 @@ struct PoseColumn {
 /// How many sensors the array of a table has; those of the cross where it has no pose.
 [[nodiscard]] std::size_t sensors_of(const PoseTable& table);
 
+/// "1 sensor", "8 sensors": for messages.
+[[nodiscard]] std::string counted(std::size_t sensors);
+
 }  // namespace mgtd::calib::poses

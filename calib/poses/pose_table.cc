@@ -189,7 +189,7 @@ Result<void> Reader::count_sensors(const std::vector<Cell>& header) {
     if (!of || of->number <= sensors_) continue;
     if (rows_ == Rows::planned)
       return complain(
-          cell.column, fmt::format("{}: the array has {} sensors", cell.text, sensors_),
+          cell.column, fmt::format("{}: the array has {}", cell.text, counted(sensors_)),
           "leave the column out, or describe the array that is meant: mgt plan --array FILE.toml");
     return complain(cell.column,
                     fmt::format("{0}: there are no readings of s{1} (s{1}_x_nT, s{1}_y_nT, s{1}_z_nT)",

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/poses/pose_columns.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/config/array_places.h"
@@ -36,22 +37,24 @@ Result<calib::sensor::Geometry> array_for(const ArrayFlags& flags, std::size_t s
   if (!given) return tl::unexpected(given.error());
   if (*given && (*given)->sensors() == sensors) return **given;
   if (flags.baseline_m)
+    return fail(ErrorCode::bad_input,
+                fmt::format("--baseline is of the cross of 4 sensors, and {} has readings of {}", table,
+                            calib::poses::counted(sensors)),
+                "give the places of all its sensors with --array FILE.toml");
+  if (*given)
     return fail(
         ErrorCode::bad_input,
-        fmt::format("--baseline is of the cross of 4 sensors, and {} has readings of {}", table, sensors),
-        "give the places of all its sensors with --array FILE.toml");
-  if (*given)
-    return fail(ErrorCode::bad_input,
-                fmt::format("{} has {} places, and {} has readings of {} sensors", flags.array,
-                            (*given)->sensors(), table, sensors),
-                "give a place for every sensor, in the order s1, s2, ...");
+        fmt::format("{} has the places of {}, and {} has readings of {}", flags.array,
+                    calib::poses::counted((*given)->sensors()), table, calib::poses::counted(sensors)),
+        "give a place for every sensor, in the order s1, s2, ...");
   if (kept && kept->sensors() == sensors) return *kept;
   if (sensors == kSensorCount) return calib::sensor::Geometry();
   if (sensors == 1)
     return calib::sensor::Geometry(PerSensor<Eigen::Vector3d>{Eigen::Vector3d(Eigen::Vector3d::Zero())});
   return fail(
       ErrorCode::bad_input,
-      fmt::format("{} has readings of {} sensors, and where they stand is not known", table, sensors),
+      fmt::format("{} has readings of {}, and where they stand is not known", table,
+                  calib::poses::counted(sensors)),
       "give the places with --array FILE.toml ([array] positions_m = [[x, y, z], ...], in m), or keep "
       "them with the poses: mgt import POSES.csv --array FILE.toml -o RUN.mgtrun");
 }

@@ -44,8 +44,9 @@ Result<void> same_sensors(const calib::calibration::Calibration& calibration, co
   const std::size_t sensors = calib::poses::sensors_of(table);
   if (calibration.sensors.size() == sensors) return {};
   return fail(ErrorCode::bad_input,
-              fmt::format("{} is the calibration of {} sensors, and {} has readings of {}", file,
-                          calibration.sensors.size(), table.source, sensors),
+              fmt::format("{} is the calibration of {}, and {} has readings of {}", file,
+                          calib::poses::counted(calibration.sensors.size()), table.source,
+                          calib::poses::counted(sensors)),
               "name a calibration of the array that was read");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "calib/poses/pose_columns.h"
 #include "calib/report/change_report.h"
 #include "calib/report/diff_report.h"
 #include "daemon/cli/calibration_file.h"
@@ -32,8 +33,9 @@ int run_diff(const Session& session, const DiffArguments& args) {
   if (!b) return report(session, b.error());
   if (a->sensors.size() != b->sensors.size())
     return report(session, {ErrorCode::bad_input,
-                            fmt::format("{} is of {} sensors and {} of {}: this is another array", args.a,
-                                        a->sensors.size(), args.b, b->sensors.size()),
+                            fmt::format("{} is of {} and {} of {}: this is another array", args.a,
+                                        calib::poses::counted(a->sensors.size()), args.b,
+                                        calib::poses::counted(b->sensors.size())),
                             "compare calibrations of one array"});
   for (const auto* c : {&*a, &*b}) {
     if (!c->accepted_by_checks)

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "calib/effects/library/library.h"
+#include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"
 #include "calib/report/experiment_design_report.h"
 #include "daemon/cli/array_flags.h"
@@ -91,8 +92,8 @@ Result<void> size_by_array(const PlanArguments& args, calib::design::DesignReque
   const std::size_t sensors = r.geometry.sensors();
   if (!args.calibration.empty() && r.sensors.size() != sensors)
     return fail(ErrorCode::bad_input,
-                fmt::format("{} is the calibration of {} sensors, and the array has {}", args.calibration,
-                            r.sensors.size(), sensors),
+                fmt::format("{} is the calibration of {}, and the array has {}", args.calibration,
+                            calib::poses::counted(r.sensors.size()), calib::poses::counted(sensors)),
                 "leave --cal out, or name a calibration of this array");
   r.sensors.resize(sensors);
   for (Pose& pose : r.poses.poses) {

@@ -14,9 +14,9 @@ namespace {
 constexpr const char* kRemedy =
     "write the places of the sensors in metres: [array] positions_m = [[0.2, 0, 0], [0, 0.2, 0], ...]";
 
-class Reader {
+class PlacesReader {
  public:
-  explicit Reader(std::vector<drivers::SettingError>& mistakes) : mistakes_(mistakes) {}
+  explicit PlacesReader(std::vector<drivers::SettingError>& mistakes) : mistakes_(mistakes) {}
 
   std::optional<calib::sensor::Geometry> read(const toml::node& section) {
     const toml::table* const table = section.as_table();
@@ -95,7 +95,7 @@ std::optional<calib::sensor::Geometry> read_array(const toml::table& root,
                                                   std::vector<drivers::SettingError>& mistakes) {
   const toml::node* const section = root.get("array");
   if (section == nullptr) return std::nullopt;
-  return Reader(mistakes).read(*section);
+  return PlacesReader(mistakes).read(*section);
 }
 
 Result<calib::sensor::Geometry> array_from_text(std::string_view text, const std::string& file) {

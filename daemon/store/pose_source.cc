@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calib/poses/joined_runs.h"
+#include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"
 #include "daemon/store/durable_file.h"
 #include "daemon/store/run_file.h"
@@ -34,12 +35,12 @@ Result<void> same_array(const std::filesystem::path& first, const std::optional<
                 fmt::format("the sensors of {} are {} m apart and those of {} {} m: this is another array",
                             first.string(), *a_m, second, *b_m),
                 kRemedy);
-  return fail(
-      ErrorCode::refused,
-      fmt::format("{} has {} sensors and {} has {}, and not all stand at the same places: this is "
-                  "another array",
-                  first.string(), a->options.geometry.sensors(), second, b->options.geometry.sensors()),
-      kRemedy);
+  return fail(ErrorCode::refused,
+              fmt::format("{} has {} and {} has {}, and not all stand at the same places: this is "
+                          "another array",
+                          first.string(), calib::poses::counted(a->options.geometry.sensors()), second,
+                          calib::poses::counted(b->options.geometry.sensors())),
+              kRemedy);
 }
 
 }  // namespace

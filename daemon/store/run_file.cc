@@ -11,6 +11,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "calib/poses/pose_columns.h"
 #include "daemon/store/database.h"
 #include "daemon/store/durable_file.h"
 #include "daemon/store/pose_row.h"
@@ -70,10 +71,10 @@ Result<void> insert_reference(Database& db, const Pose& pose) {
 
 Result<void> insert_pose(Database& db, const Pose& pose, std::size_t sensors) {
   if (pose.y_nT.size() != sensors || pose.sd_nT.size() != sensors || pose.T_degC.size() != sensors)
-    return fail(
-        ErrorCode::refused,
-        fmt::format("pose {} has {} sensors, the run file {}", pose.number, pose.y_nT.size(), sensors),
-        "describe the array that was measured: --array FILE.toml");
+    return fail(ErrorCode::refused,
+                fmt::format("pose {} has {}, the run file {}", pose.number,
+                            calib::poses::counted(pose.y_nT.size()), sensors),
+                "describe the array that was measured: --array FILE.toml");
   std::string names, marks;
   for (const PoseColumn& c : pose_columns(sensors)) {
     names += ", " + c.name;

@@ -168,7 +168,7 @@ TEST(AnyArray, AListIsOfTheArrayThatIsPlannedFor) {
   EXPECT_EQ(two->poses[0].T_degC.size(), 2U);
   const auto one = parse_pose_list(text, "list.csv", 1);
   ASSERT_FALSE(one);
-  EXPECT_THAT(one.error().message, HasSubstr("list.csv:1:38: s2_T_degC: the array has 1 sensors"));
+  EXPECT_THAT(one.error().message, HasSubstr("list.csv:1:37: s2_T_degC: the array has 1 sensor"));
 }
 
 TEST(AnyArray, RunsOfUnlikeArraysAreNotJoined) {
@@ -177,7 +177,7 @@ TEST(AnyArray, RunsOfUnlikeArraysAreNotJoined) {
   ASSERT_TRUE(a && b);
   const auto both = joined(*a, *b);
   ASSERT_FALSE(both);
-  EXPECT_THAT(both.error().message, HasSubstr("one.csv has 1 sensors and two.csv has 2"));
+  EXPECT_THAT(both.error().message, HasSubstr("one.csv has 1 sensor and two.csv has 2 sensors"));
 }
 
 /// References to the columns are kept by those who read many tables.

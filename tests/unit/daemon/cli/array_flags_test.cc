@@ -56,7 +56,7 @@ TEST(ArrayFlags, PlacesOfAnotherNumberOfSensorsAreRefused) {
   const auto places = array_for(array_file(dir), 8, "a.csv", std::nullopt);
   ASSERT_FALSE(places);
   EXPECT_THAT(places.error().message,
-              HasSubstr("two.toml has 2 places, and a.csv has readings of 8 sensors"));
+              HasSubstr("two.toml has the places of 2 sensors, and a.csv has readings of 8 sensors"));
   EXPECT_FALSE(places.error().remedy.empty());
   const auto baseline = array_for({.baseline_m = 0.4, .array = {}}, 8, "a.csv", std::nullopt);
   ASSERT_FALSE(baseline);

@@ -229,7 +229,7 @@ TEST(RunFile, RefusesWhatItIsNot) {
   EXPECT_TRUE(Database::open(dir / "newer.mgtrun", Database::Mode::read_write)
                   .value()
                   ->execute("PRAGMA user_version=7"));
-  EXPECT_NE(refusal(dir / "newer.mgtrun").find("schema 7, this program knows up to 1"), std::string::npos);
+  EXPECT_NE(refusal(dir / "newer.mgtrun").find("schema 7, this program knows up to 2"), std::string::npos);
 
   {
     auto file = RunFile::create(dir / "damaged.mgtrun", header()).value();
