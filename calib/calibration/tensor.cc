@@ -16,9 +16,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-using ClosureCovariance =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, sensor::kMostChannels,
-                  sensor::kMostChannels>;
+using ClosureCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                        sensor::kMostChannels, sensor::kMostChannels>;
 
 double closure_chi2(const Closure& closure, const Eigen::Matrix4d& covariance) {
   Eigen::Vector4d values;
@@ -274,8 +273,8 @@ void TensorPipeline::add_uncertainty(const sensor::ChannelCovariance& covariance
                                      TensorSample& out) const {
   out.g_sd_nT_per_m = gradient_sd(covariance, samples);
   const auto C = closure_rows(geometry_);
-  out.closure.chi2 =
-      closure_chi2(out.closure, ClosureCovariance(linear::propagated_covariance(C, covariance + noise_ / samples)));
+  out.closure.chi2 = closure_chi2(
+      out.closure, ClosureCovariance(linear::propagated_covariance(C, covariance + noise_ / samples)));
 }
 
 TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove_site, const Pose* previous,

@@ -16,8 +16,8 @@
 ///
 /// The 3N corrected components b_i (platform frame, sensor at r_i) are fitted by least squares to
 ///     b_i = B + G r_i,   G symmetric and traceless (5 numbers)
-/// and what is left over are the closure quantities (field_expansion.h); what the places of the sensors cannot
-/// tell is NaN. On the cross the six differences decide G, and 12 - 3 - 5 = 4 quantities are left:
+/// and what is left over are the closure quantities (field_expansion.h); what the places of the sensors
+/// cannot tell is NaN. On the cross the six differences decide G, and 12 - 3 - 5 = 4 quantities are left:
 ///     Bxx=(Bx1-Bx3)/d  Byx=(By1-By3)/d  Bzx=(Bz1-Bz3)/d  Bxy=(Bx2-Bx4)/d  Byy=(By2-By4)/d  Bzy=(Bz2-Bz4)/d
 ///     Gxx = Bxx, Gyy = Byy, Gzz = -(Bxx+Byy), Gxy = (Bxy+Byx)/2, Gxz = Bzx, Gyz = Bzy.
 /// Does not remove site effects: a gradient of the site is real field.
@@ -41,8 +41,8 @@ struct FieldAndGradient {
 [[nodiscard]] FieldAndGradient field_and_gradient(const sensor::FieldVector& b_P_nT, double baseline_m);
 
 /// The six gradient components (xx, yy, zz, xy, xz, yz) and the closure quantities (of the cross curl, centre
-/// x, y, z) as linear functions of the corrected components. The row of a component that the array cannot tell
-/// is NaN.
+/// x, y, z) as linear functions of the corrected components. The row of a component that the array cannot
+/// tell is NaN.
 [[nodiscard]] sensor::ChannelColumns<6> gradient_rows(const sensor::Geometry& geometry);
 [[nodiscard]] Eigen::MatrixXd closure_rows(const sensor::Geometry& geometry);
 

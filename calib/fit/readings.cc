@@ -100,9 +100,7 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
           ErrorCode::refused, fmt::format("pose {} has no f_nT and no field is given", pose.number),
           "give the total field of the site with --field NT, or measure it with a scalar magnetometer");
     }
-    out.f_nT[k] = pose.f_nT     ? *pose.f_nT
-                  : pose.ref_nT ? pose.ref_nT->norm()
-                                : options.field_nT.value_or(0);
+    out.f_nT[k] = pose.f_nT ? *pose.f_nT : pose.ref_nT ? pose.ref_nT->norm() : options.field_nT.value_or(0);
     out.f_sd_nT[k] = pose.f_nT     ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
                      : pose.ref_nT ? pose.ref_sd_nT.value_or(kDefaultScalarSd_nT)
                                    : 0.0;

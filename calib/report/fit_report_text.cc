@@ -163,7 +163,8 @@ std::string rows_text(const fit::FitReport& report) {
 std::string error_table(const fit::FitReport& report) {
   const std::size_t sensors = report.calibration.sensors.size();
   const bool tensor = !std::isnan(calibration::root_mean_square(report.after.tensor_rmse_nT_per_m));
-  std::string out = fmt::format("{:<12}{:^{}}", "rms error", "total field, nT", std::max<std::size_t>(16, 9 * sensors));
+  std::string out =
+      fmt::format("{:<12}{:^{}}", "rms error", "total field, nT", std::max<std::size_t>(16, 9 * sensors));
   if (tensor) out += fmt::format("  {:^60}", "tensor, nT/m");
   out += fmt::format("\n{:<12}", "");
   for (std::size_t i = 1; i <= sensors; ++i) out += fmt::format("{:>9}", fmt::format("s{}", i));

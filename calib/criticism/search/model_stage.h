@@ -37,5 +37,4 @@ struct VariancePrice {
 /// Largest rise of the error on held-out poses that may be chance: beyond it an effect is not added.
 inline constexpr double kHeldOutVeto = 1.01;
 
-
 }  // namespace mgtd::calib::criticism::search

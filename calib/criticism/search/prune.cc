@@ -22,8 +22,7 @@ std::set<std::string> significant_axes(const fit::joint::JointFit& fit, const ef
     const Eigen::Index slot = first + static_cast<Eigen::Index>(j);
     const double sd =
         std::sqrt(fit.covariance(fit.problem.slots().effects() + slot, fit.problem.slots().effects() + slot));
-    if (std::abs(fit.state.coefficients[slot]) > kSignificant * sd)
-      {
+    if (std::abs(fit.state.coefficients[slot]) > kSignificant * sd) {
       const std::string& name = effect.coefficients()[j].name;
       out.insert(name.substr(0, name.find('.') + 2));
     }

@@ -53,8 +53,10 @@ Hypothesis summed(std::string where, int axes, int alike, Eigen::Index finest, c
 
 Hypothesis everything(const effects::Effect& effect, int sensors, std::string where) {
   const auto n = static_cast<Eigen::Index>(effect.coefficients().size());
-  Hypothesis out{
-      .where = std::move(where), .axes = 3 * sensors, .combine = Eigen::MatrixXd::Identity(n, n), .names = {}};
+  Hypothesis out{.where = std::move(where),
+                 .axes = 3 * sensors,
+                 .combine = Eigen::MatrixXd::Identity(n, n),
+                 .names = {}};
   for (const effects::Coefficient& c : effect.coefficients()) out.names.push_back(c.name);
   return out;
 }

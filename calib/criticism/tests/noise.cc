@@ -175,7 +175,8 @@ std::pair<fit::joint::Channels, fit::joint::Channels> in_common_units(const fit:
 }  // namespace
 
 double pose_correlation(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
-  // One sensor leaves one direction a pose, which changes from pose to pose: channels cannot be taken one by one.
+  // One sensor leaves one direction a pose, which changes from pose to pose: channels cannot be taken one by
+  // one.
   if (problem.sensors() == 1 && !problem.has_reference)
     return std::clamp(fit::joint::sample_correlation(problem, state).seen(), 0.0, kMaxRho);
   const double rho = median_correlation(problem, state);

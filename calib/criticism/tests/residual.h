@@ -28,9 +28,9 @@ class Residual {
   [[nodiscard]] Eigen::Index rows_per_pose() const { return whitener_.rows_per_pose(); }
   [[nodiscard]] Eigen::Index channels() const { return whitener_.channels(); }
 
-  /// Share of its length below which a projected column says nothing. Laws are functions of the readings, which
-  /// are known to their noise only: with single samples of one sensor that is more than rounding, and what is
-  /// left of an absorbed law is the noise that the residual has too.
+  /// Share of its length below which a projected column says nothing. Laws are functions of the readings,
+  /// which are known to their noise only: with single samples of one sensor that is more than rounding, and
+  /// what is left of an absorbed law is the noise that the residual has too.
   [[nodiscard]] double absorbed() const { return absorbed_; }
 
   /// From now on everything is in units of noise with `scale2` times the variance of the weights.

@@ -18,7 +18,6 @@
 /// Cramer-Rao bound with calibration and nuisances free.
 namespace mgtd::calib::criticism::tests {
 
-
 /// How S becomes a probability.
 struct NoiseReference {
   bool known{true};       ///< the noise is known from the dwells; else it is that of the residual itself, ...

@@ -120,8 +120,8 @@ double WanderingAlternative::curve_instead(int channel) const {
 
 fit::joint::WanderingEstimate WanderingAlternative::beside(const Eigen::MatrixXd& rows) const {
   const Eigen::MatrixXd Q = basis_of(rows);
-  return fit::joint::estimate_wandering(fit::joint::SlowLikelihood(
-      likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * value_)));
+  return fit::joint::estimate_wandering(
+      fit::joint::SlowLikelihood(likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * value_)));
 }
 
 Eigen::MatrixXd WanderingAlternative::basis_of(const Eigen::MatrixXd& rows) const {

@@ -50,7 +50,7 @@ class WanderingAlternative {
 
   fit::joint::JointProblem problem_;
   fit::joint::JointState state_;
-  Residual residual_;     ///< nuisances and the model's own parameters out, poses uncorrelated
+  Residual residual_;      ///< nuisances and the model's own parameters out, poses uncorrelated
   double per_effective_;   ///< JointFit::samples_per_effective: what follows is thinned by it
   Eigen::VectorXd value_;  ///< of the residual
   Eigen::MatrixXd slow_;   ///< projected columns of the wandering

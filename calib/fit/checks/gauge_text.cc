@@ -32,7 +32,9 @@ std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
                        const std::array<double, 3>& rotation_sd_rad) {
   std::string text;
   if (gauge.by_reference) {
-    text = "platform frame is the frame of the vector reference; the angles of the sensors are their misalignment";
+    text =
+        "platform frame is the frame of the vector reference; the angles of the sensors are their "
+        "misalignment";
   } else if (gauge.angles == joint::AngleCoverage::none) {
     text =
         "no table angles: mean alpha = mean beta = mean gamma = 0 of the four sensors, relative to their "

@@ -37,7 +37,8 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
   for (const JointPose& pose : problem.poses) {
     // Of a pose without angles and without readings only the size of its field is asked.
     unknowns += pose.has_angles ? 4 : pose.weight.isZero(0) && !problem.has_reference ? 1 : 3;
-    observed += (pose.has_angles ? 3 : 0) + (pose.reference_weight > 0 ? 3 : 0) + (problem.common_field ? 1 : 0);
+    observed +=
+        (pose.has_angles ? 3 : 0) + (pose.reference_weight > 0 ? 3 : 0) + (problem.common_field ? 1 : 0);
   }
   fit.dof = observed - unknowns - fit.dof_table;
   // Three standard deviations of a chi-square: wider than noise alone would make it, so the uncertainties

@@ -32,7 +32,8 @@ struct JointFit {
   double table_sd_rad{0};     ///< estimated; 0 without angles
   double chi2{0}, dof{0};     ///< readings and scalar reference
   double chi2_table{0}, dof_table{0};
-  /// Of a recording of single samples: how many of them count as one (sample_correlation.h). In the covariance.
+  /// Of a recording of single samples: how many of them count as one (sample_correlation.h). In the
+  /// covariance.
   double samples_per_effective{1};
   double birge_ratio{1};  ///< sqrt(chi2/dof) where significantly above one, else 1
   Termination termination{Termination::converged};

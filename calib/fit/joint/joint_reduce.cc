@@ -130,7 +130,7 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
     out.g.head<3>() -= w2 * state.nuisances[k].head<3>();
     out.cost.attitude = w2 * state.nuisances[k].head<3>().squaredNorm();
   } else {
-    out.H(3, 3) += 1;                                                    // the idle slot
+    out.H(3, 3) += 1;  // the idle slot
     const bool known = pose.reference_weight > 0;
     if (known) {
       const double w2 = pose.reference_weight * pose.reference_weight;

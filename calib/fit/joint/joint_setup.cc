@@ -80,16 +80,17 @@ Result<void> check_reference(const PoseTable& table, std::ptrdiff_t with_referen
                              const auto& fitted) {
   if (with_reference == 0) return {};
   if (with_reference != total)
-    return fail(ErrorCode::refused,
-                fmt::format("{} of {} poses have the field as a vector (ref_x_nT ...)", with_reference, total),
-                "give it for every pose, or take the columns out");
+    return fail(
+        ErrorCode::refused,
+        fmt::format("{} of {} poses have the field as a vector (ref_x_nT ...)", with_reference, total),
+        "give it for every pose, or take the columns out");
   const auto turned = std::find_if(table.poses.begin(), table.poses.end(),
                                    [&](const Pose& p) { return fitted(p) && p.angles(); });
   if (turned == table.poses.end()) return {};
-  return fail(ErrorCode::refused,
-              fmt::format("pose {} has table angles and the field as a vector", turned->number),
-              "the vector must be in a frame fixed to the sensors: turn it by the table's angles yourself and "
-              "leave the columns azimuth_deg, pitch_deg and roll_deg out");
+  return fail(
+      ErrorCode::refused, fmt::format("pose {} has table angles and the field as a vector", turned->number),
+      "the vector must be in a frame fixed to the sensors: turn it by the table's angles yourself and "
+      "leave the columns azimuth_deg, pitch_deg and roll_deg out");
 }
 
 }  // namespace

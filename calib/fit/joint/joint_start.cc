@@ -221,8 +221,8 @@ JointState joint_state(const JointProblem& problem, const PerSensor<sensor::Sens
 
 namespace {
 
-/// Readings are an affine map of a field that is known as a vector, y = M r + o: least squares for each sensor,
-/// and M^-1 = R K with R orthogonal, K upper triangular with positive diagonal (QR).
+/// Readings are an affine map of a field that is known as a vector, y = M r + o: least squares for each
+/// sensor, and M^-1 = R K with R orthogonal, K upper triangular with positive diagonal (QR).
 Result<JointState> start_from_reference(const JointProblem& problem, double f_nT) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
   Eigen::MatrixXd r(poses, 4), y(poses, problem.channels());

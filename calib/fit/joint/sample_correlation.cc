@@ -14,9 +14,8 @@ namespace mgtd::calib::fit::joint {
 SampleCorrelation sample_correlation(const JointProblem& problem, const JointState& state) {
   std::vector<std::size_t> order(problem.poses.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return problem.poses[a].t_h < problem.poses[b].t_h;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return problem.poses[a].t_h < problem.poses[b].t_h; });
   const PoseModel model(problem, state);
   PoseBlocks b;
   sensor::ChannelCovariance now, before;

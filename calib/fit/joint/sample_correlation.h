@@ -5,8 +5,8 @@
 /// Finds how far the noise of neighbouring poses is correlated, for recordings of single samples, which a
 /// sensor's bandwidth and 1/f noise make alike.
 ///
-/// Residuals of pose k with its nuisances fitted are e_k = M_k n_k, M_k = I - N (N'N + Lambda)^-1 N', noise in
-/// its own standard deviations. With one correlation r from pose to pose in every channel,
+/// Residuals of pose k with its nuisances fitted are e_k = M_k n_k, M_k = I - N (N'N + Lambda)^-1 N', noise
+/// in its own standard deviations. With one correlation r from pose to pose in every channel,
 ///     r = sum e_k . e_(k-1) / sum tr M_k M_(k-1),
 /// in the order of time, good to (sum tr (M_k M_(k-1))^2)^(1/2) over the same sum. First-order autoregressive
 /// noise makes n samples worth n (1 - r)/(1 + r) where the sensor turns more slowly than the noise changes.

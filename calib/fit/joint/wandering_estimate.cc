@@ -288,11 +288,13 @@ WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
 double unequal_noise_evidence(const JointFit& fit) {
   const Eigen::ArrayXd squares =
       pose_residuals(fit.problem, fit.state).noise_ratio.reshaped().array().square();
-  return std::max(0.0, fit.dof / fit.samples_per_effective * (std::log(squares.mean()) - squares.log().mean()));
+  return std::max(0.0,
+                  fit.dof / fit.samples_per_effective * (std::log(squares.mean()) - squares.log().mean()));
 }
 
 WanderingEstimate wandering_of(const JointFit& fit) {
-  WanderingEstimate out = estimate_wandering(SlowLikelihood(slow_sums(fit).thinned(fit.samples_per_effective)));
+  WanderingEstimate out =
+      estimate_wandering(SlowLikelihood(slow_sums(fit).thinned(fit.samples_per_effective)));
   return out.evidence < kWanderingEvidence + unequal_noise_evidence(fit) ? WanderingEstimate{} : out;
 }
 

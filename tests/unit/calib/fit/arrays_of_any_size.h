@@ -43,9 +43,9 @@ inline sensor::Geometry geometry_of(const Places& places) {
 inline rig::Scenario scenario_of(const Places& places, std::uint64_t seed, const std::string& more = "") {
   std::vector<std::string> rows;
   for (const Eigen::Vector3d& r : places) rows.push_back(fmt::format("[{}, {}, {}]", r[0], r[1], r[2]));
-  const std::string text = fmt::format(
-      "[rig]\nparameters = \"random\"\nseed = {}\n[array]\npositions_m = [{}]\n{}", seed,
-      fmt::join(rows, ", "), more);
+  const std::string text =
+      fmt::format("[rig]\nparameters = \"random\"\nseed = {}\n[array]\npositions_m = [{}]\n{}", seed,
+                  fmt::join(rows, ", "), more);
   auto scenario = rig::parse_scenario(text, "array.toml");
   if (!scenario) throw std::runtime_error(fmt::format("{}", fmt::join(scenario.error(), "; ")));
   return *std::move(scenario);

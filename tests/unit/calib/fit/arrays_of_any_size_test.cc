@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/calib/fit/arrays_of_any_size.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "calib/calibration/apply.h"
+#include "calib/calibration/calibration.h"
+#include "calib/criticism/search/explain.h"
+#include "calib/fit/joint/sample_correlation.h"
+#include "calib/fit/method_choice/fit.h"
+#include "calib/report/fit_report_text.h"
+
+namespace mgtd::calib {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Places;
+
+fit::FitReport fitted(const PoseTable& table, const Places& places) {
+  fit::FitOptions options;
+  options.geometry = testing::geometry_of(places);
+  auto report = fit::method_choice::fit(table, options);
+  if (!report) throw std::runtime_error(report.error().text());
+  return *std::move(report);
+}
+
+criticism::search::ExplainReport explained(const PoseTable& table, const Places& places) {
+  criticism::search::ExplainOptions options{.fit = {}, .rounds = 3, .candidate_effects = {}};
+  options.fit.geometry = testing::geometry_of(places);
+  auto report = criticism::search::explain(table, options);
+  if (!report) throw std::runtime_error(report.error().text());
+  return *std::move(report);
+}
+
+/// Errors of the nine parameters of a sensor that need no frame, over their covariance.
+double squared_error(const calibration::Calibration& c, std::size_t i, const rig::SensorTruth& truth) {
+  const sensor::SensorModel& s = c.sensors[i];
+  Eigen::Matrix<double, 9, 1> off;
+  off << s.theta_rad - to_rad(truth.theta_deg), s.phi_rad - to_rad(truth.phi_deg),
+      s.psi_rad - to_rad(truth.psi_deg), s.scale - truth.scale, s.offset_nT - truth.offset_nT;
+  const auto at = static_cast<Eigen::Index>(12 * i);
+  const Eigen::Matrix<double, 9, 9> C = c.covariance.block<9, 9>(at, at);
+  return off.dot(C.ldlt().solve(off));
+}
+
+/// Mean of the squared error over runs and sensors: nine where the uncertainties are honest.
+double mean_squared_error(const Places& places, int runs, const std::string& more = "") {
+  double sum = 0;
+  for (int seed = 1; seed <= runs; ++seed) {
+    const auto scenario = testing::scenario_of(places, static_cast<std::uint64_t>(seed), more);
+    const fit::FitReport report =
+        fitted(testing::turned_run(places, static_cast<std::uint64_t>(seed), more), places);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      sum += squared_error(report.calibration, i, scenario.truth[i]) / static_cast<double>(places.size());
+  }
+  return sum / runs;
+}
+
+/// Of a mean over `count` chi-squares of nine degrees of freedom, five standard deviations either way.
+double band(double count) { return 5 * std::sqrt(18 / count); }
+
+TEST(ArraysOfAnySize, TheUncertaintiesOfOneSensorAreHonest) {
+  constexpr int kRuns = 60;
+  EXPECT_NEAR(mean_squared_error(testing::one_sensor(), kRuns), 9, band(kRuns));
+}
+
+TEST(ArraysOfAnySize, TheUncertaintiesOfTwoFourAndEightSensorsAreHonest) {
+  EXPECT_NEAR(mean_squared_error(testing::two_along_x(), 30), 9, band(60));
+  EXPECT_NEAR(mean_squared_error(testing::tetrahedron(), 15), 9, band(60));
+  EXPECT_NEAR(mean_squared_error(testing::cube_of_eight(), 8), 9, band(64));
+}
+
+TEST(ArraysOfAnySize, WhatTheArrayCannotTellIsAbsent) {
+  const PoseTable table = testing::turned_run(testing::two_along_x(), 3);
+  const fit::FitReport report = fitted(table, testing::two_along_x());
+  const Gradient& g = report.after.tensor_rmse_nT_per_m;
+  EXPECT_LT(g.xx, 0.2);
+  EXPECT_LT(g.xy, 0.2);
+  EXPECT_LT(g.xz, 0.2);
+  for (const double absent : {g.yy, g.zz, g.yz}) EXPECT_TRUE(std::isnan(absent));
+  const auto rows = calibration::apply(report.calibration, table);
+  ASSERT_TRUE(rows) << rows.error().text();
+  EXPECT_TRUE(std::isnan(rows->front().sample.g_nT_per_m.yy));
+  EXPECT_EQ(rows->front().sample.closure.dof, 0);
+  const fit::FitReport one = fitted(testing::turned_run(testing::one_sensor(), 3), testing::one_sensor());
+  EXPECT_THAT(report::to_text(one), Not(HasSubstr("tensor, nT/m")));
+}
+
+TEST(ArraysOfAnySize, ClosureHasItsDegreesOfFreedom) {
+  const Places cube = testing::cube_of_eight();
+  const PoseTable table = testing::turned_run(cube, 4);
+  const auto rows = calibration::apply(fitted(table, cube).calibration, table);
+  ASSERT_TRUE(rows) << rows.error().text();
+  double chi2 = 0;
+  for (const auto& row : *rows) {
+    ASSERT_EQ(row.sample.closure.dof, 16);
+    chi2 += row.sample.closure.chi2 / static_cast<double>(rows->size());
+  }
+  EXPECT_NEAR(chi2, 16, 5 * std::sqrt(32.0 / static_cast<double>(rows->size())));
+}
+
+TEST(ArraysOfAnySize, ACalibrationIsReadBackAsItWasWritten) {
+  for (const Places& places : {testing::one_sensor(), testing::cube_of_eight()}) {
+    const calibration::Calibration c = fitted(testing::turned_run(places, 5), places).calibration;
+    const auto again = calibration::calibration_from_json_text(calibration::to_json_text(c));
+    ASSERT_TRUE(again) << again.error().text();
+    EXPECT_EQ(again->id, c.id);
+    EXPECT_EQ(again->geometry, c.geometry);
+    EXPECT_EQ(again->covariance, c.covariance);
+  }
+}
+
+TEST(ArraysOfAnySize, CleanRunsPassAndAHiddenLawIsNamed) {
+  const std::string cubic = "[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.y\"\nnT_at_F0 = 3\n";
+  for (const Places& places : {testing::one_sensor(), testing::two_along_x(), testing::cube_of_eight()}) {
+    EXPECT_EQ(explained(testing::turned_run(places, 5), places).left, criticism::search::Finding::pass)
+        << places.size();
+    const auto found = explained(testing::turned_run(places, 5, cubic), places);
+    ASSERT_FALSE(found.rounds.empty()) << places.size();
+    EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic") << places.size();
+  }
+}
+
+PoseTable in_a_cage(const std::string& more, std::uint64_t seed) {
+  const auto scenario = testing::scenario_of(
+      testing::one_sensor(), seed,
+      "[reference]\nvector = true\nsd_nT = 0.2\nmisalignment_deg = [1, -2, 3]\n[cage]\nfields = \"random\"\n"
+      "max_nT = 60000\nposes = 120\n" +
+          more);
+  return rig::simulated_table(scenario, rig::cage_fields(*scenario.cage, seed), seed);
+}
+
+TEST(KnownVector, TheFieldOfACageGivesEveryParameterAndTheMisalignment) {
+  double sum = 0;
+  constexpr int kRuns = 40;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const auto scenario = testing::scenario_of(testing::one_sensor(), seed);
+    const fit::FitReport report = fitted(in_a_cage("", seed), testing::one_sensor());
+    sum += squared_error(report.calibration, 0, scenario.truth[0]) / kRuns;
+    EXPECT_THAT(report.calibration.gauge, HasSubstr("vector reference"));
+    EXPECT_LT(std::sqrt(report.calibration.covariance(sensor::alpha, sensor::alpha)), to_rad(0.001));
+  }
+  EXPECT_NEAR(sum, 9, band(kRuns));
+}
+
+TEST(KnownVector, ALawIsNamedInACage) {
+  EXPECT_EQ(explained(in_a_cage("", 3), testing::one_sensor()).left, criticism::search::Finding::pass);
+  const auto found =
+      explained(in_a_cage("[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.z\"\nnT_at_F0 = 5\n", 3),
+                testing::one_sensor());
+  ASSERT_FALSE(found.rounds.empty());
+  EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
+}
+
+PoseTable recorded(const std::string& motion, double ar, std::uint64_t seed) {
+  return rig::pose_table_of(rig::simulated_recording(testing::scenario_of(
+      testing::one_sensor(), seed,
+      fmt::format("[recording]\nmotion = \"{}\"\nrate_hz = 20\nduration_s = 150\nar = {}\n", motion, ar))));
+}
+
+TEST(Recording, CorrelatedSamplesCountForLess) {
+  constexpr double kRho = 0.9;
+  double sum = 0;
+  constexpr int kRuns = 12;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const PoseTable table = recorded("hand", kRho, seed);
+    const fit::FitReport report = fitted(table, testing::one_sensor());
+    sum += squared_error(report.calibration, 0, testing::scenario_of(testing::one_sensor(), seed).truth[0]) /
+           kRuns;
+  }
+  // A hand turns faster than white noise would need: the correlation is a bound, three times at the most.
+  EXPECT_LT(sum, 9 + band(kRuns));
+  EXPECT_GT(sum, 2);
+}
+
+TEST(Recording, CleanOnesPass) {
+  for (const double ar : {0.0, 0.9})
+    EXPECT_EQ(explained(recorded("hand", ar, 2), testing::one_sensor()).left,
+              criticism::search::Finding::pass)
+        << ar;
+}
+
+TEST(Recording, WhatDoesNotExciteIsRefused) {
+  for (const char* motion : {"level", "one-axis"}) {
+    const auto report = fit::method_choice::fit(recorded(motion, 0, 2), [] {
+      fit::FitOptions options;
+      options.geometry = testing::geometry_of(testing::one_sensor());
+      return options;
+    }());
+    EXPECT_TRUE(!report || !report->calibration.accepted_by_checks) << motion;
+  }
+}
+
+}  // namespace
+}  // namespace mgtd::calib
