@@ -12,6 +12,7 @@
 
 #include "daemon/app/daemon_app.h"
 #include "daemon/app/service_notify.h"
+#include "daemon/config/served_array.h"
 #include "daemon/store/store_lock.h"
 
 namespace {

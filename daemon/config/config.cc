@@ -9,6 +9,7 @@
 #include "calib/effects/library/library.h"
 #include "daemon/config/array_places.h"
 #include "daemon/config/input_columns.h"
+#include "daemon/config/served_array.h"
 #include "daemon/config/tcp_address.h"
 #include "daemon/config/toml_settings.h"
 #include "daemon/plan/mount_plan.h"
@@ -266,13 +267,8 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
 }
 
 void Reader::read_array(const toml::table& root) {
-  const std::size_t before = errors_.size();
   config_.array = config::read_array(root, errors_);
-  const toml::node* const section = root.get("array");
-  if (section == nullptr || errors_.size() > before) return;
-  if (root["rig"]["baseline_m"])
-    complain(place_of(section->source()),
-             "[array]: baseline_m in [rig] says the places of a cross; leave one of the two out");
+  if (!config_.array) return;
   if (const auto baseline_m = config_.array->cross_baseline_m(); baseline_m && is_baseline(*baseline_m))
     config_.baseline_m = *baseline_m;
 }
@@ -369,16 +365,6 @@ std::vector<drivers::SettingError> Reader::take_errors() {
 }
 
 }  // namespace
-
-std::optional<Error> not_served(const Config& config) {
-  if (config.geometry() == calib::sensor::Geometry(config.baseline_m)) return std::nullopt;
-  return Error{ErrorCode::refused,
-               fmt::format("[array] describes {}, and mgtd drives the cross of four sensors alone",
-                           config.array->sensors() == kSensorCount
-                               ? std::string("four sensors that are no cross")
-                               : fmt::format("an array of {}", config.array->sensors())),
-               "record with another program, and calibrate with mgt fit POSES.csv --array FILE.toml"};
-}
 
 tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file) {
   Config config;

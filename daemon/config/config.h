@@ -97,9 +97,6 @@ struct ConfigErrors {
   std::vector<std::string> lines;
 };
 
-/// Why mgtd does not run a rig with this array; empty where it does. Everything offline takes any array.
-[[nodiscard]] std::optional<Error> not_served(const Config& config);
-
 [[nodiscard]] tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file);
 [[nodiscard]] tl::expected<Config, ConfigErrors> load_config(const std::string& path);
 
