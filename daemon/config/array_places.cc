@@ -95,6 +95,11 @@ std::optional<calib::sensor::Geometry> read_array(const toml::table& root,
                                                   std::vector<drivers::SettingError>& mistakes) {
   const toml::node* const section = root.get("array");
   if (section == nullptr) return std::nullopt;
+  if (root["rig"]["baseline_m"]) {
+    mistakes.push_back({place_of(section->source()),
+                        "[array]: baseline_m in [rig] says the places of a cross; leave one of the two out"});
+    return std::nullopt;
+  }
   return PlacesReader(mistakes).read(*section);
 }
 

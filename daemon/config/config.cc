@@ -267,13 +267,8 @@ DeviceConfig Reader::read_device(Settings s, std::string name, Role role, int sl
 }
 
 void Reader::read_array(const toml::table& root) {
-  const std::size_t before = errors_.size();
   config_.array = config::read_array(root, errors_);
-  const toml::node* const section = root.get("array");
-  if (section == nullptr || errors_.size() > before) return;
-  if (root["rig"]["baseline_m"])
-    complain(place_of(section->source()),
-             "[array]: baseline_m in [rig] says the places of a cross; leave one of the two out");
+  if (!config_.array) return;
   if (const auto baseline_m = config_.array->cross_baseline_m(); baseline_m && is_baseline(*baseline_m))
     config_.baseline_m = *baseline_m;
 }

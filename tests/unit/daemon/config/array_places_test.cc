@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "daemon/config/config.h"
+#include "daemon/config/served_array.h"
 
 namespace mgtd::daemon::config {
 namespace {
@@ -35,6 +35,8 @@ TEST(ArrayPlaces, AreReadInTheirOrder) {
 TEST(ArrayPlaces, MistakesAreNamedWithLineAndColumn) {
   EXPECT_THAT(error_of("[array\n"), StartsWith("array.toml:1:"));
   EXPECT_THAT(error_of("[rig]\nname = \"x\"\n"), StartsWith("array.toml:1:1: there is no section [array]"));
+  EXPECT_THAT(error_of("[rig]\nbaseline_m = 0.4\n[array]\npositions_m = [[0, 0, 0]]\n"),
+              StartsWith("array.toml:3:1: [array]: baseline_m in [rig]"));
   EXPECT_THAT(error_of("array = 3\n"), StartsWith("array.toml:1:9: 'array' must be a section"));
   EXPECT_THAT(error_of("\n[array]\n"), StartsWith("array.toml:2:1: [array]: positions_m is missing"));
   EXPECT_THAT(error_of("[array]\nplaces_m = [[0, 0, 0]]\npositions_m = [[0, 0, 0]]\n"),
