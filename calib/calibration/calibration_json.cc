@@ -211,10 +211,23 @@ Calibration calibration_of(const json& object) {
 json example(const sensor::Geometry& geometry) {
   Calibration c;
   c.geometry = geometry;
-  c.effects = {{.effect = "", .coefficients = {{}}, .size_nT = sensor::FieldVector::Zero(sensor::kChannels)}};
+  const auto sensors = static_cast<Eigen::Index>(geometry.sensors());
+  const Eigen::Index parameters = sensors * sensor::kSensorParameters;
+  c.sensors.resize(geometry.sensors());
+  c.reference.T_degC.resize(geometry.sensors());
+  c.covariance = Eigen::MatrixXd::Zero(parameters, parameters);
+  c.sample_noise_nT = c.pose_noise_nT = AxisNoise::Zero(sensors, 3);
+  c.effects = {{.effect = "", .coefficients = {{}}, .size_nT = sensor::FieldVector::Zero(3 * sensors)}};
   c.effect_covariance = Eigen::MatrixXd::Zero(1, 1);
   c.checks = {{}};
   return to_json(c);
+}
+
+/// So many places, none of them at the origin, as the object has sensors.
+sensor::Geometry places_like(const json& object) {
+  const json sensors = object.value("sensors", json::array());
+  const auto count = std::clamp<std::size_t>(sensors.size(), 1, static_cast<std::size_t>(kMostSensors));
+  return sensor::Geometry(PerSensor<Eigen::Vector3d>(count, Eigen::Vector3d::Ones()));
 }
 
 /// `text`: what the object was parsed from, where there is one.
@@ -224,11 +237,9 @@ Result<Calibration> read(const json& object, std::optional<std::string_view> tex
     return fail(ErrorCode::bad_input,
                 fmt::format("schema {} is not \"{}\"", object["schema"].dump(), kSchema),
                 "use the version of mgt that wrote it");
-  static const json kCross = example(sensor::Geometry()),
-                    kOther =
-                        example(sensor::Geometry(PerSensor<Eigen::Vector3d>(1, Eigen::Vector3d::Zero())));
+  static const json kCross = example(sensor::Geometry());
   const bool other = object.is_object() && object.contains("positions_m");
-  if (const auto wrong = misfit(other ? kOther : kCross, object))
+  if (const auto wrong = misfit(other ? example(places_like(object)) : kCross, object))
     return fail(ErrorCode::bad_input, "not a calibration: " + (text ? wrong->text(*text) : wrong->what),
                 kRemedy);
   // What the example cannot tell (a list that is too short, a temperature that is a text) is left to the

@@ -31,7 +31,7 @@ class Geometry {
   [[nodiscard]] std::optional<double> cross_baseline_m() const {
     if (sensors() != kSensorCount) return std::nullopt;
     const double d = 2 * places_P_m_[0][0];
-    if (*this == Geometry(d)) return d;
+    if (d >= 0 && *this == Geometry(d)) return d;
     return std::nullopt;
   }
   friend bool operator==(const Geometry& a, const Geometry& b) { return a.places_P_m_ == b.places_P_m_; }

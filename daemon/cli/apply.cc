@@ -34,14 +34,16 @@ std::optional<double> median_closure_chi2(const std::vector<calib::calibration::
 
 /// Refuses a calibration of another rig.
 void doubt_closure(const std::vector<calib::calibration::AppliedPose>& rows) {
-  constexpr double kExpected = 3.4, kDoubtful = 100;  // median of chi-square with four degrees of freedom
+  constexpr double kDoubtful = 100;
   const auto chi2 = median_closure_chi2(rows);
-  if (!chi2 || *chi2 < kDoubtful) return;
+  if (!chi2) return;
+  const double dof = rows.front().sample.closure.dof, expected = dof - 0.6;  // median of chi-square, nearly
+  if (*chi2 < kDoubtful * std::max(1.0, dof / 4)) return;
   fmt::print(
       stderr,
-      "closure_chi2 is {:.3g} in the median of the rows where {} is expected: the calibration does not "
+      "closure_chi2 is {:.3g} in the median of the rows where {:.1f} is expected: the calibration does not "
       "hold for these readings, or is that of another rig; mgt check tells what has changed\n",
-      *chi2, kExpected);
+      *chi2, expected);
 }
 
 int run_apply(const Session& session, const ApplyArguments& args) {
