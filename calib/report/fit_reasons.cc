@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <Eigen/LU>
 #include <cmath>
 #include <iterator>
@@ -37,8 +39,13 @@ std::vector<std::string> remarks_on_any(const fit::FitReport& report) {
         mirrored ? "mirrored (an axis wired backwards, or two swapped)" : "mounted turned", axes));
   }
   if (std::string left = lack_of_fit_text(report); !left.empty()) out.push_back(std::move(left));
-  for (const std::string& text : outlier_texts(report.outliers))
-    out.push_back(text + "; left out of the fit");
+  constexpr std::size_t kMostLines = 20;  // a recording can have hundreds
+  const std::vector<std::string> left_out = outlier_texts(report.outliers);
+  for (std::size_t i = 0; i < std::min(kMostLines, left_out.size()); ++i)
+    out.push_back(left_out[i] + "; left out of the fit");
+  if (left_out.size() > kMostLines)
+    out.push_back(fmt::format("{} more like these; mgt fit --json lists them all under outliers",
+                              left_out.size() - kMostLines));
   return out;
 }
 

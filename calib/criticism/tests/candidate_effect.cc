@@ -8,7 +8,6 @@
 #include <map>
 
 #include "calib/effects/where.h"
-#include "calib/sensor/channels.h"
 #include "proto/number.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -105,7 +104,8 @@ std::vector<Hypothesis> hypotheses_of(const effects::Effect& finest, int sensors
     axis[3 * s + static_cast<std::size_t>(p.axis)][name].push_back(i);
   }
   for (std::size_t a = 0; a < axis.size(); ++a) {
-    out.push_back(summed(sensor::channel_name(static_cast<int>(a)), 1, channels, n, axis[a]));
+    out.push_back(summed(effects::axis_name(static_cast<int>(a) / 3, static_cast<int>(a) % 3), 1, channels, n,
+                         axis[a]));
   }
   const bool alike = std::all_of(coefficients.begin(), coefficients.end(), [](const effects::Coefficient& c) {
     const std::size_t end = c.name.find('.') + 2;  // of the axis
