@@ -61,7 +61,7 @@ Result<FixedCalibration> freeze(const calibration::Calibration& c,
   std::vector<Eigen::Index> rows;
   Eigen::Index row = 0;
   for (const calibration::CalibratedEffect& e : c.effects) {
-    const auto effect = effects::library::make_effect(e.effect);
+    const auto effect = effects::library::make_effect(e.effect, static_cast<int>(c.sensors.size()));
     if (!effect) return tl::unexpected(effect.error());
     // Another table is another table: its own errors are no part of what is under test.
     if ((*effect)->level() != effects::Level::table) freeze_effect(slots, e, *effect, row, values, rows, out);

@@ -133,7 +133,9 @@ Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::P
                fmt::join(source.model, ", "));
   for (const std::string& name : flags.with) {
     if (name == "none") continue;
-    auto effect = calib::effects::library::make_effect(store::whole_spec(name, source.definitions));
+    auto effect = calib::effects::library::make_effect(
+        store::whole_spec(name, source.definitions),
+        calib::effects::EffectContext{.table = &source.table, .offset_nT = {}}.sensors());
     if (!effect) return tl::unexpected(effect.error());
     put(out.effects, *effect);
   }

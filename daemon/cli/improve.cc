@@ -31,7 +31,8 @@ std::optional<calib::criticism::search::Waterfall> waterfall_of(
     const calib::calibration::Calibration& calibration) {
   options.effects.clear();
   for (const calib::calibration::CalibratedEffect& e : calibration.effects) {
-    auto effect = calib::effects::library::make_effect(e.effect);
+    auto effect =
+        calib::effects::library::make_effect(e.effect, static_cast<int>(calibration.sensors.size()));
     if (!effect) return std::nullopt;
     options.effects.push_back(std::move(*effect));
   }

@@ -88,13 +88,14 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
 int run_add(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
+  const int sensors = calib::effects::EffectContext{.table = &run->source.table, .offset_nT = {}}.sensors();
   const auto effect =
-      calib::effects::library::make_effect(store::whole_spec(args.effect, run->source.definitions));
+      calib::effects::library::make_effect(store::whole_spec(args.effect, run->source.definitions), sensors);
   if (!effect) return report(session, effect.error());
   const auto change = with_progress(
       "add", [&] { return calib::criticism::search::add_effect(run->source.table, run->options, *effect); });
   if (!change) return report(session, change.error());
-  const auto found = calib::effects::library::make_effect(change->spec);
+  const auto found = calib::effects::library::make_effect(change->spec, sensors);
   if (!found) return report(session, found.error());
   calib::criticism::search::Choice choice;
   const calib::criticism::search::ExplainOptions without{.fit = run->options,

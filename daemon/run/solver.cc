@@ -22,7 +22,8 @@ calib::fit::FitOptions fit_options(const store::RunOptions& options) {
 Result<calib::fit::FitOptions> fit_options(const store::PoseSource& source) {
   calib::fit::FitOptions out = source.header ? fit_options(source.header->options) : calib::fit::FitOptions{};
   for (const std::string& spec : source.model) {
-    auto effect = calib::effects::library::make_effect(spec);
+    auto effect = calib::effects::library::make_effect(
+        spec, calib::effects::EffectContext{.table = &source.table, .offset_nT = {}}.sensors());
     if (!effect) return tl::unexpected(effect.error());
     out.effects.push_back(std::move(*effect));
   }

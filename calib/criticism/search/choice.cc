@@ -20,7 +20,7 @@ const double kExcluded = 2 * std::log(1000);
 /// A family where another one acts, its number left open; where it usually acts when it cannot act there.
 std::string spec_of(const std::string& family, const std::string& where) {
   const std::string there = family + "@" + where;
-  return effects::library::make_effect(there) ? there : family;
+  return effects::library::make_effect(there, kMostSensors) ? there : family;
 }
 
 /// Everything that could stand in the place of `effect`, where a round of the search found it or one of its
@@ -55,7 +55,7 @@ std::optional<double> misfit(const PoseTable& table, const fit::FitOptions& opti
 /// The model with `spec` in the place of the effect called `name`.
 std::optional<fit::FitOptions> exchanged(const fit::FitOptions& options, const std::string& name,
                                          const std::string& spec) {
-  auto alternative = effects::library::make_effect(spec);
+  auto alternative = effects::library::make_effect(spec, static_cast<int>(options.geometry.sensors()));
   if (!alternative) return std::nullopt;
   fit::FitOptions out = options;
   for (effects::EffectPtr& effect : out.effects)

@@ -44,6 +44,7 @@ std::vector<effects::EffectPtr> on_significant_axes(const fit::joint::JointFit& 
     const auto where = effects::Where::parse(axis);
     if (!where) return {effect};
     spec->where = *where;
+    spec->sensors = fit.problem.sensors();
     auto made = effects::library::make_effect(*spec);
     if (!made) return {effect};
     out.push_back(*std::move(made));
