@@ -24,7 +24,9 @@ TensorSample sample() {
   s.f_nT = 50'000;
   s.g_nT_per_m = {10.5, -20.25, 9.75, 1, -2, 3};
   s.g_sd_nT_per_m = {0.25, 0.25, 0.5, 0.125, 0.125, 0.125};
-  s.closure = {0.5, {1, 2, -3}, 3.875};
+  s.closure.curl_nT_per_m = 0.5;
+  s.closure.center_nT = {1, 2, -3};
+  s.closure.chi2 = 3.875;
   s.flags = Flags(Flag::interpolated) | Flag::suspect;
   return s;
 }
