@@ -185,7 +185,7 @@ TEST(FieldExpansion, ATriangleTellsAllAndClosesInTheCurl) {
 }
 
 TEST(FieldExpansion, OfTheCrossIsTheClosedForm) {
-  const sensor::Geometry geometry{.baseline_m = 0.5};
+  const sensor::Geometry geometry(0.5);
   const Places places = cross(0.25);
   const FieldExpansion array = expansion_of(places);
   ASSERT_TRUE(array.is_cross());
