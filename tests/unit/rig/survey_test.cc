@@ -125,8 +125,16 @@ TEST(Survey, TheCrossIsWhatItWas) {
             "sd_z_nT,s1_T_degC,s2_T_degC,s3_T_degC,s4_T_degC,sense,dwell_s,since_stop_s");
 }
 
-TEST(Survey, OnlyTheCrossIsAPoseTable) {
-  EXPECT_THROW(static_cast<void>(pose_table_of(Survey{.sensors = 2, .rows = {}})), std::invalid_argument);
+TEST(Survey, AnyArrayIsAPoseTable) {
+  Survey survey{.sensors = 2, .rows = {}};
+  SurveyRow& row = survey.rows.emplace_back(survey.sensors);
+  row.y_nT[1] = {1, 2, 3};
+  row.ref_nT = Eigen::Vector3d(4, 5, 6);
+  const PoseTable table = pose_table_of(survey);
+  ASSERT_EQ(table.poses.size(), 1U);
+  ASSERT_EQ(table.poses.front().y_nT.size(), 2U);
+  EXPECT_EQ(table.poses.front().y_nT[1], Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(table.poses.front().ref_nT, Eigen::Vector3d(4, 5, 6));
 }
 
 }  // namespace
