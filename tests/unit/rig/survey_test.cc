@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "proto/sha256.h"
 #include "tests/rig/effect_list.h"
