@@ -15,22 +15,45 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
 
-std::array<double, 6> in_order(const Gradient& g) { return {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}; }
+/// Which columns there are; those that the array cannot tell are left out.
+struct AppliedColumns {
+  Eigen::Index channels{sensor::kChannels};
+  bool time{false}, sd{false}, chi2{false}, left_out{false};
+  bool cross{true};  ///< curl and centre
+  std::array<bool, 6> told{};
 
-std::string header(bool with_time, bool with_sd, bool with_left_out) {
+  explicit AppliedColumns(const std::vector<AppliedPose>& rows) {
+    time = std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.t_s.has_value(); });
+    left_out = std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.left_out.empty(); });
+    told.fill(true);
+    if (rows.empty()) return;
+    const TensorSample& first = rows.front().sample;
+    channels = rows.front().b_P_nT.size();
+    cross = !std::isnan(first.closure.curl_nT_per_m);
+    chi2 = std::isfinite(first.closure.chi2);
+    const auto g = components(first.g_nT_per_m), g_sd = components(first.g_sd_nT_per_m);
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      told[i] = !std::isnan(g[i]);
+      sd = sd || std::isfinite(g_sd[i]);
+    }
+  }
+};
+
+std::string header(const AppliedColumns& columns) {
   std::string out = "pose";
-  if (with_time) out += ",t_s";
-  for (int i = 1; i <= kSensors; ++i) {
-    for (const char axis : {'x', 'y', 'z'}) out += fmt::format(",s{}_b{}_nT", i, axis);
-  }
+  if (columns.time) out += ",t_s";
+  for (Eigen::Index c = 0; c < columns.channels; ++c)
+    out += fmt::format(",s{}_b{}_nT", c / 3 + 1, "xyz"[c % 3]);
   out += ",Bx_nT,By_nT,Bz_nT,F_nT";
-  for (const auto component : kComponents) out += fmt::format(",G{}_nT_per_m", component);
-  out += ",curl_nT_per_m,center_x_nT,center_y_nT,center_z_nT";
-  if (with_sd) {
-    for (const auto component : kComponents) out += fmt::format(",G{}_sd_nT_per_m", component);
-    out += ",closure_chi2";
-  }
-  if (with_left_out) out += ",left_out";
+  const auto add = [&](const char* kind) {
+    for (std::size_t i = 0; i < kComponents.size(); ++i)
+      if (columns.told[i]) out += fmt::format(",G{}{}_nT_per_m", kComponents[i], kind);
+  };
+  add("");
+  if (columns.cross) out += ",curl_nT_per_m,center_x_nT,center_y_nT,center_z_nT";
+  if (columns.sd) add("_sd");
+  if (columns.chi2) out += ",closure_chi2";
+  if (columns.left_out) out += ",left_out";
   return out + "\n";
 }
 
@@ -82,28 +105,28 @@ Result<std::vector<AppliedPose>> apply(const Calibration& calibration, const Pos
 }
 
 std::string format_applied(const std::vector<AppliedPose>& rows) {
-  const bool with_time =
-      std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.t_s.has_value(); });
-  const bool with_sd = !rows.empty() && std::isfinite(rows.front().sample.closure.chi2);
-  const bool with_left_out =
-      std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.left_out.empty(); });
-  std::string out = header(with_time, with_sd, with_left_out);
+  const AppliedColumns columns(rows);
+  std::string out = header(columns);
   const auto add = [&](double value) { fmt::format_to(std::back_inserter(out), ",{:.6f}", value); };
   for (const AppliedPose& row : rows) {
     fmt::format_to(std::back_inserter(out), "{}", row.number);
-    if (with_time) out += row.t_s ? fmt::format(",{}", *row.t_s) : ",";
+    if (columns.time) out += row.t_s ? fmt::format(",{}", *row.t_s) : ",";
     const TensorSample& s = row.sample;
     for (const double b : row.b_P_nT) add(b);
     for (const double b : s.b_P_nT) add(b);
     add(s.f_nT);
-    for (const double g : in_order(s.g_nT_per_m)) add(g);
-    add(s.closure.curl_nT_per_m);
-    for (const double c : s.closure.center_nT) add(c);
-    if (with_sd) {
-      for (const double sd : in_order(s.g_sd_nT_per_m)) add(sd);
-      add(s.closure.chi2);
+    const auto add_told = [&](const Gradient& g) {
+      for (std::size_t i = 0; i < columns.told.size(); ++i)
+        if (columns.told[i]) add(components(g)[i]);
+    };
+    add_told(s.g_nT_per_m);
+    if (columns.cross) {
+      add(s.closure.curl_nT_per_m);
+      for (const double c : s.closure.center_nT) add(c);
     }
-    if (with_left_out) fmt::format_to(std::back_inserter(out), ",{}", fmt::join(row.left_out, ";"));
+    if (columns.sd) add_told(s.g_sd_nT_per_m);
+    if (columns.chi2) add(s.closure.chi2);
+    if (columns.left_out) fmt::format_to(std::back_inserter(out), ",{}", fmt::join(row.left_out, ";"));
     out += "\n";
   }
   return out;

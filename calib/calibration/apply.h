@@ -23,7 +23,7 @@ struct ApplyOptions {
 struct AppliedPose {
   int number{0};
   std::optional<double> t_s;
-  sensor::FieldVector b_P_nT;  ///< of the four sensors
+  sensor::FieldVector b_P_nT;  ///< of all sensors
   TensorSample sample;  ///< at the centre; the noise is that of the pose's n_eff (else n, else one) samples
   /// Effects that were not removed, by name; the sd is wider by their size.
   std::vector<std::string> left_out;
@@ -34,10 +34,11 @@ struct AppliedPose {
 [[nodiscard]] Result<std::vector<AppliedPose>> apply(const Calibration& calibration, const PoseTable& table,
                                                      const ApplyOptions& options = {});
 
-/// CSV, platform frame: pose, t_s (when any pose has it), s1_bx_nT .. s4_bz_nT, Bx_nT, By_nT, Bz_nT, F_nT,
+/// CSV, platform frame: pose, t_s (when any pose has it), s1_bx_nT .. sN_bz_nT, Bx_nT, By_nT, Bz_nT, F_nT,
 /// Gxx_nT_per_m, Gyy.., Gzz.., Gxy.., Gxz.., Gyz.., curl_nT_per_m, center_x_nT, center_y_nT, center_z_nT,
 /// where the noise is known Gxx_sd_nT_per_m .. Gyz_sd_nT_per_m and closure_chi2, and left_out (names with ';'
-/// between) when any effect was. Six decimals.
+/// between) when any effect was. What the array cannot tell has no column, and curl and centre are of the
+/// cross. Six decimals.
 [[nodiscard]] std::string format_applied(const std::vector<AppliedPose>& rows);
 
 }  // namespace mgtd::calib::calibration

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "calib/calibration/apply.h"
@@ -87,6 +88,13 @@ TEST(ArraysOfAnySize, WhatTheArrayCannotTellIsAbsent) {
   ASSERT_TRUE(rows) << rows.error().text();
   EXPECT_TRUE(std::isnan(rows->front().sample.g_nT_per_m.yy));
   EXPECT_EQ(rows->front().sample.closure.dof, 0);
+  const std::string csv = calibration::format_applied(*rows);
+  const std::string header = csv.substr(0, csv.find('\n')), row = csv.substr(header.size() + 1);
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','),
+            std::count(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(row.find('\n')), ','));
+  EXPECT_THAT(header, HasSubstr("s2_bz_nT,Bx_nT"));
+  EXPECT_THAT(header, HasSubstr("Gxx_nT_per_m,Gxy_nT_per_m,Gxz_nT_per_m,Gxx_sd"));
+  EXPECT_THAT(csv, Not(HasSubstr("nan")));
   const fit::FitReport one = fitted(testing::turned_run(testing::one_sensor(), 3), testing::one_sensor());
   EXPECT_THAT(report::to_text(one), Not(HasSubstr("tensor, nT/m")));
 }
