@@ -9,11 +9,10 @@
 #include <iterator>
 
 #include "calib/calibration/effect_correction.h"
+#include "calib/calibration/field_expansion.h"
 
 namespace mgtd::calib::calibration {
 namespace {
-
-constexpr std::array<std::string_view, 6> kComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
 
 /// Which columns there are; those that the array cannot tell are left out.
 struct AppliedColumns {
@@ -46,8 +45,8 @@ std::string header(const AppliedColumns& columns) {
     out += fmt::format(",s{}_b{}_nT", c / 3 + 1, "xyz"[c % 3]);
   out += ",Bx_nT,By_nT,Bz_nT,F_nT";
   const auto add = [&](const char* kind) {
-    for (std::size_t i = 0; i < kComponents.size(); ++i)
-      if (columns.told[i]) out += fmt::format(",G{}{}_nT_per_m", kComponents[i], kind);
+    for (std::size_t i = 0; i < kGradientNames.size(); ++i)
+      if (columns.told[i]) out += fmt::format(",{}{}_nT_per_m", kGradientNames[i], kind);
   };
   add("");
   if (columns.cross) out += ",curl_nT_per_m,center_x_nT,center_y_nT,center_z_nT";

@@ -9,6 +9,7 @@
 #include "calib/linear/cholesky.h"
 #include "calib/linear/propagation.h"
 #include "calib/linear/qr.h"
+#include "proto/per_sensor.h"
 
 namespace mgtd::calib::calibration {
 namespace {
@@ -53,9 +54,9 @@ Eigen::MatrixXd echelon_rows(const Eigen::MatrixXd& basis) {
 }  // namespace
 
 Result<FieldExpansion> FieldExpansion::of(std::span<const Eigen::Vector3d> places_P_m) {
-  if (places_P_m.empty() || places_P_m.size() > kMaxExpansionSensors) {
+  if (places_P_m.empty() || places_P_m.size() > static_cast<std::size_t>(kMostSensors)) {
     return fail(ErrorCode::usage,
-                fmt::format("an array has 1 to {} sensors, not {}", kMaxExpansionSensors, places_P_m.size()),
+                fmt::format("an array has 1 to {} sensors, not {}", kMostSensors, places_P_m.size()),
                 "give the place of every sensor of the array, and of no other");
   }
   Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(places_P_m.size()));
@@ -146,15 +147,6 @@ Result<WeightedEstimate> FieldExpansion::weighted(const Eigen::MatrixXd& covaria
   both << out.field, out.gradient;
   out.covariance = linear::propagated_covariance(both, covariance);
   return out;
-}
-
-std::optional<double> FieldExpansion::cross_baseline_m() const {
-  if (sensors() != 4) return std::nullopt;
-  const double h = places_P_m_(0, 0);
-  Eigen::Matrix<double, 3, 4> cross;
-  cross << h, 0, -h, 0, 0, h, 0, -h, 0, 0, 0, 0;
-  if (h <= kOnePlace_m || places_P_m_ != cross) return std::nullopt;
-  return 2 * h;
 }
 
 }  // namespace mgtd::calib::calibration

@@ -36,7 +36,6 @@
 /// whether a field is linear over the array (that is what the closure is for).
 namespace mgtd::calib::calibration {
 
-inline constexpr std::size_t kMaxExpansionSensors = 16;
 /// Order of the components of G in rows and covariances, as in the stream.
 inline constexpr std::array<std::string_view, 6> kGradientNames{"Gxx", "Gyy", "Gzz", "Gxy", "Gxz", "Gyz"};
 
@@ -101,11 +100,6 @@ class FieldExpansion {
   /// estimate, where that is a multiple of the identity. Refused where it has another size or is not positive
   /// definite.
   [[nodiscard]] Result<WeightedEstimate> weighted(const Eigen::MatrixXd& covariance) const;
-
-  /// The baseline, where the sensors are exactly the planar cross (+h,0,0), (0,+h,0), (-h,0,0), (0,-h,0) in
-  /// this order: 2h. The closed form of tensor.h then gives what the plain rows give.
-  [[nodiscard]] std::optional<double> cross_baseline_m() const;
-  [[nodiscard]] bool is_cross() const { return cross_baseline_m().has_value(); }
 
  private:
   explicit FieldExpansion(Eigen::Matrix3Xd places_P_m);

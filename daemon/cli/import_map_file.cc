@@ -144,16 +144,9 @@ class Reader {
 }  // namespace
 
 Result<ImportMap> import_map_from_text(std::string_view text, const std::string& file) {
-  toml::table root;
-  try {
-    root = toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    return fail(ErrorCode::bad_input,
-                fmt::format("{}:{}:{}: {}", file, error.source().begin.line, error.source().begin.column,
-                            error.description()),
-                kRemedy);
-  }
-  return Reader(file).read(root);
+  const auto root = config::parse_toml(text, file);
+  if (!root) return fail(ErrorCode::bad_input, root.error(), kRemedy);
+  return Reader(file).read(*root);
 }
 
 }  // namespace mgtd::daemon::cli

@@ -104,17 +104,10 @@ std::optional<calib::sensor::Geometry> read_array(const toml::table& root,
 }
 
 Result<calib::sensor::Geometry> array_from_text(std::string_view text, const std::string& file) {
-  toml::table root;
-  try {
-    root = toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    return fail(ErrorCode::bad_input,
-                fmt::format("{}:{}:{}: {}", file, error.source().begin.line, error.source().begin.column,
-                            error.description()),
-                kRemedy);
-  }
+  const auto root = parse_toml(text, file);
+  if (!root) return fail(ErrorCode::bad_input, root.error(), kRemedy);
   std::vector<drivers::SettingError> mistakes;
-  const auto geometry = read_array(root, mistakes);
+  const auto geometry = read_array(*root, mistakes);
   if (geometry) return *geometry;
   if (mistakes.empty()) mistakes.push_back({drivers::Place(1), "there is no section [array]"});
   std::vector<std::string> lines;

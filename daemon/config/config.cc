@@ -369,16 +369,11 @@ std::vector<drivers::SettingError> Reader::take_errors() {
 tl::expected<Config, ConfigErrors> parse_config(std::string text, std::string_view file) {
   Config config;
   config.file = file;
-  toml::table root;
-  try {
-    root = toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    return tl::unexpected(ConfigErrors{{fmt::format("{}:{}:{}: {}", file, error.source().begin.line,
-                                                    error.source().begin.column, error.description())}});
-  }
+  const auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(ConfigErrors{{root.error()}});
   config.text = std::move(text);
   Reader reader(config);
-  reader.read(root);
+  reader.read(*root);
   ConfigErrors errors;
   for (const drivers::SettingError& error : reader.take_errors())
     errors.lines.push_back(fmt::format("{}:{}:{}: {}", file, error.line, error.column, error.message));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/toml_settings.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <utility>
 #include <vector>
@@ -50,6 +52,15 @@ void flatten(const toml::table& table, const std::string& prefix, Settings& into
 }
 
 }  // namespace
+
+tl::expected<toml::table, std::string> parse_toml(std::string_view text, std::string_view file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    return tl::unexpected(fmt::format("{}:{}:{}: {}", file, error.source().begin.line,
+                                      error.source().begin.column, error.description()));
+  }
+}
 
 drivers::Place place_of(const toml::source_region& source) {
   return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};

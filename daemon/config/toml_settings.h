@@ -2,12 +2,17 @@
 #pragma once
 #include <toml++/toml.h>
 #include <string>
+#include <string_view>
+#include <tl/expected.hpp>
 
 #include "drivers/settings.h"
 
 /// This turns one TOML table into Settings: nested tables are flattened with dots, and every key knows its
 /// place in the file.
 namespace mgtd::daemon::config {
+
+/// "file:line:column: what is wrong", where `text` is not TOML.
+[[nodiscard]] tl::expected<toml::table, std::string> parse_toml(std::string_view text, std::string_view file);
 
 [[nodiscard]] drivers::Place place_of(const toml::source_region& source);
 
