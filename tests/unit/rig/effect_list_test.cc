@@ -18,16 +18,23 @@ std::shared_ptr<const Effect> made(const std::string& toml) {
   return effect.value_or(nullptr);
 }
 
-/// Every effect can be drawn, read back, and changes what a run reads: none is a name only.
-TEST(EffectList, EveryEffectChangesTheReadings) {
+Scenario without_noise() {
   Scenario quiet;
-  quiet.truth = *rig_named("table6", 1);
   quiet.noise.noise_nT = 0;
   quiet.scalar_noise_nT = 0;
   quiet.table_accuracy_deg = 0;
   quiet.temperature.ramp_degC_per_h = 5;
   quiet.covariates.push_back({});
-  const Design design = run_of_157({.random = 30, .revisits = 0, .senses = true, .pause_s = 60}, 1);
+  return quiet;
+}
+
+Design short_run() { return run_of_157({.random = 30, .revisits = 0, .senses = true, .pause_s = 60}, 1); }
+
+/// Every effect can be drawn, read back, and changes what a run reads: none is a name only.
+TEST(EffectList, EveryEffectChangesTheReadings) {
+  Scenario quiet = without_noise();
+  quiet.truth = *rig_named("table6", 1);
+  const Design design = short_run();
   const PoseTable without = simulated_table(quiet, design, 1);
   std::mt19937_64 random(7);
   for (const EffectKind* kind : all_kinds()) {
@@ -48,15 +55,10 @@ TEST(EffectList, EveryEffectChangesTheReadings) {
 
 /// Each is drawn for, and does something in, an array of two.
 TEST(EffectList, EveryEffectFindsTheSensorsOfAnArray) {
-  Scenario quiet;
+  Scenario quiet = without_noise();
   quiet.truth = rig_named("ideal", 1, 2).value();
   quiet.positions_m = {{0.3, 0, 0}, {-0.1, 0.2, 0.1}};
-  quiet.noise.noise_nT = 0;
-  quiet.scalar_noise_nT = 0;
-  quiet.table_accuracy_deg = 0;
-  quiet.temperature.ramp_degC_per_h = 5;
-  quiet.covariates.push_back({});
-  const Design design = run_of_157({.random = 30, .revisits = 0, .senses = true, .pause_s = 60}, 1);
+  const Design design = short_run();
   const Survey without = simulated_survey(quiet, design, 1);
   std::mt19937_64 random(8);
   for (const EffectKind* kind : all_kinds()) {
