@@ -141,9 +141,11 @@ std::vector<ShownSlot> shown_slots(std::size_t sensors,
   return out;
 }
 
-double small_sample_factor(int poses) {
-  // Twelve readings a pose less three of its field, less the four that each axis fits.
-  const double freedom = 0.75 * poses - 4;
+double small_sample_factor(int poses, std::size_t sensors) {
+  // Three readings of a sensor a pose, less the three of its field that all sensors share, or the two of its
+  // direction where one sensor is alone; less the four that each axis fits.
+  const double share = sensors > 1 ? 1 - 1 / static_cast<double>(sensors) : 1.0 / 3;
+  const double freedom = share * poses - 4;
   return freedom > 4 ? freedom / (freedom - 2) : 2;
 }
 

@@ -46,8 +46,9 @@ struct ShownSlot {
                                                  const std::vector<calibration::CalibratedEffect>& effects);
 
 /// Expected true over estimated variance when the noise of each axis comes from the residuals of so many
-/// poses: a covariance taken at its word would call an unchanged rig changed a little too often.
-[[nodiscard]] double small_sample_factor(int poses);
+/// poses of so many sensors: a covariance taken at its word would call an unchanged rig changed a little too
+/// often.
+[[nodiscard]] double small_sample_factor(int poses, std::size_t sensors);
 
 /// The sensors in a platform frame turned by Q, and what that does to their parameters.
 struct TurnedArray {

@@ -127,8 +127,9 @@ DiffReport diff(const calibration::Calibration& a, const calibration::Calibratio
   Eigen::MatrixXd J = Eigen::MatrixXd::Identity(n, n);
   J.topLeftCorner(placed.jacobian.rows(), placed.jacobian.rows()) = placed.jacobian;
   out.scale_taken_out = calibration::scale_is_free(a) || calibration::scale_is_free(b);
-  const Eigen::MatrixXd C = small_sample_factor(a.poses) * from.C +
-                            small_sample_factor(b.poses) * linear::propagated_covariance(J, to.C);
+  const Eigen::MatrixXd C =
+      small_sample_factor(a.poses, a.sensors.size()) * from.C +
+      small_sample_factor(b.poses, b.sensors.size()) * linear::propagated_covariance(J, to.C);
   out.change = judge({.difference = to.x - from.x,
                       .covariance = C,
                       .gain = Eigen::MatrixXd::Identity(n, n),

@@ -229,7 +229,7 @@ Result<ValidityReport> check(const calibration::Calibration& calibration, const 
   const Score score = score_of(fit::joint::reduce(problem, state, 0), *frozen);
   const Seen seen = seen_of(score);
   report.excess = excess_of(problem, state, *frozen, score.cost, seen);
-  const double factor = small_sample_factor(calibration.poses);
+  const double factor = small_sample_factor(calibration.poses, calibration.sensors.size());
   frozen->covariance *= factor;
   const double noise = report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
