@@ -13,9 +13,8 @@
 /// calibrated.
 ///
 ///     exchanged   the readings of the sensors, given to each other's calibrations, have a closure within
-///     noise
-///                 and calibration (chi-square of 4 below kExplainedClosure_chi2); as they come, beyond ten
-///                 standard deviations
+///                 noise and calibration (chi-square of 4 below kExplainedClosure_chi2); as they come,
+///                 beyond ten standard deviations
 ///     turned      the field of one sensor, turned by quarters about the platform's axes, agrees with the
 ///                 other three to kTurnAgreement of the field; those agree to 2 %
 ///

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/single_samples.h"
 #include "calib/linear/qr.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -12,16 +13,20 @@ namespace {
 /// Columns shorter than this against their own length before elimination are rounding.
 constexpr double kRankTolerance = 1e-9;
 
-/// Ten times the noise of a reading over the field.
+/// Ten times the noise of a reading over the field, both as root mean squares over the poses.
 double absorbed_in(const fit::joint::JointProblem& problem) {
-  constexpr double kNoises = 10;
-  if (problem.sensors() > 1 || problem.poses.empty()) return kAbsorbed;
-  double largest = 0;
+  constexpr double kNoises = 10, kMost = 0.1;
+  if (!fit::joint::reads_single_samples(problem)) return kAbsorbed;
+  double noise_nT2 = 0, field_nT2 = 0;
   for (const fit::joint::JointPose& pose : problem.poses) {
-    const double weight = pose.weight.maxCoeff(), size_nT = pose.y_nT.norm();
-    if (weight > 0 && size_nT > 0) largest = std::max(largest, 1 / (weight * size_nT));
+    for (Eigen::Index c = 0; c < pose.weight.size(); ++c) {
+      if (!(pose.weight[c] > 0)) continue;
+      noise_nT2 += 1 / (pose.weight[c] * pose.weight[c]);
+      field_nT2 += 3 * pose.y_nT[c] * pose.y_nT[c];  // three channels share one field
+    }
   }
-  return std::max(kAbsorbed, std::min(0.1, kNoises * largest));
+  if (!(field_nT2 > 0)) return kAbsorbed;
+  return std::clamp(kNoises * std::sqrt(noise_nT2 / field_nT2), kAbsorbed, kMost);
 }
 
 }  // namespace

@@ -8,8 +8,11 @@
 #include <functional>
 #include <limits>
 #include <set>
+#include <unordered_map>
 
 #include "calib/criticism/tests/site_maps.h"
+#include "calib/fit/joint/pose_model.h"
+#include "calib/fit/joint/single_samples.h"
 #include "calib/poses/kept_columns.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -101,27 +104,57 @@ void add_azimuth(const fit::joint::JointProblem& problem, std::vector<Map>& out)
   }));
 }
 
+/// The readings that the functions of maps are of. Those of the dwells as they are; single samples as fitted:
+/// their noise is in the residual too, of the sample itself and, where neighbours are correlated, of the one
+/// before, and the two would agree for no other reason.
+class Readings {
+ public:
+  Readings(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) : state_(state) {
+    if (!fit::joint::reads_single_samples(problem)) return;
+    const fit::joint::PoseModel model(problem, state);
+    fit::joint::PoseLinear at;
+    for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+      model.linearise(problem.poses[k], state.nuisances[k], at);
+      fitted_nT_.emplace(problem.poses[k].pose, at.y_nT);
+    }
+  }
+  /// Direction of the reading as its sensor sees it, offset taken out.
+  [[nodiscard]] Eigen::Vector3d direction(const fit::joint::JointPose& pose, int sensor) const {
+    const auto fitted = fitted_nT_.find(pose.pose);
+    const fit::joint::Channels& y_nT = fitted == fitted_nT_.end() ? pose.y_nT : fitted->second;
+    return (y_nT.segment<3>(3 * sensor) - state_.sensors[static_cast<std::size_t>(sensor)].offset_nT)
+        .normalized();
+  }
+  [[nodiscard]] Eigen::Vector3d before_nT(const fit::joint::JointPose& pose, int sensor) const {
+    const auto fitted = fitted_nT_.find(pose.previous);
+    if (fitted != fitted_nT_.end()) return fitted->second.segment<3>(3 * sensor);
+    return pose.previous->y_nT[static_cast<std::size_t>(sensor)];
+  }
+
+ private:
+  const fit::joint::JointState& state_;
+  std::unordered_map<const Pose*, fit::joint::Channels> fitted_nT_;  ///< of single samples
+};
+
 /// Chebyshev polynomials of the axis' own part of the field.
-void add_own_reading(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+void add_own_reading(const fit::joint::JointProblem& problem, const Readings& readings,
                      std::vector<Map>& out) {
   constexpr int kFirst = 2, kLast = 6;
-  out.push_back(of_channels(
-      problem, "own reading", kLast - kFirst + 1, [&state](const fit::joint::JointPose& pose, int c) {
-        const auto s = static_cast<std::size_t>(c / 3);
-        const Eigen::Vector3d u = (pose.y_nT.segment<3>(c - c % 3) - state.sensors[s].offset_nT).normalized();
-        std::vector<double> v;
-        for (int j = kFirst; j <= kLast; ++j) v.push_back(std::cos(j * std::acos(u[c % 3])));
-        return v;
-      }));
+  out.push_back(of_channels(problem, "own reading", kLast - kFirst + 1,
+                            [&readings](const fit::joint::JointPose& pose, int c) {
+                              const Eigen::Vector3d u = readings.direction(pose, c / 3);
+                              std::vector<double> v;
+                              for (int j = kFirst; j <= kLast; ++j)
+                                v.push_back(std::cos(j * std::acos(u[c % 3])));
+                              return v;
+                            }));
 }
 
-void add_direction(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
-                   std::vector<Map>& out) {
+void add_direction(const fit::joint::JointProblem& problem, const Readings& readings, std::vector<Map>& out) {
   constexpr Eigen::Index kMonomials = 5 + 7 + 9;
   out.push_back(
-      by_channel(problem, "direction", kMonomials, [&state](const fit::joint::JointPose& pose, int i) {
-        const auto s = static_cast<std::size_t>(i);
-        const Eigen::Vector3d u = (pose.y_nT.segment<3>(3 * i) - state.sensors[s].offset_nT).normalized();
+      by_channel(problem, "direction", kMonomials, [&readings](const fit::joint::JointPose& pose, int i) {
+        const Eigen::Vector3d u = readings.direction(pose, i);
         std::vector<double> v;
         // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
         for (int degree = 2; degree <= 4; ++degree) {
@@ -147,15 +180,16 @@ void add_temperature(const fit::joint::JointProblem& problem, std::vector<Map>& 
   }));
 }
 
-void add_previous(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
-  out.push_back(by_channel(problem, "previous pose", 3, [](const fit::joint::JointPose& pose, int i) {
-    std::vector<double> v;
-    if (pose.previous == nullptr) return v;
-    const Eigen::Vector3d& y = pose.previous->y_nT[static_cast<std::size_t>(i)];
-    const double size = pose.y_nT.segment<3>(3 * i).norm();
-    for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
-    return v;
-  }));
+void add_previous(const fit::joint::JointProblem& problem, const Readings& readings, std::vector<Map>& out) {
+  out.push_back(
+      by_channel(problem, "previous pose", 3, [&readings](const fit::joint::JointPose& pose, int i) {
+        std::vector<double> v;
+        if (pose.previous == nullptr) return v;
+        const Eigen::Vector3d y = readings.before_nT(pose, i);
+        const double size = pose.y_nT.segment<3>(3 * i).norm();
+        for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
+        return v;
+      }));
 }
 
 void add_mount(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
@@ -192,12 +226,13 @@ void add_columns(const fit::joint::JointProblem& problem, std::vector<Map>& out)
 
 std::vector<Map> residual_maps(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   std::vector<Map> out;
+  const Readings readings(problem, state);
   add_time(problem, out);
   add_azimuth(problem, out);
-  add_own_reading(problem, state, out);
-  add_direction(problem, state, out);
+  add_own_reading(problem, readings, out);
+  add_direction(problem, readings, out);
   add_temperature(problem, out);
-  add_previous(problem, out);
+  add_previous(problem, readings, out);
   add_mount(problem, out);
   add_columns(problem, out);
   for (SiteRows& site : site_map_rows(problem, state)) {

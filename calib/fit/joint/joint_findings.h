@@ -15,6 +15,7 @@ struct JointFindings {
   Gauge gauge;
   std::array<double, 3> common_rotation_sd_rad{};  ///< JointFit::common_rotation_sd_rad
   double birge_ratio{1};                           ///< JointFit::birge_ratio
+  double samples_per_effective{1};                 ///< JointFit::samples_per_effective
   Identifiability known;                           ///< which combinations of parameters the poses determine
   Agreement agreement;                             ///< whether the readings that were kept agree
   WanderingEstimate wandering;                     ///< the covariance of the calibration contains it

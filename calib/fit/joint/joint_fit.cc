@@ -6,6 +6,7 @@
 
 #include "calib/fit/joint/robust_fit.h"
 #include "calib/fit/joint/sample_correlation.h"
+#include "calib/fit/joint/single_samples.h"
 #include "calib/linear/cholesky.h"
 #include "calib/linear/propagation.h"
 
@@ -69,11 +70,6 @@ std::array<double, 3> common_rotation_sd(int sensors, const Eigen::MatrixXd& cov
   return {sd(sensor::alpha), sd(sensor::beta), sd(sensor::gamma)};
 }
 
-bool is_recording(const PoseTable& table) {
-  return table.poses.size() >= kRecording &&
-         std::none_of(table.poses.begin(), table.poses.end(), [](const Pose& p) { return p.n || p.n_eff; });
-}
-
 Result<JointFit> run(const PoseTable& table, const JointOptions& options, const JointState* warm_start,
                      bool& unsettled) {
   auto problem = joint_problem(table, options);
@@ -121,7 +117,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : std::move(reduced.S));
   if (!covariance) return tl::unexpected(covariance.error());
   fit.covariance = *std::move(covariance);
-  if (is_recording(table)) {
+  if (is_recording(fit.problem)) {
     fit.samples_per_effective = sample_correlation(fit.problem, fit.state).samples_per_effective();
     fit.covariance *= fit.samples_per_effective;
   }

@@ -51,8 +51,6 @@ struct JointFit {
 
 /// Poses that a fit needs; in general position, and better sixty.
 inline constexpr std::size_t kFewestPoses = 12;
-/// So many poses of which none says how many samples it is the mean of are a recording of single samples.
-inline constexpr std::size_t kRecording = 300;
 
 [[nodiscard]] Result<JointFit> fit_joint(const PoseTable& table, const JointOptions& options);
 /// The same with a warm start (another fold, the run before the last pose). Nuisances are refitted.

@@ -218,6 +218,7 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
       JointFindings{.gauge = fit->gauge,
                     .common_rotation_sd_rad = fit->common_rotation_sd_rad,
                     .birge_ratio = fit->birge_ratio,
+                    .samples_per_effective = fit->samples_per_effective,
                     .known = identifiability(fit->problem, fit->state, reduced.S, report.site.f_nT),
                     .agreement = agreement(*fit, report.residual_nT, report.held_out_residual_nT),
                     .wandering = wandering,

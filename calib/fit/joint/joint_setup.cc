@@ -25,7 +25,7 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   out.t_h = time.hours(pose);
   out.y_nT = calibration::stacked(pose.y_nT);
   out.weight = Channels::Constant(out.y_nT.size(), 1 / kStartNoise_nT);
-  if (pose.ref_nT && !pose.angles()) {
+  if (pose.ref_nT) {
     out.reference_nT = *pose.ref_nT;
     out.reference_weight = 1 / std::max(pose.ref_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
     out.f_nT = pose.f_nT.value_or(pose.ref_nT->norm());
@@ -71,10 +71,6 @@ void add_coefficient_priors(JointProblem& problem) {
     }
   }
 }
-
-}  // namespace
-
-namespace {
 
 Result<void> check_reference(const PoseTable& table, std::ptrdiff_t with_reference, std::ptrdiff_t total,
                              const auto& fitted) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+
+#include "calib/fit/joint/joint_problem.h"
+
+namespace mgtd::calib::fit::joint {
+
+/// So many poses of which none says how many samples it is the mean of are a recording of single samples.
+inline constexpr std::size_t kRecording = 300;
+
+/// Whether the poses that are fitted are the samples of a recording.
+[[nodiscard]] bool is_recording(const JointProblem& problem);
+
+/// Whether the noise of a reading counts where the reading itself is what a law is a function of: in a
+/// recording, and with one sensor, whose reading is all that tells the field of its pose.
+[[nodiscard]] bool reads_single_samples(const JointProblem& problem);
+
+}  // namespace mgtd::calib::fit::joint
