@@ -39,7 +39,7 @@ std::vector<std::string> remarks_on_any(const fit::FitReport& report) {
         mirrored ? "mirrored (an axis wired backwards, or two swapped)" : "mounted turned", axes));
   }
   if (std::string left = lack_of_fit_text(report); !left.empty()) out.push_back(std::move(left));
-  constexpr std::size_t kMostLines = 20;  // a recording can have hundreds
+  constexpr std::size_t kMostLines = 40;  // a recording can have hundreds
   const std::vector<std::string> left_out = outlier_texts(report.outliers);
   for (std::size_t i = 0; i < std::min(kMostLines, left_out.size()); ++i)
     out.push_back(left_out[i] + "; left out of the fit");
@@ -58,6 +58,11 @@ std::vector<std::string> remarks_on_joint(const fit::FitReport& report) {
         "for the uncertainties the readings count as {:.4g} times as noisy (the root of chi-square "
         "per degree of freedom), so that they cover what the model leaves out",
         found.birge_ratio));
+  }
+  if (found.samples_per_effective > 1) {
+    out.push_back(fmt::format(
+        "neighbouring samples of this recording are alike: {:.3g} of them count as one in the uncertainties",
+        found.samples_per_effective));
   }
   if (calibration::scale_is_free(report.calibration)) {
     out.push_back(

@@ -7,6 +7,7 @@
 
 #include "calib/calibration/calibration_json.h"
 #include "calib/effects/effect_spec.h"
+#include "calib/fit/joint/joint_findings.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_summary_text.h"
 #include "calib/sensor/shown_parameters.h"
@@ -107,6 +108,8 @@ void add_joint(const fit::FitReport& report, json& out) {
   out["residual_nT"] = report.residual_nT;
   out["held_out_residual_nT"] = or_null(report.held_out_residual_nT);
   out["outliers"] = outliers_json(report.outliers);
+  if (report.joint->samples_per_effective > 1)
+    out["samples_per_effective"] = report.joint->samples_per_effective;
   out["weak"] = weak_texts(report);
   out["tensor_sd_nT_per_m"] = components_json(report.tensor_sd_nT_per_m);
 }

@@ -10,7 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/calibration/field_expansion.h"
 #include "calib/calibration/tensor.h"
+#include "calib/report/array_text.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_summary_text.h"
 #include "calib/report/residual_words.h"
@@ -109,15 +111,29 @@ std::string check_list(const std::vector<Check>& checks) {
   return out;
 }
 
+/// Nothing of the cross, which tells everything.
+std::string array_line(const sensor::Geometry& geometry) {
+  if (geometry.cross_baseline_m()) return {};
+  const auto& places_P_m = geometry.positions_P_m();
+  const auto expansion = calibration::FieldExpansion::of({places_P_m.data(), places_P_m.size()});
+  return expansion ? what_it_tells(*expansion) : std::string();
+}
+
 std::string heading(const fit::FitReport& report) {
   const calibration::Calibration& c = report.calibration;
   std::string out = fmt::format("{} calibration {} of {} poses: {}\n", c.method, c.id, c.poses,
                                 c.accepted_by_checks ? "accepted by its checks" : "NOT ACCEPTED");
   out += fmt::format("fit:   {}\n", to_text(report.summary));
   out += fmt::format("gauge: {}\n", c.gauge);
-  out += fmt::format("site:  F {:.2f} nT, inclination {} deg, declination {} deg\n", report.site.f_nT,
-                     with_sd(to_deg(report.site.inclination_rad), to_deg(report.site.inclination_sd_rad)),
-                     with_sd(to_deg(report.site.declination_rad), to_deg(report.site.declination_sd_rad)));
+  if (const std::string array = array_line(c.geometry); !array.empty())
+    out += fmt::format("array: {}\n", array);
+  out += fmt::format("site:  F {:.2f} nT", report.site.f_nT);
+  if (!std::isnan(report.site.inclination_rad)) {
+    out += fmt::format(", inclination {} deg, declination {} deg",
+                       with_sd(to_deg(report.site.inclination_rad), to_deg(report.site.inclination_sd_rad)),
+                       with_sd(to_deg(report.site.declination_rad), to_deg(report.site.declination_sd_rad)));
+  }
+  out += "\n";
   if (report.dof > 0) {
     out += fmt::format("noise: {:.3g} nT of a pose mean, {}\n", report.noise_nT,
                        noise_source(report.noise_known));

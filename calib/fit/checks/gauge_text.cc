@@ -8,6 +8,15 @@
 #include "proto/units.h"
 
 namespace mgtd::calib::fit::checks {
+namespace {
+
+std::string common_rotation_zero(std::size_t sensors) {
+  if (sensors == 1) return "alpha = beta = gamma = 0, relative to the mounting";
+  return fmt::format("mean alpha = mean beta = mean gamma = 0 of the {} sensors, relative to their mountings",
+                     sensors == 4 ? "four" : std::to_string(sensors));
+}
+
+}  // namespace
 
 std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
   switch (origin.gauge) {
@@ -28,7 +37,7 @@ std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
   return {};
 }
 
-std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
+std::string gauge_text(const joint::Gauge& gauge, std::size_t sensors, double table_sd_rad,
                        const std::array<double, 3>& rotation_sd_rad) {
   std::string text;
   if (gauge.by_reference) {
@@ -36,10 +45,8 @@ std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
         "platform frame is the frame of the vector reference; the angles of the sensors are their "
         "misalignment";
   } else if (gauge.angles == joint::AngleCoverage::none) {
-    text =
-        "no table angles: mean alpha = mean beta = mean gamma = 0 of the four sensors, relative to their "
-        "mountings; the "
-        "common rotation against the platform is unknown";
+    text = fmt::format("no table angles: {}; the common rotation against the platform is unknown",
+                       common_rotation_zero(sensors));
   } else {
     const bool convention = gauge.angles == joint::AngleCoverage::one_axis && !gauge.declination_known;
     text = fmt::format(
@@ -53,14 +60,15 @@ std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
     if (gauge.declination_known) text += "; declination as given";
   }
   if (!gauge.scale_known)
-    text += fmt::format("; no field is known: mean scale factor of the twelve axes = 1, {}",
-                        calibration::kScaleIsFree);
+    text += fmt::format("; no field is known: mean scale factor of the {} axes = 1, {}",
+                        sensors == 4 ? "twelve" : std::to_string(3 * sensors), calibration::kScaleIsFree);
   return text;
 }
 
 std::string gauge_text(const FitReport& report) {
   if (report.joint)
-    return gauge_text(report.joint->gauge, report.table_sd_rad, report.joint->common_rotation_sd_rad);
+    return gauge_text(report.joint->gauge, report.calibration.sensors.size(), report.table_sd_rad,
+                      report.joint->common_rotation_sd_rad);
   return report.azimuth_origin ? gauge_text(*report.azimuth_origin, report.site.declination_sd_rad)
                                : std::string();
 }

@@ -13,7 +13,7 @@ namespace mgtd::calib::fit::checks {
 [[nodiscard]] std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad);
 /// `table_sd_rad`: of the table angles, estimated; `rotation_sd_rad`: of the common rotation about X, Y and
 /// Z.
-[[nodiscard]] std::string gauge_text(const joint::Gauge& gauge, double table_sd_rad,
+[[nodiscard]] std::string gauge_text(const joint::Gauge& gauge, std::size_t sensors, double table_sd_rad,
                                      const std::array<double, 3>& rotation_sd_rad);
 
 }  // namespace mgtd::calib::fit::checks

@@ -41,8 +41,9 @@ TEST(JointFit, EstimatesTheTableAndTheNoise) {
   // 1525 degrees of freedom: 1.8 % one sigma.
   EXPECT_NEAR(fit.noise_nT(), 1.0, 0.08);
   EXPECT_TRUE(fit.outliers.empty());
-  EXPECT_NE(checks::gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("table angles"),
-            std::string::npos);
+  EXPECT_NE(
+      checks::gauge_text(fit.gauge, 4, fit.table_sd_rad, fit.common_rotation_sd_rad).find("table angles"),
+      std::string::npos);
 }
 
 TEST(JointFit, ThatIsToldToStopIsRefused) {
@@ -177,7 +178,7 @@ TEST(JointFit, WithoutAnglesTheCommonRotationIsConvention) {
   EXPECT_EQ(fit.state.sensors[1].mounting, sim.rig[1].mounting);
   EXPECT_LT(fit.chi2, fit.dof + 3.3 * std::sqrt(2 * fit.dof));
   EXPECT_NE(
-      checks::gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("no table angles"),
+      checks::gauge_text(fit.gauge, 4, fit.table_sd_rad, fit.common_rotation_sd_rad).find("no table angles"),
       std::string::npos);
 }
 
@@ -190,8 +191,9 @@ TEST(JointFit, WithoutAFieldTheScaleIsConvention) {
   double mean = 0;
   for (const sensor::SensorModel& s : fit.state.sensors) mean += s.scale.sum() / sensor::kChannels;
   EXPECT_NEAR(mean, 1, 1e-6);
-  EXPECT_NE(checks::gauge_text(fit.gauge, fit.table_sd_rad, fit.common_rotation_sd_rad).find("scale is free"),
-            std::string::npos);
+  EXPECT_NE(
+      checks::gauge_text(fit.gauge, 4, fit.table_sd_rad, fit.common_rotation_sd_rad).find("scale is free"),
+      std::string::npos);
   // Given the field, the truth comes back.
   JointOptions options;
   options.field_nT = sim.f_nT;
