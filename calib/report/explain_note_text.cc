@@ -101,6 +101,20 @@ std::string text(const criticism::search::SizeBeyondAll& n) {
                      n.candidate.effect, size_text(n.candidate));
 }
 
+std::string text(const criticism::search::DescribesRecording& n) {
+  const char* them = n.effects.size() == 1 ? "it" : "them";
+  if (n.curve) {
+    return fmt::format(
+        "{} would lower the residual from {:.3g} to {:.3g} nT, but as steps that follow a curve: in a "
+        "recording of correlated samples that does not name {}",
+        fmt::join(n.effects, ", "), n.before_nT, n.after_nT, them);
+  }
+  return fmt::format(
+      "{} would lower the residual from {:.3g} to {:.3g} nT only, and what is left still differs from noise: "
+      "in a recording of correlated samples that is too little to name {}",
+      fmt::join(n.effects, ", "), n.before_nT, n.after_nT, them);
+}
+
 std::string text(const criticism::search::LawOfNoLibrary& n) {
   const bool one = n.effects.size() == 1;
   return fmt::format("{} follows something that is in no library: {} {}, so {} named or added", n.where,

@@ -134,7 +134,7 @@ std::string left_text(const std::vector<criticism::tests::MapScore>& maps) {
 }
 
 /// What an operator can do about a residual that no effect of the library stands for.
-std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps) {
+std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, bool recording) {
   if (maps.empty() || maps.front().log10_p > -2)
     return "What to do next: measure a second run with the poses in another order and record what may switch "
            "or change between poses (supplies, motors, temperatures); nothing that was recorded orders this "
@@ -145,6 +145,10 @@ std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps) 
       {"temperature", "max(0, T_degC-24)"}, {"own reading", "(u/50000)^4"},
       {"direction", "ux*uy/50000^2"},       {"previous pose", "exp(-since_stop_s/20)"},
   };
+  // The table never stops in a recording, so no column tells how long ago.
+  if (recording && m.map == "previous pose")
+    return "What to do next: turn more slowly, or log faster: the residual follows the sample before, as it "
+           "does where a filter or a delay stands between the sensor and the file.";
   const auto formula = kTry.find(m.map);
   return fmt::format(
       "What to do next: look at the residual of {} over {} (mgt report draws it). If its shape suggests a "
@@ -188,6 +192,7 @@ std::string sentence(const criticism::search::ExplainReport& r) {
   const std::string lesser_part = lesser_part_text(r);
   std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part};
   const fit::joint::JointFit* before = r.fit.get();
+  const bool recording = before != nullptr && before->samples_per_effective > 1;
   for (const criticism::search::Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
     if (lesser_part.empty() || !round.possible.empty()) parts.push_back(alternatives_text(round));
@@ -203,12 +208,12 @@ std::string sentence(const criticism::search::ExplainReport& r) {
     case criticism::search::Finding::unknown:
       parts.emplace_back("Something is there, and no effect of the library looks like it.");
       parts.push_back(left_text(r.maps));
-      parts.push_back(next_step_text(r.maps));
+      parts.push_back(next_step_text(r.maps, recording));
       break;
     case criticism::search::Finding::partial:
       if (r.left == criticism::search::Finding::pass) break;
       parts.push_back(left_text(r.maps_left));
-      parts.push_back(next_step_text(r.maps_left));
+      parts.push_back(next_step_text(r.maps_left, recording));
       break;
     case criticism::search::Finding::ambiguous:
       if (!r.next.empty()) {

@@ -92,6 +92,14 @@ bool several_steps(const std::vector<Round>& rounds) {
   return false;
 }
 
+/// Nothing but steps was found, and what is left still follows time.
+bool steps_of_a_curve(const ExplainReport& report, const tests::Criticism& last) {
+  const std::set<std::string> names = names_of(report.rounds);
+  const auto is_step = [](const std::string& name) { return name.ends_with(".step"); };
+  return std::all_of(names.begin(), names.end(), is_step) && !last.maps.empty() &&
+         last.maps.front().map == "time";
+}
+
 /// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.
 std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double table_sd_rad) {
   std::vector<std::size_t> mirrored;
@@ -161,6 +169,18 @@ bool bad_data(const fit::joint::JointFit& fit, const tests::Criticism& c, double
     return true;
   }
   return false;
+}
+
+void take_back_what_describes_a_recording(ExplainReport& report, const tests::Criticism& last) {
+  constexpr double kHalf = 0.5;
+  if (report.rounds.empty() || report.noise.known || !(report.fit->samples_per_effective > 1)) return;
+  const double before_nT = report.rounds.front().rms_before_nT, after_nT = report.rounds.back().rms_after_nT;
+  const bool lesser_part = last.rejects() && after_nT * after_nT >= kHalf * before_nT * before_nT;
+  const bool curve = several_steps(report.rounds) || (last.rejects_map() && steps_of_a_curve(report, last));
+  if (!lesser_part && !curve) return;
+  report.notes.emplace_back(DescribesRecording{names_of(report.rounds), before_nT, after_nT, curve});
+  report.rounds.clear();
+  report.next.clear();
 }
 
 void share_what_fell(ExplainReport& report) {

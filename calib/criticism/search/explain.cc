@@ -151,11 +151,12 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
   note_absurd_sizes(search, criticism, out);
+  take_back_what_describes_a_recording(out, criticism);
   if (memory || memory_may_be_it(search, out)) out.notes.emplace_back(TablePathUnknown{});
   if (!out.rounds.empty()) out.detectable = detectable(criticism);
   share_what_fell(out);
   out.maps_left = criticism.maps;
-  out.model = search.joint.effects;
+  out.model = out.rounds.empty() ? search.given : search.joint.effects;
   out.left = !criticism.rejects() && search.unknown.empty() ? Finding::pass
              : criticism.rejects_named()                    ? Finding::partial
                                                             : Finding::unknown;

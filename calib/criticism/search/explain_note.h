@@ -71,6 +71,12 @@ struct SizeUnusual {
 struct SizeBeyondAll {
   tests::Candidate candidate;  ///< as last seen; it is not named
 };
+/// Of a recording of correlated samples, whose residual the effects describe and do not explain.
+struct DescribesRecording {
+  std::set<std::string> effects;     ///< that are not named
+  double before_nT{0}, after_nT{0};  ///< residual without and with them
+  bool curve{false};                 ///< they are steps that follow a curve; else they take the lesser part
+};
 struct LawOfNoLibrary {
   std::string where;
   std::set<std::string> effects;  ///< that only describe it
@@ -80,6 +86,6 @@ using ExplainNote =
     std::variant<SensorsMirrored, TableAnglesContradict, TableAnglesRough, PosesContradict, NoiseOverstated,
                  ResidualWithoutLaw, SensorsExchanged, TablePathUnknown, ExcessRemains, FallNotAsPredicted,
                  LackOfFitRemains, SizeTooSmall, StepsFollowCurve, EvidenceOfOnePose, FitWithEffectFailed,
-                 SizeUnusual, SizeBeyondAll, LawOfNoLibrary>;
+                 SizeUnusual, SizeBeyondAll, DescribesRecording, LawOfNoLibrary>;
 
 }  // namespace mgtd::calib::criticism::search

@@ -97,6 +97,7 @@ TEST(ArraysOfAnySize, WhatTheArrayCannotTellIsAbsent) {
   EXPECT_THAT(csv, Not(HasSubstr("nan")));
   const fit::FitReport one = fitted(testing::turned_run(testing::one_sensor(), 3), testing::one_sensor());
   EXPECT_THAT(report::to_text(one), Not(HasSubstr("tensor, nT/m")));
+  EXPECT_THAT(report::to_text(one), HasSubstr("array: field only: one sensor sees no gradient"));
 }
 
 TEST(ArraysOfAnySize, ClosureHasItsDegreesOfFreedom) {
@@ -167,11 +168,15 @@ TEST(KnownVector, ALawIsNamedInACage) {
   EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
 }
 
-PoseTable recorded(const std::string& motion, double ar, std::uint64_t seed) {
+PoseTable recorded(const std::string& motion, double ar, std::uint64_t seed, const std::string& more = "") {
   return rig::pose_table_of(rig::simulated_recording(testing::scenario_of(
       testing::one_sensor(), seed,
-      fmt::format("[recording]\nmotion = \"{}\"\nrate_hz = 20\nduration_s = 150\nar = {}\n", motion, ar))));
+      fmt::format("[recording]\nmotion = \"{}\"\nrate_hz = 20\nduration_s = 150\nar = {}\n{}", motion, ar,
+                  more))));
 }
+
+/// As of a magnetometer on a chip.
+constexpr const char* kLargeNoise = "[sensors]\nnoise_nT = 20\n";
 
 TEST(Recording, CorrelatedSamplesCountForLess) {
   constexpr double kRho = 0.9;
@@ -193,6 +198,42 @@ TEST(Recording, CleanOnesPass) {
     EXPECT_EQ(explained(recorded("hand", ar, 2), testing::one_sensor()).left,
               criticism::search::Finding::pass)
         << ar;
+}
+
+/// Readings that large noise moves are bent about the residual: no law hides in that.
+TEST(Recording, CleanOnesOfLargeNoisePass) {
+  for (const char* motion : {"hand", "flight"})
+    EXPECT_EQ(explained(recorded(motion, 0, 2, kLargeNoise), testing::one_sensor()).left,
+              criticism::search::Finding::pass)
+        << motion;
+}
+
+TEST(Recording, ALawInLargeNoiseIsNamed) {
+  const auto found =
+      explained(recorded("hand", 0, 2,
+                         std::string(kLargeNoise) +
+                             "[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.x\"\nnT_at_F0 = 100\n"),
+                testing::one_sensor());
+  ASSERT_EQ(found.rounds.size(), 1U);
+  EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
+  EXPECT_EQ(found.left, criticism::search::Finding::pass);
+}
+
+/// Beside a disturbance of no library, steps that follow it are not named.
+TEST(Recording, LawsThatOnlyDescribeAreNotNamed) {
+  const auto found = explained(recorded("hand", 0, 2,
+                                        "scalar = false\n[[effect]]\nname = \"hidden.site-oscillation\"\nnT "
+                                        "= [30, 20, 10]\nperiod_s = 60\n"),
+                               testing::one_sensor());
+  EXPECT_TRUE(found.rounds.empty());
+  EXPECT_EQ(found.finding, criticism::search::Finding::unknown);
+}
+
+TEST(Recording, TheReportSaysThatNeighboursAreAlike) {
+  const std::string text = report::to_text(fitted(recorded("hand", 0.9, 2), testing::one_sensor()));
+  EXPECT_THAT(text, HasSubstr("count as one in the uncertainties"));
+  EXPECT_THAT(text, HasSubstr("no table angles: alpha = beta = gamma = 0, relative to the mounting;"));
+  EXPECT_THAT(text, Not(HasSubstr("nan")));
 }
 
 TEST(Recording, WhatDoesNotExciteIsRefused) {
