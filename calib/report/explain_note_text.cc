@@ -106,12 +106,12 @@ std::string text(const criticism::search::DescribesRecording& n) {
   if (n.curve) {
     return fmt::format(
         "{} would lower the residual from {:.3g} to {:.3g} nT, but as steps that follow a curve: in a "
-        "recording of correlated samples that does not name {}",
+        "recording of single samples that does not name {}",
         fmt::join(n.effects, ", "), n.before_nT, n.after_nT, them);
   }
   return fmt::format(
       "{} would lower the residual from {:.3g} to {:.3g} nT only, and what is left still differs from noise: "
-      "in a recording of correlated samples that is too little to name {}",
+      "in a recording of single samples that is too little to name {}",
       fmt::join(n.effects, ", "), n.before_nT, n.after_nT, them);
 }
 

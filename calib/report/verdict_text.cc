@@ -13,6 +13,7 @@
 #include "calib/criticism/tests/candidate.h"
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/library/effect_family.h"
+#include "calib/fit/joint/single_samples.h"
 #include "calib/report/explain_note_text.h"
 #include "calib/report/noise_text.h"
 #include "calib/report/residual_words.h"
@@ -192,7 +193,7 @@ std::string sentence(const criticism::search::ExplainReport& r) {
   const std::string lesser_part = lesser_part_text(r);
   std::vector<std::string> parts{noise_text(r), outliers_text(r.outliers), lesser_part};
   const fit::joint::JointFit* before = r.fit.get();
-  const bool recording = before != nullptr && before->samples_per_effective > 1;
+  const bool recording = before != nullptr && fit::joint::is_recording(before->problem);
   for (const criticism::search::Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
     if (lesser_part.empty() || !round.possible.empty()) parts.push_back(alternatives_text(round));

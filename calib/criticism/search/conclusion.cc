@@ -12,6 +12,7 @@
 #include "calib/effects/common_axis.h"
 #include "calib/fit/checks/check_limits.h"
 #include "calib/fit/joint/agreement.h"
+#include "calib/fit/joint/single_samples.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -173,7 +174,7 @@ bool bad_data(const fit::joint::JointFit& fit, const tests::Criticism& c, double
 
 void take_back_what_describes_a_recording(ExplainReport& report, const tests::Criticism& last) {
   constexpr double kHalf = 0.5;
-  if (report.rounds.empty() || report.noise.known || !(report.fit->samples_per_effective > 1)) return;
+  if (report.rounds.empty() || report.noise.known || !fit::joint::is_recording(report.fit->problem)) return;
   const double before_nT = report.rounds.front().rms_before_nT, after_nT = report.rounds.back().rms_after_nT;
   const bool lesser_part = last.rejects() && after_nT * after_nT >= kHalf * before_nT * before_nT;
   const bool curve = several_steps(report.rounds) || (last.rejects_map() && steps_of_a_curve(report, last));

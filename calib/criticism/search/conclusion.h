@@ -23,7 +23,7 @@ struct Asked {
 [[nodiscard]] bool bad_data(const fit::joint::JointFit& fit, const tests::Criticism& criticism,
                             double table_sd_rad, std::vector<ExplainNote>& notes);
 
-/// Takes back all rounds of a recording whose samples are correlated, and says so in `notes`, where the laws
+/// Takes back all rounds of a recording of single samples, and says so in `notes`, where the laws
 /// only describe: they took away less than half of the square of the residual and something else still stands
 /// out; or they are steps that follow a curve, one axis with two of them, or steps alone that leave a
 /// residual that still follows time. Beside a disturbance of which nothing is known, such a name comes by

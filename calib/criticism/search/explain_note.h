@@ -71,7 +71,7 @@ struct SizeUnusual {
 struct SizeBeyondAll {
   tests::Candidate candidate;  ///< as last seen; it is not named
 };
-/// Of a recording of correlated samples, whose residual the effects describe and do not explain.
+/// Of a recording of single samples, whose residual the effects describe and do not explain.
 struct DescribesRecording {
   std::set<std::string> effects;     ///< that are not named
   double before_nT{0}, after_nT{0};  ///< residual without and with them
