@@ -172,16 +172,18 @@ bool bad_data(const fit::joint::JointFit& fit, const tests::Criticism& c, double
   return false;
 }
 
-void take_back_what_describes_a_recording(ExplainReport& report, const tests::Criticism& last) {
+bool take_back_what_describes_a_recording(ExplainReport& report, const tests::Criticism& last) {
   constexpr double kHalf = 0.5;
-  if (report.rounds.empty() || report.noise.known || !fit::joint::is_recording(report.fit->problem)) return;
+  if (report.rounds.empty() || report.noise.known || !fit::joint::is_recording(report.fit->problem))
+    return false;
   const double before_nT = report.rounds.front().rms_before_nT, after_nT = report.rounds.back().rms_after_nT;
   const bool lesser_part = last.rejects() && after_nT * after_nT >= kHalf * before_nT * before_nT;
   const bool curve = several_steps(report.rounds) || (last.rejects_map() && steps_of_a_curve(report, last));
-  if (!lesser_part && !curve) return;
+  if (!lesser_part && !curve) return false;
   report.notes.emplace_back(DescribesRecording{names_of(report.rounds), before_nT, after_nT, curve});
   report.rounds.clear();
   report.next.clear();
+  return true;
 }
 
 void share_what_fell(ExplainReport& report) {

@@ -27,8 +27,9 @@ struct Asked {
 /// only describe: they took away less than half of the square of the residual and something else still stands
 /// out; or they are steps that follow a curve, one axis with two of them, or steps alone that leave a
 /// residual that still follows time. Beside a disturbance of which nothing is known, such a name comes by
-/// chance.
-void take_back_what_describes_a_recording(ExplainReport& report, const tests::Criticism& last);
+/// chance. True where something was taken back: then what stood out is UNKNOWN, even where the laws left
+/// nothing.
+[[nodiscard]] bool take_back_what_describes_a_recording(ExplainReport& report, const tests::Criticism& last);
 
 /// Where the dwells do not say how large the noise is, the excess that the candidates share is what the
 /// rounds took away: the residual at their end stands for the noise. Nothing to share where nothing was

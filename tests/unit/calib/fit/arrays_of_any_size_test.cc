@@ -229,6 +229,17 @@ TEST(Recording, LawsThatOnlyDescribeAreNotNamed) {
   EXPECT_EQ(found.finding, criticism::search::Finding::unknown);
 }
 
+/// Steps enough leave nothing; what they followed is no less unknown.
+TEST(Recording, LawsThatDescribeEverythingDoNotMakeItPass) {
+  const auto scenario = testing::scenario_of(
+      testing::one_sensor(), 2,
+      "[sensors]\nnoise_nT = 0.2\n[recording]\nmotion = \"flight\"\nrate_hz = 10\nduration_s = 120\n"
+      "scalar = false\n[[effect]]\nname = \"hidden.site-oscillation\"\nnT = [10, -20, 15]\nperiod_s = 300\n");
+  const auto found = explained(rig::pose_table_of(rig::simulated_recording(scenario)), testing::one_sensor());
+  EXPECT_TRUE(found.rounds.empty());
+  EXPECT_EQ(found.finding, criticism::search::Finding::unknown);
+}
+
 TEST(Recording, TheReportSaysThatNeighboursAreAlike) {
   const std::string text = report::to_text(fitted(recorded("hand", 0.9, 2), testing::one_sensor()));
   EXPECT_THAT(text, HasSubstr("count as one in the uncertainties"));
