@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 
 namespace mgtd::drivers {
@@ -24,9 +25,15 @@ bool is_name(std::string_view name) {
 }  // namespace
 
 std::optional<int> sensor_of(std::string_view column) {
-  if (column.size() != 9 || column.front() != 's' || column.substr(2) != "_T_degC") return std::nullopt;
-  const int slot = column[1] - '1';
-  return slot >= 0 && slot < kSensors ? std::optional(slot) : std::nullopt;
+  constexpr std::string_view kEnd = "_T_degC";
+  if (!column.starts_with('s') || !column.ends_with(kEnd) || column.size() <= kEnd.size())
+    return std::nullopt;
+  const std::string_view digits = column.substr(1, column.size() - 1 - kEnd.size());
+  int number = 0;
+  const auto [end, wrong] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool is_sensor = wrong == std::errc() && end == digits.data() + digits.size() && digits[0] != '0' &&
+                         number >= 1 && number <= kMostSensors;
+  return is_sensor ? std::optional(number - 1) : std::nullopt;
 }
 
 std::string_view unit_of_name(std::string_view column) {

@@ -30,7 +30,7 @@ struct InputChannel {
   double offset{0};
 };
 
-/// Of the sensor whose temperature the column is: 0 for s1_T_degC.
+/// Of the sensor whose temperature the column is, 0 for s1_T_degC; as many as an array can have.
 [[nodiscard]] std::optional<int> sensor_of(std::string_view column);
 
 /// The unit that the end of the name tells: "A" of motor_A. Empty: none that is known.

@@ -28,17 +28,19 @@ std::optional<bool> all_right(const MagnetStatus& status) {
 std::vector<std::string> findings(const MagnetStatus& status) {
   std::vector<std::string> out;
   if (!status.end) return out;
+  const std::string_view on = status.noun == "arm" ? "on" : "at";
   for (std::size_t i = 0; i < status.sensor_on_arm.size(); ++i) {
     const int arm = static_cast<int>(i) + 1;
     const auto& sensor = status.sensor_on_arm[i];
     if (!sensor) {
-      out.push_back(fmt::format("arm {} was not {} for: what is on it is open", arm,
-                                arm > status.asked ? "asked" : "answered"));
+      out.push_back(fmt::format("{} {} was not {} for: what is {} it is open", status.noun, arm,
+                                arm > status.asked ? "asked" : "answered", on));
     } else if (arms_with(status, *sensor) > 1) {
-      out.push_back(fmt::format(
-          "the cable labelled s{} answered for arm {} and for another one: do the test again", *sensor, arm));
+      out.push_back(
+          fmt::format("the cable labelled s{} answered for {} {} and for another one: do the test again",
+                      *sensor, status.noun, arm));
     } else if (*sensor != arm) {
-      out.push_back(fmt::format("the cable labelled s{} is on arm {}", *sensor, arm));
+      out.push_back(fmt::format("the cable labelled s{} is {} {} {}", *sensor, on, status.noun, arm));
     }
   }
   return out;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "proto/per_sensor.h"
 
 /// MagnetStatus says how far the magnet test is, and what it found.
 ///
@@ -16,10 +17,11 @@ enum class MagnetEnd { done, timed_out, stopped };
 
 struct MagnetStatus {
   std::string state;
-  std::optional<int> arm;                             ///< asked for
-  std::string text;                                   ///< what to do, or how it ended
-  std::array<std::optional<int>, 4> sensor_on_arm{};  ///< both from 1
-  int asked{0};                                       ///< arms the operator was asked for, from the first
+  std::optional<int> arm;                       ///< asked for
+  std::string text;                             ///< what to do, or how it ended
+  std::string noun{"arm"};                      ///< "place" where the array is no cross
+  PerSensor<std::optional<int>> sensor_on_arm;  ///< both from 1
+  int asked{0};                                 ///< arms the operator was asked for, from the first
   std::optional<MagnetEnd> end;
 };
 

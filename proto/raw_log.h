@@ -39,7 +39,7 @@ enum class RawDirection : std::uint8_t {
 inline constexpr std::uint8_t kRawDaemon = 255;
 
 struct RawRecord {
-  std::uint8_t device{0};  ///< 0..3 sensors, 4 table, 5 scalar, 6.. auxiliary, kRawDaemon
+  std::uint8_t device{0};  ///< Slot::number(), or kRawDaemon
   RawDirection direction{RawDirection::received};
   Stamp at;
   std::string_view bytes;  ///< valid until the decoder is fed again

@@ -195,6 +195,7 @@ OrderedJson to_json(const StatusReport& report) {
           {"uptime_s", report.uptime_s},
           {"software", report.software},
           {"rig", report.rig},
+          {"array", to_json(report.array)},
           {"speed_up", report.speed_up},
           {"cal", optional(report.calibration)},
           {"calibration", {{"forced", report.calibration_use.forced}, {"left_out", std::move(left_out)}}},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/array_description.h"
 #include "proto/client_counts.h"
 #include "proto/control_hold.h"
 #include "proto/health.h"
@@ -26,7 +27,7 @@ struct ClockStatus {
 };
 
 struct DeviceStatus {
-  std::string name;    ///< "s1" .. "s4", "table", "scalar"
+  std::string name;    ///< "s1", "s2", ..., "table", "scalar"
   std::string driver;  ///< as in the configuration
   std::string port;
   LinkHealth health;
@@ -89,6 +90,7 @@ struct StatusReport {
   double uptime_s{0};
   std::string software;
   std::string rig;
+  ArrayDescription array;
   double speed_up{1};
   std::optional<std::string> calibration;  ///< id of the active one
   CalibrationUse calibration_use;

@@ -27,7 +27,8 @@ std::string encode(const Greeting& greeting) {
   return line({{"class", "HELLO"},
                {"protocol", {{"major", kStreamProtocolMajor}, {"minor", kStreamProtocolMinor}}},
                {"rig", greeting.rig},
-               {"software", greeting.software}});
+               {"software", greeting.software},
+               {"array", to_json(greeting.array)}});
 }
 
 std::string encode(const Gap& gap) {

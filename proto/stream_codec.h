@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "proto/array_description.h"
 #include "proto/epoch.h"
 #include "proto/error.h"
 #include "proto/run_status.h"
@@ -10,19 +11,20 @@
 
 /// This writes the lines of the live stream but TENSOR (tensor_encoder.h): one JSON object each, no line end.
 ///
-///   {"class":"HELLO","protocol":{"major":1,"minor":0},"rig":"..","software":"mgtd 0.1.0"}
+///   {"class":"HELLO","protocol":{"major":1,"minor":1},"rig":"..","software":"mgtd 0.1.0","array":{...}}
 ///   {"class":"GAP","from_seq":..,"to_seq":..,"why":".."}
 ///   {"class":"ERROR","message":"..","remedy":".."}
-///   {"class":"STATUS",...}  {"class":"RUN",...}      keys as in status_codec.h
+///   {"class":"STATUS",...}  {"class":"RUN",...}      keys as in status_codec.h, array_description.h
 namespace mgtd {
 
 /// Major changes when an old client would misread the stream, minor when keys or classes were added.
 inline constexpr int kStreamProtocolMajor = 1;
-inline constexpr int kStreamProtocolMinor = 0;
+inline constexpr int kStreamProtocolMinor = 1;
 
 struct Greeting {
   std::string rig;
   std::string software;
+  ArrayDescription array{};
 };
 
 [[nodiscard]] std::string encode(const Greeting& greeting);

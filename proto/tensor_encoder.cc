@@ -108,6 +108,32 @@ void append_flags(std::string& out, Flags flags) {
   out += ']';
 }
 
+/// Of the cross by name, of another array the numbers that it has.
+void append_closure(std::string& out, const Closure& closure) {
+  const bool cross = std::isfinite(closure.curl_nT_per_m);
+  out += R"({"curl_nT_per_m":)";
+  append_number(out, closure.curl_nT_per_m);
+  out += R"(,"center_nT":)";
+  if (cross) {
+    append_vector(out, closure.center_nT);
+  } else {
+    out += "null";
+  }
+  out += R"(,"chi2":)";
+  append_number(out, closure.chi2);
+  if (!cross) {
+    out += R"(,"dof":)";
+    append_integer(out, static_cast<std::uint64_t>(closure.dof));
+    out += R"(,"combinations_nT":[)";
+    for (Eigen::Index i = 0; i < closure.combinations_nT.size(); ++i) {
+      if (i > 0) out += ',';
+      append_number(out, closure.combinations_nT[i]);
+    }
+    out += ']';
+  }
+  out += '}';
+}
+
 /// Names of columns are letters, digits and _.
 void append_inputs(std::string& out, std::span<const InputValue> inputs) {
   out += '{';
@@ -159,13 +185,9 @@ std::string_view TensorEncoder::encode(const TensorSample& sample, std::span<con
   append_gradient(line_, sample.g_nT_per_m, true);
   line_ += R"(,"g_sd_nT_per_m":)";
   append_gradient(line_, sample.g_sd_nT_per_m, false);
-  line_ += R"(,"closure":{"curl_nT_per_m":)";
-  append_number(line_, sample.closure.curl_nT_per_m);
-  line_ += R"(,"center_nT":)";
-  append_vector(line_, sample.closure.center_nT);
-  line_ += R"(,"chi2":)";
-  append_number(line_, sample.closure.chi2);
-  line_ += R"(},"flags":)";
+  line_ += R"(,"closure":)";
+  append_closure(line_, sample.closure);
+  line_ += R"(,"flags":)";
   append_flags(line_, sample.flags);
   if (!inputs.empty()) {
     line_ += R"(,"inputs":)";

@@ -17,6 +17,9 @@
 ///    "closure":{"curl_nT_per_m":..,"center_nT":[..3..],"chi2":..},"flags":["interpolated"],
 ///    "inputs":{"motor_A":0.731250}}
 ///
+/// Of an array that is no cross the closure is
+///    {"curl_nT_per_m":null,"center_nT":null,"chi2":..,"dof":3N-8,"combinations_nT":[..3N-8..]}
+///
 /// `t` and `t_ns` are the same instant, UTC. What is not a finite number is null; so is `cal` without a
 /// calibration. Numbers carry six decimals, 1 fT and 1 fT/m, far below what any fluxgate resolves; `zz` is
 /// printed as minus the sum of the printed `xx` and `yy`, so that rounding leaves the trace zero.

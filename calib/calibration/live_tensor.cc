@@ -50,7 +50,12 @@ void LiveTensor::refresh(const sensor::FieldVector& b_P_nT) {
   const sensor::ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
   g_sd_nT_per_m_ = pipeline_.gradient_sd(covariance, 1);
   const auto C = closure_rows(calibration()->geometry);
-  closure_weight_ = linear::propagated_covariance(C, covariance + pipeline_.sample_noise()).inverse();
+  if (C.rows() == 4) {
+    closure_weight_ =
+        Eigen::Matrix4d(linear::propagated_covariance(C, covariance + pipeline_.sample_noise())).inverse();
+  } else if (C.rows() > 0) {
+    closure_weight_ = linear::propagated_covariance(C, covariance + pipeline_.sample_noise()).inverse();
+  }
   at_P_nT_ = b_P_nT.head<3>();
   fresh_ = kRefresh;
 }
@@ -77,9 +82,12 @@ TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditi
     const bool turned = (b_P_nT.head<3>() - at_P_nT_).norm() > kTurned * at_P_nT_.norm();
     if (--fresh_ < 0 || turned) refresh(b_P_nT);
     out.g_sd_nT_per_m = g_sd_nT_per_m_;
-    const Eigen::Vector4d closure(out.closure.curl_nT_per_m, out.closure.center_nT[0],
-                                  out.closure.center_nT[1], out.closure.center_nT[2]);
-    out.closure.chi2 = closure.dot(closure_weight_ * closure);
+    if (out.closure.dof > 0) {
+      const sensor::FieldVector closure = closure_numbers(out.closure);
+      out.closure.chi2 = sensor::over_rows<4>(closure.size(), [&](auto n) {
+        return closure.head(n).dot(closure_weight_.topLeftCorner(n, n) * closure.head(n));
+      });
+    }
   }
   out.seq = epoch.seq;
   out.t = epoch.t;

@@ -59,7 +59,7 @@ class LiveTensor {
   int fresh_{0};
   Eigen::Vector3d at_P_nT_{Eigen::Vector3d::Zero()};
   Gradient g_sd_nT_per_m_;
-  Eigen::Matrix4d closure_weight_{Eigen::Matrix4d::Zero()};
+  sensor::ChannelCovariance closure_weight_;  ///< inverse covariance of the closure
 };
 
 }  // namespace mgtd::calib::calibration

@@ -61,6 +61,12 @@ double root_mean_square(const Gradient& g) {
   return count > 0 ? std::sqrt(sum / count) : kNaN;
 }
 
+sensor::FieldVector closure_numbers(const Closure& closure) {
+  if (std::isnan(closure.curl_nT_per_m)) return closure.combinations_nT;
+  return Eigen::Vector4d(closure.curl_nT_per_m, closure.center_nT[0], closure.center_nT[1],
+                         closure.center_nT[2]);
+}
+
 sensor::FieldVector stacked(const PerSensor<Eigen::Vector3d>& b) {
   sensor::FieldVector out(3 * static_cast<Eigen::Index>(b.size()));
   for (std::size_t i = 0; i < b.size(); ++i) out.segment<3>(3 * static_cast<Eigen::Index>(i)) = b[i];
@@ -136,6 +142,10 @@ struct TensorPipeline::Rows {
         Rows{expansion.field_rows(), gradient_rows(geometry), expansion.closure_rows()});
   }
 };
+
+int TensorPipeline::closure_dof() const {
+  return rows_ ? static_cast<int>(rows_->closure.rows()) : Closure().dof;
+}
 
 FieldAndGradient TensorPipeline::expanded(const sensor::FieldVector& b) const {
   if (!rows_) return field_and_gradient(b, baseline_m_);

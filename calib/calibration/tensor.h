@@ -31,6 +31,9 @@ struct FieldAndGradient {
   Closure closure;  ///< chi2 is left NaN here: it needs the noise
 };
 
+/// The closure quantities as closure_rows() gives them: of the cross curl, centre x, y, z.
+[[nodiscard]] sensor::FieldVector closure_numbers(const Closure& closure);
+
 /// Over the components that the array can tell (those that are no NaN); NaN where it can tell none.
 [[nodiscard]] double root_mean_square(const Gradient& g);
 
@@ -82,6 +85,8 @@ class TensorPipeline {
   /// Of one sample, in the corrected components; zero where noise_known() is false.
   [[nodiscard]] const sensor::ChannelCovariance& sample_noise() const { return noise_; }
   [[nodiscard]] bool noise_known() const { return noise_known_; }
+  /// How many closure numbers the array has.
+  [[nodiscard]] int closure_dof() const;
   /// Null without a calibration or without effects in it.
   [[nodiscard]] const EffectCorrection* effects() const { return effects_.get(); }
   [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const { return calibration_; }

@@ -34,6 +34,13 @@ class Geometry {
     if (d >= 0 && *this == Geometry(d)) return d;
     return std::nullopt;
   }
+  /// As many sensors, and none further than `within_m` from its place in the other.
+  [[nodiscard]] bool agrees_with(const Geometry& other, double within_m = 1e-6) const {
+    if (sensors() != other.sensors()) return false;
+    for (std::size_t i = 0; i < sensors(); ++i)
+      if ((places_P_m_[i] - other.places_P_m_[i]).norm() > within_m) return false;
+    return true;
+  }
   friend bool operator==(const Geometry& a, const Geometry& b) { return a.places_P_m_ == b.places_P_m_; }
 
  private:

@@ -50,6 +50,10 @@ double log_p(double x, double dof) {
 double chi_square_p(double x, double dof) { return std::exp(log_p(x, dof)); }
 double chi_square_log10_p(double x, double dof) { return log_p(x, dof) / std::log(10.0); }
 
+double chi_square_alike(double x, double dof, double other_dof) {
+  return dof == other_dof ? x : chi_square_limit(chi_square_p(x, dof), other_dof);
+}
+
 double chi_square_limit(double p, double dof) {
   const auto excess = [&](double x) { return log_p(x, dof) - std::log(p); };
   const auto near = [](double low, double high) { return high - low <= 1e-11 * high; };

@@ -10,5 +10,8 @@ namespace mgtd::calib::stats {
 [[nodiscard]] double chi_square_log10_p(double x, double dof);
 /// The x that is exceeded with probability p, 0 < p < 1, to 1e-10 relative.
 [[nodiscard]] double chi_square_limit(double p, double dof);
+/// The value of a chi-square with `other_dof` degrees of freedom that is exceeded as rarely as x of one with
+/// `dof`, x > 0; x itself where the two are the same.
+[[nodiscard]] double chi_square_alike(double x, double dof, double other_dof);
 
 }  // namespace mgtd::calib::stats

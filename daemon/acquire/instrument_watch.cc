@@ -9,7 +9,7 @@ namespace mgtd::daemon::acquire {
 namespace {
 
 bool is_sensor(const InstrumentIdentity& i) {
-  return i.place.size() == 2 && i.place[0] == 's' && i.place[1] >= '1' && i.place[1] <= '9';
+  return i.place.size() > 1 && i.place[0] == 's' && i.place[1] >= '1' && i.place[1] <= '9';
 }
 
 std::string_view model_of(const InstrumentIdentity& i) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "proto/instrument_identity.h"
@@ -45,7 +46,13 @@ class InstrumentWatch {
   [[nodiscard]] std::string remedy() const;
 
  private:
-  using ByPlace = std::map<std::string, InstrumentIdentity>;
+  /// s2 before s10.
+  struct InOrder {
+    bool operator()(const std::string& a, const std::string& b) const {
+      return std::pair(a.size(), std::string_view(a)) < std::pair(b.size(), std::string_view(b));
+    }
+  };
+  using ByPlace = std::map<std::string, InstrumentIdentity, InOrder>;
   [[nodiscard]] bool is_another(const InstrumentIdentity& wanted) const;
   /// The place in which a device is wanted; empty: in none.
   [[nodiscard]] std::string home_of(const InstrumentIdentity& who) const;

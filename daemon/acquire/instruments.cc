@@ -13,12 +13,14 @@ constexpr std::array<RawDirection, 6> kRecorded{RawDirection::received, RawDirec
 
 }  // namespace
 
-std::vector<const config::DeviceConfig*> devices_of(const config::Config& config) {
-  std::vector<const config::DeviceConfig*> out;
-  for (const config::DeviceConfig& sensor : config.sensors) out.push_back(&sensor);
-  out.push_back(&config.table);
-  out.push_back(config.scalar ? &*config.scalar : nullptr);
-  for (const config::DeviceConfig& auxiliary : config.auxiliary) out.push_back(&auxiliary);
+std::vector<std::pair<Slot, const config::DeviceConfig*>> devices_of(const config::Config& config) {
+  std::vector<std::pair<Slot, const config::DeviceConfig*>> out;
+  for (std::size_t i = 0; i < config.sensors.size(); ++i)
+    out.emplace_back(Slot::sensor(static_cast<int>(i)), &config.sensors[i]);
+  out.emplace_back(Slot::table(), &config.table);
+  if (config.scalar) out.emplace_back(Slot::scalar(), &*config.scalar);
+  for (std::size_t i = 0; i < config.auxiliary.size(); ++i)
+    out.emplace_back(Slot::auxiliary(static_cast<int>(i)), &config.auxiliary[i]);
   return out;
 }
 
@@ -35,16 +37,13 @@ void carry_out(const TableOrder& order, drivers::Turntable& table) {
 
 Instruments::Instruments(const config::Config& config, Callbacks callbacks)
     : callbacks_(std::move(callbacks)) {
-  const auto devices = devices_of(config);
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    Instrument& instrument = instruments_.emplace_back();
-    if (devices[i] == nullptr) continue;
-    const Slot slot = Slot::numbered(i);
+  for (const auto& [slot, device] : devices_of(config)) {
+    Instrument& instrument = instruments_[slot];
     slots_.push_back(slot);
-    instrument.driver = devices[i]->driver;
-    instrument.port = devices[i]->port;
-    instrument.link = std::make_unique<drivers::DeviceLink>(devices[i]->device,
-                                                            callbacks_of(slot, !instrument.port.empty()));
+    instrument.driver = device->driver;
+    instrument.port = device->port;
+    instrument.link =
+        std::make_unique<drivers::DeviceLink>(device->device, callbacks_of(slot, !instrument.port.empty()));
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,13 +15,14 @@
 #include "proto/slot.h"
 #include "proto/status_report.h"
 
-/// Instruments holds the links of all instruments of the rig: four sensors, the table and, where configured,
+/// Instruments holds the links of all instruments of the rig: the sensors, the table and, where configured,
 /// the scalar reference and auxiliary inputs. It tells its owner what they say. It knows neither what that is
 /// for, nor the ports.
 namespace mgtd::daemon::acquire {
 
-/// Every device at the number of its slot; null where there is none (a rig without scalar reference).
-[[nodiscard]] std::vector<const config::DeviceConfig*> devices_of(const config::Config& config);
+/// Every device of the configuration in its slot: sensors, table, scalar reference, auxiliary modules.
+[[nodiscard]] std::vector<std::pair<Slot, const config::DeviceConfig*>> devices_of(
+    const config::Config& config);
 
 void carry_out(const TableOrder& order, drivers::Turntable& table);
 
@@ -38,7 +40,7 @@ class Instruments {
   Instruments(const Instruments&) = delete;
   Instruments& operator=(const Instruments&) = delete;
 
-  /// Those that are there, in the order of their numbers.
+  /// Those that are there, in the order of devices_of().
   [[nodiscard]] const std::vector<Slot>& slots() const { return slots_; }
   [[nodiscard]] drivers::DeviceLink& link(Slot slot) { return *at(slot).link; }
   [[nodiscard]] const drivers::DeviceLink& link(Slot slot) const { return *at(slot).link; }
@@ -59,15 +61,15 @@ class Instruments {
  private:
   struct Instrument {
     std::string driver, port;
-    std::unique_ptr<drivers::DeviceLink> link;  ///< null: there is none
+    std::unique_ptr<drivers::DeviceLink> link;
   };
-  [[nodiscard]] Instrument& at(Slot slot) { return instruments_.at(slot.number()); }
-  [[nodiscard]] const Instrument& at(Slot slot) const { return instruments_.at(slot.number()); }
+  [[nodiscard]] Instrument& at(Slot slot) { return instruments_.at(slot); }
+  [[nodiscard]] const Instrument& at(Slot slot) const { return instruments_.at(slot); }
   [[nodiscard]] drivers::LinkCallbacks callbacks_of(Slot slot, bool has_port);
 
   Callbacks callbacks_;
   std::vector<Slot> slots_;
-  std::vector<Instrument> instruments_;  ///< by the number of their slot
+  std::map<Slot, Instrument> instruments_;
 };
 
 }  // namespace mgtd::daemon::acquire

@@ -18,13 +18,14 @@ constexpr auto kFreshAngles = std::chrono::seconds(10);
 SamplerConfig sampler_config(const config::Config& config) {
   SamplerConfig out;
   out.rate_hz = config.rate_hz;
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    const config::DeviceConfig& sensor = config.sensors.at(i);
-    out.latency_s.at(i) = sensor.latency_s;
-    out.wire_s.at(i) = wire_s(sensor.device->line_bytes(), sensor.device->baud());
+  out.latency_s.clear();
+  out.wire_s.clear();
+  out.step_s.clear();
+  for (const config::DeviceConfig& sensor : config.sensors) {
+    out.latency_s.push_back(sensor.latency_s);
+    out.wire_s.push_back(wire_s(sensor.device->line_bytes(), sensor.device->baud()));
+    out.step_s.push_back(sensor.delivery_s * config.speed_up);
   }
-  for (std::size_t i = 0; i < kSensors; ++i)
-    out.step_s.at(i) = config.sensors.at(i).delivery_s * config.speed_up;
   out.scheduling_s *= config.speed_up;
   out.silence_s *= config.speed_up;
   return out;
@@ -32,18 +33,19 @@ SamplerConfig sampler_config(const config::Config& config) {
 
 LatestInputs inputs_of(const config::Config& config) {
   std::vector<std::string> columns;
-  for (const config::DeviceConfig* device : devices_of(config)) {
-    if (device == nullptr) continue;
+  for (const auto& [slot, device] : devices_of(config)) {
     for (const drivers::InputChannel& input : device->device->inputs()) columns.push_back(input.column);
   }
   return LatestInputs(std::move(columns));
 }
 
-LivePipeline::LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs)
-    : baseline_m_(baseline_m),
+LivePipeline::LivePipeline(const SamplerConfig& sampler, const calib::sensor::Geometry& array,
+                           LatestInputs inputs)
+    : array_(array),
       sampler_(sampler),
-      live_(calib::sensor::Geometry(baseline_m)),
-      raw_(calib::sensor::Geometry(baseline_m)),
+      live_(array),
+      raw_(array),
+      told_(array.sensors()),
       inputs_(std::move(inputs)) {}
 
 void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> calibration) {
@@ -51,7 +53,7 @@ void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> ca
   if (calibration == nullptr) {
     criticism_ = {};
     rearranged_ = {};
-    live_ = calib::calibration::LiveTensor(calib::sensor::Geometry(baseline_m_));
+    live_ = calib::calibration::LiveTensor(array_);
     return;
   }
   criticism_ = calib::criticism::live::LiveCriticism(*calibration);

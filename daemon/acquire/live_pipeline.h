@@ -29,7 +29,8 @@ namespace mgtd::daemon::acquire {
 
 class LivePipeline {
  public:
-  LivePipeline(const SamplerConfig& sampler, double baseline_m, LatestInputs inputs = LatestInputs());
+  LivePipeline(const SamplerConfig& sampler, const calib::sensor::Geometry& array,
+               LatestInputs inputs = LatestInputs());
 
   /// From the next epoch on; null: the samples are raw and say so.
   void use(std::shared_ptr<const calib::calibration::Calibration> calibration);
@@ -77,7 +78,7 @@ class LivePipeline {
   [[nodiscard]] TensorSample judged(const Epoch& epoch, bool& finding_changed);
   [[nodiscard]] calib::calibration::LiveConditions conditions(Instant at) const;
 
-  double baseline_m_;
+  calib::sensor::Geometry array_;
   Sampler sampler_;
   calib::calibration::LiveTensor live_;
   calib::calibration::TensorPipeline raw_;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -20,18 +21,18 @@ std::string printable(std::string_view bytes) {
 
 struct Replay::Life {
   explicit Life(config::Config c)
-      : config(std::move(c)), pipeline(sampler_config(config), config.baseline_m, inputs_of(config)) {
-    for (const config::DeviceConfig* device : devices_of(config)) {
-      names.push_back(device != nullptr ? device->name : std::string());
-      devices.push_back(device != nullptr ? device->device : nullptr);
-    }
-    wanted.resize(devices.size());
+      : config(std::move(c)), pipeline(sampler_config(config), config.geometry(), inputs_of(config)) {
+    for (const auto& [slot, device] : devices_of(config))
+      instruments[slot.number()] = {device->name, device->device, {}};
   }
+  struct Instrument {
+    std::string name;
+    std::shared_ptr<drivers::Device> device;
+    std::string wanted{};  ///< what it wants to send, not yet seen as sent
+  };
   config::Config config;
   LivePipeline pipeline;
-  std::vector<std::string> names;
-  std::vector<std::shared_ptr<drivers::Device>> devices;  ///< by their number in the journal
-  std::vector<std::string> wanted;                        ///< what each wants to send, not yet seen as sent
+  std::map<std::uint8_t, Instrument> instruments;  ///< by their number in the journal
 };
 
 Replay::Replay(std::function<void(std::string_view)> line,
@@ -53,7 +54,7 @@ Result<void> Replay::feed(const RawRecord& record) {
     deliver();
     return {};
   }
-  if (record.device >= life_->devices.size() || life_->devices[record.device] == nullptr) {
+  if (!life_->instruments.contains(record.device)) {
     return fail(ErrorCode::bad_input,
                 fmt::format("device {} of the journal is not in its configuration", record.device), "");
   }
@@ -62,7 +63,8 @@ Result<void> Replay::feed(const RawRecord& record) {
 }
 
 void Replay::tell_device(const RawRecord& record) {
-  drivers::Device& device = *life_->devices[record.device];
+  Life::Instrument& instrument = life_->instruments.at(record.device);
+  drivers::Device& device = *instrument.device;
   switch (record.direction) {
     case RawDirection::received:
       device.on_bytes(std::as_bytes(std::span(record.bytes.data(), record.bytes.size())), record.at);
@@ -73,7 +75,7 @@ void Replay::tell_device(const RawRecord& record) {
     case RawDirection::closed:
       device.on_close(record.at);
       static_cast<void>(device.take_output());
-      life_->wanted[record.device].clear();
+      instrument.wanted.clear();
       break;
     case RawDirection::tick:
       device.on_tick(record.at);
@@ -86,12 +88,13 @@ void Replay::tell_device(const RawRecord& record) {
     case RawDirection::note:
       return;
   }
-  life_->wanted[record.device] += device.take_output();
+  instrument.wanted += device.take_output();
   take_events(record.device);
 }
 
 void Replay::check_sent(const RawRecord& record) {
-  std::string& wanted = life_->wanted[record.device];
+  Life::Instrument& instrument = life_->instruments.at(record.device);
+  std::string& wanted = instrument.wanted;
   if (wanted.starts_with(record.bytes)) {
     wanted.erase(0, record.bytes.size());
     return;
@@ -99,16 +102,17 @@ void Replay::check_sent(const RawRecord& record) {
   if (!counts_.parted) {
     counts_.parted =
         fmt::format("{} {}: sent was {}, the driver now wants to send {}", format_utc(record.at.wall),
-                    life_->names[record.device], printable(record.bytes), printable(wanted));
+                    instrument.name, printable(record.bytes), printable(wanted));
   }
   wanted.clear();
 }
 
-void Replay::take_events(std::size_t device) {
+void Replay::take_events(std::uint8_t number) {
   LivePipeline& pipeline = life_->pipeline;
-  for (const DeviceEvent& event : life_->devices[device]->take_events()) {
+  drivers::Device& device = *life_->instruments.at(number).device;
+  for (const DeviceEvent& event : device.take_events()) {
     if (const auto* reading = std::get_if<FieldReading>(&event)) {
-      pipeline.answers(reading->slot, life_->devices[device]->health().identity);
+      pipeline.answers(reading->slot, device.health().identity);
       pipeline.push(*reading);
       deliver();
     } else if (const auto* temperature = std::get_if<TemperatureReading>(&event)) {
@@ -151,7 +155,7 @@ Result<void> Replay::on(const LifeNote& note) {
   life_ = std::make_unique<Life>(*std::move(config));
   SamplerConfig sampler = sampler_config(life_->config);
   sampler.first_seq = note.first_seq;
-  life_->pipeline = LivePipeline(sampler, life_->config.baseline_m, inputs_of(life_->config));
+  life_->pipeline = LivePipeline(sampler, life_->config.geometry(), inputs_of(life_->config));
   if (instead_ != nullptr) life_->pipeline.use(instead_);
   if (note.before) say(*note.before);
   return {};
@@ -180,9 +184,11 @@ Result<void> Replay::on(const ReopenedNote& note) {
 }
 
 Result<void> Replay::on(const TableOrder& order) {
-  carry_out(order, static_cast<drivers::Turntable&>(*life_->config.table.device));
-  life_->wanted[kSensors] += life_->config.table.device->take_output();
-  take_events(kSensors);
+  constexpr std::uint8_t kTable = Slot::table().number();
+  Life::Instrument& table = life_->instruments.at(kTable);
+  carry_out(order, static_cast<drivers::Turntable&>(*table.device));
+  table.wanted += table.device->take_output();
+  take_events(kTable);
   return {};
 }
 

@@ -54,7 +54,7 @@ class Replay {
   [[nodiscard]] Result<void> on(const LostNote& lost);
   void tell_device(const RawRecord& record);
   void check_sent(const RawRecord& record);
-  void take_events(std::size_t device);
+  void take_events(std::uint8_t number);
   void deliver();
   void say(const Gap& gap);
 

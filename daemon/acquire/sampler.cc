@@ -79,7 +79,8 @@ Sampler::Sampler(SamplerConfig config) : config_(config), period_s_(1 / config.r
                                       .settle_samples = config.settle_samples}),
                           capacity);
   }
-  T_degC_.fill(std::numeric_limits<double>::quiet_NaN());
+  T_degC_.assign(streams_.size(), std::numeric_limits<double>::quiet_NaN());
+  T_at_.resize(streams_.size());
   next_seq_ = config_.first_seq;
 }
 
@@ -334,7 +335,7 @@ void Sampler::advance(Instant now, std::vector<EpochOrGap>& out) {
 }
 
 SamplerHealth Sampler::health() const {
-  SamplerHealth health{epochs_, gaps_, {}};
+  SamplerHealth health{epochs_, gaps_, PerSensor<SensorStreamHealth>(streams_.size())};
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     health.sensors[i] = streams_[i].health;
     health.sensors[i].clock = streams_[i].clock.state();

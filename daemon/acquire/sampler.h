@@ -13,7 +13,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// Four free-running streams of readings to epochs on one clock.
+/// Free-running streams of readings, one a sensor, to epochs on one clock.
 ///
 /// The grid is the samples of the reference sensor (s1). Each other sensor is interpolated linearly between
 /// its two real neighbouring samples, on sample times from its own clock model; where it lies closer to one
@@ -28,13 +28,14 @@
 /// deliveries) the number is in doubt until a sample proves it: the epochs are flagged clock_unsettled and
 /// the doubt is part of their bound. A sample that comes twice, or after its successor, is dropped.
 ///
-/// skew_bound_s: the most by which two of the four may differ in true time, from how early and how late each
-/// clock model allows its sample to be, and the shift left uninterpolated. Constant delays (filter group
+/// skew_bound_s: the most by which two of the samples may differ in true time, from how early and how late
+/// each clock model allows its sample to be, and the shift left uninterpolated. Constant delays (filter group
 /// delay, wire time) must be configured; no software sees them.
 namespace mgtd::daemon::acquire {
 
 struct SamplerConfig {
   double rate_hz{50};
+  // One a sensor; how many there are is how many sensors the array has.
   PerSensor<double> latency_s{};  ///< sample instant to first byte: filter group delay, conversion
   PerSensor<double> wire_s{};     ///< first to last byte of the shortest frame: bytes x 10 / baud
   /// A sensor that sent nothing for so long is silent; multiply by a simulation's speed-up.

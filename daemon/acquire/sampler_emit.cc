@@ -66,11 +66,11 @@ bool Sampler::emit_next(std::vector<EpochOrGap>& out) {
     return true;
   }
   const double t_s = grid_time(next_k_);
-  PerSensor<Pick> picks;
+  PerSensor<Pick> picks(streams_.size());
   picks[kReferenceIndex].need = Need::ready;
   picks[kReferenceIndex].take(*own);
   int waiting = -1;
-  for (int slot = 1; slot < kSensors; ++slot) {
+  for (int slot = 1; slot < static_cast<int>(streams_.size()); ++slot) {
     Pick& p = picks[static_cast<std::size_t>(slot)];
     p = pick(slot, t_s);
     if (p.need == Need::lost || p.need == Need::not_yet) {
@@ -113,8 +113,9 @@ void Sampler::emit_epoch(double t_s, const PerSensor<Pick>& picks, std::vector<E
   epoch.seq = next_seq_++;
   epoch.t = stamp(t_s);
   epoch.T_degC = temperatures(epoch.t.mono);
-  PerSensor<ClockModel::Bound> off;
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  epoch.y_nT.resize(streams_.size());
+  PerSensor<ClockModel::Bound> off(streams_.size());
+  for (std::size_t i = 0; i < off.size(); ++i) {
     const Stream& s = streams_[i];
     off[i] = s.clock.bound(s.clock.index_of(t_s));
     off[i].early_s += picks[i].doubt_s + std::max(0.0, -picks[i].shift_s);
@@ -124,8 +125,8 @@ void Sampler::emit_epoch(double t_s, const PerSensor<Pick>& picks, std::vector<E
     if (picks[i].doubt_s > 0 || !s.clock.settled() || s.clock.contested())
       epoch.flags |= Flag::clock_unsettled;
   }
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    for (std::size_t j = 0; j < kSensors; ++j) {
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    for (std::size_t j = 0; j < off.size(); ++j) {
       if (i != j) epoch.skew_bound_s = std::max(epoch.skew_bound_s, off[i].late_s + off[j].early_s);
     }
   }

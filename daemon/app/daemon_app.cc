@@ -7,6 +7,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "calib/report/described_array.h"
 #include "daemon/app/service_notify.h"
 
 namespace mgtd::daemon::app {
@@ -29,12 +30,13 @@ std::filesystem::path runs_directory(const config::Config& config) {
 
 DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::CalibrationStore store)
     : config_(std::move(config)),
+      array_(calib::report::described(config_.geometry())),
       clock_(config_.speed_up),
       store_(std::move(store)),
       worker_(io),
       core_(config_, *this),
       recording_(io, config_, quiet_),
-      stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION}),
+      stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION, array_}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
       run_(
@@ -90,6 +92,11 @@ void DaemonApp::use_active_calibration() {
   std::shared_ptr<const calib::calibration::Calibration> used;
   if (!active) {
     spdlog::error("the active calibration cannot be read, streaming raw: {}", active.error().text());
+  } else if (*active && !(*active)->geometry.agrees_with(config_.geometry())) {
+    spdlog::error(
+        "calibration {} is of {}, this rig is {}: streaming raw; measure a run and accept its calibration",
+        (*active)->id, calib::report::array_name((*active)->geometry),
+        calib::report::array_name(config_.geometry()));
   } else if (*active) {
     spdlog::info("calibration {} is active", (*active)->id);
     used = std::make_shared<const calib::calibration::Calibration>(**std::move(active));

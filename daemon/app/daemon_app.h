@@ -63,6 +63,7 @@ class DaemonApp : private core::CoreActions {
   [[nodiscard]] StatusReport report() const;
 
   config::Config config_;
+  ArrayDescription array_;
   drivers::Clock clock_;
   store::CalibrationStore store_;
   store::Worker worker_;

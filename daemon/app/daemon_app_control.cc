@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/calibration/calibration_json.h"
+#include "calib/report/described_array.h"
 #include "daemon/app/daemon_app.h"
 #include "daemon/plan/run_plan_json.h"
 #include "proto/calibration_request.h"
@@ -14,8 +15,6 @@
 namespace mgtd::daemon::app {
 
 using Reply = Result<nlohmann::ordered_json>;
-
-constexpr double kSameBaseline_m = 1e-6;
 
 Reply DaemonApp::answer(const ControlRequest& request) {
   switch (request.command) {
@@ -162,12 +161,13 @@ Reply DaemonApp::import_calibration(const ControlRequest& request) {
   if (!wanted) return tl::unexpected(wanted.error());
   const auto calibration = calib::calibration::calibration_from_json(wanted->calibration);
   if (!calibration) return tl::unexpected(calibration.error());
-  if (const double baseline_m = calibration->geometry.cross_baseline_m().value_or(0);
-      std::abs(baseline_m - config_.baseline_m) > kSameBaseline_m) {
+  if (!calibration->geometry.agrees_with(config_.geometry())) {
     return fail(ErrorCode::refused,
-                fmt::format("calibration {} is of an array with a baseline of {:g} m, this rig has {:g} m",
-                            calibration->id, baseline_m, config_.baseline_m),
-                "fit again with --baseline, or correct [rig] baseline_m");
+                fmt::format("calibration {} is of {}, this rig is {}", calibration->id,
+                            calib::report::array_name(calibration->geometry),
+                            calib::report::array_name(config_.geometry())),
+                "fit again with --baseline or --array, or correct [rig] baseline_m or [array] of the "
+                "configuration");
   }
   if (auto done = store_.import(*calibration, wanted->origin, wanted->force, now); !done)
     return tl::unexpected(done.error());

@@ -13,8 +13,7 @@ namespace {
 std::vector<InputStatus> inputs_now(const config::Config& config, const acquire::LatestInputs& latest,
                                     Instant now) {
   std::vector<InputStatus> out;
-  for (const config::DeviceConfig* device : acquire::devices_of(config)) {
-    if (device == nullptr) continue;
+  for (const auto& [slot, device] : acquire::devices_of(config)) {
     for (const drivers::InputChannel& input : device->device->inputs()) {
       const double value = latest.values()[out.size()].value;
       const std::optional<Instant> heard = latest.heard(input.column);
@@ -40,6 +39,7 @@ StatusReport DaemonApp::report() const {
   out.uptime_s = to_seconds(now.mono - started_.mono) / config_.speed_up;
   out.software = "mgtd " MGTD_VERSION;
   out.rig = config_.rig_name;
+  out.array = array_;
   out.speed_up = config_.speed_up;
   out.calibration = store_.active_id();
   if (const auto& used = pipeline.live().calibration()) {
@@ -56,7 +56,7 @@ StatusReport DaemonApp::report() const {
   out.devices = core_.instruments().status();
   out.inputs = inputs_now(config_, pipeline.inputs(), now.mono);
   const acquire::SamplerHealth sampler = pipeline.sampler().health();
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  for (std::size_t i = 0; i < sampler.sensors.size(); ++i) {
     if (sampler.sensors[i].clock.samples > 0)
       out.devices.at(i).clock = acquire::clock_report(sampler.sensors[i].clock, config_.rate_hz);
   }

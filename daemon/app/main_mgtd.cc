@@ -12,7 +12,6 @@
 
 #include "daemon/app/daemon_app.h"
 #include "daemon/app/service_notify.h"
-#include "daemon/config/served_array.h"
 #include "daemon/store/store_lock.h"
 
 namespace {
@@ -83,10 +82,6 @@ int main(int argc, char** argv) {
     for (const std::string& warning : config->warnings) fmt::print(stderr, "{}\n", warning);
     fmt::print("{}: good\n", config_file);
     return 0;
-  }
-  if (const auto reason = mgtd::daemon::config::not_served(*config)) {
-    std::ignore = report({reason->code, config_file + ": " + reason->message, reason->remedy});
-    return kExitConfig;
   }
   return run_service(*std::move(config));
 }

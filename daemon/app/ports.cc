@@ -5,13 +5,11 @@ namespace mgtd::daemon::app {
 
 Ports::Ports(boost::asio::io_context& io, const drivers::Clock& clock, const config::Config& config,
              acquire::Instruments& instruments) {
-  const auto devices = acquire::devices_of(config);
-  for (const Slot slot : instruments.slots()) {
+  for (const auto& [slot, device] : acquire::devices_of(config)) {
     if (!instruments.has_port(slot)) continue;
-    const config::DeviceConfig& device = *devices.at(slot.number());
-    ports_.emplace(
-        slot, std::make_unique<drivers::PortLink>(io, clock, drivers::PortSettings{device.port, device.baud},
-                                                  instruments.link(slot)));
+    ports_.emplace(slot,
+                   std::make_unique<drivers::PortLink>(
+                       io, clock, drivers::PortSettings{device->port, device->baud}, instruments.link(slot)));
   }
 }
 

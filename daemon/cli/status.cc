@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include "calib/poses/pose_columns.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/progress.h"
 #include "proto/status_codec.h"
@@ -117,6 +118,23 @@ void print_clients(const nlohmann::json& s) {
   fmt::print("\n");
 }
 
+/// Of a daemon of an earlier version: four, all that it knew.
+std::size_t sensors_of(const nlohmann::json& s) {
+  const auto array = s.find("array");
+  return array == s.end() ? kSensorCount : array->at("sensors").get<std::size_t>();
+}
+
+/// How many sensors there are and what they can tell, clause by clause.
+void print_array(const nlohmann::json& array) {
+  const auto sensors = array.at("sensors").get<std::size_t>();
+  fmt::print("array     {}\n", calib::poses::counted(sensors));
+  std::string_view rest = array.at("tells").get_ref<const std::string&>();
+  for (std::size_t end = 0; !rest.empty(); rest.remove_prefix(std::min(rest.size(), end + 2))) {
+    end = std::min(rest.find("; "), rest.size());
+    fmt::print("          {}\n", rest.substr(0, end));
+  }
+}
+
 /// Explains a wide skew bound or many gaps. The limit of the skew is that of a run's preflight.
 void print_stream_remarks(const nlohmann::json& sampler, double speed_up) {
   constexpr double kMostSkew_s = 0.04, kMostMissing = 0.01;
@@ -175,11 +193,12 @@ int run_status(const Session& session, double patience_s) {
   const auto& s = *status;
   const auto& sampler = s.at("sampler");
   fmt::print("rig       {} ({})\n", s.at("rig").get<std::string>(), s.at("software").get<std::string>());
+  if (const auto array = s.find("array"); array != s.end()) print_array(*array);
   fmt::print("up        {}\n", duration_text(s.at("uptime_s").get<double>()));
   fmt::print("stream    {} epochs, {} missing", sampler.at("epochs").get<std::uint64_t>(),
              sampler.at("gaps").get<std::uint64_t>());
   if (!sampler.at("rate_hz").is_null()) fmt::print(", {:.2f} a second", sampler.at("rate_hz").get<double>());
-  if (!sampler.at("skew_bound_s").is_null())
+  if (!sampler.at("skew_bound_s").is_null() && sensors_of(s) != 1)
     fmt::print(", skew below {:.3f} ms", 1e3 * sampler.at("skew_bound_s").get<double>());
   print_stream_remarks(sampler, s.value("speed_up", 1.0));
   fmt::print("\ncalibr.   {}\n", text_or(s, "cal", "none: the stream is raw and says so"));

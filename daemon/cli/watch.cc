@@ -68,17 +68,27 @@ class Gaps {
   GapPace pace_;
 };
 
-void print_sample(const nlohmann::json& s) {
+/// The gradient; the field's components where the array tells no gradient.
+std::string vector_or_tensor(const nlohmann::json& s, double sd) {
   const auto& g = s.at("g_nT_per_m");
+  const bool told = std::any_of(g.begin(), g.end(), [](const auto& value) { return value.is_number(); });
+  const auto& b = s.at("b_nT");
+  if (!told && b.at(0).is_number())
+    return fmt::format("B x {:10.2f} y {:10.2f} z {:10.2f} nT", b.at(0).get<double>(), b.at(1).get<double>(),
+                       b.at(2).get<double>());
+  return fmt::format("G xx {} yy {} zz {} xy {} xz {} yz {}{} nT/m", number(g, "xx", 8), number(g, "yy", 8),
+                     number(g, "zz", 8), number(g, "xy", 8), number(g, "xz", 8), number(g, "yz", 8),
+                     sd > 0 ? fmt::format(" each to +-{:.2f} or better", sd) : "");
+}
+
+void print_sample(const nlohmann::json& s) {
   double sd = 0;  // the largest of the six; zero without a calibration
   for (const auto& value : s.at("g_sd_nT_per_m"))
     if (value.is_number()) sd = std::max(sd, value.get<double>());
   std::string flags;
   for (const auto& flag : s.at("flags")) flags += " " + flag.get<std::string>();
-  fmt::print("{}  F {} nT  G xx {} yy {} zz {} xy {} xz {} yz {}{} nT/m  cal {}{}\n",
-             s.at("t").get<std::string>().substr(11, 12), number(s, "f_nT", 10), number(g, "xx", 8),
-             number(g, "yy", 8), number(g, "zz", 8), number(g, "xy", 8), number(g, "xz", 8),
-             number(g, "yz", 8), sd > 0 ? fmt::format(" each to +-{:.2f} or better", sd) : "",
+  fmt::print("{}  F {} nT  {}  cal {}{}\n", s.at("t").get<std::string>().substr(11, 12),
+             number(s, "f_nT", 10), vector_or_tensor(s, sd),
              s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
   std::fflush(stdout);
 }

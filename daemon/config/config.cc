@@ -9,12 +9,12 @@
 #include "calib/effects/library/library.h"
 #include "daemon/config/array_places.h"
 #include "daemon/config/input_columns.h"
-#include "daemon/config/served_array.h"
 #include "daemon/config/tcp_address.h"
 #include "daemon/config/toml_settings.h"
 #include "daemon/plan/mount_plan.h"
 #include "daemon/store/durable_file.h"
 #include "drivers/registry.h"
+#include "proto/slot.h"
 
 namespace mgtd::daemon::config {
 namespace {
@@ -311,6 +311,9 @@ void Reader::read_auxiliary(const toml::table& root) {
     return;
   }
   for (const toml::node& module : *list) {
+    if (config_.auxiliary.size() == Slot::kMostAuxiliary)
+      return complain(place_of(module.source()),
+                      fmt::format("there can be {} auxiliary modules", Slot::kMostAuxiliary));
     const std::string name = fmt::format("aux{}", config_.auxiliary.size() + 1);
     Settings s = to_settings(*module.as_table(), "[[auxiliary]] " + name);
     config_.auxiliary.push_back(read_device(std::move(s), name, Role::auxiliary, 0));
@@ -345,8 +348,6 @@ void Reader::read(const toml::table& root) {
   read_run(root);
   read_service(root);
   warn_without_field();
-  if (const auto reason = not_served(config_))
-    config_.warnings.push_back(fmt::format("{}: warning: {}", config_.file, reason->message));
 }
 
 /// The size of the field fixes the scale of all sensors.

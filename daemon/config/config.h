@@ -20,7 +20,7 @@ namespace mgtd::daemon::config {
 
 /// A serial port and the device behind it. The device has read and checked its own settings.
 struct DeviceConfig {
-  std::string name;  ///< "s1" .. "s4", "table", "scalar", "aux1", ...
+  std::string name;  ///< "s1", "s2", ..., "table", "scalar", "aux1", ...
   std::string driver;
   std::string port;
   int baud{0};

@@ -49,6 +49,11 @@ void InputColumns::add(drivers::Settings& s, const DeviceConfig& device, Config&
       s.object(input.key, fmt::format("'{}' is already measured ({}); {}", column, known->second,
                                       drivers::sensor_of(column) ? "leave one of the two out"
                                                                  : "give one of them another name"));
+    if (const auto sensor = drivers::sensor_of(column);
+        sensor && static_cast<std::size_t>(*sensor) >= config.geometry().sensors())
+      s.object(input.key,
+               fmt::format("'{}' is the temperature of a sensor that the array does not have: it has {}",
+                           column, calib::poses::counted(config.geometry().sensors())));
     if (input.unit == "A" && !column.ends_with("_A"))
       config.warnings.push_back(
           fmt::format("{}:{}: warning: {}: '{}' is a current whose name does not end in _A: platform.current "

@@ -27,14 +27,14 @@ DaemonCore::DaemonCore(const config::Config& config, CoreActions& actions)
            .on_event = [this](Slot slot, const DeviceEvent& event, Stamp now) { on_event(slot, event, now); },
            .on_link = [this](Slot slot, const LinkHealth& health, Stamp now) { on_link(slot, health, now); },
            .on_raw = [this](const RawRecord& record) { on_raw(record); }}),
-      pipeline_(acquire::sampler_config(config), config.baseline_m, acquire::inputs_of(config)),
+      pipeline_(acquire::sampler_config(config), config.geometry(), acquire::inputs_of(config)),
       run_([this](const run::Action& action, Stamp now) { carry_out(action, now); }) {}
 
 void DaemonCore::begin(const LifeNote& life, Stamp now) {
   note(life, now);
   acquire::SamplerConfig sampler = acquire::sampler_config(config_);
   sampler.first_seq = life.first_seq;
-  pipeline_ = acquire::LivePipeline(sampler, config_.baseline_m, acquire::inputs_of(config_));
+  pipeline_ = acquire::LivePipeline(sampler, config_.geometry(), acquire::inputs_of(config_));
 }
 
 void DaemonCore::use(std::shared_ptr<const calib::calibration::Calibration> calibration, Stamp now) {
@@ -180,7 +180,7 @@ Result<void> DaemonCore::begin_probe(Stamp now) {
                 "wait for it, or: mgt run abort");
   if (auto ready = run::ready_for_magnet(instruments_.links()); !ready) return ready;
   inform("", "magnet test: begun", now.mono);
-  probe_.emplace(now.mono, config_.speed_up);
+  probe_.emplace(now.mono, config_.speed_up, config_.geometry());
   return {};
 }
 

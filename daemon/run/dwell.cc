@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/calibration/tensor.h"
+#include "calib/poses/pose_columns.h"
+
 namespace mgtd::daemon::run {
 namespace {
 
@@ -13,19 +16,15 @@ constexpr std::size_t kFewestSamples = 8;   // fewer give no standard deviation 
 constexpr double kCorrelationNoise = 1.5;   // standard deviations of a correlation that is none
 constexpr double kFrozenDwell = 0.5;        // of successive samples, all three axes exactly equal
 constexpr double kScalarPriorReadings = 4;  // weight of the configured scatter of one scalar reading
-constexpr int kDwellAxes = 3 * kSensors;
-
-Eigen::Matrix<double, kDwellAxes, 1> stacked(const Epoch& epoch) {
-  Eigen::Matrix<double, kDwellAxes, 1> y;
-  for (int slot = 0; slot < kSensors; ++slot)
-    y.segment<3>(3 * slot) = epoch.y_nT[static_cast<std::size_t>(slot)];
-  return y;
-}
 
 }  // namespace
 
-Dwell::Dwell(DwellConfig config, Instant begin)
-    : config_(config), begin_(begin), end_(begin + from_seconds(config.length_s)) {}
+Dwell::Dwell(DwellConfig config, Instant begin, std::size_t sensors)
+    : config_(config),
+      begin_(begin),
+      end_(begin + from_seconds(config.length_s)),
+      T_degC_(sensors),
+      repeats_(sensors) {}
 
 void Dwell::add(const EpochOrGap& item) {
   if (const auto* gap = std::get_if<Gap>(&item)) {
@@ -35,13 +34,13 @@ void Dwell::add(const EpochOrGap& item) {
   const Epoch& epoch = std::get<Epoch>(item);
   past_end_ = past_end_ || epoch.t.mono >= end_;
   if (!inside(epoch.t.mono)) return;
-  const Sample y = stacked(epoch);
-  for (std::size_t i = 0; i < kSensors; ++i) {
+  const Sample y = calib::calibration::stacked(epoch.y_nT);
+  for (std::size_t i = 0; i < repeats_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
     if (last_nT_ && y.segment<3>(at) == last_nT_->segment<3>(at)) ++repeats_[i];
     if (std::isfinite(epoch.T_degC[i])) {
-      T_sum_degC_[i] += epoch.T_degC[i];
-      ++T_count_[i];
+      T_degC_[i].sum += epoch.T_degC[i];
+      ++T_degC_[i].count;
     }
   }
   last_nT_ = y;
@@ -136,7 +135,8 @@ double Dwell::correlation_time(int slot, const std::vector<Sample>& residual) co
 /// smoothed it.
 void Dwell::fill_readings(Pose& pose) const {
   const auto n = static_cast<double>(y_nT_.size());
-  Sample mean = Sample::Zero(), square = Sample::Zero();
+  const Eigen::Index axes = y_nT_.front().size();
+  Sample mean = Sample::Zero(axes), square = Sample::Zero(axes);
   for (const Sample& y : y_nT_) mean += y - y_nT_.front();
   mean = mean / n + y_nT_.front();
   std::vector<Sample> residual;
@@ -145,11 +145,11 @@ void Dwell::fill_readings(Pose& pose) const {
     residual.push_back(y - mean);
     square += residual.back().cwiseAbs2();
   }
-  PerSensor<double> time{};
-  for (int slot = 0; slot < kSensors; ++slot)
-    time[static_cast<std::size_t>(slot)] = correlation_time(slot, residual);
+  PerSensor<double> time(repeats_.size());
+  for (std::size_t slot = 0; slot < time.size(); ++slot)
+    time[slot] = correlation_time(static_cast<int>(slot), residual);
   const double least = *std::min_element(time.begin(), time.end());
-  for (int axis = 0; axis < kDwellAxes; ++axis) {
+  for (Eigen::Index axis = 0; axis < axes; ++axis) {
     const auto slot = static_cast<std::size_t>(axis / 3), component = static_cast<std::size_t>(axis % 3);
     pose.y_nT[slot][axis % 3] = mean[axis];
     pose.sd_nT[slot][component] = std::sqrt(square[axis] / (n - 1) * time[slot] / least);
@@ -173,7 +173,7 @@ void Dwell::fill_scalar(Pose& pose) const {
 
 Result<Pose> Dwell::pose(const DwellPlace& place) const {
   if (auto ok = acceptable(); !ok) return tl::unexpected(ok.error());
-  Pose pose;
+  Pose pose = calib::poses::unmeasured_pose(repeats_.size());
   pose.number = place.number;
   pose.set = place.set;
   if (place.angles) {
@@ -190,8 +190,8 @@ Result<Pose> Dwell::pose(const DwellPlace& place) const {
   pose.sense = place.sense;
   fill_readings(pose);
   fill_scalar(pose);
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    if (T_count_[i] > 0) pose.T_degC[i] = T_sum_degC_[i] / static_cast<double>(T_count_[i]);
+  for (std::size_t i = 0; i < T_degC_.size(); ++i) {
+    if (T_degC_[i].count > 0) pose.T_degC[i] = T_degC_[i].sum / static_cast<double>(T_degC_[i].count);
   }
   for (const auto& [column, sum] : auxiliary_)
     pose.covariates[column] = sum.sum / static_cast<double>(sum.count);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/sensor/channels.h"
 #include "proto/epoch.h"
 #include "proto/error.h"
 #include "proto/pose.h"
@@ -50,13 +51,14 @@ struct DwellQuality {
   std::size_t frozen{0};
   std::size_t saturated{0};
   /// Successive epochs with all three axes of a sensor exactly equal.
-  PerSensor<std::size_t> repeats{};
+  PerSensor<std::size_t> repeats;
   double gap_share{0};
 };
 
 class Dwell {
  public:
-  Dwell(DwellConfig config, Instant begin);
+  /// Of an array of so many sensors.
+  Dwell(DwellConfig config, Instant begin, std::size_t sensors = kSensorCount);
 
   /// Epochs and readings before begin or after the end are ignored.
   void add(const EpochOrGap& item);
@@ -72,7 +74,11 @@ class Dwell {
   [[nodiscard]] Result<Pose> pose(const DwellPlace& place) const;
 
  private:
-  using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
+  using Sample = calib::sensor::FieldVector;
+  struct Sum {
+    double sum{0};
+    std::size_t count{0};
+  };
   [[nodiscard]] bool inside(Instant t) const { return t >= begin_ && t < end_; }
   [[nodiscard]] Result<void> acceptable() const;
   [[nodiscard]] double correlation_time(int slot, const std::vector<Sample>& residual) const;
@@ -84,15 +90,10 @@ class Dwell {
   std::vector<Sample> y_nT_;
   std::vector<std::uint64_t> seq_;
   std::vector<double> f_nT_;
-  PerSensor<double> T_sum_degC_{};
-  PerSensor<std::size_t> T_count_{};
-  struct Sum {
-    double sum{0};
-    std::size_t count{0};
-  };
+  PerSensor<Sum> T_degC_;
   std::map<std::string, Sum> auxiliary_;  ///< by column
   std::optional<Sample> last_nT_;         ///< of any epoch of the dwell
-  PerSensor<std::size_t> repeats_{};
+  PerSensor<std::size_t> repeats_;
   std::size_t heard_{0}, saturated_{0}, frozen_{0};
   bool past_end_{false};
   std::optional<Stamp> first_;  ///< relates monotonic and wall time

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/sensor/channels.h"
 #include "proto/epoch.h"
 #include "proto/reading.h"
 #include "proto/time.h"
@@ -15,9 +16,10 @@ namespace mgtd::daemon::run {
 class FieldBlocks {
  public:
   static constexpr double kBlock_s = 0.5;
-  using Axes = Eigen::Matrix<double, 3 * kSensors, 1>;
+  using Axes = calib::sensor::FieldVector;
 
-  FieldBlocks(double rate_hz, Instant begin);
+  /// Of an array of so many sensors.
+  FieldBlocks(double rate_hz, Instant begin, std::size_t sensors = kSensorCount);
 
   /// What was measured before `begin` is ignored.
   void add(const EpochOrGap& item);
@@ -37,12 +39,12 @@ class FieldBlocks {
 
   double expected_samples_;
   Instant begin_, block_end_;
-  Axes sum_nT_{Axes::Zero()}, offset_nT_{Axes::Zero()};
+  Axes sum_nT_, offset_nT_;
   std::size_t in_block_{0};
   std::vector<Axes> means_nT_;  ///< beside offset_nT_
   std::optional<Axes> last_;
   std::uint64_t last_seq_{0};
-  Axes steps_nT2_{Axes::Zero()};
+  Axes steps_nT2_;
   std::size_t steps_{0};
   std::vector<double> f_nT_;
 };

@@ -15,9 +15,8 @@ constexpr double kMemory = 400;              // degrees of freedom
 constexpr double kScalarPrior = 4;           // readings' worth of the configured scatter
 constexpr double kSmallestNoise_nT2 = 1e-8;  // of a block: below any instrument's resolution
 constexpr std::size_t kScalarReadings = 3;   // fewer make no scatter
-constexpr double kFieldAxes = 3 * kSensors;
 
-/// Of the quotient S / (12 (B - 1)): counted as if all sensors saw the same.
+/// Of the quotient S / (A (B - 1)): counted as if all sensors saw the same.
 double dof_of(std::size_t blocks) { return 3 * (static_cast<double>(blocks) - 1); }
 
 double square_sum(const std::vector<double>& f_nT) {
@@ -28,7 +27,7 @@ double square_sum(const std::vector<double>& f_nT) {
 }
 
 /// Of the axes of all sensors, per sensor: change of the vector.
-double per_sensor(const FieldBlocks::Axes& nT2) { return nT2.sum() / kSensors; }
+double per_sensor(const FieldBlocks::Axes& nT2) { return 3 * nT2.mean(); }
 
 }  // namespace
 
@@ -44,7 +43,8 @@ void FieldNoise::begin(const FieldBlocks& at_rest) {
 
 void FieldNoise::add(const FieldBlocks& at_rest) {
   if (at_rest.blocks() < 2) return;
-  sum_ += at_rest.scatter_nT2().cwiseQuotient(weight_nT2_).sum() * 3 / kFieldAxes;
+  if (weight_nT2_.size() == 0) weight_nT2_.setOnes(at_rest.scatter_nT2().size());
+  sum_ += at_rest.scatter_nT2().cwiseQuotient(weight_nT2_).mean() * 3;
   dof_ += dof_of(at_rest.blocks());
   if (const auto n = static_cast<double>(at_rest.scalar_nT().size()); n >= 2) {
     scalar_sum_nT2_ += square_sum(at_rest.scalar_nT());
@@ -75,8 +75,7 @@ struct DisturbanceStatistic {
     if (field.blocks() < 2 || !noise.known()) return std::nullopt;
     const double n = static_cast<double>(field.blocks()) - 1;
     const FieldBlocks::Axes scatter_nT2 = field.scatter_nT2();
-    const double f =
-        scatter_nT2.cwiseQuotient(noise.weight_nT2_).sum() / (kFieldAxes * n) / (noise.sum_ / noise.dof_);
+    const double f = scatter_nT2.cwiseQuotient(noise.weight_nT2_).mean() / n / (noise.sum_ / noise.dof_);
     const double noise_nT = noise.block_nT();
     const double change_nT = std::sqrt(std::max(0.0, per_sensor(scatter_nT2) / n - noise_nT * noise_nT));
     return disturbance(change_nT, f, dof_of(field.blocks()), noise.dof_, false);

@@ -8,14 +8,15 @@
 
 /// Tests whether the field changes while the table stands, because something magnetic passes by.
 ///
-///   array    S = sum over 12 axes and B blocks of (block - mean)^2 / w,  w = expected variance of a block
-///            F = S / (12 (B - 1)) / kappa,  kappa the same quotient at rest: preflight and good dwells
+///   array    S = sum over A = 3N axes and B blocks of (block - mean)^2 / w,  w = expected variance of a
+///   block
+///            F = S / (A (B - 1)) / kappa,  kappa the same quotient at rest: preflight and good dwells
 ///
 ///   scalar   F = scatter of its readings / that at rest
 ///
 /// Disturbed when F is exceeded by chance with less than `false_alarm` / looks, and the change is above
 /// `limit_nT`. What is common to all axes counts once: the degrees of freedom are those of three axes, so
-/// that ambient noise, which the twelve share, raises no alarm; where the axes are independent the rate of
+/// that ambient noise, which they share, raises no alarm; where the axes are independent the rate of
 /// false alarms is smaller than stated.
 namespace mgtd::daemon::run {
 
@@ -40,7 +41,7 @@ class FieldNoise {
 
  private:
   friend struct DisturbanceStatistic;
-  FieldBlocks::Axes weight_nT2_{FieldBlocks::Axes::Ones()};
+  FieldBlocks::Axes weight_nT2_;  ///< empty until the field at rest was seen
   double sum_{0}, dof_{0};
   double scalar_sum_nT2_, scalar_dof_;
 };

@@ -9,10 +9,10 @@
 namespace mgtd::daemon::run {
 
 FieldGuard::FieldGuard(const FieldGuardConfig& config, Instant now)
-    : config_(config), blocks_(config.rate_hz, now), noise_(config.scalar_sd_nT) {}
+    : config_(config), blocks_(config.rate_hz, now, config.sensors), noise_(config.scalar_sd_nT) {}
 
 void FieldGuard::watch(Instant from) {
-  blocks_ = FieldBlocks(config_.rate_hz, from);
+  blocks_ = FieldBlocks(config_.rate_hz, from, config_.sensors);
   judged_ = 0;
 }
 

@@ -13,9 +13,10 @@ namespace mgtd::daemon::run {
 
 struct FieldGuardConfig {
   DisturbanceLimits limits;
-  double step_nT{5};       ///< of the scalar reference from one pose to the next; 0: not looked at
-  double calm_s{5};        ///< without a disturbance, and it is over
-  double rate_hz{50};      ///< of the epochs
+  double step_nT{5};   ///< of the scalar reference from one pose to the next; 0: not looked at
+  double calm_s{5};    ///< without a disturbance, and it is over
+  double rate_hz{50};  ///< of the epochs
+  std::size_t sensors{kSensorCount};
   double scalar_sd_nT{0};  ///< of one reading, until its own scatter says otherwise
 };
 

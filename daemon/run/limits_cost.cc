@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "calib/calibration/tensor.h"
 #include "calib/sensor/sensor_model.h"
 #include "daemon/run/planned_poses.h"
 #include "proto/units.h"
@@ -58,10 +59,6 @@ struct Kind {
 constexpr std::array<Kind, 4> kKinds{
     {{"angles between the axes", 0}, {"scale factors", 3}, {"offsets", 6}, {"angles to the platform", 9}}};
 
-double rms(const Gradient& g) {
-  return std::sqrt((g.xx * g.xx + g.yy * g.yy + g.zz * g.zz + g.xy * g.xy + g.xz * g.xz + g.yz * g.yz) / 6);
-}
-
 LimitsCost::Group tensor_group(const calib::design::DesignReport& within,
                                const calib::design::DesignReport& without) {
   static constexpr std::array<std::pair<const char*, double Gradient::*>, 6> kComponents{
@@ -72,8 +69,9 @@ LimitsCost::Group tensor_group(const calib::design::DesignReport& within,
        {"xz", &Gradient::xz},
        {"yz", &Gradient::yz}}};
   LimitsCost::Group out{.name = "tensor", .unit = "nT/m", .worst = {}};
-  out.without = rms(without.tensor_sd_nT_per_m);
-  out.within = within.determined ? rms(within.tensor_sd_nT_per_m) : kInfinite;
+  out.without = calib::calibration::root_mean_square(without.tensor_sd_nT_per_m);
+  out.within =
+      within.determined ? calib::calibration::root_mean_square(within.tensor_sd_nT_per_m) : kInfinite;
   for (const auto& [name, component] : kComponents) {
     if (!within.determined) break;
     const double times = within.tensor_sd_nT_per_m.*component / without.tensor_sd_nT_per_m.*component;
@@ -86,7 +84,7 @@ LimitsCost::Group parameter_group(const Kind& kind, const calib::design::DesignR
                                   const calib::design::DesignReport& without) {
   LimitsCost::Group out{.name = kind.name, .unit = without.parameters[kind.first].unit, .worst = {}};
   double inside = 0, outside = 0, count = 0;
-  for (std::size_t slot = 0; slot < kSensors; ++slot) {
+  for (std::size_t slot = 0; slot < without.sensors; ++slot) {
     for (std::size_t k = kind.first; k < kind.first + 3; ++k, ++count) {
       const std::size_t at = slot * calib::sensor::kSensorParameters + k;
       const double free = without.parameters[at].sd;
@@ -99,6 +97,16 @@ LimitsCost::Group parameter_group(const Kind& kind, const calib::design::DesignR
   }
   out.without = std::sqrt(outside / count);
   out.within = within.determined ? std::sqrt(inside / count) : kInfinite;
+  return out;
+}
+
+/// The tensor, where the array tells any of it, then the parameters of each kind.
+std::vector<LimitsCost::Group> groups_of(const calib::design::DesignReport& within,
+                                         const calib::design::DesignReport& without) {
+  std::vector<LimitsCost::Group> out;
+  if (std::isfinite(calib::calibration::root_mean_square(without.tensor_sd_nT_per_m)))
+    out.push_back(tensor_group(within, without));
+  for (const Kind& kind : kKinds) out.push_back(parameter_group(kind, within, without));
   return out;
 }
 
@@ -173,14 +181,12 @@ Result<std::optional<LimitsCost>> limits_cost(const plan::PlanOptions& options, 
   const auto without = expected(options, without_limits(limits), request);
   if (!without) return tl::unexpected(without.error());
   if (!without->determined) return std::optional<LimitsCost>();  // it is not the limits
-  out.groups.push_back(tensor_group(*within, *without));
-  for (const Kind& kind : kKinds) out.groups.push_back(parameter_group(kind, *within, *without));
-  const double wanted = rms(without->tensor_sd_nT_per_m);
+  out.groups = groups_of(*within, *without);
   for (const double times : kMore) {
     plan::PlanOptions more = options;
     more.random = static_cast<int>(std::lround(times * options.random));
     const auto longer = expected(more, limits, request);
-    if (!longer || !longer->determined || rms(longer->tensor_sd_nT_per_m) > wanted) continue;
+    if (!longer || !longer->determined || groups_of(*longer, *without).front().times() > 1) continue;
     out.random_enough = more.random;
     break;
   }

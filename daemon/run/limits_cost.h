@@ -33,7 +33,7 @@ struct LimitsCost {
   };
   std::vector<Axis> axes;
   double left_out{0};         ///< share of all attitudes
-  std::vector<Group> groups;  ///< the tensor first
+  std::vector<Group> groups;  ///< the tensor first, where the array tells any of it
   int random{0};              ///< poses of the random set
   /// So many random poses within the limits would make up for them; empty: four times as many would not.
   std::optional<int> random_enough;

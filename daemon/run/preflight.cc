@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "calib/sensor/channels.h"
+#include "calib/calibration/tensor.h"
 #include "daemon/run/wiring.h"
 
 namespace mgtd::daemon::run {
@@ -55,10 +55,7 @@ void Preflight::add(const EpochOrGap& item) {
   if (epoch.t.mono < begin_) return;
   if (!first_) first_ = epoch.t.mono;
   last_ = epoch.t.mono;
-  Sample y;
-  for (int slot = 0; slot < kSensors; ++slot)
-    y.segment<3>(Eigen::Index{3} * slot) = epoch.y_nT[static_cast<std::size_t>(slot)];
-  y_nT_.push_back(y);
+  y_nT_.push_back(calib::calibration::stacked(epoch.y_nT));
   seq_.push_back(epoch.seq);
   if (epoch.flags.has(Flag::saturated)) ++saturated_;
   skew_s_ = epoch.skew_bound_s;  // the clock models settle: the last one counts
@@ -91,7 +88,7 @@ bool Preflight::complete(Instant now) const {
 }
 
 Preflight::Statistics Preflight::statistics() const {
-  Statistics s;
+  Statistics s(Eigen::Index{3} * sensors_);
   if (y_nT_.empty()) return s;
   const auto n = static_cast<double>(y_nT_.size());
   for (const Sample& y : y_nT_) s.mean_nT += y / n;
@@ -170,13 +167,13 @@ Check Preflight::skew() const {
 
 Check Preflight::wiring(const Statistics& s) const {
   Wiring seen;
-  PerSensor<Eigen::Vector3d> y_nT;
-  for (int slot = 0; slot < kSensors; ++slot)
+  PerSensor<Eigen::Vector3d> y_nT(static_cast<std::size_t>(sensors_));
+  for (int slot = 0; slot < sensors_; ++slot)
     y_nT.at(static_cast<std::size_t>(slot)) = s.mean_nT.segment<3>(Eigen::Index{3} * slot);
   seen.add(y_nT, std::nullopt);
   const std::vector<std::string> findings = seen.findings();
   return check("wiring", true,
-               findings.empty() ? "all four alike" : fmt::format("{}", fmt::join(findings, "; ")),
+               findings.empty() ? alike_in_words(y_nT.size()) : fmt::format("{}", fmt::join(findings, "; ")),
                "none; the first turns of the table tell more", "");
 }
 
@@ -279,7 +276,7 @@ std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant
                         remedy(health.detail.empty() ? "check port, cable and power" : health.detail)));
   }
   all.insert(all.end(), {rate(), gaps(), saturation(), skew()});
-  for (int slot = 0; slot < kSensors; ++slot)
+  for (int slot = 0; slot < sensors_; ++slot)
     all.insert(all.end(), {alive(slot, s), noise(slot, s), scatter(slot, s), field(slot, s)});
   all.push_back(wiring(s));
   if (config_.scalar) all.push_back(scalar());

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/sensor/channels.h"
 #include "drivers/device.h"
 #include "proto/epoch.h"
 #include "proto/health.h"
@@ -43,7 +44,9 @@ struct PreflightConfig {
 
 class Preflight {
  public:
-  explicit Preflight(PreflightConfig config, Instant begin) : config_(config), begin_(begin) {}
+  /// Of an array of so many sensors.
+  Preflight(PreflightConfig config, Instant begin, std::size_t sensors = kSensorCount)
+      : config_(config), begin_(begin), sensors_(static_cast<int>(sensors)) {}
 
   void add(const EpochOrGap& item);
   void add(const ScalarReading& reading);
@@ -60,10 +63,12 @@ class Preflight {
   [[nodiscard]] double noise_nT() const;
 
  private:
-  using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
+  using Sample = calib::sensor::FieldVector;
   struct Statistics {
-    Sample mean_nT{Sample::Zero()}, noise_nT{Sample::Zero()}, scatter_nT{Sample::Zero()};
-    Sample changes{Sample::Zero()};  ///< successive values that differ
+    explicit Statistics(Eigen::Index axes)
+        : mean_nT(Sample::Zero(axes)), noise_nT(mean_nT), scatter_nT(mean_nT), changes(mean_nT) {}
+    Sample mean_nT, noise_nT, scatter_nT;
+    Sample changes;  ///< successive values that differ
     std::size_t pairs{0};
   };
   [[nodiscard]] Statistics statistics() const;
@@ -85,6 +90,7 @@ class Preflight {
 
   PreflightConfig config_;
   Instant begin_;
+  int sensors_;
   std::optional<Instant> first_;
   std::vector<Sample> y_nT_;
   std::vector<std::uint64_t> seq_;

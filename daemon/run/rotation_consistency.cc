@@ -70,7 +70,7 @@ RotationConsistency::Seen RotationConsistency::seen(const Pose& pose) {
   const TableAngles a = pose.angles().value_or(TableAngles{});
   Seen out{.number = pose.number,
            .R = calib::sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0),
-           .u = {}};
+           .u = PerSensor<Eigen::Vector3d>(pose.y_nT.size())};
   for (std::size_t i = 0; i < out.u.size(); ++i) out.u[i] = pose.y_nT[i].normalized();
   return out;
 }
@@ -93,7 +93,8 @@ RotationFinding RotationConsistency::judge(const Pose& pose) const {
     before.push_back(&poses_[n < 2 ? 0 : i * (poses_.size() - 1) / (n - 1)]);
   const auto pair_of = [](const Seen& a, const Seen& b) {
     double cosine = 0;
-    for (std::size_t i = 0; i < a.u.size(); ++i) cosine += a.u[i].dot(b.u[i]) / kSensors;
+    for (std::size_t i = 0; i < a.u.size(); ++i)
+      cosine += a.u[i].dot(b.u[i]) / static_cast<double>(a.u.size());
     return Pair{a.R.transpose() * b.R, angle(cosine)};
   };
   std::vector<Pair> pairs;

@@ -8,6 +8,7 @@ namespace mgtd::daemon::run {
 
 RunConfig run_config(const config::Config& config, const drivers::TableLimits& limits) {
   RunConfig out;
+  out.sensors = config.geometry().sensors();
   out.fewest_poses = calib::fit::joint::kFewestPoses;
   out.limits = limits;
   out.preflight.length_s = config.run.preflight_s;

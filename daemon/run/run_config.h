@@ -24,6 +24,7 @@ namespace mgtd::daemon::run {
 
 struct RunConfig {
   std::string run_id;
+  std::size_t sensors{kSensorCount};  ///< of the array
   drivers::TableLimits limits;
   PreflightConfig preflight;
   SettleConfig settle;  ///< noise_nT is replaced by what the preflight finds

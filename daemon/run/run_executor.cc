@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "calib/report/described_array.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/plan/run_plan_json.h"
@@ -131,6 +132,7 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
                             interrupted_->stored, interrupted_->planned),
                 "mgt run resume goes on with it, mgt run abort gives it up");
   }
+  if (auto told = tells_tensor(request); !told) return told;
   if (auto there = table_is_there(); !there) return there;
   auto planned = plan(request);
   if (!planned) return tl::unexpected(planned.error());
@@ -169,6 +171,15 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   ++generation_;
   spdlog::info("run {}: {} poses into {}", config.run_id, plan.poses.size(), file_->path().string());
   run_.begin(std::move(config), std::move(plan), now, earlier);
+}
+
+/// A run that ends when the tensor is known well enough needs an array that tells a tensor.
+Result<void> RunExecutor::tells_tensor(const RunRequest& request) const {
+  if (!request.until_tensor_sd_nT_per_m) return {};
+  const auto array = calib::report::described(config_.geometry());
+  if (!array.gradient.empty()) return {};
+  return fail(ErrorCode::refused, "--until-tensor-sd: the array tells no component of the gradient",
+              "leave it out: the run then measures its whole plan");
 }
 
 /// How far it may turn is known from itself.

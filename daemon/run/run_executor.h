@@ -71,6 +71,7 @@ class RunExecutor {
   [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
                                                      const store::RunFile& file) const;
   [[nodiscard]] Result<void> table_is_there() const;
+  [[nodiscard]] Result<void> tells_tensor(const RunRequest& request) const;
   [[nodiscard]] Result<void> resume_interrupted(Stamp now);
   [[nodiscard]] Result<void> drop_interrupted();
   [[nodiscard]] static RunStatus status_of(const Interrupted& run, RunState state, std::string message) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <cmath>
+
 #include "calib/fit/joint/accuracy_so_far.h"
 #include "calib/report/fit_reasons.h"
 #include "daemon/acquire/calibrated_with.h"
@@ -47,7 +49,8 @@ void RunExecutor::learn_accuracy() {
         if (generation != generation_ || !active()) return;
         learning_ = false;
         if (known) {
-          run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
+          if (std::isfinite(known->worst_nT_per_m()))
+            run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
           near_ = std::make_shared<const calib::fit::joint::JointState>(std::move(known->state));
         }
         if (poses_.poses.size() != count) learn_accuracy();

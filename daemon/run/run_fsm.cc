@@ -20,8 +20,12 @@ Stamp origin(Stamp now, const std::optional<EarlierLife>& earlier) {
 }
 
 FieldGuardConfig field_guard(const RunConfig& config) {
-  return {config.disturbance, config.field_step_nT, config.calm_s, config.dwell.rate_hz,
-          config.dwell.scalar_sd_nT};
+  return {.limits = config.disturbance,
+          .step_nT = config.field_step_nT,
+          .calm_s = config.calm_s,
+          .rate_hz = config.dwell.rate_hz,
+          .sensors = config.sensors,
+          .scalar_sd_nT = config.dwell.scalar_sd_nT};
 }
 
 }  // namespace
@@ -32,7 +36,7 @@ RunFsm::RunFsm(RunConfig config, plan::RunPlan plan, Stamp now, const std::optio
       progress_(plan_, config_.pace),
       run_start_(origin(now, earlier)),
       now_(now),
-      phase_(phase::Preflighting{Preflight(config_.preflight, now.mono)}),
+      phase_(phase::Preflighting{Preflight(config_.preflight, now.mono, config_.sensors)}),
       entered_(now.mono),
       message_("looking at the instruments"),
       hands_(config_.by_hand, plan_, earlier ? earlier->poses : std::vector<Pose>{}),

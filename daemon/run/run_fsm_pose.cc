@@ -40,7 +40,8 @@ void RunFsm::go_on() {
 
 void RunFsm::begin_preflight() {
   field_.watch(now_.mono);
-  enter(phase::Preflighting{Preflight(config_.preflight, now_.mono)}, "looking at the instruments");
+  enter(phase::Preflighting{Preflight(config_.preflight, now_.mono, config_.sensors)},
+        "looking at the instruments");
 }
 
 void RunFsm::begin_pose(std::size_t index) {
@@ -179,7 +180,7 @@ void RunFsm::begin_dwell(const phase::Moving& moving) {
   DwellConfig config = config_.dwell;
   config.length_s = planned().dwell_s;
   field_.watch(now_.mono);
-  enter(phase::Dwelling{moving.goal, Dwell(config, now_.mono), moving.settle.stopped()},
+  enter(phase::Dwelling{moving.goal, Dwell(config, now_.mono, config_.sensors), moving.settle.stopped()},
         fmt::format("{}: measuring for {} s", pose_of(), planned().dwell_s));
 }
 
@@ -231,7 +232,7 @@ Result<void> RunFsm::undisturbed(const Pose& pose) const {
                 "see `mgt status`: is it tuned, and does it read at least once per dwell?");
   const double most_nT = config_.settle.disturbed_ratio * config_.settle.noise_nT;
   if (most_nT <= 0) return {};
-  for (std::size_t slot = 0; slot < kSensors; ++slot) {
+  for (std::size_t slot = 0; slot < pose.sd_nT.size(); ++slot) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double sd_nT = pose.sd_nT[slot][axis].value_or(0);
       if (sd_nT > most_nT)

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "calib/sensor/channels.h"
+#include "calib/calibration/tensor.h"
 
 namespace mgtd::daemon::run {
 namespace {
@@ -33,10 +33,7 @@ void Settle::add(const EpochOrGap& item) {
   const auto* epoch = std::get_if<Epoch>(&item);
   if (epoch == nullptr || !stopped_ || epoch->t.mono < *stopped_) return;
   if (epoch->flags.has(Flag::frozen)) return;  // stands still, but not because the field does
-  WindowEntry entry{epoch->t.mono, {}};
-  for (int slot = 0; slot < kSensors; ++slot) {
-    entry.y_nT.segment<3>(3 * slot) = epoch->y_nT[static_cast<std::size_t>(slot)];
-  }
+  const WindowEntry entry{epoch->t.mono, calib::calibration::stacked(epoch->y_nT)};
   window_.push_back(entry);
   while (entry.t - window_.front().t > from_seconds(config_.window_s)) window_.pop_front();
 }
@@ -51,7 +48,8 @@ bool Settle::window_full() const {
 /// scatter.
 Settle::Worst Settle::measure() const {
   const auto n = static_cast<double>(window_.size());
-  Sample mean = Sample::Zero(), slope = Sample::Zero(), square = Sample::Zero();
+  const Eigen::Index axes = window_.front().y_nT.size();
+  Sample mean = Sample::Zero(axes), slope = mean, square = mean;
   double t_mean_s = 0, t_square = 0;
   for (const WindowEntry& p : window_) {
     mean += p.y_nT / n;
@@ -68,7 +66,7 @@ Settle::Worst Settle::measure() const {
     square += (p.y_nT - mean - slope * t_s).cwiseAbs2();
   }
   Worst worst;
-  for (int axis = 0; axis < 3 * kSensors; ++axis) {
+  for (int axis = 0; axis < axes; ++axis) {
     const double sd_nT = std::sqrt(square[axis] / (n - 2));
     const double change_nT = std::abs(slope[axis]) * config_.window_s;
     const double limit_nT =

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/sensor/channels.h"
 #include "proto/epoch.h"
 #include "proto/reading.h"
 #include "proto/time.h"
@@ -51,7 +52,7 @@ class Settle {
   [[nodiscard]] std::optional<Instant> stopped() const { return stopped_; }
 
  private:
-  using Sample = Eigen::Matrix<double, 3 * kSensors, 1>;
+  using Sample = calib::sensor::FieldVector;
   struct WindowEntry {
     Instant t;
     Sample y_nT;

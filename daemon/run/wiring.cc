@@ -117,14 +117,20 @@ std::string in_words(const Eigen::Matrix3d& S) {
   return quarter_turn(S).value_or(fmt::format("turned ({})", directions(S)));
 }
 
+std::string alike_in_words(std::size_t sensors) {
+  if (sensors == 1) return "one sensor: there is no other to compare it with";
+  return sensors == kSensorCount ? "all four alike" : fmt::format("all {} alike", sensors);
+}
+
 void Wiring::add(const PerSensor<Eigen::Vector3d>& y_nT, const std::optional<TableAngles>& angles) {
-  PerSensor<double> f_nT{};
-  for (std::size_t i = 0; i < kSensors; ++i) f_nT[i] = y_nT[i].norm();
+  PerSensor<double> f_nT(0);
+  for (const Eigen::Vector3d& y : y_nT) f_nT.push_back(y.norm());
   std::sort(f_nT.begin(), f_nT.end());
-  const double field_nT = (f_nT[1] + f_nT[2]) / 2;  // of four, one may be foreign
+  const std::size_t n = f_nT.size();
+  const double field_nT = (f_nT[(n - 1) / 2] + f_nT[n / 2]) / 2;  // the median: one sensor may be foreign
   if (!(field_nT > 0)) return;
-  Seen seen;
-  for (std::size_t i = 0; i < kSensors; ++i) seen.y[i] = y_nT[i] / field_nT;
+  Seen seen{.y = y_nT, .R_PS = std::nullopt};
+  for (Eigen::Vector3d& y : seen.y) y /= field_nT;
   if (angles)
     seen.R_PS =
         calib::sensor::table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
@@ -158,10 +164,11 @@ std::optional<Wiring::Ways> Wiring::against_table(std::size_t reference) const {
 }
 
 std::size_t Wiring::reference() const {
+  const std::size_t sensors = seen_.front().y.size();
   std::size_t best = 0, most = 0;
-  for (std::size_t candidate = 0; candidate < kSensors; ++candidate) {
+  for (std::size_t candidate = 0; candidate < sensors; ++candidate) {
     std::size_t agree = 0;
-    for (std::size_t slot = 0; slot < kSensors; ++slot) agree += straight(against(slot, candidate)) ? 1U : 0U;
+    for (std::size_t slot = 0; slot < sensors; ++slot) agree += straight(against(slot, candidate)) ? 1U : 0U;
     if (agree > most) {
       most = agree;
       best = candidate;
@@ -174,7 +181,7 @@ std::vector<std::string> Wiring::findings() const {
   std::vector<std::string> out;
   if (seen_.empty()) return out;
   const std::size_t by = reference();
-  for (std::size_t slot = 0; slot < kSensors; ++slot) {
+  for (std::size_t slot = 0; slot < seen_.front().y.size(); ++slot) {
     const Ways ways = against(slot, by);
     if (!straight(ways)) out.push_back(fmt::format("s{}: {}", slot + 1, in_words(ways)));
   }

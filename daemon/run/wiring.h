@@ -15,8 +15,8 @@
 ///
 /// Sensors that are not calibrated yet differ by some percent of the field, so a permutation is told from
 /// another where it changes the reading by more than kTolerance of it. What one attitude leaves open, the
-/// first turns of the table close; until then nothing is claimed. Swapped cables are not seen here
-/// (wiring_probe.h).
+/// first turns of the table close; until then nothing is claimed. One sensor is compared with the table
+/// alone. Swapped cables are not seen here (wiring_probe.h).
 namespace mgtd::daemon::run {
 
 class Wiring {
@@ -28,7 +28,7 @@ class Wiring {
   void add(const PerSensor<Eigen::Vector3d>& y_nT, const std::optional<TableAngles>& angles);
   [[nodiscard]] std::size_t attitudes() const { return seen_.size(); }
 
-  /// One sentence each: "s3: mirrored (left-handed axes: y reversed)". Empty: all four alike, and as the
+  /// One sentence each: "s3: mirrored (left-handed axes: y reversed)". Empty: all alike, and as the
   /// table turns.
   [[nodiscard]] std::vector<std::string> findings() const;
 
@@ -44,6 +44,9 @@ class Wiring {
 
   std::vector<Seen> seen_;
 };
+
+/// What is said where nothing was found: "all four alike"; one sensor has no other to be like.
+[[nodiscard]] std::string alike_in_words(std::size_t sensors);
 
 /// y = S b as words: "turned by 90 deg about z", "mirrored (left-handed axes: y reversed)".
 [[nodiscard]] std::string in_words(const Eigen::Matrix3d& S);

@@ -18,8 +18,9 @@ std::optional<Check> WiringWatch::add(const Pose& pose) {
   if (findings == said_) return std::nullopt;
   said_ = std::move(findings);
   return Check{"wiring", said_.empty(),
-               said_.empty() ? "all four alike" : fmt::format("{}", fmt::join(said_, "; ")),
-               "all four alike, turning as the table does",
+               said_.empty() ? alike_in_words(pose.y_nT.size()) : fmt::format("{}", fmt::join(said_, "; ")),
+               pose.y_nT.size() == 1 ? std::string("turning as the table does")
+                                     : alike_in_words(pose.y_nT.size()) + ", turning as the table does",
                "if it is meant so, go on: the calibration finds every mounting; else look at the sensor's "
                "place and the wires of its axes"};
 }

@@ -145,7 +145,7 @@ TEST(LiveCalibration, WhatCannotBeUsedIsRefusedAndNothingChanges) {
   ASSERT_EQ(bench.mgt({"fit", poses, "--baseline", "0.5", "-o", bench.dir() / "long.json"}).exit_code, 0);
   const Finished other = bench.mgt({"calibrations", "import", bench.dir() / "long.json", "--accept"});
   EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.err, HasSubstr("0.5 m, this rig has 0.4 m"));
+  EXPECT_THAT(other.err, HasSubstr("0.5 m from arm to arm, this rig is the cross of four sensors, 0.4 m"));
   EXPECT_TRUE(bench.ask({"calibrations", "list"}).at("calibrations").empty());
   EXPECT_TRUE(bench.ask({"status"}).at("cal").is_null());
   ASSERT_EQ(bench.mgt({"calibrations", "import", cal}).exit_code, 0);

@@ -22,7 +22,7 @@ CALIB = {
                         "calib/effects/formula", "calib/effects", "calib/poses", "calib/sensor", "calib/linear"],
     "calib/fit/checks": ["calib/fit/joint", "calib/fit", "calib/calibration"],
     "calib/fit/method_choice": ["calib/fit/checks", "calib/fit/joint", "calib/fit/two_step", "calib/fit"],
-    "calib/criticism/live": ["calib/calibration", "calib/effects", "calib/stats", "calib/linear"],
+    "calib/criticism/live": ["calib/calibration", "calib/effects", "calib/sensor", "calib/stats", "calib/linear"],
     "calib/criticism/tests": ["calib/fit/method_choice", "calib/fit/joint", "calib/fit",
                               "calib/calibration", "calib/effects/library", "calib/effects/formula",
                               "calib/effects/laws", "calib/effects", "calib/poses", "calib/stats", "calib/linear"],

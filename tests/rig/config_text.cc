@@ -35,7 +35,7 @@ std::string places(const Scenario& s) {
   std::string list;
   for (const Eigen::Vector3d& x_m : s.positions_m)
     list += fmt::format("{}[{}, {}, {}]", list.empty() ? "" : ", ", x_m[0], x_m[1], x_m[2]);
-  return fmt::format("positions_m = [{}]\n", list);
+  return fmt::format("\n[array]\npositions_m = [{}]\n", list);
 }
 
 std::string table(const Scenario& s, const std::string& dir) {
@@ -64,8 +64,8 @@ std::string auxiliary(const std::vector<Covariate>& inputs, const std::string& d
 
 std::string config_text(const Scenario& s, const std::string& dir, const std::string& state_dir,
                         double speed_up, const std::string& tcp) {
-  std::string out = fmt::format("# For the simulated rig '{}'.\n[rig]\nname = \"{}\"\n{}rate_hz = {}\n",
-                                s.name, s.name, places(s), s.rate_hz);
+  std::string out = fmt::format("# For the simulated rig '{}'.\n[rig]\nname = \"{}\"\nrate_hz = {}\n{}",
+                                s.name, s.name, s.rate_hz, places(s));
   for (int i = 0; i < static_cast<int>(s.sensors()); ++i)
     out += sensor(s, i, fmt::format("{}/fluxgate{}", dir, i + 1));
   out += table(s, dir);

@@ -76,7 +76,7 @@ TEST(Auxiliary, ACurrentIsMeasuredFittedAndTakenOutOfTheStream) {
 
   // The stream takes it out while it is told of the current, and says so when it is not.
   const Pose& pose = daemon.poses.poses.front();
-  daemon::acquire::LivePipeline pipeline({}, 0.4);
+  daemon::acquire::LivePipeline pipeline({}, calib::sensor::Geometry());
   pipeline.use(calibration);
   EXPECT_TRUE(last_of(pipeline, pose, 0).flags.has(Flag::incomplete)) << "nobody has told the current";
   const auto lamp = [](double t_s, double current_A) {

@@ -79,7 +79,7 @@ class VirtualDaemon : public VirtualCore {
   void record(const RawRecord&) override {}
   void publish(const Epoch& epoch, const TensorSample&, std::span<const InputValue>) override {
     // As the samples say it of a calibration that was made with the instruments of this run.
-    for (int i = 0; i < kSensors; ++i)
+    for (int i = 0; i < static_cast<int>(epoch.y_nT.size()); ++i)
       run_instruments_.answers({Slot::sensor(i).name(), health(static_cast<std::size_t>(i)).identity});
     Epoch seen = epoch;
     if (run_instruments_.another()) seen.flags |= Flag::identity;

@@ -39,7 +39,8 @@ class VirtualStream : public VirtualCore {
     core().use(std::move(calibration), now());
   }
   /// As long as the operator goes round with a magnet, the samples say that the rig is being calibrated.
-  void begin_probe() { ASSERT_TRUE(core().begin_probe(now())); }
+  void begin_probe() { ASSERT_TRUE(try_probe()); }
+  [[nodiscard]] Result<void> try_probe() { return core().begin_probe(now()); }
   void stop_probe() { core().stop_probe(); }
   void order(const TableOrder& order) { core().order(order, now()); }
   void run(double seconds) {

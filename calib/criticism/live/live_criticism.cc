@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "calib/calibration/tensor.h"
+#include "calib/stats/chi_square.h"
+
 namespace mgtd::calib::criticism::live {
 namespace {
 
@@ -51,14 +54,17 @@ std::optional<FollowedQuantity> followed_in(const WindowCriticism& found, double
 
 LiveCriticism::Judges::Judges(const ClosurePrior& p)
     : prior(p),
-      least_noise_nT(std::sqrt(p.sample_noise.diagonal().tail<3>().minCoeff())),
+      least_noise_nT(std::sqrt(p.sample_noise.diagonal().tail(p.numbers() - (p.cross ? 1 : 0)).minCoeff())),
+      beyond_chi2(stats::chi_square_alike(kBeyond_chi2, 4, static_cast<double>(p.numbers()))),
       hour(kHourBlock_s, kHourBlocks, p),
       day(kDayBlock_s, kDayBlocks, p) {}
 
 LiveCriticism::LiveCriticism(const calibration::Calibration& calibration) {
   if ((calibration.sample_noise_nT.array() <= 0).any()) return;
+  if (calibration::closure_rows(calibration.geometry).rows() == 0) return;
   judges_.emplace(closure_prior(calibration));
   finding_.state = LiveState::learning;
+  finding_.cross = judges_->prior.cross;
 }
 
 double LiveCriticism::turn_nT(const TensorSample& sample) {
@@ -82,13 +88,14 @@ bool LiveCriticism::add(const TensorSample& sample, const PerSensor<double>& T_d
     if (sample.flags.has(wrong)) return false;
   }
   const Closure& c = sample.closure;
-  const Eigen::Vector4d closure(c.curl_nT_per_m, c.center_nT[0], c.center_nT[1], c.center_nT[2]);
-  const bool large = c.chi2 > kBeyond_chi2;
+  const sensor::FieldVector closure = calibration::closure_numbers(c);
+  const bool large = c.chi2 > judges_->beyond_chi2;
   if (!large || closure.norm() > kBeyondTurn * turned_nT) beyond_ = large;
   if (turned_nT > judges_->least_noise_nT / 2) return false;
   double sum = 0;
   for (const double T : T_degC) sum += T;
-  return add({to_seconds(sample.t.mono.time_since_epoch()), closure, sample.b_P_nT, sum / kSensors});
+  return add({to_seconds(sample.t.mono.time_since_epoch()), closure, sample.b_P_nT,
+              sum / static_cast<double>(T_degC.size())});
 }
 
 bool LiveCriticism::add(const ClosureSample& sample) {

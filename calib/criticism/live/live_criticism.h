@@ -10,8 +10,8 @@
 #include "proto/epoch.h"
 #include "proto/tensor.h"
 
-/// LiveCriticism judges the active calibration by the stream itself: by the four closure quantities, which
-/// vanish in any field that is uniform but for a constant gradient.
+/// LiveCriticism judges the active calibration by the stream itself: by the closure quantities, which vanish
+/// in any field that is uniform but for a constant gradient. An array without closure is not judged.
 ///
 ///     suspect       they follow temperature, time or attitude: no field outside knows of these, so the
 ///                   calibration no longer holds. In the last hour (blocks of 10 s) or the last day (of
@@ -35,7 +35,8 @@ class LiveCriticism {
  public:
   /// Nothing to judge by: state none.
   LiveCriticism() = default;
-  /// None also where the calibration does not know its noise.
+  /// None also where the calibration does not know its noise, and where the array has no closure (one sensor,
+  /// sensors on a line).
   explicit LiveCriticism(const calibration::Calibration& calibration);
 
   /// True when the state changed. `T_degC`: of the heads, NaN where not measured.
@@ -51,7 +52,8 @@ class LiveCriticism {
   struct Judges {
     explicit Judges(const ClosurePrior& p);
     ClosurePrior prior;
-    double least_noise_nT;  ///< of one sample, in a centre quantity
+    double least_noise_nT;  ///< of one sample, in a quantity in nT
+    double beyond_chi2;     ///< of one sample: ten standard deviations of the four of the cross, or as rare
     LiveWindow hour, day;
   };
   /// What the turn of the field may add to the closure, within the skew of the sensors.

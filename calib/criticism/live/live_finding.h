@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/sensor/channels.h"
+
 /// The findings of live criticism, as values; calib/report/live_report.h has the sentences.
 namespace mgtd::calib::criticism::live {
 
@@ -22,9 +24,9 @@ struct Following {
   /// The same of the best single interval of time: something that came and stayed or went, and follows
   /// nothing.
   double event_share{0};
-  /// The quantity of the closure (0 curl, 1..3 centre x, y, z) in which it is largest for the standard
-  /// deviation that the calibration states there: slope per unit of x, the swing over the window, that
-  /// standard deviation.
+  /// The quantity of the closure (of the cross 0 curl, 1..3 centre x, y, z) in which it is largest for the
+  /// standard deviation that the calibration states there: slope per unit of x, the swing over the window,
+  /// that standard deviation.
   int component{0};
   double slope{0}, slope_sd{0}, swing{0}, stated_sd{0}, range{0};
 };
@@ -39,7 +41,7 @@ struct FollowedQuantity {
 
 /// The mean closure of ten seconds that noise and calibration do not explain.
 struct LargeClosure {
-  Eigen::Vector4d closure{Eigen::Vector4d::Zero()};  ///< curl (nT/m), centre x, y, z (nT)
+  sensor::FieldVector closure{};  ///< of the cross curl (nT/m), centre x, y, z (nT); else nT
   double samples{0};
   double log10_p{0};
   std::vector<Follows> tested{};  ///< quantities that it was found not to follow
@@ -49,6 +51,7 @@ struct LiveFinding {
   LiveState state{LiveState::none};            ///< never exchanged or turned: see rearrangement.h
   std::optional<FollowedQuantity> followed{};  ///< in state suspect
   std::optional<LargeClosure> large{};         ///< in state near_source; in state suspect it may be there too
+  bool cross{true};  ///< the closure has the names of the cross; else it is numbers of FieldExpansion, nT
 };
 
 }  // namespace mgtd::calib::criticism::live

@@ -18,10 +18,9 @@ namespace mgtd::calib::criticism::live {
 namespace {
 
 constexpr std::size_t kLeastBlocks = 18;
-constexpr double kLeastSpread = 0.02;      // of b/F0, rms: one degree
-constexpr double kLeastRange_degC = 0.3;   // below it the thermometer's own steps count
-constexpr double kLeastSpan = 60;          // blocks, to distinguish a drift from noise
-constexpr double kMedianChi2of4 = 3.3567;  // of a chi-square with four degrees of freedom
+constexpr double kLeastSpread = 0.02;     // of b/F0, rms: one degree
+constexpr double kLeastRange_degC = 0.3;  // below it the thermometer's own steps count
+constexpr double kLeastSpan = 60;         // blocks, to distinguish a drift from noise
 constexpr double kMostCorrelation = 0.95;
 
 double median(std::vector<double> values) {
@@ -32,11 +31,11 @@ double median(std::vector<double> values) {
 
 /// Blocks as rows: closure whitened by the noise of one sample, times the root of the number of samples.
 struct Rows {
-  Eigen::MatrixXd c;  ///< n x 4
+  Eigen::MatrixXd c;  ///< n x d
   Eigen::VectorXd root_n;
   Eigen::MatrixXd u;     ///< n x 3
   Eigen::VectorXd t, T;  ///< T: NaN where unknown
-  Eigen::Matrix4d unwhiten;
+  Eigen::MatrixXd unwhiten;
 
   [[nodiscard]] Eigen::Index n() const { return c.rows(); }
   /// Columns times the weights, so that every row has the same noise.
@@ -47,8 +46,12 @@ struct Rows {
 
 Rows rows_of(const std::deque<ClosureBlock>& blocks, const ClosurePrior& prior) {
   const auto n = static_cast<Eigen::Index>(blocks.size());
-  Rows out{Eigen::MatrixXd(n, 4), Eigen::VectorXd(n), Eigen::MatrixXd(n, 3),
-           Eigen::VectorXd(n),    Eigen::VectorXd(n), prior.sample_noise.llt().matrixL()};
+  Rows out{Eigen::MatrixXd(n, prior.numbers()),
+           Eigen::VectorXd(n),
+           Eigen::MatrixXd(n, 3),
+           Eigen::VectorXd(n),
+           Eigen::VectorXd(n),
+           prior.sample_noise.llt().matrixL()};
   const auto L = prior.sample_noise.llt();
   for (Eigen::Index k = 0; k < n; ++k) {
     const ClosureBlock& b = blocks[static_cast<std::size_t>(k)];
@@ -98,8 +101,9 @@ Noise noise_of(const Rows& r, const std::deque<ClosureBlock>& blocks, const Eige
   const Eigen::MatrixXd e = residual(r.weighted(everything), r.c);
   const double spent = static_cast<double>(r.n()) / static_cast<double>(r.n() - everything.cols());
   for (Eigen::Index k = 0; k < r.n(); ++k) between.push_back(spent * e.row(k).squaredNorm());
-  out.median = std::max(out.median, median(between) / kMedianChi2of4);
-  const double mean = spent * e.squaredNorm() / (4.0 * static_cast<double>(r.n()));
+  const auto d = static_cast<double>(r.c.cols());
+  out.median = std::max(out.median, median(between) / stats::chi_square_limit(0.5, d));
+  const double mean = spent * e.squaredNorm() / (d * static_cast<double>(r.n()));
   const double lagged = e.topRows(r.n() - 1).cwiseProduct(e.bottomRows(r.n() - 1)).sum() / e.squaredNorm();
   const double correlation = std::clamp(lagged, 0.0, kMostCorrelation);
   out.widening = std::max(1.0, mean / out.median) * (1 + correlation) / (1 - correlation);
@@ -108,48 +112,55 @@ Noise noise_of(const Rows& r, const std::deque<ClosureBlock>& blocks, const Eige
 
 /// Share of what y does beyond its noise (`variance` a row and quantity) that the columns explain.
 double share_of(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& y, double variance) {
-  const auto n = static_cast<double>(y.rows()), m = static_cast<double>(columns.cols());
+  const auto n = static_cast<double>(y.rows()), m = static_cast<double>(columns.cols()),
+             d = static_cast<double>(y.cols());
   const double left = residual(columns, y).squaredNorm(), all = y.squaredNorm();
-  const double excess = all - 4 * variance * (n - 1);
-  return excess <= 0 ? 0 : std::clamp((all - left - 4 * variance * m) / excess, 0.0, 1.0);
+  const double excess = all - d * variance * (n - 1);
+  return excess <= 0 ? 0 : std::clamp((all - left - d * variance * m) / excess, 0.0, 1.0);
 }
 
 /// The same of the best indicator of an interval, y having no mean.
 double event_share_of(const Eigen::MatrixXd& y, double variance) {
   const Eigen::Index n = y.rows();
-  const double excess = y.squaredNorm() - 4 * variance * static_cast<double>(n - 1);
+  const auto d = static_cast<double>(y.cols());
+  const double excess = y.squaredNorm() - d * variance * static_cast<double>(n - 1);
   if (excess <= 0) return 0;
-  Eigen::Matrix<double, 4, Eigen::Dynamic> sums(4, n + 1);
+  Eigen::MatrixXd sums(y.cols(), n + 1);
   sums.col(0).setZero();
   for (Eigen::Index k = 0; k < n; ++k) sums.col(k + 1) = sums.col(k) + y.row(k).transpose();
-  double best = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = i + 1; j <= n && j - i < n; ++j) {
-      const auto inside = static_cast<double>(j - i);
-      const double weight = 1 / inside + 1 / (static_cast<double>(n) - inside);
-      best = std::max(best, weight * (sums.col(j) - sums.col(i)).squaredNorm());
+  const double best = sensor::over_rows<4>(y.cols(), [&](auto rows) {
+    double most = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = i + 1; j <= n && j - i < n; ++j) {
+        const auto inside = static_cast<double>(j - i);
+        const double weight = 1 / inside + 1 / (static_cast<double>(n) - inside);
+        most = std::max(most, weight * (sums.col(j).head(rows) - sums.col(i).head(rows)).squaredNorm());
+      }
     }
-  }
-  return std::clamp((best - 4 * variance) / excess, 0.0, 1.0);
+    return most;
+  });
+  return std::clamp((best - d * variance) / excess, 0.0, 1.0);
 }
 
 /// Prior of W, whitened.
 ClosureErrors whitened(const ClosurePrior& prior) {
-  const Eigen::Matrix4d inverse = Eigen::Matrix4d(prior.sample_noise.llt().matrixL()).inverse();
-  ClosureErrors out;
+  const Eigen::Index d = prior.numbers();
+  const Eigen::MatrixXd inverse = Eigen::MatrixXd(prior.sample_noise.llt().matrixL()).inverse();
+  ClosureErrors out(4 * d, 4 * d);
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j)
-      out.block<4, 4>(4 * i, 4 * j) =
-          inverse * prior.parameters.block<4, 4>(4 * i, 4 * j) * inverse.transpose();
+      out.block(d * i, d * j, d, d) =
+          inverse * prior.parameters.block(d * i, d * j, d, d) * inverse.transpose();
   }
   return out;
 }
 
 /// Closure that the calibration's own uncertainty may make at this field.
-Eigen::Matrix4d stated(const ClosureErrors& parameters, const Eigen::Vector3d& u) {
-  Eigen::Matrix<double, 16, 4> q;
-  q << Eigen::Matrix4d::Identity(), u[0] * Eigen::Matrix4d::Identity(), u[1] * Eigen::Matrix4d::Identity(),
-      u[2] * Eigen::Matrix4d::Identity();
+Eigen::MatrixXd stated(const ClosureErrors& parameters, const Eigen::Vector3d& u) {
+  const Eigen::Index d = parameters.rows() / 4;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(d, d);
+  Eigen::MatrixXd q(4 * d, d);
+  q << one, u[0] * one, u[1] * one, u[2] * one;
   return q.transpose() * parameters * q;
 }
 
@@ -162,20 +173,21 @@ Following against(const Rows& r, const ClosurePrior& prior, const Eigen::VectorX
   Eigen::MatrixXd z(r.n(), 5);
   z << Eigen::VectorXd::Ones(r.n()), r.u, centred(x);
   const Eigen::MatrixXd zw = r.weighted(z), S = zw.transpose() * zw / variance;
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(20, 20);
+  const Eigen::Index d = r.c.cols();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5 * d, 5 * d);
   for (Eigen::Index i = 0; i < 5; ++i) {
-    for (Eigen::Index j = 0; j < 5; ++j) M.block<4, 4>(4 * i, 4 * j).diagonal().setConstant(S(i, j));
+    for (Eigen::Index j = 0; j < 5; ++j) M.block(d * i, d * j, d, d).diagonal().setConstant(S(i, j));
   }
-  M.topLeftCorner<16, 16>() += linear::inverse_by_lu(P);
-  const Eigen::MatrixXd g = r.c.transpose() * zw / variance;  // 4 x 5
+  M.topLeftCorner(4 * d, 4 * d) += linear::inverse_by_lu(P);
+  const Eigen::MatrixXd g = r.c.transpose() * zw / variance;  // d x 5
   const Eigen::MatrixXd V = linear::inverse_by_lu(M);
   const Eigen::VectorXd solution = V * Eigen::VectorXd(g.reshaped());
-  const Eigen::Vector4d beta = solution.tail<4>();
-  const Eigen::Matrix4d cov = V.bottomRightCorner<4, 4>();
-  out.log10_p = stats::chi_square_log10_p(beta.dot(cov.llt().solve(beta)), 4);
-  const Eigen::Vector4d slope = r.unwhiten * beta;
-  const Eigen::Matrix4d slope_cov = linear::propagated_covariance(r.unwhiten, cov);
-  const Eigen::Vector4d stated_sd =
+  const Eigen::VectorXd beta = solution.tail(d);
+  const Eigen::MatrixXd cov = V.bottomRightCorner(d, d);
+  out.log10_p = stats::chi_square_log10_p(beta.dot(cov.llt().solve(beta)), static_cast<double>(d));
+  const Eigen::VectorXd slope = r.unwhiten * beta;
+  const Eigen::MatrixXd slope_cov = linear::propagated_covariance(r.unwhiten, cov);
+  const Eigen::VectorXd stated_sd =
       stated(prior.parameters, r.u.colwise().mean().transpose()).diagonal().cwiseSqrt();
   out.range = x.maxCoeff() - x.minCoeff();
   (slope.cwiseAbs().array() / stated_sd.array()).maxCoeff(&out.component);
@@ -201,16 +213,16 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
   const Eigen::MatrixXd constant = r.weighted(Eigen::VectorXd::Ones(r.n()));
   const Eigen::MatrixXd x = residual(constant, r.weighted(r.u * V)), y = residual(constant, r.c);
   const Eigen::MatrixXd inverse = linear::inverse_by_lu(x.transpose() * x);
-  const Eigen::MatrixXd B = (inverse * x.transpose() * y).transpose();  // 4 x directions
-  const Eigen::Index m = B.size();
+  const Eigen::MatrixXd B = (inverse * x.transpose() * y).transpose();  // d x directions
+  const Eigen::Index m = B.size(), d = r.c.cols();
   const ClosureErrors P = whitened(prior);
   Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(m, m);
   for (Eigen::Index i = 0; i < V.cols(); ++i) {
     for (Eigen::Index j = 0; j < V.cols(); ++j) {
-      auto block = cov.block<4, 4>(4 * i, 4 * j);
+      auto block = cov.block(d * i, d * j, d, d);
       block.diagonal().setConstant(noise.median * noise.widening * inverse(i, j));
       for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) block += V(a, i) * V(b, j) * P.block<4, 4>(4 + 4 * a, 4 + 4 * b);
+        for (int b = 0; b < 3; ++b) block += V(a, i) * V(b, j) * P.block(d * (1 + a), d * (1 + b), d, d);
       }
     }
   }
@@ -221,9 +233,9 @@ Following against_attitude(const Rows& r, const ClosurePrior& prior, const Eigen
   out.event_share = event_share_of(y, noise.median);
   // Reported for the quantity that swings most, over the turn that was made.
   const Eigen::MatrixXd made =
-      (r.u.rowwise() - r.u.colwise().mean()) * V * (r.unwhiten * B).transpose();  // n x 4
-  const Eigen::Vector4d swing = (made.colwise().maxCoeff() - made.colwise().minCoeff()).transpose();
-  const Eigen::Vector4d stated_sd =
+      (r.u.rowwise() - r.u.colwise().mean()) * V * (r.unwhiten * B).transpose();  // n x d
+  const Eigen::VectorXd swing = (made.colwise().maxCoeff() - made.colwise().minCoeff()).transpose();
+  const Eigen::VectorXd stated_sd =
       stated(prior.parameters, r.u.colwise().mean().transpose()).diagonal().cwiseSqrt();
   (swing.array() / stated_sd.array()).maxCoeff(&out.component);
   out.swing = swing[out.component];
@@ -257,9 +269,10 @@ WindowCriticism criticise(const std::deque<ClosureBlock>& blocks, const ClosureP
 }
 
 double block_log10_p(const ClosureBlock& block, const ClosurePrior& prior, double noise_scale) {
-  const Eigen::Matrix4d S =
+  const Eigen::MatrixXd S =
       noise_scale / block.samples * prior.sample_noise + stated(prior.parameters, block.u);
-  return stats::chi_square_log10_p(block.closure.dot(S.llt().solve(block.closure)), 4);
+  return stats::chi_square_log10_p(block.closure.dot(S.llt().solve(block.closure)),
+                                   static_cast<double>(prior.numbers()));
 }
 
 }  // namespace mgtd::calib::criticism::live

@@ -13,9 +13,9 @@
 /// is tested (medians: what passes by is in few blocks). The variance of slopes is widened by the residual's
 /// mean square and lag-one correlation r, (1+r)/(1-r).
 ///
-///     temperature, time   slope beta of c on x, W free within its prior: beta' Cov^-1 beta, chi-square of 4
+///     temperature, time   slope beta of c on x, W free within its prior: beta' Cov^-1 beta, chi-square of d
 ///     attitude            slopes of c on the directions that the field took: against noise and prior,
-///                         chi-square of 4 for each direction
+///                         chi-square of d for each direction
 namespace mgtd::calib::criticism::live {
 
 struct WindowCriticism {

@@ -15,24 +15,26 @@ namespace mgtd::calib::criticism::live {
 namespace {
 
 constexpr int kEmptyParts = 2;  // that a block may have
-using ParameterRows = Eigen::Matrix<double, 16, calibration::kArrayParameters>;
 
 /// dW/dp: closure at the four unit values of q, which it is linear in.
-ParameterRows closure_by_parameters(const calibration::Calibration& c) {
-  const auto rows = calibration::closure_rows(c.geometry);
+Eigen::MatrixXd closure_by_parameters(const calibration::Calibration& c) {
+  const Eigen::MatrixXd rows = calibration::closure_rows(c.geometry);
+  const Eigen::Index parameters = c.covariance.cols(), numbers = rows.rows();
   const auto at = [&](const Eigen::Vector3d& b_P_nT) {
-    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(sensor::kChannels, calibration::kArrayParameters);
-    for (int i = 0; i < kSensors; ++i) {
-      d.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
-          calibration::field_derivative(c.sensors[static_cast<std::size_t>(i)], b_P_nT);
+    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(c.geometry.channels(), parameters);
+    for (std::size_t i = 0; i < c.sensors.size(); ++i) {
+      const auto at_sensor = static_cast<Eigen::Index>(i);
+      d.block<3, sensor::kSensorParameters>(3 * at_sensor, sensor::kSensorParameters * at_sensor) =
+          calibration::field_derivative(c.sensors[i], b_P_nT);
     }
-    return Eigen::Matrix<double, 4, calibration::kArrayParameters>(rows * d);
+    return Eigen::MatrixXd(rows * d);
   };
-  const auto constant = at(Eigen::Vector3d::Zero());
-  ParameterRows out;
-  out.topRows<4>() = constant;
+  const Eigen::MatrixXd constant = at(Eigen::Vector3d::Zero());
+  Eigen::MatrixXd out(4 * numbers, parameters);
+  out.topRows(numbers) = constant;
   for (int a = 0; a < 3; ++a)
-    out.middleRows<4>(4 + 4 * a) = at(effects::kReferenceField_nT * Eigen::Vector3d::Unit(a)) - constant;
+    out.middleRows(numbers * (1 + a), numbers) =
+        at(effects::kReferenceField_nT * Eigen::Vector3d::Unit(a)) - constant;
   return out;
 }
 
@@ -45,11 +47,19 @@ ClosurePrior closure_prior(const calibration::Calibration& c) {
       linear::propagated_covariance(
           rows,
           calibration::TensorPipeline(std::make_shared<const calibration::Calibration>(c)).sample_noise()),
-      linear::propagated_covariance(W, c.covariance)};
+      linear::propagated_covariance(W, c.covariance), c.geometry.cross_baseline_m().has_value()};
 }
 
 LiveWindow::LiveWindow(double block_s, std::size_t blocks, const ClosurePrior& prior)
-    : block_s_(block_s), most_(blocks), weight_(prior.sample_noise.inverse()) {}
+    : block_s_(block_s), most_(blocks), weight_(prior.sample_noise.inverse()) {
+  parts_.fill(nothing());
+}
+
+LiveWindow::Sums LiveWindow::nothing() const {
+  Sums out;
+  out.closure.setZero(weight_.rows());
+  return out;
+}
 
 bool LiveWindow::add(const ClosureSample& s) {
   const double at = s.t_s / block_s_;
@@ -57,7 +67,7 @@ bool LiveWindow::add(const ClosureSample& s) {
   bool closed = false;
   if (begun_ && number != number_) {
     closed = close();
-    parts_.fill({});
+    parts_.fill(nothing());
   }
   begun_ = true;
   number_ = number;
@@ -75,7 +85,7 @@ bool LiveWindow::add(const ClosureSample& s) {
 }
 
 bool LiveWindow::close() {
-  Sums all;
+  Sums all = nothing();
   int parts = 0;
   for (const Sums& p : parts_) {
     if (p.n == 0) continue;
@@ -96,8 +106,8 @@ bool LiveWindow::close() {
                      0};
   for (const Sums& p : parts_) {
     if (p.n == 0) continue;
-    const Eigen::Vector4d off = p.closure / p.n - block.closure;
-    block.excess += p.n * off.dot(weight_ * off) / (4.0 * (parts - 1));
+    const sensor::FieldVector off = p.closure / p.n - block.closure;
+    block.excess += p.n * off.dot(weight_ * off) / (static_cast<double>(off.size()) * (parts - 1));
   }
   if (blocks_.size() == most_) blocks_.pop_front();
   blocks_.push_back(block);

@@ -8,26 +8,29 @@
 
 /// A LiveWindow holds the latest closure of a stream as block means, which live criticism tests.
 ///
-///     c = W q + noise      c = curl, centre x, y, z of the corrected fields      q = (1, b_P/F0)
+///     c = W q + noise      c = the closure numbers of the corrected fields, d of them      q = (1, b_P/F0)
 ///
 /// An exact calibration of a uniform gradient has W = 0; errors dp of the parameters make a W that is linear
-/// in them, so the calibration states how large W may be.
+/// in them, so the calibration states how large W may be. Of the cross c is curl, centre x, y, z.
 namespace mgtd::calib::criticism::live {
 
-/// Of W by columns: 4 for the constant, 4 for each component of b.
-using ClosureErrors = Eigen::Matrix<double, 16, 16>;
+/// Of W by columns: d for the constant, d for each component of b.
+using ClosureErrors = Eigen::MatrixXd;
 
 /// What closure an intact calibration may have.
 struct ClosurePrior {
-  Eigen::Matrix4d sample_noise;  ///< covariance of one sample
-  ClosureErrors parameters;  ///< covariance of W by the 48 parameters; by coefficients of effects: not in it
+  sensor::ChannelCovariance sample_noise;  ///< covariance of one sample, d x d
+  /// Covariance of W by the parameters of the sensors; by coefficients of effects: not in it. 4d x 4d.
+  ClosureErrors parameters;
+  bool cross{true};  ///< the first quantity is a curl, nT/m; all others are nT
+  [[nodiscard]] Eigen::Index numbers() const { return sample_noise.rows(); }
 };
 /// Noise must be known (Calibration::sample_noise_nT).
 [[nodiscard]] ClosurePrior closure_prior(const calibration::Calibration& calibration);
 
 struct ClosureSample {
   double t_s{0};  ///< from any origin, not going back
-  Eigen::Vector4d closure;
+  sensor::FieldVector closure;
   Eigen::Vector3d b_P_nT;
   double T_degC{0};  ///< mean of the heads; NaN where not measured
 };
@@ -35,7 +38,7 @@ struct ClosureSample {
 /// Means over block_s seconds.
 struct ClosureBlock {
   double t_s{0}, samples{0};
-  Eigen::Vector4d closure;
+  sensor::FieldVector closure;
   Eigen::Vector3d u;  ///< b/F0
   double T_degC{0};   ///< NaN when no sample had one
   /// Scatter of the ten parts of the block against the noise of that many samples, 1 for white noise: what
@@ -57,15 +60,16 @@ class LiveWindow {
   static constexpr int kParts = 10;
   struct Sums {
     double n{0}, t_s{0}, T_degC{0}, n_T{0};
-    Eigen::Vector4d closure{Eigen::Vector4d::Zero()};
+    sensor::FieldVector closure;
     Eigen::Vector3d u{Eigen::Vector3d::Zero()};
   };
   [[nodiscard]] bool close();
+  [[nodiscard]] Sums nothing() const;
 
   double block_s_;
   std::size_t most_;
-  Eigen::Matrix4d weight_;  ///< inverse of the noise of one sample
-  std::int64_t number_{0};  ///< of the block under way, since the origin of time
+  sensor::ChannelCovariance weight_;  ///< inverse of the noise of one sample
+  std::int64_t number_{0};            ///< of the block under way, since the origin of time
   bool begun_{false};
   std::array<Sums, kParts> parts_;
   std::deque<ClosureBlock> blocks_;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "calib/criticism/tests/possible_exchanges.h"
+#include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -38,9 +39,12 @@ bool same(const Rearrangement& a, const Rearrangement& b) {
 
 }  // namespace
 
+double explained_closure_chi2(int dof) { return stats::chi_square_alike(30, 4, dof); }
+
 std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipeline& pipeline,
                                                 const Epoch& epoch) {
   std::vector<Rearrangement> out;
+  const double limit = explained_closure_chi2(pipeline.closure_dof());
   Epoch given = epoch;
   for (const PerSensor<std::size_t>& sensor : possible_exchanges(epoch.y_nT.size())) {
     // What comes in a place is given to the sensor whose it is.
@@ -48,7 +52,7 @@ std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipelin
       given.y_nT.at(sensor.at(place)) = epoch.y_nT.at(place);
       given.T_degC.at(sensor.at(place)) = epoch.T_degC.at(place);
     }
-    if (pipeline.apply(given).closure.chi2 < kExplainedClosure_chi2) out.push_back({.sensor = sensor});
+    if (pipeline.apply(given).closure.chi2 < limit) out.push_back({.sensor = sensor});
   }
   return out;
 }
@@ -113,7 +117,7 @@ void RearrangementWatch::explain(const Epoch& epoch) {
 }
 
 void RearrangementWatch::conclude(const Epoch& epoch) {
-  finding_ = {possible_, pipeline_->apply(epoch).closure.chi2};
+  finding_ = {possible_, pipeline_->apply(epoch).closure.chi2, pipeline_->closure_dof()};
 }
 
 }  // namespace mgtd::calib::criticism::tests

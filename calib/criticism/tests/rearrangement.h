@@ -13,10 +13,10 @@
 /// calibrated.
 ///
 ///     exchanged   the readings of the sensors, given to each other's calibrations, have a closure within
-///                 noise and calibration (chi-square of 4 below kExplainedClosure_chi2); as they come,
+///                 noise and calibration (chi-square below explained_closure_chi2()); as they come,
 ///                 beyond ten standard deviations
 ///     turned      the field of one sensor, turned by quarters about the platform's axes, agrees with the
-///                 other three to kTurnAgreement of the field; those agree to 2 %
+///                 others to kTurnAgreement of the field; those agree to 2 %
 ///
 /// Two exchanges can be told apart where the sensors differ, by some nT of offset for instance. A turn about
 /// the field itself changes nothing and is not seen; what one attitude leaves open, the next ones close.
@@ -28,8 +28,9 @@ struct Rearrangement {
   Eigen::Matrix3d turn_P{Eigen::Matrix3d::Identity()};  ///< ... by so much
 };
 
-inline constexpr double kExplainedClosure_chi2 = 30;  ///< of four: once in 2e5 intact samples
-inline constexpr double kTurnAgreement = 0.05;        ///< of the field, as well as a hand turns
+/// Of so many closure numbers: 30 of four, which one in 2e5 intact samples exceeds; as rare of others.
+[[nodiscard]] double explained_closure_chi2(int dof);
+inline constexpr double kTurnAgreement = 0.05;  ///< of the field, as well as a hand turns
 
 /// The exchanges of possible_exchanges() and the turns (23 a sensor) that explain the readings of one epoch.
 [[nodiscard]] std::vector<Rearrangement> exchanges_explaining(const calibration::TensorPipeline& pipeline,
@@ -39,7 +40,8 @@ inline constexpr double kTurnAgreement = 0.05;        ///< of the field, as well
 
 struct RearrangementFinding {
   std::vector<Rearrangement> possible;  ///< all of them exchanges, or all of them turns
-  double chi2{0};                       ///< of the closure as it came, 4 degrees of freedom
+  double chi2{0};                       ///< of the closure as it came
+  int dof{4};                           ///< its degrees of freedom
   [[nodiscard]] bool turned() const { return possible.front().turned.has_value(); }
 };
 

@@ -2,6 +2,7 @@
 #include "calib/fit/joint/accuracy_so_far.h"
 
 #include <cmath>
+#include <limits>
 
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
@@ -9,8 +10,8 @@
 namespace mgtd::calib::fit::joint {
 
 double AccuracySoFar::worst_nT_per_m() const {
-  double worst = 0;
-  for (const double sd : components(tensor_sd_nT_per_m)) worst = std::fmax(worst, sd);
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (const double sd : components(tensor_sd_nT_per_m)) worst = std::fmax(worst, sd);  // passes over NaN
   return worst;
 }
 

@@ -43,6 +43,21 @@ TEST(TensorEncoder, WritesExactlyTheDocumentedKeys) {
       R"("center_nT":[1.000000,2.000000,-3.000000],"chi2":3.875000},"flags":["interpolated","suspect"]})");
 }
 
+TEST(TensorEncoder, AnotherArrayHasItsOwnClosureAndNullForWhatItCannotTell) {
+  TensorSample s = sample();
+  s.g_nT_per_m = s.g_sd_nT_per_m = {kNaN, kNaN, 1.5, kNaN, -2, 3};
+  s.closure.curl_nT_per_m = kNaN;
+  s.closure.center_nT.setConstant(kNaN);
+  s.closure.combinations_nT = Eigen::Vector2d(0.25, -1);
+  s.closure.dof = 2;
+  TensorEncoder encoder;
+  const Json line = Json::parse(encoder.encode(s));
+  EXPECT_EQ(line["g_nT_per_m"],
+            Json::parse(R"({"xx":null,"yy":null,"zz":1.5,"xy":null,"xz":-2.0,"yz":3.0})"));
+  EXPECT_EQ(line["closure"], Json::parse(R"({"curl_nT_per_m":null,"center_nT":null,"chi2":3.875,"dof":2,)"
+                                         R"("combinations_nT":[0.25,-1.0]})"));
+}
+
 TEST(TensorEncoder, InputsStandBehindTheFlagsByTheirColumns) {
   const std::vector<InputValue> inputs{{"motor_A", 0.5}, {"supply_V", kNaN}};
   TensorEncoder encoder;

@@ -43,7 +43,7 @@ TEST(LiveReport, TheAttitudeHasNoSlope) {
 }
 
 TEST(LiveReport, ANearSourceIsReportedWithWhatItWasTestedAgainst) {
-  criticism::live::LargeClosure large{.closure = {3, 1, -2, 4}, .samples = 500, .log10_p = -6};
+  criticism::live::LargeClosure large{.closure = Eigen::Vector4d(3, 1, -2, 4), .samples = 500, .log10_p = -6};
   const criticism::live::LiveFinding untested{.state = criticism::live::LiveState::near_source,
                                               .large = large};
   EXPECT_EQ(

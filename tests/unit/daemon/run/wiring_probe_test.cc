@@ -157,6 +157,43 @@ TEST(MagnetTestTest, OneSensorForTwoArmsIsOpen) {
   EXPECT_THAT(findings(status)[0], HasSubstr("s1 answered for arm 1 and for another one"));
 }
 
+TEST(MagnetTestTest, AnArrayThatIsNoCrossHasPlaces) {
+  const PerSensor<Eigen::Vector3d> places{{0, 0, 0.25}, {0, 0, -0.25}, {0.1, 0.2, 0}};
+  WiringProbe test(Instant{}, 1, calib::sensor::Geometry(places));
+  double t_s = 0;
+  const auto hold = [&](std::optional<std::size_t> sensor, double for_s) {
+    for (const double end_s = t_s + for_s; t_s < end_s; t_s += 0.02) {
+      Epoch epoch;
+      epoch.t.mono = Instant{} + from_seconds(t_s);
+      epoch.y_nT = no_readings(places.size());
+      epoch.y_nT.fill(Eigen::Vector3d(20'000, 3'000, 45'000));
+      if (sensor) epoch.y_nT[*sensor].x() += 5'000;
+      test.add(epoch);
+    }
+  };
+  hold(std::nullopt, 3);
+  EXPECT_EQ(test.status().text, "hold the magnet to place 1 (0, 0, 0.25 m)");
+  EXPECT_EQ(to_json(test.status())["sensor_on_arm"].size(), 3U);
+  hold(1, 1);
+  EXPECT_EQ(test.status().text, "place 1 is seen; take the magnet away");
+  for (const std::size_t sensor : {0U, 2U}) {
+    hold(std::nullopt, 3);
+    hold(sensor, 1);
+  }
+  EXPECT_THAT(findings(test.status()),
+              ElementsAre("the cable labelled s2 is at place 1", "the cable labelled s1 is at place 2"));
+  EXPECT_EQ(test.status().text, "cables are at other places than their labels say; put the magnet away");
+}
+
+TEST(MagnetTestTest, OneSensorHasNothingToBeExchangedWith) {
+  std::vector<std::pair<Slot, LinkHealth>> links{{Slot::sensor(0), LinkHealth{}},
+                                                 {Slot::table(), LinkHealth{}}};
+  links[0].second.state = LinkState::live;
+  const auto refused = ready_for_magnet(links);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("this rig has one sensor"));
+}
+
 TEST(MagnetTestTest, SilentSensorsEndItToo) {
   WiringProbe test(Instant{});
   test.advance(Instant{} + from_seconds(WiringProbe::kAnswer_s + 1));

@@ -104,6 +104,33 @@ TEST(WiringTest, OneAttitudeClaimsNoMoreThanItShows) {
   EXPECT_THAT(array.turned().findings(), ElementsAre("s1: mirrored (left-handed axes: x and y swapped)"));
 }
 
+TEST(WiringTest, OneSensorIsComparedWithTheTableAlone) {
+  const Array array;
+  const auto turned = [&](double sense) {
+    Wiring wiring;
+    for (int i = 0; i < 6; ++i) {
+      const TableAngles angles{to_rad(40.0 * i), 0, 0};
+      wiring.add({array.at(angles)[0]}, TableAngles{sense * angles.azimuth_rad, 0, 0});
+    }
+    return wiring.findings();
+  };
+  EXPECT_THAT(turned(1), IsEmpty());
+  EXPECT_THAT(turned(-1), ElementsAre(HasSubstr("against the table")));
+  EXPECT_THAT(alike_in_words(1), HasSubstr("no other to compare it with"));
+}
+
+TEST(WiringTest, TheMirroredOneOfSixIsNamed) {
+  Array array;
+  array.S[2] = diagonal(1, -1, 1);
+  Wiring wiring;
+  for (int i = 0; i < 6; ++i) {
+    const TableAngles angles{to_rad(40.0 * i), 0, 0};
+    const PerSensor<Vector3d> y = array.at(angles);
+    wiring.add({y[0], y[1], y[0], y[3], y[1], y[2]}, angles);
+  }
+  EXPECT_THAT(wiring.findings(), ElementsAre("s6: mirrored (left-handed axes: y reversed)"));
+}
+
 TEST(WiringTest, AnAzimuthThatCountsTheOtherWayIsSaidOfTheTable) {
   const Array array;
   EXPECT_THAT(array.turned(6, -1).findings(), ElementsAre(HasSubstr("against the table")));

@@ -37,9 +37,7 @@ TEST_F(StreamServerTest, GreetsAndThenSaysNothingUntilAsked) {
   peers.push_back(connect());
   peers.push_back(connect_tcp());
   for (LinePeer& peer : peers) {
-    EXPECT_EQ(
-        peer.lines[0],
-        R"({"class":"HELLO","protocol":{"major":1,"minor":0},"rig":"bench rig","software":"mgtd test"})");
+    EXPECT_EQ(peer.lines[0], encode(Greeting{"bench rig", "mgtd test"}));
     publish(1, 10);
     watch(peer, R"({"watch":{"class":[]}})");  // asks for nothing: whatever was sent before is here now
     EXPECT_EQ(peer.count("TENSOR\""), 0U);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "calib/sensor/geometry.h"
+#include "proto/array_description.h"
+
+namespace mgtd::calib::report {
+
+/// Places and capabilities of an array, as the stream and the status carry them.
+[[nodiscard]] ArrayDescription described(const sensor::Geometry& array);
+
+/// "the cross of four sensors, 0.4 m from arm to arm", "an array of 8 sensors".
+[[nodiscard]] std::string array_name(const sensor::Geometry& array);
+
+}  // namespace mgtd::calib::report
