@@ -9,6 +9,8 @@ nlohmann::ordered_json to_json(const ArrayDescription& array) {
   return {{"sensors", array.positions_P_m.size()},
           {"positions_m", std::move(positions)},
           {"gradient", array.gradient},
+          {"line", array.line ? nlohmann::ordered_json{array.line->x(), array.line->y(), array.line->z()}
+                              : nlohmann::ordered_json()},
           {"closure", array.closure},
           {"tells", array.tells}};
 }

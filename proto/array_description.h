@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,12 +13,13 @@
 /// STATUS carry it.
 ///
 ///   {"sensors":4,"positions_m":[[0.2,0,0],...],"gradient":["xx","yy","zz","xy","xz","yz"],
-///    "closure":4,"tells":"field and all five ..."}
+///    "line":null,"closure":4,"tells":"field and all five ..."}
 namespace mgtd {
 
 struct ArrayDescription {
   PerSensor<Eigen::Vector3d> positions_P_m;
   std::vector<std::string_view> gradient;  ///< components that are determined; the others are null in TENSOR
+  std::optional<Eigen::Vector3d> line;     ///< direction u of sensors on one line; TENSOR has dB/du
   int closure{0};                          ///< how many closure numbers check every sample
   std::string tells;                       ///< in words
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "proto/flags.h"
@@ -34,6 +35,12 @@ struct Closure {
   int dof{4};             ///< how many there are
 };
 
+/// Derivative of the field along the line on which the sensors stand, dB/du = G u, u the line's direction
+/// (ArrayDescription::line): all that sensors on one line tell of the gradient.
+struct LineDerivative {
+  Eigen::Vector3d nT_per_m, sd_nT_per_m;  ///< sd: noise and calibration together; NaN when unknown
+};
+
 struct TensorSample {
   std::uint64_t seq{0};
   Stamp t;
@@ -41,7 +48,8 @@ struct TensorSample {
   Eigen::Vector3d b_P_nT{Eigen::Vector3d::Zero()};
   double f_nT{0};
   Gradient g_nT_per_m;
-  Gradient g_sd_nT_per_m;  ///< noise and calibration together; NaN when unknown
+  Gradient g_sd_nT_per_m;                      ///< noise and calibration together; NaN when unknown
+  std::optional<LineDerivative> along_line{};  ///< of sensors on one line
   Closure closure;
   double skew_bound_s{0};
   Flags flags;

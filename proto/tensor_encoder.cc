@@ -185,6 +185,12 @@ std::string_view TensorEncoder::encode(const TensorSample& sample, std::span<con
   append_gradient(line_, sample.g_nT_per_m, true);
   line_ += R"(,"g_sd_nT_per_m":)";
   append_gradient(line_, sample.g_sd_nT_per_m, false);
+  if (sample.along_line) {
+    line_ += R"(,"along_line_nT_per_m":)";
+    append_vector(line_, sample.along_line->nT_per_m);
+    line_ += R"(,"along_line_sd_nT_per_m":)";
+    append_vector(line_, sample.along_line->sd_nT_per_m);
+  }
   line_ += R"(,"closure":)";
   append_closure(line_, sample.closure);
   line_ += R"(,"flags":)";

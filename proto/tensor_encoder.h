@@ -19,6 +19,8 @@
 ///
 /// Of an array that is no cross the closure is
 ///    {"curl_nT_per_m":null,"center_nT":null,"chi2":..,"dof":3N-8,"combinations_nT":[..3N-8..]}
+/// and sensors on one line have, before it, the derivative of the field along that line
+///    "along_line_nT_per_m":[..3..],"along_line_sd_nT_per_m":[..3..]
 ///
 /// `t` and `t_ns` are the same instant, UTC. What is not a finite number is null; so is `cal` without a
 /// calibration. Numbers carry six decimals, 1 fT and 1 fT/m, far below what any fluxgate resolves; `zz` is

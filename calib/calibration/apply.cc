@@ -19,6 +19,7 @@ struct AppliedColumns {
   Eigen::Index channels{sensor::kChannels};
   bool time{false}, sd{false}, chi2{false}, left_out{false};
   bool cross{true};  ///< curl and centre
+  bool line{false};  ///< the derivative along the line of the sensors
   std::array<bool, 6> told{};
 
   explicit AppliedColumns(const std::vector<AppliedPose>& rows) {
@@ -30,6 +31,8 @@ struct AppliedColumns {
     channels = rows.front().b_P_nT.size();
     cross = !std::isnan(first.closure.curl_nT_per_m);
     chi2 = std::isfinite(first.closure.chi2);
+    line = first.along_line.has_value();
+    sd = line && first.along_line->sd_nT_per_m.allFinite();
     const auto g = components(first.g_nT_per_m), g_sd = components(first.g_sd_nT_per_m);
     for (std::size_t i = 0; i < told.size(); ++i) {
       told[i] = !std::isnan(g[i]);
@@ -48,9 +51,14 @@ std::string header(const AppliedColumns& columns) {
     for (std::size_t i = 0; i < kGradientNames.size(); ++i)
       if (columns.told[i]) out += fmt::format(",{}{}_nT_per_m", kGradientNames[i], kind);
   };
+  const auto add_line = [&](const char* kind) {
+    for (const char axis : {'x', 'y', 'z'})
+      if (columns.line) out += fmt::format(",dB{}{}_nT_per_m", axis, kind);
+  };
   add("");
+  add_line("");
   if (columns.cross) out += ",curl_nT_per_m,center_x_nT,center_y_nT,center_z_nT";
-  if (columns.sd) add("_sd");
+  if (columns.sd) add("_sd"), add_line("_sd");
   if (columns.chi2) out += ",closure_chi2";
   if (columns.left_out) out += ",left_out";
   return out + "\n";
@@ -119,11 +127,15 @@ std::string format_applied(const std::vector<AppliedPose>& rows) {
         if (columns.told[i]) add(components(g)[i]);
     };
     add_told(s.g_nT_per_m);
+    if (s.along_line)
+      for (const double d : s.along_line->nT_per_m) add(d);
     if (columns.cross) {
       add(s.closure.curl_nT_per_m);
       for (const double c : s.closure.center_nT) add(c);
     }
     if (columns.sd) add_told(s.g_sd_nT_per_m);
+    if (columns.sd && s.along_line)
+      for (const double sd : s.along_line->sd_nT_per_m) add(sd);
     if (columns.chi2) add(s.closure.chi2);
     if (columns.left_out) fmt::format_to(std::back_inserter(out), ",{}", fmt::join(row.left_out, ";"));
     out += "\n";

@@ -37,8 +37,9 @@ struct AppliedPose {
 /// CSV, platform frame: pose, t_s (when any pose has it), s1_bx_nT .. sN_bz_nT, Bx_nT, By_nT, Bz_nT, F_nT,
 /// Gxx_nT_per_m, Gyy.., Gzz.., Gxy.., Gxz.., Gyz.., curl_nT_per_m, center_x_nT, center_y_nT, center_z_nT,
 /// where the noise is known Gxx_sd_nT_per_m .. Gyz_sd_nT_per_m and closure_chi2, and left_out (names with ';'
-/// between) when any effect was. What the array cannot tell has no column, and curl and centre are of the
-/// cross. Six decimals.
+/// between) when any effect was. Sensors on one line have dBx_nT_per_m, dBy.., dBz.. with their _sd_, the
+/// derivative of the field along that line, as well. What the array cannot tell has no column, and curl and
+/// centre are of the cross. Six decimals.
 [[nodiscard]] std::string format_applied(const std::vector<AppliedPose>& rows);
 
 }  // namespace mgtd::calib::calibration

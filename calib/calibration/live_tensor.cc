@@ -49,6 +49,7 @@ void LiveTensor::look_around(const Epoch& epoch, const LiveConditions& condition
 void LiveTensor::refresh(const sensor::FieldVector& b_P_nT) {
   const sensor::ChannelCovariance covariance = effects_->covariance(now_, b_P_nT);
   g_sd_nT_per_m_ = pipeline_.gradient_sd(covariance, 1);
+  along_line_sd_nT_per_m_ = pipeline_.along_line_sd(covariance, 1);
   const auto C = closure_rows(calibration()->geometry);
   if (C.rows() == 4) {
     closure_weight_ =
@@ -82,6 +83,7 @@ TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditi
     const bool turned = (b_P_nT.head<3>() - at_P_nT_).norm() > kTurned * at_P_nT_.norm();
     if (--fresh_ < 0 || turned) refresh(b_P_nT);
     out.g_sd_nT_per_m = g_sd_nT_per_m_;
+    if (out.along_line) out.along_line->sd_nT_per_m = along_line_sd_nT_per_m_;
     if (out.closure.dof > 0) {
       const sensor::FieldVector closure = closure_numbers(out.closure);
       out.closure.chi2 = sensor::over_rows<4>(closure.size(), [&](auto n) {

@@ -59,6 +59,7 @@ class LiveTensor {
   int fresh_{0};
   Eigen::Vector3d at_P_nT_{Eigen::Vector3d::Zero()};
   Gradient g_sd_nT_per_m_;
+  Eigen::Vector3d along_line_sd_nT_per_m_{Eigen::Vector3d::Zero()};
   sensor::ChannelCovariance closure_weight_;  ///< inverse covariance of the closure
 };
 

@@ -133,13 +133,17 @@ FieldAndGradient field_and_gradient(const sensor::FieldVector& b, double baselin
 struct TensorPipeline::Rows {
   sensor::ChannelColumns<3> field;
   sensor::ChannelColumns<6> gradient;
+  sensor::ChannelColumns<3> along_line;  ///< without columns where the sensors stand on no line
   ClosureCovariance closure;
 
   [[nodiscard]] static std::shared_ptr<const Rows> of(const sensor::Geometry& geometry) {
     if (geometry.cross_baseline_m()) return nullptr;
     const FieldExpansion expansion = expansion_of(geometry);
-    return std::make_shared<const Rows>(
-        Rows{expansion.field_rows(), gradient_rows(geometry), expansion.closure_rows()});
+    const auto& along = expansion.derivatives_along();
+    return std::make_shared<const Rows>(Rows{
+        expansion.field_rows(), gradient_rows(geometry),
+        along.size() == 1 ? sensor::ChannelColumns<3>(along.front().rows) : sensor::ChannelColumns<3>(3, 0),
+        expansion.closure_rows()});
   }
 };
 
@@ -153,6 +157,7 @@ FieldAndGradient TensorPipeline::expanded(const sensor::FieldVector& b) const {
   out.b_P_nT = rows_->field.lazyProduct(b);
   const Eigen::Matrix<double, 6, 1> g = rows_->gradient.lazyProduct(b);
   out.g_nT_per_m = {.xx = g[0], .yy = g[1], .zz = g[2], .xy = g[3], .xz = g[4], .yz = g[5]};
+  if (rows_->along_line.cols() > 0) out.along_line_nT_per_m = rows_->along_line.lazyProduct(b);
   out.closure.curl_nT_per_m = kNaN;
   out.closure.center_nT.setConstant(kNaN);
   out.closure.combinations_nT = rows_->closure.lazyProduct(b);
@@ -223,10 +228,13 @@ void TensorPipeline::prepare_uncertainty() {
     return Variance{noise, 0.5 * (Q + Q.transpose())};
   };
   const auto G = gradient_rows(geometry_);
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    gradient_variance_[static_cast<std::size_t>(i)] = covariance(G.row(i), G.row(i));
-    unmodelled_[static_cast<std::size_t>(i)] = linear::propagated_variance(G.row(i).transpose(), scatter);
-  }
+  const auto uncertainty = [&](const auto& row) {
+    return Uncertainty{covariance(row, row), linear::propagated_variance(row.transpose(), scatter)};
+  };
+  for (Eigen::Index i = 0; i < 6; ++i)
+    gradient_uncertainty_[static_cast<std::size_t>(i)] = uncertainty(G.row(i));
+  for (Eigen::Index i = 0; rows_ && rows_->along_line.cols() > 0 && i < 3; ++i)
+    line_uncertainty_[static_cast<std::size_t>(i)] = uncertainty(rows_->along_line.row(i));
   const auto C = closure_rows(geometry_);
   for (Eigen::Index i = 0; i < C.rows(); ++i) {
     for (Eigen::Index j = i; j < C.rows(); ++j) closure_covariance_.push_back(covariance(C.row(i), C.row(j)));
@@ -248,6 +256,8 @@ TensorSample TensorPipeline::sample(const sensor::FieldVector& b_P_nT) const {
   out.f_nT = computed.b_P_nT.norm();
   out.g_nT_per_m = computed.g_nT_per_m;
   out.g_sd_nT_per_m = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+  if (computed.along_line_nT_per_m)
+    out.along_line = {*computed.along_line_nT_per_m, Eigen::Vector3d::Constant(kNaN)};
   out.closure = computed.closure;
   if (calibration_ == nullptr) out.flags |= Flag::uncalibrated;
   return out;
@@ -258,9 +268,10 @@ void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   Eigen::Vector4d q;
   q << 1, out.b_P_nT;
   std::array<double, 6> sd{};
-  for (std::size_t i = 0; i < sd.size(); ++i)
-    sd[i] = std::sqrt(gradient_variance_[i].by_parameters(q) + gradient_noise(i, samples));
+  for (std::size_t i = 0; i < sd.size(); ++i) sd[i] = gradient_uncertainty_[i].sd(q, samples);
   out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+  for (std::size_t i = 0; out.along_line && i < 3; ++i)
+    out.along_line->sd_nT_per_m[static_cast<Eigen::Index>(i)] = line_uncertainty_[i].sd(q, samples);
   ClosureCovariance S(out.closure.dof, out.closure.dof);
   std::size_t pair = 0;
   for (int i = 0; i < S.rows(); ++i) {
@@ -274,14 +285,25 @@ Gradient TensorPipeline::gradient_sd(const sensor::ChannelCovariance& covariance
   std::array<double, 6> sd{};
   for (std::size_t i = 0; i < sd.size(); ++i) {
     const auto row = G.row(static_cast<Eigen::Index>(i));
-    sd[i] = std::sqrt(linear::propagated_variance(row.transpose(), covariance) + gradient_noise(i, samples));
+    sd[i] = std::sqrt(linear::propagated_variance(row.transpose(), covariance) +
+                      gradient_uncertainty_[i].noise(samples));
   }
   return {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
+}
+
+Eigen::Vector3d TensorPipeline::along_line_sd(const sensor::ChannelCovariance& covariance,
+                                              double samples) const {
+  Eigen::Vector3d out = Eigen::Vector3d::Constant(kNaN);
+  for (Eigen::Index i = 0; rows_ && rows_->along_line.cols() > 0 && i < 3; ++i)
+    out[i] = std::sqrt(linear::propagated_variance(rows_->along_line.row(i).transpose(), covariance) +
+                       line_uncertainty_[static_cast<std::size_t>(i)].noise(samples));
+  return out;
 }
 
 void TensorPipeline::add_uncertainty(const sensor::ChannelCovariance& covariance, double samples,
                                      TensorSample& out) const {
   out.g_sd_nT_per_m = gradient_sd(covariance, samples);
+  if (out.along_line) out.along_line->sd_nT_per_m = along_line_sd(covariance, samples);
   const auto C = closure_rows(geometry_);
   out.closure.chi2 = closure_chi2(
       out.closure, ClosureCovariance(linear::propagated_covariance(C, covariance + noise_ / samples)));

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "calib/calibration/calibration.h"
@@ -28,7 +30,8 @@ class EffectCorrection;
 struct FieldAndGradient {
   Eigen::Vector3d b_P_nT;
   Gradient g_nT_per_m;
-  Closure closure;  ///< chi2 is left NaN here: it needs the noise
+  std::optional<Eigen::Vector3d> along_line_nT_per_m{};  ///< of sensors on one line
+  Closure closure;                                       ///< chi2 is left NaN here: it needs the noise
 };
 
 /// The closure quantities as closure_rows() gives them: of the cross curl, centre x, y, z.
@@ -82,6 +85,9 @@ class TensorPipeline {
   [[nodiscard]] TensorSample sample(const sensor::FieldVector& b_P_nT) const;
   /// Of the gradient: `covariance` of the corrected components by calibration and effects, and the noise.
   [[nodiscard]] Gradient gradient_sd(const sensor::ChannelCovariance& covariance, double samples) const;
+  /// The same of the derivative along the line of the sensors; NaN of other arrays.
+  [[nodiscard]] Eigen::Vector3d along_line_sd(const sensor::ChannelCovariance& covariance,
+                                              double samples) const;
   /// Of one sample, in the corrected components; zero where noise_known() is false.
   [[nodiscard]] const sensor::ChannelCovariance& sample_noise() const { return noise_; }
   [[nodiscard]] bool noise_known() const { return noise_known_; }
@@ -106,9 +112,18 @@ class TensorPipeline {
   [[nodiscard]] FieldAndGradient expanded(const sensor::FieldVector& b_P_nT) const;
   void add_uncertainty(double samples, TensorSample& out) const;
   void add_uncertainty(const sensor::ChannelCovariance& covariance, double samples, TensorSample& out) const;
-  [[nodiscard]] double gradient_noise(std::size_t component, double samples) const {
-    return std::max(gradient_variance_[component].noise / samples, unmodelled_[component]);
-  }
+  /// Of a linear function of the corrected fields: what noise and what the parameters make of it, and what
+  /// scatters about the model, which does not average away.
+  struct Uncertainty {
+    Variance variance;
+    double unmodelled{0};
+    [[nodiscard]] double noise(double samples) const {
+      return std::max(variance.noise / samples, unmodelled);
+    }
+    [[nodiscard]] double sd(const Eigen::Vector4d& q, double samples) const {
+      return std::sqrt(variance.by_parameters(q) + noise(samples));
+    }
+  };
 
   std::shared_ptr<const Calibration> calibration_;
   std::shared_ptr<const std::string> id_;
@@ -122,8 +137,8 @@ class TensorPipeline {
   sensor::ChannelCovariance noise_{sensor::ChannelCovariance::Zero(
       sensor::kChannels, sensor::kChannels)};  ///< of one sample, in the corrected components
   bool noise_known_{false};
-  std::array<Variance, 6> gradient_variance_;
-  std::array<double, 6> unmodelled_{};  ///< variance of a gradient by what scatters about the model
+  std::array<Uncertainty, 6> gradient_uncertainty_;
+  std::array<Uncertainty, 3> line_uncertainty_;  ///< of the derivative along the line of the sensors
   /// Covariance of each pair of closure quantities, upper triangle by rows.
   std::vector<Variance> closure_covariance_;
 };

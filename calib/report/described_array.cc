@@ -13,8 +13,10 @@ ArrayDescription described(const sensor::Geometry& array) {
   const auto expansion = calibration::FieldExpansion::of({places.data(), places.size()}).value();
   ArrayDescription out{.positions_P_m = places,
                        .gradient = {},
+                       .line = {},
                        .closure = static_cast<int>(expansion.closure_dof()),
                        .tells = what_it_tells(expansion)};
+  if (expansion.derivatives_along().size() == 1) out.line = expansion.derivatives_along().front().direction_P;
   for (std::size_t i = 0; i < expansion.determined().size(); ++i)
     if (expansion.determined()[i]) out.gradient.push_back(calibration::kGradientNames[i].substr(1));
   return out;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -34,6 +35,7 @@ std::vector<Array> arrays() {
   const std::vector<std::string> all{"xx", "yy", "zz", "xy", "xz", "yz"};
   return {{"one", 1, "[[0, 0, 0]]", {}, 0},
           {"pair_along_z", 2, "[[0, 0, 0.25], [0, 0, -0.25]]", {"zz", "xz", "yz"}, 0},
+          {"oblique_pair", 2, "[[0.2, 0.1, 0.15], [-0.2, -0.1, -0.15]]", {}, 0},
           {"tetrahedron", 4, "[[0.2, 0.2, 0.2], [-0.2, -0.2, 0.2], [0.2, -0.2, -0.2], [-0.2, 0.2, -0.2]]",
            all, 4},
           {"six", 6, "[[0.2, 0, 0], [-0.2, 0, 0], [0, 0.2, 0], [0, -0.2, 0], [0, 0, 0.2], [0, 0, -0.2]]", all,
@@ -97,6 +99,7 @@ TEST_P(AnyArray, IsCalibratedAndStreamedAndReplayed) {
 
   std::map<std::string, std::pair<double, int>> sum;
   double f_nT = 0, chi2 = 0;
+  std::array<double, 3> line_sd{};
   int samples = 0;
   for (const std::string& line : lines) {
     const json sample = json::parse(line);
@@ -110,6 +113,12 @@ TEST_P(AnyArray, IsCalibratedAndStreamedAndReplayed) {
       sum[component].first += value.get<double>() / sd;
       ++sum[component].second;
     }
+    EXPECT_EQ(sample.contains("along_line_nT_per_m"), array.sensors == 2);
+    for (std::size_t axis = 0; axis < 3 && array.sensors == 2; ++axis) {
+      const double sd = sample.at("along_line_sd_nT_per_m").at(axis).get<double>();
+      EXPECT_GT(sd, 0);
+      line_sd.at(axis) += sample.at("along_line_nT_per_m").at(axis).get<double>() / sd;
+    }
     const json& closure = sample.at("closure");
     EXPECT_TRUE(closure.at("curl_nT_per_m").is_null());
     EXPECT_TRUE(closure.at("center_nT").is_null());
@@ -120,6 +129,7 @@ TEST_P(AnyArray, IsCalibratedAndStreamedAndReplayed) {
   }
   ASSERT_GT(samples, 2500);
   EXPECT_NEAR(f_nT / samples, scenario.f_nT, 2);
+  for (const double total : line_sd) EXPECT_LT(std::abs(total / samples), 4.5);
   std::vector<std::string> told;
   for (const auto& [component, total] : sum) {
     told.push_back(component);

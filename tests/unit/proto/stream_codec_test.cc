@@ -38,12 +38,13 @@ bool operator==(const Check& a, const Check& b) {
 TEST(StreamCodec, GreetingGapAndErrorHaveTheirDocumentedForm) {
   const ArrayDescription pair{.positions_P_m = {Eigen::Vector3d(0, 0, 0.25), Eigen::Vector3d(0, 0, -0.25)},
                               .gradient = {"zz", "xz"},
+                              .line = {},
                               .closure = 0,
                               .tells = "field and a derivative"};
   EXPECT_EQ(encode(Greeting{"rig 7", "mgtd 0.1.0", pair}),
             R"({"class":"HELLO","protocol":{"major":1,"minor":1},"rig":"rig 7","software":"mgtd 0.1.0",)"
             R"("array":{"sensors":2,"positions_m":[[0.0,0.0,0.25],[0.0,0.0,-0.25]],"gradient":["zz","xz"],)"
-            R"("closure":0,"tells":"field and a derivative"}})");
+            R"("line":null,"closure":0,"tells":"field and a derivative"}})");
   EXPECT_EQ(encode(Gap{4, 9, {}, "s2 silent"}),
             R"({"class":"GAP","from_seq":4,"to_seq":9,"why":"s2 silent"})");
   EXPECT_EQ(encode(Error{ErrorCode::bad_input, "a \"quote\"", "b"}),

@@ -58,6 +58,15 @@ TEST(TensorEncoder, AnotherArrayHasItsOwnClosureAndNullForWhatItCannotTell) {
                                          R"("combinations_nT":[0.25,-1.0]})"));
 }
 
+TEST(TensorEncoder, SensorsOnALineHaveTheDerivativeAlongIt) {
+  TensorSample s = sample();
+  s.along_line = LineDerivative{{1, -2, 0.5}, {0.25, 0.25, 0.5}};
+  TensorEncoder encoder;
+  const Json line = Json::parse(encoder.encode(s));
+  EXPECT_EQ(line["along_line_nT_per_m"], Json::parse("[1.0,-2.0,0.5]"));
+  EXPECT_EQ(line["along_line_sd_nT_per_m"], Json::parse("[0.25,0.25,0.5]"));
+}
+
 TEST(TensorEncoder, InputsStandBehindTheFlagsByTheirColumns) {
   const std::vector<InputValue> inputs{{"motor_A", 0.5}, {"supply_V", kNaN}};
   TensorEncoder encoder;
