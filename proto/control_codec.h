@@ -31,13 +31,14 @@
 ///   calibrations.rollback                             -> {"active"}
 ///   control.take         args: control_hold.h         -> the holder
 ///   control.release                                   -> {}
+///   console              {"address","token"}: of the web console; address null where there is none
 ///   control.break        takes control from whoever has it        -> {"was": holder or null}
 ///
 /// What changes something needs control, which one connection has at a time (the daemon's control_lease.h).
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 2;
+inline constexpr int kControlProtocolMinor = 3;
 /// A calibration with a hundred coefficients takes 0.4 MB.
 inline constexpr std::size_t kControlLineLimit = 1 << 20;
 
@@ -64,8 +65,9 @@ enum class ControlCommand : std::uint8_t {
   control_take,
   control_release,
   control_break,
+  console,
 };
-inline constexpr std::array<std::string_view, 22> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 23> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -86,7 +88,8 @@ inline constexpr std::array<std::string_view, 22> kControlCommandNames{"version"
                                                                        "magnet-test.stop",
                                                                        "control.take",
                                                                        "control.release",
-                                                                       "control.break"};
+                                                                       "control.break",
+                                                                       "console"};
 [[nodiscard]] std::string_view name(ControlCommand command);
 
 struct ControlRequest {

@@ -9,8 +9,10 @@ namespace mgtd {
 
 nlohmann::ordered_json to_json(const std::optional<ControlHolder>& holder) {
   if (!holder) return nullptr;
-  return {{"pid", holder->pid},     {"uid", holder->uid}, {"since", format_utc(holder->since)},
-          {"taken", holder->taken}, {"why", holder->why}, {"left_s", holder->left_s}};
+  return {{"pid", holder->pid},      {"uid", holder->uid},
+          {"via", holder->via},      {"since", format_utc(holder->since)},
+          {"taken", holder->taken},  {"why", holder->why},
+          {"left_s", holder->left_s}};
 }
 
 Result<TakeRequest> parse_take_request(const nlohmann::json& args) {

@@ -10,7 +10,7 @@
 
 /// One client controls, many look; this says who has control now, and how a client asks to keep it.
 ///
-///   "holder": {"pid","uid","since","taken","why","left_s"}: null when nobody has control
+///   "holder": {"pid","uid","via","since","taken","why","left_s"}: null when nobody has control
 ///
 /// `taken`: asked for with control.take; else it comes with a request that changed something. `left_s`: until
 /// control is free again if the holder says nothing more.
@@ -19,6 +19,7 @@ namespace mgtd {
 struct ControlHolder {
   std::int64_t pid{0};  ///< 0: not known, e.g. of another container
   std::int64_t uid{0};
+  std::string via{};  ///< "the console, from 127.0.0.1"; empty: the control socket
   WallTime since;
   bool taken{false};
   std::string why;

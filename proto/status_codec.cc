@@ -215,6 +215,7 @@ OrderedJson to_json(const StatusReport& report) {
           {"control", control_json(report.control)},
           {"journal", to_json(report.journal)},
           {"ring", to_json(report.ring)},
+          {"console", optional(report.console)},
           {"oldest_seq", optional(report.oldest_seq)},
           {"disk_free_bytes", optional(report.disk_free_bytes)},
           {"run", to_json(report.run)},

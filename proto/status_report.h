@@ -102,6 +102,7 @@ struct StatusReport {
   ControlStatus control;
   RecordingStatus journal;
   RecordingStatus ring;                     ///< the stream's samples on disk
+  std::optional<std::string> console;       ///< its address
   std::optional<std::uint64_t> oldest_seq;  ///< from where on a client gets them
   std::optional<std::uint64_t> disk_free_bytes;
   RunStatus run;

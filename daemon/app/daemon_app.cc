@@ -9,6 +9,8 @@
 
 #include "calib/report/described_array.h"
 #include "daemon/app/service_notify.h"
+#include "daemon/serve/console/lane_request.h"
+#include "daemon/serve/console/metrics.h"
 
 namespace mgtd::daemon::app {
 namespace {
@@ -39,6 +41,11 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION, array_}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
+      console_(io,
+               {.listen = config_.console_listen,
+                .hosts = config_.console_hosts,
+                .control_from_network = config_.console_control_from_network},
+               console_source()),
       run_(
           config_, runs_directory(config_), store_, worker_, core_.run(),
           {.limits = [this]() -> const drivers::TableLimits& { return core_.instruments().table().limits(); },
@@ -65,6 +72,10 @@ Result<void> DaemonApp::start() {
   run_.find_interrupted();
   if (auto bound = stream_.start(); !bound) return bound;
   if (auto bound = control_.start(); !bound) return bound;
+  // What can be done without: the rig is measured and operated all the same.
+  if (auto bound = console_.start(); !bound) spdlog::warn("no web console: {}", bound.error().text());
+  if (config_.console_control_from_network)
+    spdlog::warn("the console takes control from the network: its token travels unencrypted");
   core_.start_instruments(clock_.now());
   ports_.start();
   for (const std::string& warning : config_.warnings) spdlog::warn("{}", warning);
@@ -77,12 +88,34 @@ Result<void> DaemonApp::start() {
   return {};
 }
 
+serve::console::ConsoleSource DaemonApp::console_source() {
+  return {.hello =
+              [this] {
+                const nlohmann::ordered_json hello{{"software", "mgtd " MGTD_VERSION},
+                                                   {"rig", config_.rig_name},
+                                                   {"speed_up", config_.speed_up},
+                                                   {"rate_hz", config_.rate_hz},
+                                                   {"array", to_json(array_)}};
+                return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+              },
+          .metrics = [this] { return serve::console::metrics(report()); },
+          .lane = [this](std::string_view query) -> Result<std::string> {
+            const auto request = serve::console::parse_lane_request(query);
+            if (!request) return tl::unexpected(request.error());
+            return serve::console::answer(*request, lanes_);
+          },
+          .stream = [this](const std::shared_ptr<serve::Peer>& peer) { stream_.admit(peer); },
+          .control = [this](const std::shared_ptr<serve::Peer>& peer,
+                            std::string via) { control_.admit(peer, std::move(via)); }};
+}
+
 void DaemonApp::stop() {
   if (std::exchange(stopping_, true)) return;
   timer_.cancel();
   run_.abandon();
   core_.abandon_run(clock_.now());
   ports_.shutdown();
+  console_.stop();
   stream_.stop();
   control_.stop();
 }
@@ -108,12 +141,14 @@ void DaemonApp::use_active_calibration() {
 
 void DaemonApp::publish(const Epoch& epoch, const TensorSample& sample, std::span<const InputValue> inputs) {
   stream_.publish(sample, inputs);
+  lanes_.add(sample, epoch.T_degC, inputs);
   last_skew_s_ = epoch.skew_bound_s;
   ++published_;
 }
 
 void DaemonApp::publish(const Gap& gap) {
   stream_.publish(gap);
+  lanes_.add(gap);
   ++published_;
 }
 

@@ -17,6 +17,8 @@
 #include "daemon/config/config.h"
 #include "daemon/core/daemon_core.h"
 #include "daemon/run/run_executor.h"
+#include "daemon/serve/console/console_server.h"
+#include "daemon/serve/console/lane_history.h"
 #include "daemon/serve/control_server.h"
 #include "daemon/serve/stream_server.h"
 #include "daemon/store/calibration_store.h"
@@ -27,8 +29,8 @@
 /// DaemonApp is the service: it tells the core what happens at ports, sockets and clock, and does what the
 /// core decides.
 ///
-/// Order of starting: store, sockets, ports. Order of stopping: run (table stops), ports, sockets, worker,
-/// journal. Everything is on the one thread of the io_context but the solver.
+/// Order of starting: store, sockets, console, ports. Order of stopping: run (table stops), ports, sockets,
+/// worker, journal. Everything is on the one thread of the io_context but the solver.
 namespace mgtd::daemon::app {
 
 class DaemonApp : private core::CoreActions {
@@ -47,6 +49,7 @@ class DaemonApp : private core::CoreActions {
   void carry_out(const run::Action& action, Stamp now) override { run_.carry_out(action, now); }
   void say(const core::Remark& remark, Instant now) override;
 
+  [[nodiscard]] serve::console::ConsoleSource console_source();
   void tick();
   void every_second(Stamp now);
   void use_active_calibration();
@@ -72,6 +75,8 @@ class DaemonApp : private core::CoreActions {
   Recording recording_;
   serve::StreamServer stream_;
   serve::ControlServer control_;
+  serve::console::LaneHistory lanes_;
+  serve::console::ConsoleServer console_;
   run::RunExecutor run_;
   Ports ports_;
   drivers::PatientTimer timer_;

@@ -27,6 +27,11 @@ Reply DaemonApp::answer(const ControlRequest& request) {
           {"stream_unix", config_.stream_unix}};
     case ControlCommand::status:
       return to_json(report());
+    case ControlCommand::console:
+      return nlohmann::ordered_json{
+          {"address", console_.address().empty() ? nlohmann::ordered_json()
+                                                 : nlohmann::ordered_json(console_.address())},
+          {"token", console_.token().text()}};
     case ControlCommand::run_start:
     case ControlCommand::run_dry_run:
     case ControlCommand::run_pause:

@@ -67,6 +67,7 @@ StatusReport DaemonApp::report() const {
   out.stream = stream_.stats();
   out.control = control_.stats();
   recording_.report(out);
+  if (!console_.address().empty()) out.console = console_.address();
   std::error_code ec;
   if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
     out.disk_free_bytes = space.available;

@@ -41,6 +41,7 @@ void add_calibrations(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_check_config(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_console(CLI::App& app, Session& session);
 void add_control(CLI::App& app, Session& session);
 void add_define(CLI::App& app, Session& session);
 void add_diff(CLI::App& app, Session& session);

@@ -23,9 +23,11 @@ std::string user_name(std::int64_t uid) {
 
 std::string in_words(const nlohmann::json& holder) {
   if (holder.is_null()) return "nobody has control; whoever changes something next gets it";
-  const std::string why = holder.at("why");
-  return fmt::format("{} (pid {}) has control since {}{}{}", user_name(holder.at("uid")),
-                     holder.at("pid").get<std::int64_t>(), holder.at("since").get<std::string>(),
+  const std::string why = holder.at("why"), via = holder.value("via", "");
+  const std::string who = via.empty() ? fmt::format("{} (pid {})", user_name(holder.at("uid")),
+                                                    holder.at("pid").get<std::int64_t>())
+                                      : via;
+  return fmt::format("{} has control since {}{}{}", who, holder.at("since").get<std::string>(),
                      holder.at("taken") == true ? ", on request" : ", by a command",
                      why.empty() ? "" : ": " + why);
 }

@@ -46,7 +46,7 @@ mgtd::Error wrong_words(const CLI::App& app, const CLI::Error& error) {
 
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
-    "Live (talks to mgtd):     status, watch, run, calibrations, control\n"
+    "Live (talks to mgtd):     status, watch, run, calibrations, control, console\n"
     "Offline (files):          plan, fit, apply, check, diff, import, export, replay, check-config, ports\n"
     "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, "
     "report\n\n"
@@ -74,6 +74,7 @@ int main(int argc, char** argv) {
   mgtd::daemon::cli::add_run(app, session);
   mgtd::daemon::cli::add_calibrations(app, session);
   mgtd::daemon::cli::add_control(app, session);
+  mgtd::daemon::cli::add_console(app, session);
   mgtd::daemon::cli::add_fit(app, session);
   mgtd::daemon::cli::add_apply(app, session);
   mgtd::daemon::cli::add_plan(app, session);

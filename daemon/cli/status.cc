@@ -102,6 +102,13 @@ void print_calibration(const nlohmann::json& s) {
              criticism.at("limit").get<std::string>(), criticism.at("remedy").get<std::string>());
 }
 
+std::string holder_name(const nlohmann::json& holder) {
+  const std::string via = holder.value("via", "");
+  return via.empty() ? fmt::format("pid {} (uid {})", holder.at("pid").get<std::int64_t>(),
+                                   holder.at("uid").get<std::int64_t>())
+                     : via;
+}
+
 /// Who listens, who was sent away, who has control.
 void print_clients(const nlohmann::json& s) {
   const auto& stream = s.at("stream");
@@ -112,8 +119,7 @@ void print_clients(const nlohmann::json& s) {
   const auto& control = s.at("control");
   const auto& holder = control.at("holder");
   if (!holder.is_null())
-    fmt::print("; control is with pid {} (uid {}) since {}", holder.at("pid").get<std::int64_t>(),
-               holder.at("uid").get<std::int64_t>(), holder.at("since").get<std::string>());
+    fmt::print("; control is with {} since {}", holder_name(holder), holder.at("since").get<std::string>());
   if (control.at("dropped") != 0) fmt::print("\n          {}", control.at("last_drop").get<std::string>());
   fmt::print("\n");
 }
@@ -124,15 +130,11 @@ std::size_t sensors_of(const nlohmann::json& s) {
   return array == s.end() ? kSensorCount : array->at("sensors").get<std::size_t>();
 }
 
-/// How many sensors there are and what they can tell, clause by clause.
+/// How many sensors there are and what they tell; the reasons are in --json.
 void print_array(const nlohmann::json& array) {
-  const auto sensors = array.at("sensors").get<std::size_t>();
-  fmt::print("array     {}\n", calib::poses::counted(sensors));
-  std::string_view rest = array.at("tells").get_ref<const std::string&>();
-  for (std::size_t end = 0; !rest.empty(); rest.remove_prefix(std::min(rest.size(), end + 2))) {
-    end = std::min(rest.find("; "), rest.size());
-    fmt::print("          {}\n", rest.substr(0, end));
-  }
+  const std::string tells = array.at("tells");
+  fmt::print("array     {}: {}\n", calib::poses::counted(array.at("sensors").get<std::size_t>()),
+             tells.substr(0, tells.find("; ")));
 }
 
 /// Explains a wide skew bound or many gaps. The limit of the skew is that of a run's preflight.
@@ -205,6 +207,9 @@ int run_status(const Session& session, double patience_s) {
   print_calibration(s);
   print_recording("journal", s.at("journal"));
   print_recording("samples", s.at("ring"));
+  if (const auto console = s.find("console"); console != s.end() && console->is_string())
+    fmt::print("console   {} (mgt console prints it with the token for control)\n",
+               console->get<std::string>());
   print_clients(s);
   print_devices(s.at("devices"));
   print_inputs(s.value("inputs", nlohmann::json::array()));

@@ -38,6 +38,7 @@ class Reader {
   void read_calibration(const toml::table& root);
   void read_disturbance(Settings& s, RunDefaults& r);
   void read_run(const toml::table& root);
+  void read_console(const toml::table& root);
   void read_service(const toml::table& root);
   void read_array(const toml::table& root);
   void read_sensors(const toml::table& root);
@@ -55,9 +56,9 @@ class Reader {
   InputColumns inputs_;
 };
 
-constexpr std::array<std::string_view, 13> kSections{"rig",       "array",   "sensor",      "table", "scalar",
+constexpr std::array<std::string_view, 14> kSections{"rig",       "array",   "sensor",      "table", "scalar",
                                                      "auxiliary", "site",    "calibration", "run",   "store",
-                                                     "stream",    "control", "daemon"};
+                                                     "stream",    "control", "console",     "daemon"};
 
 Settings Reader::section(const toml::table& root, std::string_view name) {
   const toml::node* const node = root.get(name);
@@ -164,6 +165,22 @@ void Reader::read_run(const toml::table& root) {
   close(s);
 }
 
+void Reader::read_console(const toml::table& root) {
+  Settings s = section(root, "console");
+  config_.console_listen = s.text("listen", config_.console_listen);
+  if (const auto address = parse_tcp_address(config_.console_listen);
+      !config_.console_listen.empty() && !address)
+    s.object("listen", address.error().text());
+  config_.console_hosts = s.texts("hosts");
+  for (const std::string& host : config_.console_hosts)
+    require(s, "hosts", !host.empty() && host.find_first_of("/ \t@") == std::string::npos,
+            "names or addresses of this computer without http:// and port, like \"rig7.local\"");
+  const std::string from = s.text("control_from", "loopback");
+  require(s, "control_from", from == "loopback" || from == "network", "\"loopback\" or \"network\"");
+  config_.console_control_from_network = from == "network";
+  close(s);
+}
+
 void Reader::read_service(const toml::table& root) {
   Settings store = section(root, "store");
   config_.store_dir = store.text("dir", config_.store_dir);
@@ -194,6 +211,7 @@ void Reader::read_service(const toml::table& root) {
   require(control, "mode", octal, "file permissions in octal, like \"0660\"");
   if (octal) config_.control_mode = static_cast<int>(std::strtol(mode.c_str(), nullptr, 8));
   close(control);
+  read_console(root);
   Settings daemon = section(root, "daemon");
   config_.log_level = daemon.text("log_level", config_.log_level);
   static constexpr std::array<std::string_view, 4> kLogLevels{"debug", "info", "warn", "error"};

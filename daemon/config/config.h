@@ -85,6 +85,9 @@ struct Config {
   std::string stream_unix{"/run/mgtd/stream.sock"};
   std::string control_unix{"/run/mgtd/control.sock"};
   int control_mode{0660};
+  std::string console_listen{"127.0.0.1:7451"};  ///< of the web console; empty: there is none
+  std::vector<std::string> console_hosts;        ///< further names of this computer in a browser
+  bool console_control_from_network{false};      ///< else control is for browsers on this computer
   std::string log_level{"info"};
   double speed_up{1};
 

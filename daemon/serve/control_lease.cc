@@ -22,6 +22,7 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::control_take:
     case ControlCommand::control_release:
     case ControlCommand::control_break:
+    case ControlCommand::console:
       return false;
     case ControlCommand::run_start:
     case ControlCommand::run_resume:
@@ -37,16 +38,22 @@ bool needs_control(ControlCommand command) {
   return true;
 }
 
+std::string name(const ControlPeer& peer) {
+  if (!peer.via.empty()) return peer.via;
+  return peer.pid > 0 ? fmt::format("pid {} (uid {})", peer.pid, peer.uid)
+                      : fmt::format("a pid not known (uid {})", peer.uid);
+}
+
 const ControlLease::Hold* ControlLease::held(Instant now) const {
   return hold_ && now < hold_->until ? &*hold_ : nullptr;
 }
 
 Error ControlLease::refusal(Instant now) const {
-  const std::string pid = hold_->peer.pid > 0 ? fmt::format("pid {}", hold_->peer.pid) : "a pid not known";
+  const std::string who = name(hold_->peer);
   const double left_s = to_seconds(hold_->until - now);
   return {ErrorCode::state,
-          fmt::format("control is with {} (uid {}) since {}{}", pid, hold_->peer.uid,
-                      format_utc(hold_->since.wall), hold_->why.empty() ? "" : ": " + hold_->why),
+          fmt::format("control is with {} since {}{}", who, format_utc(hold_->since.wall),
+                      hold_->why.empty() ? "" : ": " + hold_->why),
           fmt::format("it is free when that program ends or has said nothing for another {:.0f} s; mgt run "
                       "pause and mgt run abort work for everyone; mgt control break takes it away",
                       std::max(1.0, left_s))};
@@ -97,6 +104,7 @@ std::optional<ControlHolder> ControlLease::holder(Instant now) const {
   if (by == nullptr) return std::nullopt;
   return ControlHolder{.pid = by->peer.pid,
                        .uid = by->peer.uid,
+                       .via = by->peer.via,
                        .since = by->since.wall,
                        .taken = by->taken,
                        .why = by->why,

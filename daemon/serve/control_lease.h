@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "proto/control_codec.h"
 #include "proto/control_hold.h"
@@ -24,7 +25,11 @@ struct ControlPeer {
   std::uint64_t connection{0};
   std::int64_t pid{0};  ///< 0: not known
   std::int64_t uid{0};
+  std::string via{};  ///< "the console, from 127.0.0.1"; empty: the control socket
 };
+
+/// For people: "pid 812 (uid 1000)", "the console, from 127.0.0.1".
+[[nodiscard]] std::string name(const ControlPeer& peer);
 
 class ControlLease {
  public:

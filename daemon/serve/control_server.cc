@@ -21,11 +21,11 @@ constexpr std::size_t kControlBacklog = 4 * 1024 * 1024;  // bytes of replies a 
 using Reply = Result<nlohmann::ordered_json>;
 
 /// As the kernel knows who connected.
-ControlPeer peer_of(LineConnection::Socket& socket, std::uint64_t number) {
+ControlPeer peer_of(LineConnection::Socket& socket) {
   ucred who{};
   socklen_t size = sizeof who;
-  if (::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return {number, 0, -1};
-  return {number, who.pid, static_cast<std::int64_t>(who.uid)};
+  if (::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return {0, 0, -1};
+  return {0, who.pid, static_cast<std::int64_t>(who.uid)};
 }
 
 std::string refusal(const Error& error, const nlohmann::json& id) {
@@ -44,7 +44,10 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
     if (!listener) return tl::unexpected(listener.error());
     listener_ = std::move(*listener);
     listener_->start([weak = weak_from_this()](LineConnection::Socket socket) {
-      if (const auto self = weak.lock()) self->admit(std::move(socket));
+      const auto self = weak.lock();
+      if (self == nullptr) return;
+      const ControlPeer peer = peer_of(socket);
+      self->admit(std::make_shared<LineConnection>(std::move(socket), kControlLineLimit), peer);
     });
     return {};
   }
@@ -61,16 +64,8 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
     return out;
   }
 
- private:
-  struct Client {
-    std::shared_ptr<LineConnection> connection;
-    ControlPeer peer;
-    RequestRate rate;
-  };
-
-  void admit(LineConnection::Socket socket) {
-    const ControlPeer peer = peer_of(socket, next_connection_++);
-    const auto connection = std::make_shared<LineConnection>(std::move(socket), kControlLineLimit);
+  void admit(const std::shared_ptr<Peer>& connection, ControlPeer peer) {
+    peer.connection = next_connection_++;
     if (clients_.size() >= config_.max_clients) {
       ++counted_.refused;
       connection->send(
@@ -90,6 +85,13 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
                        .keep_after_end = {},
                        .on_close = [this, client](std::string_view) { forget(client); }});
   }
+
+ private:
+  struct Client {
+    std::shared_ptr<Peer> connection;
+    ControlPeer peer;
+    RequestRate rate;
+  };
 
   void on_line(Client& client, std::string_view line) {
     const Stamp now = clock_.now();
@@ -122,8 +124,8 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
     if (request.command == ControlCommand::control_break) {
       const auto was = lease_.break_hold(now.mono);
       if (was)
-        spdlog::warn("control was taken from pid {} (uid {}) by pid {} (uid {})", was->pid, was->uid,
-                     peer.pid, peer.uid);
+        spdlog::warn("control was taken from {} by {}", name(ControlPeer{0, was->pid, was->uid, was->via}),
+                     name(peer));
       return nlohmann::ordered_json{{"was", to_json(was)}};
     }
     return handler_(request);
@@ -137,7 +139,7 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
 
   void drop(Client& client, DropReason reason, const Error& why) {
     if (!client.connection->open()) return;
-    counted_.drop(reason, fmt::format("pid {}: {}", client.peer.pid, why.message));
+    counted_.drop(reason, fmt::format("{}: {}", name(client.peer), why.message));
     if (reason != DropReason::unread) client.connection->send(refusal(why, nullptr));
     client.connection->close(why.message);
   }
@@ -163,6 +165,9 @@ ControlServer::ControlServer(boost::asio::io_context& io, ControlConfig config, 
 ControlServer::~ControlServer() { state_->stop(); }
 Result<void> ControlServer::start() { return state_->start(); }
 void ControlServer::stop() { state_->stop(); }
+void ControlServer::admit(const std::shared_ptr<Peer>& peer, std::string via) {
+  state_->admit(peer, {0, 0, -1, std::move(via)});
+}
 ControlStatus ControlServer::stats() const { return state_->stats(); }
 
 }  // namespace mgtd::daemon::serve

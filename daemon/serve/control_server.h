@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/serve/peer.h"
 #include "daemon/serve/request_rate.h"
 #include "proto/control_codec.h"
 #include "proto/error.h"
@@ -39,6 +40,8 @@ class ControlServer {
   ControlServer& operator=(const ControlServer&) = delete;
 
   [[nodiscard]] Result<void> start();
+  /// One more client, whose connection is not yet started; `via`: how it came, for those who are refused.
+  void admit(const std::shared_ptr<Peer>& peer, std::string via);
   void stop();
   [[nodiscard]] ControlStatus stats() const;
 

@@ -36,6 +36,7 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
 
   Result<void> start();
   void stop();
+  void admit(const std::shared_ptr<Peer>& connection);
 
   void keep(store::DiskRing& disk) {
     disk_ = &disk;
@@ -69,14 +70,13 @@ class StreamServer::State : public std::enable_shared_from_this<State> {
 
  private:
   struct Client {
-    std::shared_ptr<LineConnection> connection;
+    std::shared_ptr<Peer> connection;
     RequestRate rate;
     Subscription subscription{};
     std::optional<store::RingReader> past{};  ///< while it reads what is on disk
     int bad_lines{0};
   };
 
-  void admit(LineConnection::Socket socket);
   void on_line(Client& client, std::string_view line);
   void bad_line(Client& client, const Error& error);
   void refill(Client& client, std::string& out);
@@ -115,7 +115,8 @@ Result<void> StreamServer::State::start() {
   listeners_ = std::move(listeners);
   for (Listener& listener : listeners_) {
     listener.start([weak = weak_from_this()](LineConnection::Socket socket) {
-      if (const auto self = weak.lock()) self->admit(std::move(socket));
+      if (const auto self = weak.lock())
+        self->admit(std::make_shared<LineConnection>(std::move(socket), kWatchLineLimit));
     });
   }
   return {};
@@ -131,8 +132,7 @@ void StreamServer::State::stop() {
   }
 }
 
-void StreamServer::State::admit(LineConnection::Socket socket) {
-  const auto connection = std::make_shared<LineConnection>(std::move(socket), kWatchLineLimit);
+void StreamServer::State::admit(const std::shared_ptr<Peer>& connection) {
   if (clients_.size() >= config_.max_clients) {
     ++counted_.refused;
     connection->send(
@@ -240,6 +240,7 @@ StreamServer::~StreamServer() { state_->stop(); }
 void StreamServer::keep(store::DiskRing& disk) { state_->keep(disk); }
 Result<void> StreamServer::start() { return state_->start(); }
 void StreamServer::stop() { state_->stop(); }
+void StreamServer::admit(const std::shared_ptr<Peer>& peer) { state_->admit(peer); }
 void StreamServer::publish(const TensorSample& sample, std::span<const InputValue> inputs) {
   state_->publish(sample, inputs);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/serve/peer.h"
 #include "daemon/serve/request_rate.h"
 #include "daemon/store/disk_ring.h"
 #include "proto/epoch.h"
@@ -52,6 +53,8 @@ class StreamServer {
   void keep(store::DiskRing& disk);
   /// Binds and listens. On an error nothing is left listening.
   [[nodiscard]] Result<void> start();
+  /// One more client, whose connection is not yet started: greeted and served like those of the sockets.
+  void admit(const std::shared_ptr<Peer>& peer);
   /// Says why to every client, closes, removes the Unix socket.
   void stop();
 

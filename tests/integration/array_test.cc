@@ -33,7 +33,7 @@ TEST(ArrayOnTheBench, ATetrahedronStreamsTheGradientThatIsThere) {
   const json status = bench.ask({"status"});
   EXPECT_EQ(status.at("array").at("sensors"), 4);
   EXPECT_EQ(status.at("array").at("gradient").size(), 6U);
-  EXPECT_THAT(bench.mgt({"status"}).out, HasSubstr("4 closure numbers check every sample"));
+  EXPECT_THAT(bench.mgt({"status"}).out, HasSubstr("4 sensors: field and all five independent components"));
   const Finished run = bench.mgt(kShortRun);
   ASSERT_EQ(run.exit_code, 0) << run.err << bench.daemon().err();
   ASSERT_EQ(bench.mgt({"calibrations", "accept", "latest"}).exit_code, 0);

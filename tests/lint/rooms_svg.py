@@ -37,13 +37,14 @@ SAYS = {
     "daemon/acquire": "from devices to epochs",
     "daemon/run": "what happens next",
     "daemon/serve": "who is told, who may ask",
+    "daemon/serve/console": "a browser's door",
     "daemon/core": "all of it, without I/O",
     "daemon/app": "mgtd: core, ports, sockets",
     "daemon/cli": "mgt: the commands",
 }
 # Column and row of each room, the roof first: a room stands above those that it includes.
 GRID = {
-    "daemon": {"app": (0, 0), "cli": (1, 0), "core": (0, 1), "run": (0, 2), "serve": (1, 2), "acquire": (0, 3),
+    "daemon": {"app": (0, 0), "cli": (1, 0), "core": (0, 1), "run": (0, 2), "serve/console": (1, 2), "serve": (1, 3), "acquire": (0, 3),
                "config": (0.5, 4), "plan": (0, 5), "store": (1, 5)},
     "calib": {"report": (0, 0), "criticism/search": (0, 1), "design": (0, 2),
               "validity": (1, 2), "criticism/tests": (0, 3), "fit/method_choice": (0, 4), "criticism/live": (1, 5),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 namespace mgtd::rig {
 namespace {
@@ -60,6 +61,13 @@ std::string auxiliary(const std::vector<Covariate>& inputs, const std::string& d
                      columns);
 }
 
+/// A port of the console beside that of the stream: the next one, or any free one as well.
+std::string beside(const std::string& tcp) {
+  const std::size_t colon = tcp.rfind(':');
+  const int port = colon == std::string::npos ? 0 : std::atoi(tcp.c_str() + colon + 1);
+  return fmt::format("127.0.0.1:{}", port == 0 ? 0 : port + 1);
+}
+
 }  // namespace
 
 std::string config_text(const Scenario& s, const std::string& dir, const std::string& state_dir,
@@ -79,9 +87,10 @@ std::string config_text(const Scenario& s, const std::string& dir, const std::st
   const double preflight_s = 5 + (speed_up - 1) / 2;
   return out + fmt::format(
                    "\n[store]\ndir = \"{0}\"\n\n[stream]\ntcp = \"{1}\"\nunix = \"{0}/stream.sock\"\n\n"
-                   "[control]\nunix = \"{0}/control.sock\"\n\n[run]\npreflight_s = {3}\n\n[daemon]\nspeed_up "
+                   "[control]\nunix = \"{0}/control.sock\"\n\n[console]\nlisten = "
+                   "\"{4}\"\n\n[run]\npreflight_s = {3}\n\n[daemon]\nspeed_up "
                    "= {2}\n",
-                   state_dir, tcp, speed_up, preflight_s);
+                   state_dir, tcp, speed_up, preflight_s, beside(tcp));
 }
 
 }  // namespace mgtd::rig

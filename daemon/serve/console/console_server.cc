@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/serve/console/console_server.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "daemon/config/tcp_address.h"
+#include "daemon/serve/console/host_rule.h"
+#include "daemon/serve/console/page_files.h"
+#include "daemon/serve/console/web_peer.h"
+#include "daemon/serve/listener.h"
+#include "drivers/clock.h"
+#include "proto/control_codec.h"
+#include "proto/watch_request.h"
+
+namespace mgtd::daemon::serve::console {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using boost::system::error_code;
+using Stream = beast::basic_stream<asio::generic::stream_protocol>;
+using Request = http::request<http::empty_body>;
+using Response = http::response<http::string_body>;
+
+namespace {
+
+constexpr auto kPatience = std::chrono::seconds(10);
+constexpr auto kWrongTokenWait = std::chrono::seconds(1);
+constexpr std::uint32_t kHeadLimit = 8'192;
+constexpr std::size_t kTokenLine = 256;
+
+std::optional<std::string_view> field(const Request& request, std::string_view name) {
+  const auto found = request.find(beast::string_view(name.data(), name.size()));
+  if (found == request.end()) return std::nullopt;
+  return std::string_view(found->value().data(), found->value().size());
+}
+
+RequestHead head_of(const Request& request) {
+  return {.host = field(request, "Host").value_or(""),
+          .origin = field(request, "Origin"),
+          .fetch_site = field(request, "Sec-Fetch-Site"),
+          .websocket = beast::websocket::is_upgrade(request)};
+}
+
+/// On every answer. The page may load and reach nothing but what this server hands out.
+void forbid_all_else(Response& response, std::string_view host) {
+  const std::string policy = fmt::format(
+      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self' "
+      "ws://{}; "
+      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'; require-trusted-types-for 'script'; "
+      "trusted-types 'none'",
+      host);
+  response.set("Content-Security-Policy", policy);
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.set("Cross-Origin-Opener-Policy", "same-origin");
+  response.set(http::field::cache_control, "no-store");
+}
+
+std::string in_json(const Error& error) {
+  return nlohmann::json{{"error", {{"message", error.message}, {"remedy", error.remedy}}}}.dump(
+      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Where a peer is; empty where the kernel does not say.
+std::optional<asio::ip::address> address_of(Listener::Socket& socket) {
+  error_code ec;
+  const auto endpoint = socket.remote_endpoint(ec);
+  if (ec) return std::nullopt;
+  asio::ip::tcp::endpoint tcp;
+  if (endpoint.size() > tcp.capacity()) return std::nullopt;
+  std::memcpy(tcp.data(), endpoint.data(), endpoint.size());
+  tcp.resize(endpoint.size());
+  return tcp.address();
+}
+
+}  // namespace
+
+class ConsoleServer::State : public std::enable_shared_from_this<State> {
+ public:
+  State(asio::io_context& io, ConsoleConfig config, ConsoleSource source)
+      : io_(io),
+        config_(std::move(config)),
+        source_(std::move(source)),
+        rate_(config_.rate, clock_.now().mono) {}
+
+  Result<void> start();
+  void stop();
+  [[nodiscard]] std::string address() const { return address_; }
+  [[nodiscard]] const ConsoleToken& token() const { return token_; }
+
+ private:
+  class Session;
+  void admit(Listener::Socket socket);
+  [[nodiscard]] Response answered(const Request& request);
+  [[nodiscard]] Response content(const Request& request, std::string_view target);
+  [[nodiscard]] Result<void> may_come(const Request& request);
+
+  asio::io_context& io_;
+  ConsoleConfig config_;
+  ConsoleSource source_;
+  drivers::Clock clock_;
+  RequestRate rate_;
+  ConsoleToken token_{ConsoleToken::random()};
+  std::optional<HostRule> rule_;
+  std::optional<Listener> listener_;
+  std::string address_;
+  std::set<std::shared_ptr<Session>> sessions_;
+};
+
+/// One connection: requests one after the other, until it closes or becomes a WebSocket.
+class ConsoleServer::State::Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(std::shared_ptr<State> server, Listener::Socket socket)
+      : server_(std::move(server)), from_(address_of(socket)), stream_(std::move(socket)) {}
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(kHeadLimit);
+    parser_->body_limit(0);
+    stream_.expires_after(kPatience);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code ec, std::size_t) {
+      if (ec) return self->read_failed(ec);
+      self->act(self->parser_->release());
+    });
+  }
+  void close() {
+    if (web_) return gone();
+    stream_.close();
+    server_->sessions_.erase(shared_from_this());
+  }
+
+ private:
+  void read_failed(error_code ec) {
+    if (ec == http::error::header_limit || ec == http::error::body_limit ||
+        ec == http::error::buffer_overflow) {
+      Response response{http::status::payload_too_large, 11};
+      response.body() = in_json({ErrorCode::bad_input, "a request has at most 8 kB and no body", ""});
+      return answer(std::move(response), "", false);
+    }
+    close();
+  }
+
+  void act(Request request) {
+    const std::string host(field(request, "Host").value_or(""));
+    if (beast::websocket::is_upgrade(request)) {
+      const std::string target(request.target().data(), request.target().size());
+      auto allowed = server_->may_come(request);
+      if (allowed && target == "/control") allowed = may_control();
+      if (!allowed) return answer(refusal(request, allowed.error()), host, false);
+      if (target == "/stream" || target == "/control")
+        return upgrade(std::move(request), target == "/control");
+    }
+    const bool keep_alive = request.keep_alive();
+    answer(server_->answered(request), host, keep_alive);
+  }
+
+  [[nodiscard]] Result<void> may_control() const {
+    if (server_->config_.control_from_network || (from_ && from_->is_loopback())) return {};
+    return fail(
+        ErrorCode::refused, "control is for browsers on the rig's computer",
+        "open a tunnel (ssh -L 7451:127.0.0.1:7451 RIG), or set control_from = \"network\" in [console]");
+  }
+
+  static Response refusal(const Request& request, const Error& why) {
+    Response response{http::status::forbidden, request.version()};
+    response.set(http::field::content_type, "application/json");
+    response.body() = in_json(why);
+    return response;
+  }
+
+  void answer(Response response, const std::string& host, bool keep_alive) {
+    forbid_all_else(response, host);
+    response.keep_alive(keep_alive);
+    response.prepare_payload();
+    response_ = std::move(response);
+    http::async_write(stream_, response_,
+                      [self = shared_from_this(), keep_alive](error_code ec, std::size_t) {
+                        if (ec || !keep_alive) return self->close();
+                        self->read();
+                      });
+  }
+
+  void upgrade(Request request, bool control) {
+    web_.emplace(std::move(stream_));
+    web_->set_option(beast::websocket::stream_base::timeout::suggested(beast::role_type::server));
+    request_ = std::move(request);
+    beast::get_lowest_layer(*web_).expires_after(kPatience);
+    web_->async_accept(request_, [self = shared_from_this(), control](error_code ec) {
+      if (ec) return self->gone();
+      if (control) return self->read_token();
+      self->server_->source_.stream(self->handed_over(kWatchLineLimit));
+    });
+  }
+
+  /// The first line of /control.
+  void read_token() {
+    web_->read_message_max(kTokenLine);
+    web_->async_read(buffer_, [self = shared_from_this()](error_code ec, std::size_t) {
+      if (ec) return self->gone();
+      const auto line = nlohmann::json::parse(beast::buffers_to_string(self->buffer_.data()), nullptr, false);
+      self->buffer_.consume(self->buffer_.size());
+      const bool right = line.is_object() && line.contains("token") && line["token"].is_string() &&
+                         self->server_->token_.is(line["token"].get_ref<const std::string&>());
+      if (!right) return self->refuse_token();
+      const std::string where = self->from_ ? self->from_->to_string() : std::string("this computer");
+      self->server_->source_.control(self->handed_over(kControlLineLimit), "the console, from " + where);
+    });
+  }
+
+  /// Late, so that guessing takes long.
+  void refuse_token() {
+    spdlog::warn("console: a wrong token from {}", from_ ? from_->to_string() : "an unknown place");
+    timer_.emplace(web_->get_executor(), kWrongTokenWait);
+    timer_->async_wait([self = shared_from_this()](error_code) {
+      self->text_ =
+          encode_reply(nullptr, fail(ErrorCode::refused, "the token is wrong: it is new at every start",
+                                     "open the address that mgt console prints")) +
+          '\n';
+      self->web_->text(true);
+      self->web_->async_write(asio::buffer(self->text_), [self](error_code, std::size_t) { self->gone(); });
+    });
+  }
+
+  /// The WebSocket belongs to whoever feeds it from here on.
+  [[nodiscard]] std::shared_ptr<WebPeer> handed_over(std::size_t line_limit) {
+    beast::get_lowest_layer(*web_).expires_never();
+    auto peer = std::make_shared<WebPeer>(std::move(*web_), line_limit);
+    web_.reset();
+    server_->sessions_.erase(shared_from_this());
+    return peer;
+  }
+
+  void gone() {
+    if (web_) beast::get_lowest_layer(*web_).close();
+    server_->sessions_.erase(shared_from_this());
+  }
+
+  std::shared_ptr<State> server_;
+  std::optional<asio::ip::address> from_;
+  Stream stream_;
+  beast::flat_buffer buffer_{kHeadLimit + 1024};
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  Response response_;
+  Request request_;
+  std::optional<WebStream> web_;
+  std::optional<asio::steady_timer> timer_;
+  std::string text_;
+};
+
+Result<void> ConsoleServer::State::start() {
+  if (config_.listen.empty()) return {};
+  auto listener = Listener::tcp(io_, config_.listen);
+  if (!listener) return tl::unexpected(listener.error());
+  const auto endpoint = config::parse_tcp_address(config_.listen);
+  std::vector<std::string> names = config_.hosts;
+  const std::string host = config_.listen.substr(0, config_.listen.rfind(':'));
+  if (endpoint && !endpoint->address().is_unspecified()) names.push_back(host);
+  rule_.emplace(listener->port(), names);
+  address_ = fmt::format("http://{}:{}/",
+                         endpoint && endpoint->address().is_unspecified() ? std::string("127.0.0.1") : host,
+                         listener->port());
+  listener_ = std::move(*listener);
+  listener_->start([weak = weak_from_this()](Listener::Socket socket) {
+    if (const auto self = weak.lock()) self->admit(std::move(socket));
+  });
+  return {};
+}
+
+void ConsoleServer::State::stop() {
+  listener_.reset();
+  address_.clear();
+  for (const auto& session : std::set(sessions_)) session->close();
+}
+
+void ConsoleServer::State::admit(Listener::Socket socket) {
+  if (sessions_.size() >= config_.max_connections) return;  // closed by going out of scope
+  const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket));
+  sessions_.insert(session);
+  session->read();
+}
+
+Result<void> ConsoleServer::State::may_come(const Request& request) { return rule_->admit(head_of(request)); }
+
+Response ConsoleServer::State::answered(const Request& request) {
+  const auto error = [&](http::status status, const Error& why) {
+    Response response{status, request.version()};
+    response.set(http::field::content_type, "application/json");
+    response.body() = in_json(why);
+    return response;
+  };
+  if (!rate_.admit(clock_.now().mono))
+    return error(http::status::too_many_requests,
+                 {ErrorCode::refused, "too many requests a second", "ask less often"});
+  if (auto allowed = may_come(request); !allowed) return error(http::status::forbidden, allowed.error());
+  if (request.method() != http::verb::get)
+    return error(http::status::method_not_allowed, {ErrorCode::bad_input, "only GET is answered", ""});
+  return content(request, {request.target().data(), request.target().size()});
+}
+
+Response ConsoleServer::State::content(const Request& request, std::string_view target) {
+  const std::string_view path = target.substr(0, target.find('?'));
+  const std::string_view query =
+      path.size() < target.size() ? target.substr(path.size() + 1) : std::string_view();
+  Response response{http::status::ok, request.version()};
+  const auto with = [&](std::string_view type, std::string body) {
+    response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+    response.body() = std::move(body);
+    return response;
+  };
+  constexpr std::string_view kJson = "application/json", kPages = "/page/";
+  if (path == "/api/hello") return with(kJson, source_.hello());
+  if (path == "/metrics") return with("text/plain; version=0.0.4", source_.metrics());
+  if (path == "/lane") {
+    auto lane = source_.lane(query);
+    if (lane) return with(kJson, *std::move(lane));
+    response.result(http::status::bad_request);
+    return with(kJson, in_json(lane.error()));
+  }
+  const std::string_view name = path == "/"                ? std::string_view("index.html")
+                                : path.starts_with(kPages) ? path.substr(kPages.size())
+                                                           : std::string_view();
+  if (const auto file = page_file(name)) return with(file->type, std::string(file->bytes));
+  response.result(http::status::not_found);
+  return with(kJson, in_json({ErrorCode::bad_input, "there is nothing at this address", "the page is at /"}));
+}
+
+ConsoleServer::ConsoleServer(asio::io_context& io, ConsoleConfig config, ConsoleSource source)
+    : state_(std::make_shared<State>(io, std::move(config), std::move(source))) {}
+ConsoleServer::~ConsoleServer() { state_->stop(); }
+Result<void> ConsoleServer::start() { return state_->start(); }
+void ConsoleServer::stop() { state_->stop(); }
+std::string ConsoleServer::address() const { return state_->address(); }
+const ConsoleToken& ConsoleServer::token() const { return state_->token(); }
+
+}  // namespace mgtd::daemon::serve::console

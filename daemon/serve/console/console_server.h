@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/serve/console/console_token.h"
+#include "daemon/serve/peer.h"
+#include "daemon/serve/request_rate.h"
+#include "proto/error.h"
+
+/// The console server answers browsers, on the daemon's io_context:
+///
+///     GET /, /page/NAME        the page, compiled in
+///     GET /api/hello           what the page has to know before anything else, JSON
+///     GET /metrics             Prometheus text
+///     GET /lane?...            history of one channel (lane_request.h)
+///     WebSocket /stream        the lines of the live stream, as on its own sockets
+///     WebSocket /control       the lines of the control socket, after a first line {"token":".."}
+///
+/// Who is answered: host_rule.h for every request; control needs the token and, unless the configuration
+/// allows the network, a browser on this computer. Answers forbid the page everything but itself (Content
+/// Security Policy, trusted types). There is no cookie, so no page of others can ride on one.
+///
+/// Requests have 8 kB and ten seconds; connections and their rate are limited; a peer that does not read is
+/// dropped by the server that feeds it. Everything runs on the io_context's thread; the server must not
+/// outlive the io_context.
+namespace mgtd::daemon::serve::console {
+
+struct ConsoleConfig {
+  std::string listen{"127.0.0.1:7451"};  ///< empty: no console
+  std::vector<std::string> hosts{};      ///< further names under which it is reached
+  bool control_from_network{false};      ///< else from this computer alone
+  std::size_t max_connections{48};
+  RateLimit rate{.per_s = 20, .burst = 200};  ///< of requests, all clients together
+};
+
+/// What the owner answers.
+struct ConsoleSource {
+  std::function<std::string()> hello, metrics;
+  std::function<Result<std::string>(std::string_view query)> lane;
+  std::function<void(std::shared_ptr<Peer>)> stream;
+  std::function<void(std::shared_ptr<Peer>, std::string via)> control;
+};
+
+class ConsoleServer {
+ public:
+  ConsoleServer(boost::asio::io_context& io, ConsoleConfig config, ConsoleSource source);
+  ~ConsoleServer();
+  ConsoleServer(const ConsoleServer&) = delete;
+  ConsoleServer& operator=(const ConsoleServer&) = delete;
+
+  /// Binds and listens; nothing where the configuration names no address.
+  [[nodiscard]] Result<void> start();
+  void stop();
+
+  /// "http://127.0.0.1:7451/"; empty while it does not listen.
+  [[nodiscard]] std::string address() const;
+  [[nodiscard]] const ConsoleToken& token() const;
+
+ private:
+  class State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace mgtd::daemon::serve::console

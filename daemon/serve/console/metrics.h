@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "proto/status_report.h"
+
+namespace mgtd::daemon::serve::console {
+
+/// The status in the text format of Prometheus (exposition format 0.0.4): what a collector asks at /metrics.
+/// Names begin with mgtd_, units are in the names, counters end in _total. Nothing that is not known appears.
+[[nodiscard]] std::string metrics(const StatusReport& report);
+
+}  // namespace mgtd::daemon::serve::console

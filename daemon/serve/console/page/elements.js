@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elements with text: whatever a rig, a column or a file is called reaches the page as text alone.
+
+export const by = (id) => document.getElementById(id);
+
+export function make(tag, options = {}, ...children) {
+  const out = document.createElement(tag);
+  for (const [key, value] of Object.entries(options)) {
+    if (key === "class") out.className = value;
+    else if (key.startsWith("on")) out.addEventListener(key.slice(2), value);
+    else if (value !== null && value !== undefined && value !== false) out.setAttribute(key, value === true ? "" : value);
+  }
+  for (const child of children.flat()) if (child !== null && child !== undefined) out.append(child);
+  return out;
+}
+
+export function fill(element, ...children) { element.replaceChildren(...children.flat().filter((c) => c !== null && c !== undefined)); }
+
+/** Rows of a table: the first one its head; numbers to the right. */
+export function rows(head, body) {
+  const cell = (tag) => (value) => {
+    const node = value instanceof Node;
+    const isNumber = typeof value === "number" || (typeof value === "string" && /^-?\d+\.\d+( ± \S+)?$/.test(value));
+    return make(tag, { class: isNumber ? "number" : "", scope: tag === "th" ? "col" : null }, node ? value : String(value ?? ""));
+  };
+  return [make("thead", {}, make("tr", {}, head.map(cell("th")))),
+          make("tbody", {}, body.map((row) => make("tr", {}, row.map(cell("td")))))];
+}
+
+export function table(caption, head, body) { return make("table", {}, make("caption", {}, caption), rows(head, body)); }

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+import { cards } from "./cards.js";
+import { by, fill, make, rows } from "./elements.js";
+import { Lanes, windows } from "./lanes.js";
+import { Control, openStream, takeToken } from "./link.js";
+import { active, chip, showRun, wanted } from "./run.js";
+
+const control = new Control(takeToken());
+const lanes = new Lanes(by("canvas"), (text) => { by("cursor").textContent = text; });
+let status = null, run = null, sample = null, sampled_ms = 0, screen = "live", alarms = 0, judged = 0;
+
+function banner(text, note = false) {
+  by("banner").textContent = text;
+  by("banner").className = note ? "note" : "";
+  by("banner").hidden = !text;
+}
+const inWords = (error) => `${error.message ?? error}${error.remedy ? `: ${error.remedy}` : ""}`;
+
+/** Asks the daemon to do something; what it refuses is said in its own words. */
+async function act(cmd, args = {}) {
+  try {
+    const result = await control.ask(cmd, args);
+    banner("");
+    if (cmd === "calibrations.accept" || cmd === "calibrations.rollback") listCalibrations();
+    return result;
+  } catch (error) {
+    banner(inWords(error), true);
+    return null;
+  }
+}
+
+function show(name) {
+  screen = name;
+  for (const id of ["live", "run", "calibrations"]) {
+    by(id).hidden = id !== name;
+    id === name ? by(`tab-${id}`).setAttribute("aria-current", "page") : by(`tab-${id}`).removeAttribute("aria-current");
+  }
+  if (name === "calibrations") listCalibrations();
+  if (name === "live") lanes.redraw();
+}
+
+async function listCalibrations() {
+  if (!control.possible) {
+    fill(by("calibration-list"), make("caption", {}, "The list needs the token: open the address that mgt console prints"));
+    return;
+  }
+  const list = await act("calibrations.list").catch(() => null);
+  if (!list) return;
+  const button = (c) => (c.state === "active" ? "" : make("button", { onclick: () => act("calibrations.accept", { id: c.id }) }, "Accept"));
+  fill(by("calibration-list"), make("caption", {}, list.calibrations.length ? "Calibrations, newest first" : "No calibration yet: a run proposes one"),
+       rows(["id", "state", "since", "from", ""], list.calibrations.map((c) => [c.id, c.state + (c.forced ? ", forced" : ""), c.since, c.origin, button(c)])));
+}
+
+const kGradient = ["xx", "yy", "zz", "xy", "xz", "yz"];
+/** What this array can tell, and no more. */
+function channelsOf(array, inputs) {
+  const gradient = kGradient.filter((c) => array.gradient.includes(c)).map((c) => ({ name: c, label: `G${c}`, unit: "nT/m", least_span: 0.5 }));
+  const field = ["bx", "by", "bz"].map((b) => ({ name: b, label: `B${b[1]}`, unit: "nT", least_span: 0.5 }));
+  const closure = array.closure > 0 ? [{ name: "chi2", label: "closure χ²", unit: "", least_span: 20 }] : [];
+  const heads = inputs.filter((i) => i.unit === "degC").slice(0, 1).map((i) => ({ name: i.name, label: i.name, unit: "degC", least_span: 0.2 }));
+  return [...gradient, ...field, { name: "f", label: "F", unit: "nT", least_span: 0.5 }, ...closure, ...heads];
+}
+
+function takeSample(message) {
+  sample = message;
+  const t_s = message.t_ns / 1e9;
+  lanes.endGap(t_s);
+  const values = { f: message.f_nT, bx: message.b_nT[0], by: message.b_nT[1], bz: message.b_nT[2], chi2: message.closure.chi2,
+                   ...message.g_nT_per_m, ...(message.inputs ?? {}) };
+  lanes.add(t_s, values);
+  if (message.closure.chi2 !== null) { judged += 1; alarms += message.closure.chi2 > 18.5 ? 1 : 0; }
+  const now = performance.now();
+  if (now - sampled_ms < 250 || screen !== "live" || !status) return;
+  sampled_ms = now;
+  fill(by("cards"), cards(status, sample));
+}
+
+function takeStatus(message) {
+  status = message;
+  by("rig").textContent = message.rig;
+  by("calibration").textContent = message.cal === null ? "no calibration: the stream is raw" : `calibration ${message.cal}${message.calibration.forced ? ", forced" : ""}`;
+  by("calibration").className = message.cal === null || message.calibration.forced ? "warn" : "";
+  lanes.channels = channelsOf(message.array, message.inputs);
+  const holder = message.control.holder;
+  by("who").textContent = `${message.software}. ${message.array.sensors} sensor${message.array.sensors > 1 ? "s" : ""}: ${message.array.tells}. ` +
+    (holder ? `Control is with ${holder.via || `pid ${holder.pid}`}${holder.why ? `: ${holder.why}` : ""}.` : "Nobody has control.") +
+    (control.possible ? "" : " This page may look; mgt console prints the address with which it may control.");
+  by("caption").textContent = judged > 0 && message.array.closure === 4
+    ? `A good stream has no hatching, and a closure χ² above 18.5 (of four numbers) in one sample of a thousand; since this page was opened ${(1000 * alarms / judged).toFixed(1)} of a thousand.`
+    : "A good stream has no hatching: what was not measured is hatched, with its reason.";
+  if (!sample) fill(by("cards"), cards(status, null));
+  takeRun(message.run);
+}
+
+function takeRun(message) {
+  run = message;
+  const on = active(run);
+  by("chip").hidden = by("stops").hidden = !on;
+  by("pause").disabled = by("abort").disabled = !control.possible;
+  if (on) by("chip").textContent = chip(run);
+  document.title = on ? `${run.pose}/${run.poses} ${status?.rig ?? "mgtd"}` : `${status?.rig ?? "mgtd"}`;
+  by("run-form").hidden = on;
+  by("start").disabled = !control.possible;
+  showRun(run, act);
+}
+
+openStream({
+  message: (message) => {
+    if (message.class === "TENSOR") takeSample(message);
+    else if (message.class === "GAP") lanes.gap(message.why);
+    else if (message.class === "STATUS") takeStatus(message);
+    else if (message.class === "RUN") takeRun(message);
+  },
+  state: (state, since) => {
+    const at = since ? since.toISOString().slice(11, 19) + "Z" : "";
+    by("link").textContent = { live: "live", stale: `stale: no word since ${at}`, gone: at ? `no connection since ${at}` : "no connection" }[state];
+    by("link").className = state === "live" ? "good" : "bad";
+    document.body.classList.toggle("stale", state !== "live");
+    if (state !== "live") document.title = `! ${status?.rig ?? "mgtd"}`;
+    banner(state === "gone" ? "The daemon does not answer; what is shown is old. A run goes on without this page. This page connects again by itself." : "");
+  },
+});
+
+for (const name of ["live", "run", "calibrations"]) by(`tab-${name}`).addEventListener("click", () => show(name));
+for (const [label, seconds] of windows) {
+  const button = make("button", { "aria-pressed": String(seconds === lanes.window_s), onclick: () => {
+    lanes.window_s = seconds;
+    for (const other of by("windows").children) other.setAttribute("aria-pressed", String(other === button));
+  } }, label);
+  by("windows").append(button);
+}
+by("pause").addEventListener("click", () => act("run.pause"));
+by("abort").addEventListener("click", () => { if (confirm("Abort the run? Its poses stay on disk.")) act("run.abort"); });
+by("rollback").addEventListener("click", () => { if (confirm("Roll back to the calibration before?")) act("calibrations.rollback"); });
+by("look").addEventListener("click", async () => {
+  const plan = await act("run.dry-run", wanted(by("run-form")));
+  if (plan) by("plan").textContent = `${plan.poses} poses, ${Math.round(plan.minutes)} minutes.`;
+});
+by("run-form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  if (confirm("Start the run? The table moves at once.")) act("run.start", wanted(event.target));
+});
+const kThemes = ["", "light", "dark", "sun"];
+by("theme").addEventListener("click", () => {
+  const next = kThemes[(kThemes.indexOf(document.documentElement.dataset.theme ?? "") + 1) % kThemes.length];
+  next ? (document.documentElement.dataset.theme = next) : delete document.documentElement.dataset.theme;
+  by("theme").textContent = `Theme${next ? `: ${next}` : ""}`;
+  lanes.redraw();
+});
+show("live");
+document.body.dataset.ready = "";

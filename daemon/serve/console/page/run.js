@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The screen of a run: what it does, what it asks a person for, its checks, and the form that begins one.
+import { by, fill, make, rows } from "./elements.js";
+
+const kEnded = new Set(["idle", "done", "rejected", "aborted", "failed", "interrupted"]);
+export const active = (run) => Boolean(run && run.run_id && !kEnded.has(run.state));
+const minutes = (s) => (s === null ? "" : s < 90 ? `${Math.round(s)} s` : `${Math.round(s / 60)} min`);
+
+export function chip(run) {
+  return `${run.state} ${run.pose}/${run.poses}${run.remaining_s ? `, ${minutes(run.remaining_s)} left` : ""}`;
+}
+
+function progress(run) {
+  if (!run || !run.run_id) return [make("h2", {}, "No run yet"), make("p", {}, "A run turns the table through its poses, fits, and proposes a calibration. Nothing changes until a person accepts it.")];
+  const accuracy = run.tensor_sd_nT_per_m === null ? null
+    : make("p", {}, `The calibration knows the worst component to ${run.tensor_sd_nT_per_m.toFixed(2)} nT/m by now` +
+        (run.wanted_tensor_sd_nT_per_m === null ? "." : `; ${run.wanted_tensor_sd_nT_per_m} nT/m is wanted.`));
+  return [make("h2", {}, `Run ${run.run_id}: ${run.state}`), make("progress", { max: run.poses || 1, value: run.pose }),
+          make("p", {}, `${run.pose} of ${run.poses} poses${run.set ? `, set ${run.set}` : ""}${run.remaining_s ? `, ${minutes(run.remaining_s)} left` : ""}` +
+               `${run.retries ? `, ${run.retries} repeated` : ""}`),
+          make("p", {}, run.message), accuracy];
+}
+
+/** A hand-turned table: what to do now, and three numbers. */
+function asking(run, act) {
+  const prompt = run.prompt;
+  if (!prompt) return [];
+  const field = (name) => make("label", {}, `${name} `, make("input", { type: "number", step: "0.1", name, required: true,
+                                                                        value: prompt.target[`${name}_deg`] }), " deg");
+  const form = make("form", { onsubmit: (event) => {
+    event.preventDefault();
+    const read = (name) => Number(event.target.elements[name].value);
+    act("run.enter", { azimuth_deg: read("azimuth"), pitch_deg: read("pitch"), roll_deg: read("roll") });
+  } }, ["azimuth", "pitch", "roll"].map(field), make("button", {}, "The scales say this"),
+                    make("button", { type: "button", onclick: () => act("run.redo") }, "The last entry was wrong"));
+  if (prompt.what === "note") return [make("p", {}, prompt.text), make("button", { onclick: () => act("run.resume") }, "Done")];
+  return [make("p", {}, prompt.text), prompt.again ? make("p", { class: "warn" }, `Asked again: ${prompt.again}`) : null, form];
+}
+
+let shownPrompt = "";
+export function showRun(run, act) {
+  fill(by("run-now"), progress(run), run?.proposed
+    ? make("p", {}, make("button", { onclick: () => act("calibrations.accept", { id: run.proposed }) }, `Accept calibration ${run.proposed}`),
+           " It becomes active at once; roll back returns to the one before.")
+    : null,
+       run?.state === "paused" ? make("button", { onclick: () => act("run.resume") }, "Resume") : null);
+  const prompt = JSON.stringify(run?.prompt ?? null);
+  if (prompt !== shownPrompt) {  // what a person types is not overwritten
+    shownPrompt = prompt;
+    fill(by("run-asking"), asking(run ?? {}, act));
+    by("run-asking").className = "card asking";
+    by("run-asking").hidden = !run?.prompt;
+  }
+  const checks = [...(run?.checks ?? [])].sort((a, b) => a.passed - b.passed);
+  by("checks").hidden = checks.length === 0;
+  fill(by("checks"), make("caption", {}, "Checks: the failed ones first"),
+       rows(["", "check", "measured", "limit", "what to do"],
+            checks.map((c) => [make("span", { class: c.passed ? "good" : "bad" }, c.passed ? "passed" : "failed"), c.name, c.measured, c.limit, c.remedy])));
+}
+
+export function wanted(form) {
+  const read = (name) => Number(form.elements[name].value);
+  return { step_deg: read("step_deg"), random: read("random"), revisits: read("revisits"), dwell_short_s: read("dwell_short_s"),
+           dwell_long_s: read("dwell_long_s") };
+}
