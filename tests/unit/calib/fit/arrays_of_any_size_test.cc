@@ -93,7 +93,7 @@ TEST(ArraysOfAnySize, WhatTheArrayCannotTellIsAbsent) {
   EXPECT_EQ(std::count(header.begin(), header.end(), ','),
             std::count(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(row.find('\n')), ','));
   EXPECT_THAT(header, HasSubstr("s2_bz_nT,Bx_nT"));
-  EXPECT_THAT(header, HasSubstr("Gxx_nT_per_m,Gxy_nT_per_m,Gxz_nT_per_m,Gxx_sd"));
+  EXPECT_THAT(header, HasSubstr("Gxx_nT_per_m,Gxy_nT_per_m,Gxz_nT_per_m,dBx_nT_per_m"));
   EXPECT_THAT(csv, Not(HasSubstr("nan")));
   const fit::FitReport one = fitted(testing::turned_run(testing::one_sensor(), 3), testing::one_sensor());
   EXPECT_THAT(report::to_text(one), Not(HasSubstr("tensor, nT/m")));
