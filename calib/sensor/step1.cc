@@ -5,7 +5,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/linear/ldlt.h"
 #include "calib/linear/qr.h"
@@ -50,6 +52,65 @@ void accumulate(const Eigen::Matrix3Xd& z, Normal& normal, Unknowns& right) {
   normal.triangularView<Eigen::StrictlyUpper>() = normal.transpose();
 }
 
+/// From so many poses on the columns are summed product by product: the same sums in another order, in a
+/// third of the time.
+constexpr Eigen::Index kMany = 2000;
+
+using Entry = std::pair<int, int>;
+
+/// The entry of the normal matrix, lower triangle, that holds the same monomial as (i, j) and comes first:
+/// the 45 products of the nine columns are 34 different ones.
+constexpr Entry first_with_monomial_of(int i, int j) {
+  constexpr int kPowers[kUnknowns][3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0}, {0, 2, 0},
+                                      {0, 0, 2}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}};
+  const auto same = [&](int k, int l) {
+    for (int a = 0; a < 3; ++a)
+      if (kPowers[i][a] + kPowers[j][a] != kPowers[k][a] + kPowers[l][a]) return false;
+    return true;
+  };
+  for (int k = 0; k < kUnknowns; ++k)
+    for (int l = 0; l <= k; ++l)
+      if (same(k, l)) return {k, l};
+  return {i, j};
+}
+
+/// What accumulate() gives for z = (y - mean) / scale, in blocks of columns that stay in the cache.
+void accumulate_many(const Eigen::Matrix3Xd& y, const Eigen::Vector3d& mean, double scale, Normal& normal,
+                     Unknowns& right) {
+  constexpr Eigen::Index kBlock = 256, kLanes = 8;
+  using Lanes = Eigen::Array<double, kLanes, 1>;
+  Eigen::Array<double, kBlock, kUnknowns> d;
+  normal.setZero();
+  right.setZero();
+  for (Eigen::Index from = 0; from < y.cols(); from += kBlock) {
+    const Eigen::Index n = std::min(kBlock, y.cols() - from);
+    if (n < kBlock) d.setZero();
+    for (int a = 0; a < 3; ++a)
+      d.col(a).head(n) = (y.row(a).segment(from, n).transpose().array() - mean[a]) / scale;
+    for (int a = 0; a < 3; ++a) d.col(3 + a) = d.col(a) * d.col(a);
+    d.col(6) = d.col(0) * d.col(1);
+    d.col(7) = d.col(0) * d.col(2);
+    d.col(8) = d.col(1) * d.col(2);
+    for (int i = 0; i < kUnknowns; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        if (first_with_monomial_of(i, j) != Entry{i, j}) continue;
+        Lanes sum = Lanes::Zero();
+        for (Eigen::Index k = 0; k < kBlock; k += kLanes)
+          sum += d.col(i).segment<kLanes>(k) * d.col(j).segment<kLanes>(k);
+        normal(i, j) += sum.sum();
+      }
+    }
+    right.head<3>() += d.leftCols<3>().colwise().sum().matrix().transpose();
+  }
+  for (int i = 0; i < kUnknowns; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const auto [k, l] = first_with_monomial_of(i, j);
+      normal(i, j) = normal(j, i) = normal(k, l);
+    }
+  }
+  right.tail<6>() << normal(0, 0), normal(1, 1), normal(2, 2), normal(1, 0), normal(2, 0), normal(2, 1);
+}
+
 /// Condition of the columns once each has unit length: square root of that of the normal matrix.
 double condition_of(const Normal& normal, const Unknowns& lengths) {
   const Normal unit = lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal();
@@ -74,23 +135,21 @@ Result<ScalarCalibration> ellipsoid_of(const Unknowns& w) {
   return out;
 }
 
-Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f_nT) {
-  const Eigen::Vector3d mean = y.rowwise().mean();
-  Eigen::Matrix3Xd z = y.colwise() - mean;
-  const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(y.cols());
-  const Eigen::Vector3d spread = linear::principal_axes(scatter).values.cwiseMax(0).cwiseSqrt();
-  if (!(spread[0] > kMinFlatness * spread[2])) {
-    return fail(ErrorCode::refused,
-                fmt::format("the readings lie on a plane: they spread {:.4g} nT across it and {:.4g} nT "
-                            "along it, {:.3g} of it; "
-                            "{} is needed",
-                            spread[0], spread[2], spread[0] / spread[2], kMinFlatness),
-                fmt::format("poses about one axis only do not determine a sensor: {}", kTurnMore));
-  }
-  z /= spread[2];
-  Normal normal;
-  Unknowns right;
-  accumulate(z, normal, right);
+/// Refuses readings on a plane; gives the widest of their three spreads, nT.
+Result<double> widest_spread(const Eigen::Matrix3d& scatter_nT2) {
+  const Eigen::Vector3d spread = linear::principal_axes(scatter_nT2).values.cwiseMax(0).cwiseSqrt();
+  if (spread[0] > kMinFlatness * spread[2]) return spread[2];
+  return fail(ErrorCode::refused,
+              fmt::format("the readings lie on a plane: they spread {:.4g} nT across it and {:.4g} nT "
+                          "along it, {:.3g} of it; "
+                          "{} is needed",
+                          spread[0], spread[2], spread[0] / spread[2], kMinFlatness),
+              fmt::format("poses about one axis only do not determine a sensor: {}", kTurnMore));
+}
+
+/// From the normal equations of the nine columns in (y - mean) / scale.
+Result<ScalarCalibration> solved(const Normal& normal, const Unknowns& right, const Eigen::Vector3d& mean_nT,
+                                 double scale_nT, double f_nT) {
   const Unknowns lengths = normal.diagonal().cwiseSqrt();
   const double condition = condition_of(normal, lengths);
   if (!(condition < kMaxCondition)) {
@@ -103,10 +162,37 @@ Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f
       Eigen::VectorXd(right.cwiseQuotient(lengths)));
   auto out = ellipsoid_of(scaled.cwiseQuotient(lengths));
   if (!out) return out;
-  out->K *= f_nT / spread[2];
-  out->offset_nT = mean + spread[2] * out->offset_nT;
+  out->K *= f_nT / scale_nT;
+  out->offset_nT = mean_nT + scale_nT * out->offset_nT;
   out->condition = condition;
   return out;
+}
+
+Result<ScalarCalibration> fit_many(const Eigen::Matrix3Xd& y, double f_nT) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = 0; k < y.cols(); ++k) mean += y.col(k);
+  mean /= static_cast<double>(y.cols());
+  Normal normal;
+  Unknowns right;
+  accumulate_many(y, mean, f_nT, normal, right);
+  const auto spread =
+      widest_spread(normal.topLeftCorner<3, 3>() * (f_nT * f_nT / static_cast<double>(y.cols())));
+  if (!spread) return tl::unexpected(spread.error());
+  return solved(normal, right, mean, f_nT, f_nT);
+}
+
+Result<ScalarCalibration> fit_constant_field(const Eigen::Matrix3Xd& y, double f_nT) {
+  if (y.cols() >= kMany) return fit_many(y, f_nT);
+  const Eigen::Vector3d mean = y.rowwise().mean();
+  Eigen::Matrix3Xd z = y.colwise() - mean;
+  const Eigen::Matrix3d scatter = z * z.transpose() / static_cast<double>(y.cols());
+  const auto spread = widest_spread(scatter);
+  if (!spread) return tl::unexpected(spread.error());
+  z /= *spread;
+  Normal normal;
+  Unknowns right;
+  accumulate(z, normal, right);
+  return solved(normal, right, mean, *spread, f_nT);
 }
 
 Result<void> enough(const Eigen::Matrix3Xd& y) {

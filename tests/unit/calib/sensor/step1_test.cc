@@ -112,6 +112,36 @@ TEST(Step1, AFieldThatChangesFromPoseToPoseIsFollowed) {
   expect_truth(*got, truth, 1e-9, 1e-4);
 }
 
+/// Many poses are summed in another order: the same poses twice must give what they give once.
+TEST(Step1, ManyPosesGiveWhatFewGive) {
+  const PoseTable table =
+      testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(1464, 1), 36,
+                       {Noise::Kind::gaussian, 1, 0}, 3);
+  const Data once = data_of(table, 1);
+  const Eigen::Index n = once.y_nT.cols();
+  ASSERT_EQ(n, 1500);
+  Data twice{Eigen::Matrix3Xd(3, 2 * n), Eigen::VectorXd(2 * n)};
+  twice.y_nT << once.y_nT, once.y_nT;
+  twice.f_nT << once.f_nT, once.f_nT;
+  const auto few = scalar_calibration(once.y_nT, once.f_nT),
+             many = scalar_calibration(twice.y_nT, twice.f_nT);
+  ASSERT_TRUE(few && many);
+  EXPECT_LT((few->K - many->K).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((few->offset_nT - many->offset_nT).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_NEAR(few->condition, many->condition, 1e-9 * few->condition);
+}
+
+TEST(Step1, ManyPosesAboutOneAxisAreRefusedToo) {
+  const PoseTable table =
+      testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
+                       {Noise::Kind::gaussian, 1, 0.1}, 1);
+  const Data level = data_of(table, 0);
+  const Data many{level.y_nT.replicate(1, 60), level.f_nT.replicate(60, 1)};
+  const auto got = scalar_calibration(many.y_nT, many.f_nT);
+  ASSERT_FALSE(got);
+  EXPECT_THAT(got.error().text(), HasSubstr("the readings lie on a plane"));
+}
+
 TEST(Step1, PosesAboutOneAxisAreRefusedWithTheSpread) {
   PoseTable table = testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
                                      {Noise::Kind::gaussian, 1, 0.1}, 1);
