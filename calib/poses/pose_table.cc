@@ -313,6 +313,10 @@ Result<PoseTable> Reader::read() {
   PoseTable table;
   table.source = file_;
   std::map<int, std::size_t> line_of_pose;
+  // A pose is large and a recording has tens of thousands: they are not moved as they become more. A row has
+  // at least a character for each column.
+  table.poses.reserve(std::min(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')) + 1,
+                               text_.size() / names_.size() + 1));
   while (next_line()) {
     auto pose = read_row(cells_of(line_));
     if (!pose) return tl::unexpected(pose.error());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/fit/joint/without_poses.h"
 #include "calib/linear/cholesky.h"
 #include "calib/stats/probability.h"
 
@@ -15,15 +16,24 @@ namespace {
 constexpr double kByNoise = 16;
 
 /// With S and g of all poses and S_k, g_k of one, the fit without it moves by (S - S_k)^-1 (g - g_k).
+///
+/// With A the whitened rows of the pose by the fixed block, its own unknowns projected out, e its residual
+/// and H = A S^-1 A', that is e' H (I - H)^-1 e in variance, and noise does trace H (I - H)^-1 of it. The
+/// first is at most e'e times the second, and e'e at most what the pose costs: one that costs little has no
+/// influence worth saying and need not be asked.
 void influence_of_poses(const JointFit& fit, Agreement& out) {
+  constexpr double kRounding = 0.99;
+  const double scale = fit.noise_inflation / fit.birge_ratio;
   const Eigen::MatrixXd S = reduce(fit.problem, fit.state, 0).S;
-  JointProblem alone = fit.problem;
-  alone.priors.clear();
-  alone.known_inclination_rad.reset(), alone.known_declination_rad.reset();
+  JointProblem alone = without_poses_and_priors(fit.problem);
   alone.poses.resize(1);
-  JointState at = fit.state;
+  JointState at = without_poses(fit.state);
   at.nuisances.resize(1);
+  const PoseModel model(fit.problem, fit.state);
+  PoseBlocks b;
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
+    assemble(fit.problem, model, fit.state, k, false, b);
+    if (b.cost.total() * scale * scale < kRounding * kByNoise) continue;
     alone.poses.front() = fit.problem.poses[k];
     at.nuisances.front() = fit.state.nuisances[k];
     const Reduced own = reduce(alone, at, 0);
@@ -32,7 +42,7 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
       if (S(i, i) == 1 && own.S(i, i) == 1) others(i, i) = 1;  // held slots stay held
     const auto information = linear::Cholesky::of(others);
     if (!information) continue;
-    const double moved = information->squared_length(own.g * (fit.noise_inflation / fit.birge_ratio));
+    const double moved = information->squared_length(own.g * scale);
     const double by_noise = information->solve(own.S).trace();
     const double size = std::sqrt(moved / static_cast<double>(S.rows()));
     if (moved > kByNoise * by_noise && size > out.moved)

@@ -2,6 +2,7 @@
 #include "calib/fit/joint/cross_validation.h"
 
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/fit/joint/without_poses.h"
 #include "calib/linear/cholesky.h"
 
 namespace mgtd::calib::fit::joint {
@@ -16,10 +17,8 @@ struct Fold {
 Fold fold_of(const JointFit& fit, std::size_t k) {
   const std::size_t n = fit.problem.poses.size(), from = k * n / kFolds, to = (k + 1) * n / kFolds;
   const auto at = [](auto& x, std::size_t i) { return x.begin() + static_cast<std::ptrdiff_t>(i); };
-  Fold out{.problem = fit.problem, .state = fit.state, .share = {}};
+  Fold out{.problem = without_poses_and_priors(fit.problem), .state = without_poses(fit.state), .share = {}};
   out.problem.poses.assign(at(fit.problem.poses, from), at(fit.problem.poses, to));
-  out.problem.priors.clear();
-  out.problem.known_inclination_rad.reset(), out.problem.known_declination_rad.reset();
   out.state.nuisances.assign(at(fit.state.nuisances, from), at(fit.state.nuisances, to));
   out.share = reduce(out.problem, out.state, 0);
   return out;
@@ -27,9 +26,9 @@ Fold fold_of(const JointFit& fit, std::size_t k) {
 
 }  // namespace
 
-std::optional<double> left_out_nT(const JointFit& fit) {
+bool for_each_fold_left_out(
+    const JointFit& fit, const std::function<void(const JointProblem& fold, const JointState& state)>& use) {
   const Reduced all = reduce(fit.problem, fit.state, 0);
-  PoseResiduals sums;
   for (std::size_t k = 0; k < kFolds; ++k) {
     Fold fold = fold_of(fit, k);
     // Slots that nothing observes are held by a unit in both: they stay held.
@@ -37,13 +36,21 @@ std::optional<double> left_out_nT(const JointFit& fit) {
     for (Eigen::Index i = 0; i < S.rows(); ++i)
       if (all.S(i, i) == 1 && fold.share.S(i, i) == 1) S(i, i) = 1;
     const auto information = linear::Cholesky::of(S);
-    if (!information) return std::nullopt;
+    if (!information) return false;
     JointState moved = fold.state.moved(information->solve(Eigen::VectorXd(all.g - fold.share.g)));
     refit_nuisances(fold.problem, moved);
-    const PoseResiduals more = pose_residuals(fold.problem, moved);
-    sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;
+    use(fold.problem, moved);
   }
-  return sums.readings > 0 ? std::optional(sums.unseen_nT()) : std::nullopt;
+  return true;
+}
+
+std::optional<double> left_out_nT(const JointFit& fit) {
+  PoseResiduals sums;
+  const bool all = for_each_fold_left_out(fit, [&](const JointProblem& fold, const JointState& state) {
+    const PoseResiduals more = pose_residuals(fold, state);
+    sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;
+  });
+  return all && sums.readings > 0 ? std::optional(sums.unseen_nT()) : std::nullopt;
 }
 
 }  // namespace mgtd::calib::fit::joint

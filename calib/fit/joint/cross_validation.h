@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "calib/fit/joint/joint_fit.h"
 
-namespace mgtd::calib::fit::joint {
-
-/// Residual (PoseResiduals::unseen_nT) on poses that were left out, nT: ten folds contiguous in time, the
-/// fixed block fitted to the others, each left-out pose with its own best field and attitude.
+/// Cross-validation in one step: what the poses of a fold are missed by when the others alone are fitted. Ten
+/// folds, contiguous in time.
 ///
 /// The fit without a fold is one Gauss-Newton step from the fit with it: with S and g the normal equations of
 /// all and S_k, g_k the share of the fold, (S - S_k) dx = g - g_k. One pass over the poses serves all folds,
-/// where held_out_errors() fits ten times. Empty where a fold cannot be left out.
+/// where fitting ten times needs some thirty.
+namespace mgtd::calib::fit::joint {
+
+/// Calls `use` with the poses of each fold in turn and the state that the others give them: the fixed block
+/// one step on, each pose with its own best field and attitude. False where a fold cannot be left out; the
+/// folds before it have been used then.
+[[nodiscard]] bool for_each_fold_left_out(
+    const JointFit& fit, const std::function<void(const JointProblem& fold, const JointState& state)>& use);
+
+/// Residual (PoseResiduals::unseen_nT) on poses that were left out, nT. Empty where a fold cannot be left
+/// out.
 [[nodiscard]] std::optional<double> left_out_nT(const JointFit& fit);
 
 }  // namespace mgtd::calib::fit::joint

@@ -4,7 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include "calib/fit/joint/joint_solver.h"
+#include "calib/fit/joint/joint_cost.h"
+#include "calib/fit/joint/unrolled_channels.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -43,6 +44,14 @@ void add_priors(const JointProblem& problem, const JointState& state, Reduced& o
     out.cost.priors += r * r;
   }
   if (problem.has_angles) add_direction_prior(problem, state.direction, out);
+}
+
+/// Adds what one pose costs; what the priors cost is no pose's.
+void add_cost(const JointCost& pose, JointCost& sum) {
+  sum.readings += pose.readings;
+  sum.scalar += pose.scalar;
+  sum.attitude += pose.attitude;
+  sum.reference += pose.reference;
 }
 
 void scalar_row(const JointProblem& problem, const JointState& state, const JointPose& pose,
@@ -113,7 +122,7 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   out.residual = pose.weight.cwiseProduct(pose.y_nT - out.linear.y_nT);
   scalar_row(problem, state, pose, out.linear, out.scalar);
   out.N = pose.weight.asDiagonal() * out.linear.d_nuisance;
-  sensor::over_channels(out.residual.size(), [&](auto rows) {
+  over_unrolled_channels(out.residual.size(), [&](auto rows) {
     const auto N = out.N.topRows(rows);
     const auto residual = out.residual.head(rows);
     out.H = N.transpose().lazyProduct(N);
@@ -151,7 +160,7 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
         out.linear.d_sensor.middleRows<3>(3 * i).transpose().lazyProduct(wN);
   }
   const sensor::ChannelRows<kNuisances> wN = pose.weight.asDiagonal() * out.N;
-  sensor::over_channels(wN.rows(), [&](auto rows) {
+  over_unrolled_channels(wN.rows(), [&](auto rows) {
     out.U.bottomRows(globals) = out.linear.d_global.topRows(rows).transpose().lazyProduct(wN.topRows(rows));
   });
   out.U.bottomRows(globals) += out.scalar.global.transpose().lazyProduct(out.scalar.nuisance);
@@ -173,10 +182,7 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, true, b);
     add_fixed(problem.slots(), b, problem.poses[k], felt, out);
-    out.cost.readings += b.cost.readings;
-    out.cost.scalar += b.cost.scalar;
-    out.cost.attitude += b.cost.attitude;
-    out.cost.reference += b.cost.reference;
+    add_cost(b.cost, out.cost);
     b.H.diagonal() *= 1 + damping;
     const Eigen::LLT<Eigen::Matrix4d> llt(b.H);
     auto Y = batch.middleCols<kNuisances>(filled * kNuisances);
@@ -192,6 +198,19 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
   add_priors(problem, state, out);
   out.S.diagonal() *= 1 + damping;
   return out;
+}
+
+JointCost cost_of(const JointProblem& problem, const JointState& state) {
+  const int p = problem.fixed();
+  Reduced out{.S = Eigen::MatrixXd::Zero(p, p), .g = Eigen::VectorXd::Zero(p), .cost = {}};
+  const PoseModel model(problem, state);
+  PoseBlocks b;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    assemble(problem, model, state, k, false, b);
+    add_cost(b.cost, out.cost);
+  }
+  add_priors(problem, state, out);
+  return out.cost;
 }
 
 }  // namespace mgtd::calib::fit::joint

@@ -9,6 +9,7 @@
 #include "calib/fit/calibration_frame.h"
 #include "calib/fit/error_summary.h"
 #include "calib/fit/joint/agreement.h"
+#include "calib/fit/joint/joint_cost.h"
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_findings.h"
 #include "calib/fit/joint/profile_search.h"
@@ -101,7 +102,7 @@ FitSummary summary_of(const JointFit& fit, double final_cost) {
   return {.termination = fit.termination,
           .rounds = fit.rounds,
           .iterations = fit.iterations,
-          .initial_cost = reduce(fit.problem, fit.start, 0).cost.total(),
+          .initial_cost = cost_of(fit.problem, fit.start).total(),
           .final_cost = final_cost};
 }
 

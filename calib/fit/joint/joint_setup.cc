@@ -122,6 +122,7 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   problem.means = std::make_shared<const effects::CovariateMeans>(effects::covariate_means(table));
   const poses::RunTime time = poses::RunTime::of(table);
   const Pose* previous = nullptr;
+  problem.poses.reserve(static_cast<std::size_t>(total));
   for (const Pose& pose : table.poses) {
     if (fitted(pose)) {
       problem.poses.push_back(joint_pose(pose, options, problem.common_field, time));

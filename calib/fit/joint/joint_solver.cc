@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "calib/fit/joint/unrolled_channels.h"
 #include "calib/linear/cholesky.h"
 
 namespace mgtd::calib::fit::joint {
@@ -24,7 +25,7 @@ void move_nuisances(const JointProblem& problem, const JointState& from, const E
                                  step.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i);
     }
     moved = problem.poses[k].weight.cwiseProduct(moved);
-    sensor::over_channels(moved.size(), [&](auto n) { b.g -= b.N.topRows(n).transpose() * moved.head(n); });
+    over_unrolled_channels(moved.size(), [&](auto n) { b.g -= b.N.topRows(n).transpose() * moved.head(n); });
     b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
     b.H.diagonal() *= 1 + damping;
     to.nuisances[k] += b.H.llt().solve(b.g);

@@ -55,4 +55,13 @@ inline PoseTable turned_run(const Places& places, std::uint64_t seed, const std:
   return rig::simulated_table(scenario_of(places, seed, more), rig::run_of_157({}, seed), seed);
 }
 
+/// Single samples of one sensor; motion is "hand" or "flight", ar the correlation of neighbouring samples.
+inline PoseTable recorded(const std::string& motion, double ar, std::uint64_t seed,
+                          const std::string& more = "") {
+  return rig::pose_table_of(rig::simulated_recording(
+      scenario_of(one_sensor(), seed,
+                  fmt::format("[recording]\nmotion = \"{}\"\nrate_hz = 20\nduration_s = 150\nar = {}\n{}",
+                              motion, ar, more))));
+}
+
 }  // namespace mgtd::calib::testing

@@ -168,13 +168,6 @@ TEST(KnownVector, ALawIsNamedInACage) {
   EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
 }
 
-PoseTable recorded(const std::string& motion, double ar, std::uint64_t seed, const std::string& more = "") {
-  return rig::pose_table_of(rig::simulated_recording(testing::scenario_of(
-      testing::one_sensor(), seed,
-      fmt::format("[recording]\nmotion = \"{}\"\nrate_hz = 20\nduration_s = 150\nar = {}\n{}", motion, ar,
-                  more))));
-}
-
 /// As of a magnetometer on a chip.
 constexpr const char* kLargeNoise = "[sensors]\nnoise_nT = 20\n";
 
@@ -183,7 +176,7 @@ TEST(Recording, CorrelatedSamplesCountForLess) {
   double sum = 0;
   constexpr int kRuns = 12;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const PoseTable table = recorded("hand", kRho, seed);
+    const PoseTable table = testing::recorded("hand", kRho, seed);
     const fit::FitReport report = fitted(table, testing::one_sensor());
     sum += squared_error(report.calibration, 0, testing::scenario_of(testing::one_sensor(), seed).truth[0]) /
            kRuns;
@@ -195,7 +188,7 @@ TEST(Recording, CorrelatedSamplesCountForLess) {
 
 TEST(Recording, CleanOnesPass) {
   for (const double ar : {0.0, 0.9})
-    EXPECT_EQ(explained(recorded("hand", ar, 2), testing::one_sensor()).left,
+    EXPECT_EQ(explained(testing::recorded("hand", ar, 2), testing::one_sensor()).left,
               criticism::search::Finding::pass)
         << ar;
 }
@@ -203,17 +196,17 @@ TEST(Recording, CleanOnesPass) {
 /// Readings that large noise moves are bent about the residual: no law hides in that.
 TEST(Recording, CleanOnesOfLargeNoisePass) {
   for (const char* motion : {"hand", "flight"})
-    EXPECT_EQ(explained(recorded(motion, 0, 2, kLargeNoise), testing::one_sensor()).left,
+    EXPECT_EQ(explained(testing::recorded(motion, 0, 2, kLargeNoise), testing::one_sensor()).left,
               criticism::search::Finding::pass)
         << motion;
 }
 
 TEST(Recording, ALawInLargeNoiseIsNamed) {
-  const auto found =
-      explained(recorded("hand", 0, 2,
-                         std::string(kLargeNoise) +
-                             "[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.x\"\nnT_at_F0 = 100\n"),
-                testing::one_sensor());
+  const auto found = explained(
+      testing::recorded(
+          "hand", 0, 2,
+          std::string(kLargeNoise) + "[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.x\"\nnT_at_F0 = 100\n"),
+      testing::one_sensor());
   ASSERT_EQ(found.rounds.size(), 1U);
   EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
   EXPECT_EQ(found.left, criticism::search::Finding::pass);
@@ -221,10 +214,11 @@ TEST(Recording, ALawInLargeNoiseIsNamed) {
 
 /// Beside a disturbance of no library, steps that follow it are not named.
 TEST(Recording, LawsThatOnlyDescribeAreNotNamed) {
-  const auto found = explained(recorded("hand", 0, 2,
-                                        "scalar = false\n[[effect]]\nname = \"hidden.site-oscillation\"\nnT "
-                                        "= [30, 20, 10]\nperiod_s = 60\n"),
-                               testing::one_sensor());
+  const auto found =
+      explained(testing::recorded("hand", 0, 2,
+                                  "scalar = false\n[[effect]]\nname = \"hidden.site-oscillation\"\nnT "
+                                  "= [30, 20, 10]\nperiod_s = 60\n"),
+                testing::one_sensor());
   EXPECT_TRUE(found.rounds.empty());
   EXPECT_EQ(found.finding, criticism::search::Finding::unknown);
 }
@@ -241,7 +235,7 @@ TEST(Recording, LawsThatDescribeEverythingDoNotMakeItPass) {
 }
 
 TEST(Recording, TheReportSaysThatNeighboursAreAlike) {
-  const std::string text = report::to_text(fitted(recorded("hand", 0.9, 2), testing::one_sensor()));
+  const std::string text = report::to_text(fitted(testing::recorded("hand", 0.9, 2), testing::one_sensor()));
   EXPECT_THAT(text, HasSubstr("count as one in the uncertainties"));
   EXPECT_THAT(text, HasSubstr("no table angles: alpha = beta = gamma = 0, relative to the mounting;"));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
@@ -249,7 +243,7 @@ TEST(Recording, TheReportSaysThatNeighboursAreAlike) {
 
 TEST(Recording, WhatDoesNotExciteIsRefused) {
   for (const char* motion : {"level", "one-axis"}) {
-    const auto report = fit::method_choice::fit(recorded(motion, 0, 2), [] {
+    const auto report = fit::method_choice::fit(testing::recorded(motion, 0, 2), [] {
       fit::FitOptions options;
       options.geometry = testing::geometry_of(testing::one_sensor());
       return options;

@@ -5,7 +5,12 @@
 
 #include "calib/calibration/array_model.h"
 #include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_cost.h"
+#include "calib/fit/joint/pose_residuals.h"
+#include "calib/fit/joint/single_samples.h"
+#include "calib/fit/joint/without_poses.h"
 #include "calib/fit/method_choice/fit.h"
+#include "tests/unit/calib/fit/arrays_of_any_size.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib::fit::joint {
@@ -33,6 +38,52 @@ TEST(JointErrors, NoiseOnlyStaysNoiseOutOfSample) {
   // Noise of one nT on the two sensors of a difference 0.4 m apart, both of scale near one: 3.5 nT/m.
   EXPECT_NEAR(out->summary.tensor_rmse_nT_per_m.xx, 3.6, 0.5);
   EXPECT_NEAR(out->summary.total_field_rmse_nT[0], 1.0, 0.25);
+}
+
+/// Of a recording the folds are left out in one step; here each is fitted without its samples.
+TEST(JointErrors, OneStepLeavesAFoldOutAsFittingWithoutItDoes) {
+  const PoseTable table = testing::recorded("hand", 0, 7);
+  JointOptions options;
+  options.geometry = testing::geometry_of(testing::one_sensor());
+  const auto fit = fit_joint(table, options);
+  ASSERT_TRUE(fit) << fit.error().text();
+  ASSERT_TRUE(is_recording(fit->problem));
+  const auto in_one_step = held_out_errors(*fit);
+  ASSERT_TRUE(in_one_step);
+  const std::size_t n = fit->problem.poses.size();
+  double squares = 0, freedom = 0;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    JointProblem others = without_poses(fit->problem), own = others;
+    JointState others_state = without_poses(fit->state), own_state = others_state;
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool inside = k >= fold * n / kFolds && k < (fold + 1) * n / kFolds;
+      (inside ? own : others).poses.push_back(fit->problem.poses[k]);
+      (inside ? own_state : others_state).nuisances.push_back(fit->state.nuisances[k]);
+    }
+    auto solved = solve(others, others_state);
+    ASSERT_TRUE(solved);
+    solved->state.nuisances = own_state.nuisances;
+    refit_nuisances(own, solved->state);
+    const PoseResiduals residuals = pose_residuals(own, solved->state);
+    squares += residuals.squares_nT2, freedom += residuals.freedom;
+  }
+  const double fitted_each = std::sqrt(squares / freedom);
+  EXPECT_NEAR(in_one_step->residual_nT, fitted_each, 1e-5 * fitted_each);
+  EXPECT_GT(in_one_step->residual_nT, joint_errors(fit->problem, fit->state, FixedBlock::fitted).residual_nT);
+}
+
+TEST(JointErrors, TheCostAloneIsThatOfTheNormalEquations) {
+  Simulation sim{.table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05};
+  for (const bool with_f : {true, false}) {
+    sim.with_f = with_f;
+    const auto fit = fit_joint(simulate(sim, 36, 121, 31), {});
+    ASSERT_TRUE(fit) << fit.error().text();
+    const JointCost alone = cost_of(fit->problem, fit->start), all = reduce(fit->problem, fit->start, 0).cost;
+    EXPECT_GT(all.total(), 0);
+    EXPECT_EQ(alone.total(), all.total());
+    EXPECT_EQ(alone.attitude, all.attitude);
+    EXPECT_EQ(alone.priors, all.priors);
+  }
 }
 
 /// Fifty nanotesla on one reading of 157 poses would be 4 nT rms of that sensor.

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <utility>
+
+#include "calib/sensor/channels.h"
+
+namespace mgtd::calib::fit::joint {
+
+/// sensor::over_channels(), with the three of one sensor unrolled besides the twelve of the cross: a
+/// recording of one sensor has tens of thousands of poses.
+template <class Expression>
+decltype(auto) over_unrolled_channels(Eigen::Index channels, Expression&& expression) {
+  if (channels == 3) return expression(Eigen::fix<3>);
+  return sensor::over_channels(channels, std::forward<Expression>(expression));
+}
+
+}  // namespace mgtd::calib::fit::joint

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "calib/fit/joint/joint_problem.h"
+
+/// A problem or a state with all but its poses, to put others in: a part of the poses costs no copy of all.
+namespace mgtd::calib::fit::joint {
+
+[[nodiscard]] JointProblem without_poses(const JointProblem& problem);
+[[nodiscard]] JointState without_poses(const JointState& state);
+/// The share of poses in the normal equations is theirs alone: without what is known beforehand as well.
+[[nodiscard]] JointProblem without_poses_and_priors(const JointProblem& problem);
+
+}  // namespace mgtd::calib::fit::joint
