@@ -30,6 +30,7 @@ SAYS = {
     "calib/criticism/search": "explain(), improve()",
     "calib/design": "poses for their worth",
     "calib/validity": "does it still hold?",
+    "calib/report/figures": "values in, SVG out",
     "calib/report": "all words, text and JSON",
     "daemon/plan": "what a run will do",
     "daemon/store": "where it is kept",
@@ -46,7 +47,7 @@ SAYS = {
 GRID = {
     "daemon": {"app": (0, 0), "cli": (1, 0), "core": (0, 1), "run": (0, 2), "serve/console": (1, 2), "serve": (1, 3), "acquire": (0, 3),
                "config": (0.5, 4), "plan": (0, 5), "store": (1, 5)},
-    "calib": {"report": (0, 0), "criticism/search": (0, 1), "design": (0, 2),
+    "calib": {"report": (0, 0), "report/figures": (1, 1), "criticism/search": (0, 1), "design": (0, 2),
               "validity": (1, 2), "criticism/tests": (0, 3), "fit/method_choice": (0, 4), "criticism/live": (1, 5),
               "fit/checks": (0, 5), "fit/joint": (0, 6), "fit/two_step": (0, 7), "fit": (0, 8), "calibration": (0, 9),
               "effects/library": (0, 10), "effects/formula": (0, 11), "effects/laws": (0, 12), "effects": (0, 13),

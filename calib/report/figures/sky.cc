@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/figures/sky.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mgtd::calib::report::figures {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// θ of 2θ + sin 2θ = π sin φ, by Newton's method with the poles, where its slope vanishes, apart.
+double auxiliary_angle(double latitude_rad) {
+  const double target = kPi * std::sin(latitude_rad);
+  if (std::abs(latitude_rad) > kPi / 2 - 1e-9) return std::copysign(kPi / 2, latitude_rad);
+  double theta = latitude_rad;
+  for (int i = 0; i < 60; ++i) {
+    const double slope = 2 + 2 * std::cos(2 * theta);
+    const double step = (2 * theta + std::sin(2 * theta) - target) / std::max(slope, 1e-12);
+    theta = std::clamp(theta - step, -kPi / 2, kPi / 2);
+    if (std::abs(step) < 1e-13) break;
+  }
+  return theta;
+}
+
+Eigen::Vector3d unit_at(double longitude_rad, double sin_latitude) {
+  const double across = std::sqrt(std::max(0.0, 1 - sin_latitude * sin_latitude));
+  return {across * std::cos(longitude_rad), across * std::sin(longitude_rad), sin_latitude};
+}
+
+}  // namespace
+
+SkyPoint sky_point(double longitude_rad, double latitude_rad) {
+  const double theta = auxiliary_angle(latitude_rad);
+  return {2 * std::numbers::sqrt2 / kPi * longitude_rad * std::cos(theta),
+          std::numbers::sqrt2 * std::sin(theta)};
+}
+
+SkyPoint sky_point(const Eigen::Vector3d& direction) {
+  const double length = direction.norm();
+  if (!(length > 0))
+    return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  return sky_point(std::atan2(direction.y(), direction.x()),
+                   std::asin(std::clamp(direction.z() / length, -1.0, 1.0)));
+}
+
+std::vector<Eigen::Vector3d> circle_around(const Eigen::Vector3d& centre, double radius_rad, int steps) {
+  const Eigen::Vector3d n = centre.normalized(), u = n.unitOrthogonal(), v = n.cross(u);
+  std::vector<Eigen::Vector3d> out;
+  for (int i = 0; i <= steps; ++i) {
+    const double turn = 2 * kPi * i / steps;
+    out.emplace_back(std::cos(radius_rad) * n +
+                     std::sin(radius_rad) * (std::cos(turn) * u + std::sin(turn) * v));
+  }
+  return out;
+}
+
+LargestHole largest_hole(std::span<const Eigen::Vector3d> directions) {
+  if (directions.empty()) return {};
+  constexpr int kRows = 60, kColumns = 120;
+  LargestHole out{.centre = {0, 0, 1}, .radius_rad = -1};
+  for (int row = 0; row < kRows; ++row) {
+    const double sine = -1 + 2 * (row + 0.5) / kRows;
+    for (int column = 0; column < kColumns; ++column) {
+      const Eigen::Vector3d at = unit_at(-kPi + 2 * kPi * (column + 0.5) / kColumns, sine);
+      double nearest = -1;
+      for (const Eigen::Vector3d& d : directions) nearest = std::max(nearest, at.dot(d) / d.norm());
+      const double radius = std::acos(std::clamp(nearest, -1.0, 1.0));
+      if (radius > out.radius_rad) out = {at, radius};
+    }
+  }
+  return out;
+}
+
+std::vector<SkyCell> sky_cells(int rows, int columns) {
+  std::vector<SkyCell> out;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      out.push_back({-kPi + 2 * kPi * column / columns, -kPi + 2 * kPi * (column + 1) / columns,
+                     std::asin(-1 + 2.0 * row / rows),
+                     std::asin(std::min(1.0, -1 + 2.0 * (row + 1) / rows))});
+    }
+  }
+  return out;
+}
+
+std::size_t sky_cell_of(const Eigen::Vector3d& direction, int rows, int columns) {
+  const double sine = std::clamp(direction.normalized().z(), -1.0, 1.0),
+               turn = std::atan2(direction.y(), direction.x());
+  const int row = std::clamp(static_cast<int>(std::floor((sine + 1) / 2 * rows)), 0, rows - 1);
+  const int column =
+      std::clamp(static_cast<int>(std::floor((turn + kPi) / (2 * kPi) * columns)), 0, columns - 1);
+  return static_cast<std::size_t>(row * columns + column);
+}
+
+}  // namespace mgtd::calib::report::figures

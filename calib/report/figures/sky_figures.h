@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/report/figures/figure.h"
+
+/// Equal-area maps of directions (sky.h).
+namespace mgtd::calib::report::figures {
+
+/// What is left, over the direction of the field in one sensor.
+struct Sky {
+  std::string sensor{};
+  std::vector<Eigen::Vector3d> directions{};
+  std::vector<double> residual_nT{}, after_nT{};  ///< after: empty where nothing was added
+  std::vector<int> poses{};
+  std::string p_text{};
+};
+struct SkiesValues {
+  std::vector<Sky> skies{};
+  std::string what{};  ///< a sentence: which residual it is
+  bool stands_out{false};
+};
+/// Above 600 directions a sensor: means over cells of equal area in place of marks.
+[[nodiscard]] Figure skies_figure(const SkiesValues& values);
+
+/// Directions of the field in the platform: where the sensors were looked at from, and where not.
+struct CoverageValues {
+  std::vector<Eigen::Vector3d> measured{}, planned{};  ///< planned: those still open
+  double good_deg{45};  ///< no direction should be farther from a pose than this
+};
+[[nodiscard]] Figure coverage_figure(const CoverageValues& values);
+
+}  // namespace mgtd::calib::report::figures
