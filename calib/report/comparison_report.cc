@@ -37,6 +37,8 @@ json channel_json(const criticism::tests::ResidualChannel& c) {
                        {"p", std::pow(10.0, d.log10_p)},
                        {"log10_p", d.log10_p},
                        {"means", d.means},
+                       {"ses", d.ses},
+                       {"centers", d.centers},
                        {"from", d.from},
                        {"to", d.to}});
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/report/explain_note_text.h"
+#include "calib/report/json_number.h"
 #include "calib/report/verdict_text.h"
 
 namespace mgtd::calib::report {
@@ -16,7 +17,7 @@ json coefficient_json(const calibration::EffectCoefficient& c) {
   return {{"name", c.name}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}};
 }
 
-json candidate_json(const criticism::tests::Candidate& c) {
+json plain_candidate_json(const criticism::tests::Candidate& c) {
   json coefficients = json::array(), alternatives = json::array();
   for (const calibration::EffectCoefficient& x : c.coefficients) coefficients.push_back(coefficient_json(x));
   for (const criticism::tests::Alternative& r : c.alternatives) {
@@ -40,6 +41,24 @@ json candidate_json(const criticism::tests::Candidate& c) {
           {"plausible", c.plausible},
           {"poses", c.poses},
           {"largest_pose_share", c.largest_pose}};
+}
+
+json candidate_json(const criticism::tests::Candidate& c) {
+  json out = plain_candidate_json(c);
+  if (!c.impact) return out;
+  out["impact_nT_per_m"] = number_or_null(c.impact->nT_per_m);
+  out["impact_component"] = c.impact->component.empty() ? json() : json(c.impact->component);
+  return out;
+}
+
+json rows_json(const Eigen::MatrixXd& matrix) {
+  json out = json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    json row = json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    out.push_back(std::move(row));
+  }
+  return out;
 }
 
 json round_json(const criticism::search::Round& r) {
@@ -79,13 +98,22 @@ json to_json(const criticism::tests::NoiseModel& n) {
   return out;
 }
 
+json to_json(const criticism::tests::Candidate& c) { return candidate_json(c); }
+
+json to_json(const criticism::tests::ConfusionMatrix& c) {
+  return {{"effects", c.effects},
+          {"where", c.where},
+          {"correlation", rows_json(c.correlation)},
+          {"p_right", rows_json(c.p_right)}};
+}
+
 json to_json(const criticism::search::ExplainReport& r) {
   json lack;
   if (r.noise.revisits) {
     const criticism::tests::PureError& p = *r.noise.revisits;
     lack = {{"F", p.F}, {"p", std::pow(10.0, p.log10_p)}, {"model_nT", p.model_nT}, {"pairs", p.pairs}};
   }
-  return {
+  json out{
       {"schema", "mgt.explain/1"},
       {"verdict", to_string(r.finding)},
       {"candidates", array_of(r.candidates, candidate_json)},
@@ -119,6 +147,8 @@ json to_json(const criticism::search::ExplainReport& r) {
                         })},
       {"notes", note_texts(r.notes)},
       {"text", sentence(r)}};
+  if (r.confusion) out["confusion"] = to_json(*r.confusion);
+  return out;
 }
 
 }  // namespace mgtd::calib::report

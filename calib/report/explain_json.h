@@ -8,6 +8,8 @@ namespace mgtd::calib::report {
 
 /// "mgt.explain/1".
 [[nodiscard]] nlohmann::json to_json(const criticism::search::ExplainReport& report);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::Candidate& candidate);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::ConfusionMatrix& confusion);
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::MapScore& map);
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::NoiseModel& noise);
 

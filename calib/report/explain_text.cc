@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "calib/criticism/tests/candidate.h"
 #include "calib/report/outlier_text.h"
@@ -52,6 +53,34 @@ void maps(const std::vector<criticism::tests::MapScore>& all, std::string& out) 
   }
 }
 
+void impacts(const std::vector<criticism::tests::Candidate>& all, std::string& out) {
+  const auto to = std::back_inserter(out);
+  bool first = true;
+  for (const criticism::tests::Candidate& c : all) {
+    if (!c.impact || c.impact->component.empty()) continue;
+    if (std::exchange(first, false))
+      out += "\nwhat ignoring it does to the tensor, if it is there as it was fitted (worst component):\n";
+    fmt::format_to(to, "  {:<32} {:>9.3g} nT/m in {}\n", c.effect, c.impact->nT_per_m, c.impact->component);
+  }
+}
+
+/// The pairs that look alike; most of the matrix does not.
+void confusions(const criticism::tests::ConfusionMatrix& c, std::string& out) {
+  constexpr double kAlike = 0.9;
+  const auto to = std::back_inserter(out);
+  out += "\nwhat looks alike on this run (correlation, and that the right one is named at d = 8):\n";
+  std::size_t pairs = 0;
+  for (Eigen::Index a = 0; a < c.correlation.rows(); ++a) {
+    for (Eigen::Index b = 0; b < c.correlation.cols(); ++b) {
+      if (a == b || c.correlation(a, b) < kAlike) continue;
+      fmt::format_to(to, "  {:<32} looks like {:<32} {:.3f} {:.2f}\n", c.effects[static_cast<std::size_t>(a)],
+                     c.effects[static_cast<std::size_t>(b)], c.correlation(a, b), c.p_right(a, b));
+      ++pairs;
+    }
+  }
+  if (pairs == 0) out += "  no two of them above 0.9\n";
+}
+
 }  // namespace
 
 std::string to_text(const criticism::search::ExplainReport& r) {
@@ -61,7 +90,9 @@ std::string to_text(const criticism::search::ExplainReport& r) {
                  fmt::join(r.named, r.finding == criticism::search::Finding::ambiguous ? " or " : ", "),
                  sentence(r));
   candidates(r, out);
+  impacts(r.candidates, out);
   maps(r.maps, out);
+  if (r.confusion) confusions(*r.confusion, out);
   if (!r.detectable.empty())
     fmt::format_to(to, "\nsmallest size that would have been seen{} (d = 8):\n",
                    r.rounds.empty() ? "" : ", with what was added in the model");

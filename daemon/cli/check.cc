@@ -34,6 +34,7 @@ int run_check(const Session& session, const CheckArguments& args) {
   if (!calibration) return report(session, calibration.error());
   const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
+  tell_masked(*source);
   if (auto same = same_sensors(*calibration, args.calibration, source->table); !same)
     return report(session, same.error());
   const auto options = fit_options(*args.flags, *source);

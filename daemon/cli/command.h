@@ -53,6 +53,7 @@ void add_fit(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_improve(CLI::App& app, Session& session);
 void add_magnet_test(CLI::App& run, Session& session);
+void add_mask(CLI::App& app, Session& session);
 void add_model(CLI::App& app, Session& session);
 void add_next(CLI::App& app, Session& session);
 void add_plan(CLI::App& app, Session& session);
@@ -62,6 +63,8 @@ void add_report(CLI::App& app, Session& session);
 void add_run(CLI::App& app, Session& session);
 void add_status(CLI::App& app, Session& session);
 void add_undo(CLI::App& app, Session& session);
+void add_unmask(CLI::App& app, Session& session);
 void add_watch(CLI::App& app, Session& session);
+void add_why(CLI::App& app, Session& session);
 
 }  // namespace mgtd::daemon::cli

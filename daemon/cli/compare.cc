@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "calib/criticism/tests/comparison.h"
+#include "calib/criticism/tests/pose_points.h"
 #include "calib/report/comparison_report.h"
+#include "calib/report/pose_points_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
@@ -15,10 +19,13 @@ constexpr const char* kCompareHelp =
     "extra column, with the means over each as a small plot. A scalar residual with no attitude residual is "
     "a\n"
     "sensor; an attitude residual alone is the table; what is alike in all sensors is the site.\n\n"
+    "  mgt compare run.mgtrun --poses --json       arrays by column, one entry a pose\n"
+    "  mgt compare run.mgtrun -o residuals.csv     the same as a table\n\n"
     "Exit code 0: the model fits to the noise. 1: it does not.";
 
 struct CompareArguments {
-  std::string run;
+  std::string run, output;
+  bool poses{false};
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -30,8 +37,21 @@ int run_compare(const Session& session, const CompareArguments& args) {
   const auto comparison =
       with_progress("compare", [&] { return calib::criticism::tests::compare(source->table, *options); });
   if (!comparison) return report(session, comparison.error());
+  std::optional<calib::criticism::tests::PosePoints> points;
+  if (args.poses || !args.output.empty()) {
+    auto found =
+        with_progress("compare", [&] { return calib::criticism::tests::pose_points(*comparison->fit); });
+    if (!found) return report(session, found.error());
+    points = *std::move(found);
+  }
+  if (!args.output.empty()) {
+    if (auto written = write_file(args.output, calib::report::to_csv(*points)); !written)
+      return report(session, written.error());
+  }
   if (session.json) {
-    print_json(calib::report::to_json(*comparison));
+    nlohmann::json out = calib::report::to_json(*comparison);
+    if (args.poses) out["poses"] = calib::report::to_json(*points);
+    print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*comparison));
   }
@@ -47,6 +67,8 @@ void add_compare(CLI::App& app, Session& session) {
                   [args, &session] { return run_compare(session, *args); });
   command->footer(kCompareHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  command->add_flag("--poses", args->poses, "with --json: what is left at each pose");
+  command->add_option("-o,--output", args->output, "write what is left at each pose here (CSV)");
   args->flags = add_model_flags(command);
 }
 

@@ -37,7 +37,7 @@ store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args
 
 /// What stands in the file, its columns as the map says where there is one.
 Result<store::PoseSource> imported(const ExchangeArguments& args) {
-  if (args.columns.empty()) return store::read_run(args.from);
+  if (args.columns.empty()) return store::read_run(args.from, store::Masked::kept);
   const auto map_text = read_file(args.columns);
   if (!map_text) return tl::unexpected(map_text.error());
   const auto map = import_map_from_text(*map_text, args.columns);

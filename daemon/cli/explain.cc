@@ -31,6 +31,7 @@ constexpr const char* kExplainHelp =
 
 struct ExplainArguments {
   std::string run;
+  bool confusion{false}, impact{false};
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -40,7 +41,9 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
   const calib::criticism::search::ExplainOptions wanted{.fit = *options,
-                                                        .also = formulas_of(*source, *options)};
+                                                        .also = formulas_of(*source, *options),
+                                                        .confusion = args.confusion,
+                                                        .impact = args.impact};
   const auto explained =
       with_progress("explain", [&] { return calib::criticism::search::explain(source->table, wanted); });
   if (!explained) return report(session, explained.error());
@@ -66,6 +69,8 @@ void add_explain(CLI::App& app, Session& session) {
                                         [args, &session] { return run_explain(session, *args); });
   command->footer(kExplainHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
+  command->add_flag("--confusion", args->confusion, "also: which effects look alike on this run");
+  command->add_flag("--impact", args->impact, "also: what ignoring each effect would do to the tensor, nT/m");
   args->flags = add_model_flags(command);
 }
 

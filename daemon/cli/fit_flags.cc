@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "calib/effects/common_axis.h"
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_columns.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/run/solver.h"
+#include "daemon/store/pose_numbers.h"
 #include "proto/units.h"
 
 namespace mgtd::daemon::cli {
@@ -24,6 +26,11 @@ void add_with(CLI::App* command, FitFlags& f) {
                    "effect to put in the model, by name; may be given again (joint). none leaves the model "
                    "that the run file keeps")
       ->allow_extra_args(false);
+}
+
+void add_without(CLI::App* command, FitFlags& f) {
+  command->add_option("--without", f.without,
+                      "leave these poses out this once, by number: 3,7-9 (mgt mask keeps it)");
 }
 
 void add_further(CLI::App* command, FitFlags& f) {
@@ -90,6 +97,7 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
       ->capture_default_str();
   add_with(command, *f);
   add_further(command, *f);
+  add_without(command, *f);
   add_site_flags(command, *f);
   return f;
 }
@@ -98,6 +106,7 @@ std::shared_ptr<FitFlags> add_model_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   add_with(command, *f);
   add_further(command, *f);
+  add_without(command, *f);
   add_site_flags(command, *f);
   return f;
 }
@@ -108,8 +117,24 @@ std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
   return f;
 }
 
+void tell_masked(const store::PoseSource& source) {
+  if (source.masked.empty()) return;
+  std::set<int> numbers;
+  for (const store::MaskedPose& masked : source.masked) numbers.insert(masked.number);
+  fmt::print(stderr, "without the masked poses {} (mgt model says why; mgt unmask takes them in again)\n",
+             store::pose_numbers_text(numbers));
+}
+
 Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
   auto source = store::read_runs(run, flags.further);
+  if (source) tell_masked(*source);
+  if (source && !flags.without.empty()) {
+    const auto numbers = store::parse_pose_numbers(flags.without);
+    if (!numbers) return tl::unexpected(numbers.error());
+    auto left = store::without_poses(std::move(source->table), *numbers);
+    if (!left) return tl::unexpected(left.error());
+    source->table = *std::move(left);
+  }
   if (source && looks_like_radians(source->table))
     fmt::print(stderr,
                "no table angle is beyond {:.1f} degrees: are they radians? azimuth_deg, pitch_deg and "

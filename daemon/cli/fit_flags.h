@@ -18,6 +18,7 @@ struct FitFlags {
   std::string method{"joint"};
   std::vector<std::string> further;  ///< runs that are judged together with the first
   std::vector<std::string> with;     ///< effects by name; "none" leaves the model that the run file keeps
+  std::string without;               ///< numbers of poses that are left out this once
   std::optional<double> field_nT, field_sd_nT, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;
   ArrayFlags array;
@@ -36,6 +37,9 @@ void add_table_flag(CLI::App* command, FitFlags& flags);
 
 /// RUN, and the further runs behind it.
 [[nodiscard]] Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags);
+
+/// Says on stderr which poses of a run file are masked.
+void tell_masked(const store::PoseSource& source);
 
 /// What the command line says goes before what the run file says, and that before the defaults. Effects come
 /// beside those of the model that the run file keeps; one of the same name stands in its place.

@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
-/// This makes the tables and the style of the report's page.
+/// Tables and style of the report's page. Figures come with their own (calib/report/figures).
 namespace mgtd::daemon::cli {
 
-extern const char* const kHtmlStyle;
+/// Light, dark as the screen asks for it, and printed on A4.
+[[nodiscard]] std::string html_style();
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// `words`: text columns, read from the left. Rows in `failed` stand out.
+/// `words`: text columns, read from the left. Rows in `failed` stand out. Nothing where there are no rows.
 [[nodiscard]] std::string html_table(const std::vector<std::string>& head, const Rows& rows, bool words,
                                      const std::set<std::size_t>& failed = {});
 /// The caption that says what to expect of a section.

@@ -28,6 +28,7 @@ WallTime now() {
 Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
   auto source = store::read_run(path);
   if (!source) return tl::unexpected(source.error());
+  tell_masked(*source);
   if (!source->header) {
     return fail(
         ErrorCode::usage, path + " is a pose table, which keeps no model",

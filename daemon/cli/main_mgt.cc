@@ -48,8 +48,9 @@ constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations, control, console\n"
     "Offline (files):          plan, fit, apply, check, diff, import, export, replay, check-config, ports\n"
-    "What is missing:          compare, explain, effects, add, drop, undo, model, define, next, improve, "
-    "report\n\n"
+    "What is missing:          compare, explain, why, effects, add, drop, mask, unmask, undo, model, "
+    "define,\n"
+    "                          next, improve, report\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
     "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
@@ -82,10 +83,13 @@ int main(int argc, char** argv) {
   mgtd::daemon::cli::add_compare(app, session);
   mgtd::daemon::cli::add_diff(app, session);
   mgtd::daemon::cli::add_explain(app, session);
+  mgtd::daemon::cli::add_why(app, session);
   mgtd::daemon::cli::add_effects(app, session);
   mgtd::daemon::cli::add_improve(app, session);
   mgtd::daemon::cli::add_add(app, session);
   mgtd::daemon::cli::add_drop(app, session);
+  mgtd::daemon::cli::add_mask(app, session);
+  mgtd::daemon::cli::add_unmask(app, session);
   mgtd::daemon::cli::add_undo(app, session);
   mgtd::daemon::cli::add_model(app, session);
   mgtd::daemon::cli::add_define(app, session);

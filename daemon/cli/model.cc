@@ -164,6 +164,13 @@ json step_json(const store::ModelStep& s) {
           {"result", json::parse(s.result, nullptr, false)}};
 }
 
+json masked_json(const std::vector<store::MaskedPose>& masked) {
+  json out = json::array();
+  for (const store::MaskedPose& m : masked)
+    out.push_back({{"pose", m.number}, {"because", m.because}, {"who", m.who}, {"t", format_utc(m.at)}});
+  return out;
+}
+
 int run_model(const Session& session, const ModelArguments& args) {
   const auto file = store::RunFile::open(args.run, store::Access::read_only);
   if (!file) return report(session, file.error());
@@ -172,6 +179,7 @@ int run_model(const Session& session, const ModelArguments& args) {
   const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
   const auto model = store::kept_model(*steps);
+  const auto masked = store::masked_poses(*steps);
   if (session.json) {
     json history = json::array();
     for (const store::ModelStep& s : *steps) history.push_back(step_json(s));
@@ -181,6 +189,7 @@ int run_model(const Session& session, const ModelArguments& args) {
     print_json({{"schema", "mgt.model/1"},
                 {"model", model},
                 {"history", std::move(history)},
+                {"masked", masked_json(masked)},
                 {"formulas", std::move(formulas)}});
     return 0;
   }
@@ -194,6 +203,7 @@ int run_model(const Session& session, const ModelArguments& args) {
     fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
   }
   fmt::print("the model: {}\n", model_text(model));
+  for (const store::MaskedPose& m : masked) fmt::print("masked: pose {}: {}\n", m.number, m.because);
   for (const store::Definition& d : source->definitions)
     fmt::print("formula: {}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "");
   return 0;
@@ -230,9 +240,9 @@ void add_drop(CLI::App& app, Session& session) {
 
 void add_undo(CLI::App& app, Session& session) {
   auto args = std::make_shared<ModelArguments>();
-  CLI::App* const command =
-      add_command(app, session, "undo", "take the last add or drop back; repeat it for the one before",
-                  [args, &session] { return run_undo(session, *args); });
+  CLI::App* const command = add_command(
+      app, session, "undo", "take the last step back (add, drop, mask, unmask); repeat it for the one before",
+      [args, &session] { return run_undo(session, *args); });
   add_run_argument(command, *args);
   args->flags = std::make_shared<FitFlags>();
 }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/command.h"
-#include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/report_page.h"
 #include "daemon/cli/work_progress.h"
@@ -15,65 +13,32 @@ namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kReportHelp =
-    "One page in HTML that needs nothing else: what was measured, the verdict and the checks, errors before "
-    "and\n"
-    "after, what the model leaves against time, angles, temperature and every extra column, what each effect "
-    "takes\n"
-    "out, what could be missing, and what this run cannot tell. Every section says what good looks like.\n\n"
+    "One page in HTML that needs nothing else: the verdict and the checks, what was measured, the noise, "
+    "what\n"
+    "this run cannot tell, what each effect takes out, what the model leaves in nine figures before and "
+    "after,\n"
+    "what could be missing, errors, parameters, what effects cost and bring, and how the model came to be. "
+    "Every\n"
+    "figure says what a good one looks like, with the number of this run, and holds its data as a table.\n\n"
     "  mgt report run.mgtrun -o report.html";
 
 struct ReportArguments {
-  std::string run, output;
+  ReportWishes wishes;
   std::shared_ptr<FitFlags> flags;
 };
 
-Result<ReportContent> content_of(const ReportArguments& args) {
-  auto source = read_source(args.run, *args.flags);
-  if (!source) return tl::unexpected(source.error());
-  auto options = fit_options(*args.flags, *source);
-  if (!options) return tl::unexpected(options.error());
-  auto fitted = calib::fit::method_choice::fit(source->table, *options);
-  if (!fitted) return tl::unexpected(fitted.error());
-  auto comparison = calib::criticism::tests::compare(source->table, *options);
-  if (!comparison) return tl::unexpected(comparison.error());
-  auto explained = calib::criticism::search::explain(source->table, {.fit = *options});
-  if (!explained) return tl::unexpected(explained.error());
-  auto history = history_of(args.run, *source);
-  if (!history) return tl::unexpected(history.error());
-  auto doubts = doubts_of(args.run, *source, *options);
-  if (!doubts) return tl::unexpected(doubts.error());
-  const std::string name = std::filesystem::path(args.run).filename().string();
-  ReportContent out{.run = name,
-                    .source = std::move(*source),
-                    .fit = std::move(*fitted),
-                    .comparison = std::move(*comparison),
-                    .explained = std::move(*explained),
-                    .waterfall = {},
-                    .history = std::move(*history),
-                    .doubts = std::move(*doubts),
-                    .command = fmt::format("mgt report {} -o {}", name, args.output)};
-  // With the model that explain ended with, the waterfall shows what adding the named effects would remove.
-  if (!out.explained.model.empty()) {
-    calib::fit::FitOptions whole = *options;
-    whole.effects = out.explained.model;
-    if (auto steps = calib::criticism::search::waterfall(out.source.table, whole))
-      out.waterfall = std::move(*steps);
-  }
-  return out;
-}
-
 int run_report(const Session& session, const ReportArguments& args) {
-  const auto content = with_progress("report", [&] { return content_of(args); });
+  const auto content = with_progress("report", [&] { return report_content(args.wishes, *args.flags); });
   if (!content) return report(session, content.error());
   const std::string page = report_page(*content);
-  if (auto written = write_file(args.output, page); !written) return report(session, written.error());
+  if (auto written = write_file(args.wishes.output, page); !written) return report(session, written.error());
   if (session.json) {
     print_json({{"schema", "mgt.report/1"},
-                {"output", args.output},
+                {"output", args.wishes.output},
                 {"bytes", page.size()},
                 {"verdict", to_string(content->explained.finding)}});
   } else {
-    fmt::print("report written to {}\n", args.output);
+    fmt::print("report written to {}\n", args.wishes.output);
   }
   return 0;
 }
@@ -85,8 +50,16 @@ void add_report(CLI::App& app, Session& session) {
   CLI::App* const command = add_command(app, session, "report", "everything about a run on one HTML page",
                                         [args, &session] { return run_report(session, *args); });
   command->footer(kReportHelp);
-  command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
-  command->add_option("-o,--output", args->output, "report.html")->required();
+  command->add_option("RUN", args->wishes.run, "*.mgtrun or a pose table in CSV")->required();
+  command->add_option("-o,--output", args->wishes.output, "report.html")->required();
+  command->add_option("--operator", args->wishes.operator_name, "who measured: stands in the report");
+  command->add_option("--site", args->wishes.site, "where: stands in the report");
+  command
+      ->add_option("--earlier", args->wishes.earlier,
+                   "an earlier calibration (CAL.json) or run of the same rig, to show how its parameters "
+                   "moved; may be "
+                   "given again")
+      ->allow_extra_args(false);
   args->flags = add_model_flags(command);
 }
 

@@ -12,17 +12,21 @@
 
 #include "calib/report/choice_text.h"
 #include "calib/report/comparison_report.h"
+#include "calib/report/figures/escaped.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_report_text.h"
 #include "calib/report/noise_text.h"
+#include "calib/report/outlier_text.h"
 #include "calib/report/residual_words.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
-#include "daemon/cli/svg.h"
 #include "proto/units.h"
 
 namespace mgtd::daemon::cli {
+
+using calib::report::figures::escaped;
+
 namespace {
 
 std::string number(double x) { return fmt::format("{:.3f}", x); }
@@ -49,6 +53,17 @@ std::vector<std::string> error_row(const std::string& name, const calib::fit::Er
   return out;
 }
 
+/// The field in the platform frame at zero table angles.
+std::string site_text(const ReportContent& c) {
+  std::string out = fmt::format("field {:.1f} nT", c.fit.site.f_nT);
+  if (std::isfinite(c.fit.site.inclination_rad))
+    out += fmt::format(
+        ", inclination {:.3f}° ± {:.1g}°, declination {:.3f}° ± {:.1g}° in the frame of the platform",
+        to_deg(c.fit.site.inclination_rad), to_deg(c.fit.site.inclination_sd_rad),
+        to_deg(c.fit.site.declination_rad), to_deg(c.fit.site.declination_sd_rad));
+  return out;
+}
+
 std::string banner_class(calib::criticism::search::Finding finding) {
   if (finding == calib::criticism::search::Finding::pass) return "banner pass";
   return finding == calib::criticism::search::Finding::bad_data ? "banner bad" : "banner";
@@ -67,7 +82,6 @@ std::string measured_section(const ReportContent& c) {
   for (const auto& [name, count] : sets) counted.push_back(fmt::format("{} {}", count, name));
   Rows rows{{"poses", fmt::format("{} ({})", c.source.table.poses.size(), fmt::join(counted, ", "))},
             {"time", duration(c.source.table)},
-            {"field", fmt::format("{:.1f} nT", c.fit.site.f_nT)},
             {"temperature of the heads", temperatures(c.source.table)},
             {"extra columns", columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, ", "))},
             {"data", c.fit.calibration.data_hash}};
@@ -78,7 +92,24 @@ std::string measured_section(const ReportContent& c) {
                                     : fmt::format("started {:.19}Z", format_utc(h.started_utc));
     rows.insert(rows.begin(), {"run", fmt::format("{} on rig {}, {}", h.run_id, h.rig, started)});
   }
-  return "<h2>What was measured</h2>" + html_table({"", ""}, rows, true);
+  rows.push_back({"operator", c.operator_name.empty() ? "not stated (--operator)" : c.operator_name});
+  rows.push_back({"site", c.site.empty() ? site_text(c) : c.site + "; " + site_text(c)});
+  std::string out = "<h2>What was measured</h2>" + html_table({"", ""}, rows, true);
+  Rows instruments;
+  for (const InstrumentIdentity& i : c.instruments) {
+    const std::string_view serial = serial_of(i);
+    instruments.push_back({i.place, i.told, serial.empty() ? "not told" : std::string(serial)});
+  }
+  out += instruments.empty()
+             ? "<p class=\"quiet\">The file names no instruments.</p>"
+             : "<h3>Instruments</h3>" +
+                   html_table({"place", "as it names itself", "serial number"}, instruments, true);
+  out += figures_html(c.measured);
+  const std::vector<std::string> left_out = calib::report::outlier_texts(c.comparison.outliers);
+  if (left_out.empty()) return out + "<p>No reading was left out.</p>";
+  out += "<h3>Left out by the fit</h3><ul>";
+  for (const std::string& text : left_out) out += "<li>" + escaped(text) + "</li>";
+  return out + "</ul>";
 }
 
 std::string verdict_section(const ReportContent& c) {
@@ -120,80 +151,80 @@ std::string errors_section(const ReportContent& c) {
   rows.push_back(error_row("joint", c.fit.after));
   if (c.fit.held_out) rows.push_back(error_row("poses left out", *c.fit.held_out));
   if (c.fit.check_poses) rows.push_back(error_row("check poses", *c.fit.check_poses));
+  std::vector<std::string> head{""};
+  for (std::size_t i = 1; i <= c.fit.calibration.sensors.size(); ++i) head.push_back(fmt::format("s{}", i));
+  for (const char* g : {"xx", "yy", "zz", "xy", "xz", "yz"}) head.emplace_back(g);
   return "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares over the poses, nT and "
          "nT/m; " +
-         escaped(calib::report::rows_text(c.fit)) + ".</p>" +
-         html_table({"", "s1", "s2", "s3", "s4", "xx", "yy", "zz", "xy", "xz", "yz"}, rows, false) +
+         escaped(calib::report::rows_text(c.fit)) + ".</p>" + html_table(head, rows, false) +
          html_good(fmt::format(
              "the last rows agree with each other (nothing was overfitted) and lie near the noise of a "
              "pose mean, {:.3g} nT.",
              c.fit.noise_nT));
 }
 
-std::string residual_section(const ReportContent& c) {
-  constexpr double kStandsOut = -3;
+std::string noise_section(const ReportContent& c) {
+  const calib::criticism::tests::Comparison& m = c.comparison;
   std::string out = fmt::format(
-      "<h2>What the model leaves</h2><p>Residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}. {}</p>"
-      "<p class=\"quiet\">Each row is a way of looking at it, each plot its means over a covariate, of the "
-      "component that depends most.</p>",
-      c.comparison.residual_nT, calib::report::kResidualIs, c.comparison.noise_nT,
-      calib::report::noise_source(c.comparison.noise.known),
-      escaped(calib::report::as_sentence(calib::report::noise_of_tests(c.comparison.noise))));
-  for (const calib::criticism::tests::ResidualChannel& channel : c.comparison.channels) {
-    double scale = 0;
-    for (const calib::criticism::tests::Dependence& d : channel.against)
-      for (const double m : d.means) scale = std::max(scale, std::abs(m));
-    out += fmt::format("<h3>{} <span class=\"quiet\">rms {:.3g}{}{}: {}</span></h3><div class=\"plots\">",
-                       escaped(channel.name), channel.rms, channel.unit.empty() ? "" : " ",
-                       escaped(channel.unit), escaped(channel.meaning));
-    for (const calib::criticism::tests::Dependence& d : channel.against) {
-      const bool stands_out = d.log10_p < kStandsOut;
-      out += fmt::format("<figure{}>{}<figcaption>{}, {}</figcaption></figure>",
-                         stands_out ? " class=\"out\"" : "",
-                         svg_series({.y = d.means,
-                                     .from = d.from,
-                                     .to = d.to,
-                                     .x_label = d.covariate,
-                                     .unit = channel.unit,
-                                     .scale = scale,
-                                     .stands_out = stands_out}),
-                         escaped(d.component), escaped(calib::stats::p_phrase(d.log10_p)));
-    }
-    out += "</div>";
+      "<h2>Noise</h2><p>Noise of a pose mean {:.3g} nT, {}. Residual {:.3g} nT ({}). {}</p>", m.noise_nT,
+      calib::report::noise_source(m.noise.known), m.residual_nT, calib::report::kResidualIs,
+      escaped(calib::report::as_sentence(calib::report::noise_of_tests(m.noise))));
+  Rows rows{{"chi-square", fmt::format("{:.4g} with {:.0f} degrees of freedom{}", m.chi2, m.dof,
+                                       m.log10_p ? "; " + calib::stats::p_phrase(*m.log10_p) : "")},
+            {"correlation from pose to pose", fmt::format("{:.2f}", m.noise.rho)}};
+  if (m.noise.revisits)
+    rows.push_back(
+        {"revisits", fmt::format("{} pairs of one attitude scatter {:.2f} times that noise; lack of fit {}",
+                                 m.noise.revisits->pairs, std::sqrt(m.noise.revisits->ratio),
+                                 calib::stats::p_phrase(m.noise.revisits->log10_p))});
+  if (m.table_sd_deg > 0)
+    rows.push_back({"table angles", fmt::format("good to {:.3g}° each, estimated", m.table_sd_deg)});
+  out += html_table({"", ""}, rows, true);
+  Rows axes;
+  for (Eigen::Index s = 0; s < m.axis_noise_nT.rows(); ++s) {
+    std::vector<std::string> row{fmt::format("s{}", s + 1)};
+    for (const auto* of : {&m.axis_noise_nT, &m.axis_residual_nT})
+      for (Eigen::Index a = 0; a < 3; ++a) row.push_back(fmt::format("{:.3g}", (*of)(s, a)));
+    axes.push_back(std::move(row));
   }
-  for (const std::string& line : calib::report::alike_text(c.comparison))
-    out += "<p class=\"quiet\">" + escaped(line) + ".</p>";
   return out +
-         html_good(
-             "blue points that scatter about the line without a shape. An orange frame (p below 0.001) means "
-             "that the residual follows this covariate: on the scalar residual alone it is a sensor, on the "
-             "attitude alone the table, alike in all sensors the site. With fifty plots, chance alone makes "
-             "a frame "
-             "in one report of twenty.");
+         html_table({"sensor", "noise x, nT", "y, nT", "z, nT", "residual x, nT", "y, nT", "z, nT"}, axes,
+                    false) +
+         html_good(fmt::format(
+             "the residual is as large as the noise, axis by axis. Here it is {:.2f} times as large.",
+             m.residual_nT / std::max(m.noise_nT, 1e-300)));
 }
 
-std::string waterfall_section(const ReportContent& c) {
-  if (!c.waterfall) return "";
-  const calib::criticism::search::Waterfall& w = *c.waterfall;
-  std::vector<Bar> bars{{"without any effect", w.without_nT,
-                         fmt::format("{:.3g} nT, {:.3g} nT/m", w.without_nT, w.without_nT_per_m), 2}};
-  for (const calib::criticism::search::WaterfallStep& s : w.steps) {
-    bars.push_back({s.effect + ", added first", s.first_nT,
-                    fmt::format("{:.3g} nT, {:.3g} nT/m", s.first_nT, s.first_nT_per_m), 0});
-    bars.push_back(
-        {"dropped last", s.last_nT, fmt::format("{:.3g} nT, {:.3g} nT/m", s.last_nT, s.last_nT_per_m), 1});
-  }
-  bars.push_back(
-      {"with all of them", w.with_nT, fmt::format("{:.3g} nT, {:.3g} nT/m", w.with_nT, w.with_nT_per_m), 2});
-  return "<h2>What each effect takes out</h2><p class=\"quiet\">Parts add in squares: a bar is the part of "
-         "the residual, nT, that one effect accounts for; beside it the same of the error of the tensor, rms "
-         "of its "
-         "six components.</p>" +
-         svg_bars(bars, w.floor_nT, fmt::format("noise {:.3g} nT", w.floor_nT)) +
-         html_good(
-             "the last bar ends at the noise. Where the two bars of an effect differ, it shares what it "
-             "explains with "
-             "another one.");
+std::string residual_section(const ReportContent& c) {
+  std::string out = "<h2>What the model leaves</h2>";
+  out += c.explained.model.empty() ? "<p>Nothing was added to the model: each figure shows it as it is.</p>"
+                                   : "<p>Left of each figure the sensors' parameters alone, right with the "
+                                     "effects that the search ended with; both on "
+                                     "equal axes.</p>";
+  out += figures_html(c.panels);
+  for (const std::string& line : calib::report::alike_text(c.comparison))
+    out += "<p class=\"quiet\">" + escaped(line) + ".</p>";
+  return out + html_good(
+                   "points that scatter about zero without a shape. What follows something on the scalar "
+                   "residual alone is a "
+                   "sensor, on the attitude alone the table, alike in all sensors the site.");
+}
+
+std::string report_page(const ReportContent& c) {
+  std::string out = fmt::format(
+      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>{0}: calibration "
+      "report</title><style>{1}</style></head><body><header>"
+      "<h1>Calibration report</h1><div class=\"quiet\">{0} · calibration {2} · {3}</div></header><main>",
+      escaped(c.run), html_style(), escaped(c.fit.calibration.id), escaped(c.fit.calibration.software));
+  for (const auto section : {verdict_section, measured_section, noise_section, limits_section, rounds_section,
+                             waterfall_section, residual_section, candidates_section, errors_section,
+                             parameters_section, next_section, history_section})
+    out += section(c);
+  return out + fmt::format(
+                   "</main><footer>Made by <code>{}</code>. This page loads nothing and runs "
+                   "nothing.</footer></body></html>\n",
+                   escaped(c.command));
 }
 
 }  // namespace mgtd::daemon::cli

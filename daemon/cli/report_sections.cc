@@ -7,78 +7,87 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/tests/candidate.h"
-#include "calib/criticism/tests/detectable.h"
+#include "calib/report/figures/escaped.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/size_text.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
 #include "daemon/cli/report_page.h"
-#include "daemon/cli/svg.h"
 
 namespace mgtd::daemon::cli {
-namespace {
 
-constexpr std::size_t kCandidates = 12;
-
-std::string alternatives_text(const calib::criticism::tests::Candidate& candidate) {
-  std::vector<std::string> names;
-  for (const calib::criticism::tests::Alternative& r : candidate.alternatives)
-    if (r.possible) names.push_back(r.effect);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-}  // namespace
+using calib::report::figures::escaped;
 
 std::string candidates_section(const ReportContent& c) {
-  const auto& all = c.explained.candidates;
-  if (all.empty()) return "";
-  std::vector<Bar> bars;
-  Rows rows;
-  for (std::size_t i = 0; i < std::min(kCandidates, all.size()); ++i) {
-    const calib::criticism::tests::Candidate& x = all[i];
-    const bool named =
-        std::find(c.explained.named.begin(), c.explained.named.end(), x.effect) != c.explained.named.end();
-    bars.push_back({x.effect, x.d, fmt::format("{:.1f}", x.d), named ? 1 : 2});
-    rows.push_back({x.effect, x.where, fmt::format("{:.1f}", x.d), calib::stats::p_text(x.log10_p),
-                    calib::report::size_text(x), x.plausible ? "" : "beyond what occurs",
-                    alternatives_text(x)});
-  }
-  return "<h2>What could be missing</h2><p class=\"quiet\">Every effect of the library was tried on what the "
-         "model "
-         "leaves, with calibration, attitude and field free. d is its size in units of its own "
-         "uncertainty.</p>" +
-         svg_bars(bars, calib::criticism::tests::kSeen,
-                  fmt::format("d = {:g}: seen in 99 of 100 runs", calib::criticism::tests::kSeen)) +
-         html_table({"effect", "where", "d", "p", "size", "", "could also be"}, rows, true) +
+  if (c.suspects.empty()) return "";
+  return "<h2>What could be missing</h2>" + figures_html(c.suspects) +
          html_good(
-             "all bars short of the dashed line. Orange bars are named by the verdict; a name is a "
-             "hypothesis about "
-             "the cause, what is measured is that the residual behaves like it.");
+             "no candidate of any size. A name is a hypothesis about the cause; what is measured is that the "
+             "residual "
+             "behaves like it.");
+}
+
+std::string rounds_section(const ReportContent& c) {
+  std::string out = "<h2>The search, round by round</h2>";
+  if (c.explained.rounds.empty())
+    return out + fmt::format(
+                     "<p>Nothing was added: of {} candidates none stood out from {:.3g} nT of residual.</p>",
+                     c.explained.candidates.size(), c.explained.residual_nT);
+  Rows rows;
+  for (const calib::criticism::search::Round& r : c.explained.rounds)
+    rows.push_back({r.added.effect, r.added.where, calib::report::size_text(r.added),
+                    fmt::format("{:.1f}", r.added.d), calib::stats::p_text(r.added.log10_p),
+                    fmt::format("{:.3f} → {:.3f}", r.rms_before_nT, r.rms_after_nT),
+                    fmt::format("{:.0f} of {:.0f}", r.chi2_before - r.chi2_after, r.added.fall),
+                    fmt::format("{}", fmt::join(r.possible, ", "))});
+  return out +
+         html_table({"added", "where", "size", "d", "p", "residual, nT", "fall of chi-square, of predicted",
+                     "could also be"},
+                    rows, true) +
+         html_good(fmt::format("the residual falls to the noise, {:.3g} nT, and chi-square falls by what was "
+                               "predicted. Here it ends at "
+                               "{:.3g} nT.",
+                               c.explained.noise_nT, c.explained.rounds.back().rms_after_nT));
+}
+
+std::string waterfall_section(const ReportContent& c) {
+  if (c.falls.empty()) return "";
+  return "<h2>What each effect takes out</h2>" + figures_html(c.falls);
 }
 
 std::string limits_section(const ReportContent& c) {
   std::string out = "<h2>What this run cannot tell</h2>";
-  Rows untestable, detectable, next;
+  Rows untestable;
   for (const calib::criticism::tests::Untestable& u : c.explained.untestable)
     untestable.push_back({u.effect, u.why});
-  for (const calib::criticism::tests::Detectable& d : c.explained.detectable)
-    detectable.push_back({d.effect, calib::report::detectable_text(d)});
-  for (const calib::design::NextMeasurement& n : c.explained.next)
-    next.push_back({n.action, fmt::format("{:.0f}", n.minutes), fmt::format("{:.3f}", n.p_right_before),
-                    fmt::format("{:.3f}", n.p_right_after)});
+  out += fmt::format("<p>{} effects were tested, {} could not be.</p>", c.explained.candidates.size(),
+                     untestable.size());
   out += html_table({"untestable", "why"}, untestable, true);
   for (const std::string& w : calib::report::weak_texts(c.fit))
     out += "<p class=\"quiet\">" + escaped(w) + "</p>";
-  if (!next.empty())
-    out += "<h3>What would settle the name</h3>" +
-           html_table({"measurement", "minutes", "p right now", "p right then"}, next, true);
-  out += "<h3>Smallest sizes that would have been seen, in 99 of 100 runs like this</h3>" +
-         html_table({"effect", "size (where)"}, detectable, true);
-  return out +
+  return out + figures_html(c.limits) +
          html_good(
              "sizes smaller than what your work can bear. An effect below its size may be there unseen.");
+}
+
+std::string next_section(const ReportContent& c) {
+  std::string out = "<h2>What remains, and what to measure next</h2>";
+  out += fmt::format("<p>After the last round: {}.</p>", to_string(c.explained.left));
+  Rows next;
+  for (const calib::design::NextMeasurement& n : c.explained.next)
+    next.push_back({n.action, fmt::format("{:.0f}", n.minutes), fmt::format("{:.3f}", n.p_right_before),
+                    fmt::format("{:.3f}", n.p_right_after)});
+  if (next.empty()) return out + "<p>No further measurement is asked for: there is no name to settle.</p>";
+  return out + "<h3>What would settle the name</h3>" +
+         html_table({"measurement", "minutes", "p right now", "p right then"}, next, true);
+}
+
+std::string figures_html(const std::vector<calib::report::figures::Figure>& figures) {
+  if (figures.empty()) return "";
+  std::string out = "<div class=\"figures\">";
+  for (const calib::report::figures::Figure& f : figures) out += calib::report::figures::figure_html(f);
+  return out + "</div>";
 }
 
 std::string parameters_section(const ReportContent& c) {
@@ -112,13 +121,14 @@ std::string parameters_section(const ReportContent& c) {
   std::string out = "<h2>Parameters</h2>" + html_table(head, rows, false);
   if (!effects.empty())
     out += "<h3>Effects in the model</h3>" + html_table({"effect", "coefficient", ""}, effects, true);
-  return out + "<p class=\"quiet\">" + escaped(c.fit.calibration.gauge) + "</p>" +
+  return out + "<p class=\"quiet\">" + escaped(c.fit.calibration.gauge) + "</p>" + figures_html(c.prices) +
+         figures_html(c.earlier) +
          html_good(
              "scales and offsets as the sensors' certificates say, standard errors far below what matters.");
 }
 
 std::string history_section(const ReportContent& c) {
-  if (c.history.empty()) return "";
+  if (c.history.empty()) return "<h2>How the model came to be</h2><p>The file keeps no steps of a model.</p>";
   Rows rows;
   for (const store::ModelStep& s : c.history) {
     const auto result = nlohmann::json::parse(s.result, nullptr, false);
@@ -129,23 +139,7 @@ std::string history_section(const ReportContent& c) {
     rows.push_back({fmt::format("{:.19}Z", format_utc(s.at)), s.action, s.spec, change, s.who});
   }
   return "<h2>How the model came to be</h2>" +
-         html_table({"when", "", "effect", "residual before → after", "who"}, rows, true);
-}
-
-std::string report_page(const ReportContent& c) {
-  std::string out = fmt::format(
-      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width\"><title>{0}: calibration report</title><style>{1}</style></head><body>"
-      "<h1>Calibration report</h1><div class=\"quiet\">{0} · calibration {2} · {3}</div>",
-      escaped(c.run), kHtmlStyle, c.fit.calibration.id, escaped(c.fit.calibration.software));
-  for (const auto section :
-       {verdict_section, measured_section, errors_section, residual_section, waterfall_section,
-        candidates_section, limits_section, parameters_section, history_section})
-    out += section(c);
-  return out + fmt::format(
-                   "<footer>Made by <code>{}</code>. This page loads nothing and runs "
-                   "nothing.</footer></body></html>\n",
-                   escaped(c.command));
+         html_table({"when", "step", "effect", "residual before → after", "who"}, rows, true);
 }
 
 }  // namespace mgtd::daemon::cli

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
@@ -22,6 +23,13 @@ bool is_database(const std::filesystem::path& path) {
   std::string start(kSqliteMagic.size(), '\0');
   in.read(start.data(), static_cast<std::streamsize>(start.size()));
   return in && start == kSqliteMagic;
+}
+
+void leave_out_masked(PoseSource& source) {
+  std::erase_if(source.table.poses, [&](const Pose& pose) {
+    return std::any_of(source.masked.begin(), source.masked.end(),
+                       [&](const MaskedPose& m) { return m.number == pose.number; });
+  });
 }
 
 /// Two runs of one array, as far as their files tell.
@@ -45,7 +53,7 @@ Result<void> same_array(const std::filesystem::path& first, const std::optional<
 
 }  // namespace
 
-Result<PoseSource> read_run(const std::filesystem::path& path) {
+Result<PoseSource> read_run(const std::filesystem::path& path, Masked masked) {
   if (is_database(path) || path.extension() == ".mgtrun") {
     auto file = RunFile::open(path, Access::read_only);
     if (!file) return tl::unexpected(file.error());
@@ -53,7 +61,8 @@ Result<PoseSource> read_run(const std::filesystem::path& path) {
     if (!table) return tl::unexpected(table.error());
     const auto steps = file->model_steps();
     if (!steps) return tl::unexpected(steps.error());
-    PoseSource out{std::move(*table), file->header(), kept_model(*steps), {}};
+    PoseSource out{std::move(*table), file->header(), kept_model(*steps), {}, masked_poses(*steps)};
+    if (masked == Masked::left_out) leave_out_masked(out);
     const auto formulas = file->document(kFormulasDocument);
     if (!formulas) return tl::unexpected(formulas.error());
     if (!*formulas) return out;
@@ -69,7 +78,7 @@ Result<PoseSource> read_run(const std::filesystem::path& path) {
   if (!text) return tl::unexpected(text.error());
   auto table = calib::poses::parse_pose_table(*text, path.string());
   if (!table) return tl::unexpected(table.error());
-  return PoseSource{std::move(*table), std::nullopt, {}, {}};
+  return PoseSource{std::move(*table), std::nullopt, {}, {}, {}};
 }
 
 Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vector<std::string>& others) {
@@ -88,7 +97,7 @@ Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vect
 }
 
 Result<PoseTable> read_poses(const std::filesystem::path& path) {
-  auto source = read_run(path);
+  auto source = read_run(path, Masked::kept);
   if (!source) return tl::unexpected(source.error());
   return std::move(source->table);
 }

@@ -28,7 +28,8 @@ std::vector<tests::Detectable> detectable(const tests::Criticism& c) {
 }
 
 /// Fills what describes the model that was asked about.
-void describe(const fit::joint::JointFit& fit, const tests::Criticism& c, ExplainReport& out) {
+void describe(const fit::joint::JointFit& fit, const tests::Criticism& c, const ExplainOptions& options,
+              ExplainReport& out) {
   out.noise = c.noise;
   out.noise_nT = fit.noise_nT();
   out.residual_nT = residual_of(fit);
@@ -41,8 +42,10 @@ void describe(const fit::joint::JointFit& fit, const tests::Criticism& c, Explai
   for (std::size_t i = 0; i < c.families.size(); ++i) {
     tests::Candidate candidate = tests::candidate_of(c.families[i], c, fit.noise_inflation);
     if (i == 0) tests::weigh_poses(fit, c.evidence_by_pose(0), candidate);
+    if (options.impact) candidate.impact = tests::impact_of(fit, c.families[i]);
     out.candidates.push_back(std::move(candidate));
   }
+  if (options.confusion) out.confusion = tests::confusion_of(c.families);
   out.detectable = detectable(c);
 }
 
@@ -127,7 +130,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   out.untestable.push_back(swapped_sensors());
   if (criticism.maps.empty()) tests::look_at_maps(criticism);
   out.fit = std::make_shared<const fit::joint::JointFit>(search.fit);
-  describe(search.fit, criticism, out);
+  describe(search.fit, criticism, options, out);
   search.slow =
       !out.maps.empty() && (out.maps.front().map == "time" || out.maps.front().map == "temperature");
   const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};

@@ -16,6 +16,8 @@ struct ExplainOptions {
   std::optional<std::vector<tests::CandidateEffect>> candidate_effects{};
   /// Candidates beside the library: formulas of the user.
   std::vector<tests::CandidateEffect> also{};
+  bool confusion{false};  ///< tell which effects look alike on this run
+  bool impact{false};     ///< tell what ignoring each candidate would do to the tensor
 };
 
 }  // namespace mgtd::calib::criticism::search

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "calib/criticism/search/explain_note.h"
 #include "calib/criticism/tests/candidate.h"
+#include "calib/criticism/tests/confusion.h"
 #include "calib/criticism/tests/detectable.h"
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/residual_maps.h"
@@ -46,9 +48,10 @@ struct ExplainReport {
   std::vector<fit::OutlierNode> outliers{};
   std::vector<tests::Detectable> detectable{};  ///< beside the model after the rounds
   std::vector<tests::Untestable> untestable{};
-  std::vector<design::NextMeasurement> next{};  ///< for the first name, best first
-  std::vector<ExplainNote> notes{};             ///< the same may stand there twice
-  std::vector<effects::EffectPtr> model{};      ///< effects of the last fit
+  std::optional<tests::ConfusionMatrix> confusion{};  ///< of the model that was asked about
+  std::vector<design::NextMeasurement> next{};        ///< for the first name, best first
+  std::vector<ExplainNote> notes{};                   ///< the same may stand there twice
+  std::vector<effects::EffectPtr> model{};            ///< effects of the last fit
   std::shared_ptr<const fit::joint::JointFit>
       fit{};  ///< of the model that was asked about; points into the pose table
 };

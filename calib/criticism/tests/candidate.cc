@@ -65,6 +65,15 @@ void weigh_poses(const fit::joint::JointFit& fit, const std::vector<double>& by_
   }
 }
 
+std::optional<fit::joint::EffectImpact> impact_of(const fit::joint::JointFit& fit,
+                                                  const ScoredFamily& family) {
+  const std::size_t variant = family.winner().variant;
+  const OneStep step = one_step(family.signatures[variant], family.where());
+  auto impact = fit::joint::effect_impact(fit, family.candidate_effect->variants[variant],
+                                          family.where().combine * step.value);
+  return impact ? std::optional(*std::move(impact)) : std::nullopt;
+}
+
 const calibration::EffectCoefficient* seen_most(const Candidate& candidate) {
   const auto sigmas = [](const calibration::EffectCoefficient& c) {
     return std::abs(c.value) / std::max(c.sd, 1e-300);

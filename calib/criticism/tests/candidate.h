@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/criticism/tests/alternatives.h"
 #include "calib/criticism/tests/criticism.h"
+#include "calib/fit/joint/effect_impact.h"
 
 /// An effect that the model may lack, as reports show it: its size, its share of the excess, what else could
 /// stand in its place and the poses that carry its evidence.
@@ -23,6 +25,8 @@ struct Candidate {
   bool plausible{true};
   std::vector<int> poses{};  ///< numbers of those that carry half of the evidence
   double largest_pose{0};    ///< share of the one that carries most
+  /// What a model without it does to the tensor, if it is there as it was fitted; empty where nobody asked.
+  std::optional<fit::joint::EffectImpact> impact{};
 };
 
 /// `noise_inflation`: of the fit that was judged (JointFit::noise_inflation), so that the fall of chi-square
@@ -32,6 +36,10 @@ struct Candidate {
 
 /// Fills in the poses that carry half of the evidence, the heaviest first; `by_pose` by place in the fit.
 void weigh_poses(const fit::joint::JointFit& fit, const std::vector<double>& by_pose, Candidate& out);
+
+/// Candidate::impact, of the winner of a family.
+[[nodiscard]] std::optional<fit::joint::EffectImpact> impact_of(const fit::joint::JointFit& fit,
+                                                                const ScoredFamily& family);
 
 /// The coefficient that stands out most from its uncertainty; null where there is none.
 [[nodiscard]] const calibration::EffectCoefficient* seen_most(const Candidate& candidate);

@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "calib/calibration/tensor.h"
 #include "calib/criticism/tests/criticism.h"
+#include "calib/criticism/tests/residual_fields.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/poses/kept_columns.h"
@@ -99,22 +98,35 @@ std::vector<std::pair<std::string, std::string>> take_out_alike(std::vector<Cova
 
 /// One-way analysis of variance of a component over the bins.
 double log10_p_of(const Eigen::VectorXd& values, const std::vector<std::vector<Eigen::Index>>& bins,
-                  std::vector<double>& means) {
+                  std::vector<double>& means, std::vector<double>& ses) {
   double total = 0, n = 0;
   for (const auto& bin : bins)
     for (const Eigen::Index k : bin) total += values[k], ++n;
   double between = 0, within = 0;
-  means.clear();
+  means.clear(), ses.clear();
   for (const auto& bin : bins) {
     const auto size = static_cast<double>(bin.size());
     const double mean = values(bin).sum() / size;
     means.push_back(mean);
     between += size * std::pow(mean - total / n, 2);
-    within += (values(bin).array() - mean).square().sum();
+    const double squares = (values(bin).array() - mean).square().sum();
+    within += squares;
+    ses.push_back(size > 1 ? std::sqrt(squares / (size - 1) / size) : kNone);
   }
   const double groups = static_cast<double>(bins.size());
   if (groups < 2 || n <= groups || !(within > 0)) return 0;
   return stats::f_log10_p(between / (groups - 1) / (within / (n - groups)), groups - 1, n - groups);
+}
+
+/// Means of the covariate itself.
+std::vector<double> centers_of(const Covariate& c, const std::vector<std::vector<Eigen::Index>>& bins) {
+  std::vector<double> out;
+  for (const auto& bin : bins) {
+    double sum = 0;
+    for (const Eigen::Index k : bin) sum += c.values[static_cast<std::size_t>(k)];
+    out.push_back(sum / static_cast<double>(bin.size()));
+  }
+  return out;
 }
 
 struct Component {
@@ -132,12 +144,14 @@ ResidualChannel channel_of(ResidualChannel out, const std::vector<Component>& co
     const auto bins = bins_of(covariate);
     Dependence best{.covariate = covariate.name, .log10_p = 1};
     for (const Component& c : components) {
-      std::vector<double> means;
-      const double log10_p = log10_p_of(c.values, bins, means);
+      std::vector<double> means, ses;
+      const double log10_p = log10_p_of(c.values, bins, means, ses);
       if (log10_p >= best.log10_p) continue;
-      best.log10_p = log10_p, best.component = c.name, best.means = std::move(means);
+      best.log10_p = log10_p, best.component = c.name;
+      best.means = std::move(means), best.ses = std::move(ses);
     }
     best.log10_p = std::min(0.0, best.log10_p + std::log10(static_cast<double>(components.size())));
+    best.centers = centers_of(covariate, bins);
     for (const double x : covariate.values) {
       if (!std::isfinite(x)) continue;
       best.from = best.to = x;
@@ -152,43 +166,9 @@ ResidualChannel channel_of(ResidualChannel out, const std::vector<Component>& co
   return out;
 }
 
-/// Residuals of the readings, brought back to the field at each sensor in the platform frame.
-struct Fields {
-  Eigen::MatrixXd whitened, delta_nT;  ///< 12 x P
-  Eigen::MatrixXd scalar_nT;           ///< 4 x P
-  Eigen::MatrixXd attitude_deg;        ///< 3 x P
-};
-
-Fields fields_of(const fit::joint::JointFit& fit) {
-  const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
-  const int sensors = fit.problem.sensors(), channels = fit.problem.channels();
-  Fields out{Eigen::MatrixXd(channels, n), Eigen::MatrixXd(channels, n), Eigen::MatrixXd(sensors, n),
-             Eigen::MatrixXd::Zero(3, n)};
-  const fit::joint::PoseModel model(fit.problem, fit.state);
-  fit::joint::PoseLinear linear;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const fit::joint::JointPose& pose = fit.problem.poses[at];
-    model.linearise(pose, fit.state.nuisances[at], linear);
-    const fit::joint::Channels e = (pose.weight.array() > 0).select(pose.y_nT - linear.y_nT, 0.0);
-    out.whitened.col(k) = fit.noise_inflation * pose.weight.cwiseProduct(e);
-    const double field = fit.problem.common_field ? fit.state.f_nT : pose.f_nT;
-    for (int i = 0; i < sensors; ++i) {
-      const sensor::SensorModel& s = fit.state.sensors[static_cast<std::size_t>(i)];
-      const Eigen::Vector3d b = s.correct(linear.y_nT.segment<3>(3 * i));
-      const Eigen::Vector3d delta = s.R_PS() * (s.response().inverse() * e.segment<3>(3 * i));
-      out.delta_nT.block<3, 1>(3 * i, k) = delta;
-      out.scalar_nT(i, k) = b.normalized().dot(delta) + linear.f_nT - field;
-    }
-    if (pose.has_angles) out.attitude_deg.col(k) = fit.state.nuisances[at].head<3>() * to_deg(1);
-  }
-  return out;
-}
-
 std::vector<ResidualChannel> channels_of(const fit::joint::JointFit& fit, const std::vector<Covariate>& all) {
-  const Fields f = fields_of(fit);
+  const ResidualFields f = residual_fields(fit);
   std::vector<Component> whitened, scalar, attitude, between, closure;
-  const Eigen::MatrixXd closures = calibration::closure_rows(fit.problem.geometry) * f.delta_nT;
   const int sensors = fit.problem.sensors();
   for (int c = 0; c < fit.problem.channels(); ++c) {
     const std::string axis = sensor::channel_name(c);
@@ -199,11 +179,8 @@ std::vector<ResidualChannel> channels_of(const fit::joint::JointFit& fit, const 
   }
   for (int i = 0; i < sensors; ++i) scalar.push_back({fmt::format("s{}", i + 1), f.scalar_nT.row(i)});
   for (int a = 0; a < 3; ++a) attitude.push_back({std::string(1, "xyz"[a]), f.attitude_deg.row(a)});
-  const std::array<std::string, 4> names{"curl", "center x", "center y", "center z"};
-  for (int i = 0; i < 4; ++i) {
-    const double to_nT = i == 0 ? fit.problem.geometry.cross_baseline_m().value_or(1) : 1;
-    closure.push_back({names[static_cast<std::size_t>(i)], to_nT * closures.row(i)});
-  }
+  for (Eigen::Index i = 0; i < f.closure_nT.rows(); ++i)
+    closure.push_back({f.closure_names[static_cast<std::size_t>(i)], f.closure_nT.row(i)});
   std::vector<ResidualChannel> out;
   const auto add = [&](ResidualChannel channel, const std::vector<Component>& components) {
     out.push_back(channel_of(std::move(channel), components, all));
@@ -212,11 +189,17 @@ std::vector<ResidualChannel> channels_of(const fit::joint::JointFit& fit, const 
   add({"scalar", "nT", "|b| of each sensor less F: blind to every error of angles"}, scalar);
   if (fit.problem.has_angles)
     add({"attitude", "deg", "what the table angles had to be corrected by: blind to the sensors"}, attitude);
-  add({"inter-sensor", "nT", "b of each sensor less the mean of the four: blind to attitude and field"},
-      between);
-  add({"closure", "nT",
-       "curl over the baseline, and centre of 1 and 3 less that of 2 and 4: zero in any gradient"},
-      closure);
+  const bool cross = fit.problem.geometry.cross_baseline_m().has_value();
+  if (sensors > 1)
+    add({"inter-sensor", "nT",
+         fmt::format("b of each sensor less the mean of the {}: blind to attitude and field",
+                     cross ? "four" : std::to_string(sensors))},
+        between);
+  if (!closure.empty())
+    add({"closure", "nT",
+         cross ? "curl over the baseline, and centre of 1 and 3 less that of 2 and 4: zero in any gradient"
+               : "what no uniform field and no gradient makes of these sensors"},
+        closure);
   return out;
 }
 
@@ -233,7 +216,8 @@ Result<Comparison> compare(const PoseTable& table, const fit::FitOptions& option
   Comparison out{.noise = c.noise,
                  .noise_nT = fit->noise_nT(),
                  .residual_nT = residuals.residual_nT(),
-                 .axis_noise_nT = fit->pose_noise_nT};
+                 .axis_noise_nT = fit->pose_noise_nT,
+                 .fit = std::make_shared<const fit::joint::JointFit>(*fit)};
   out.axis_residual_nT = fit->pose_noise_nT.cwiseProduct(residuals.noise_ratio) * fit->noise_inflation;
   out.chi2 = chi2_at_stated_noise(*fit, c, fit->table_sd_rad), out.dof = c.dof;
   if (c.noise.reference.known) {

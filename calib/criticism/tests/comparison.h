@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/residual_maps.h"
+#include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/method_choice/fit.h"
 
 /// Compares model and measurement: how large the noise is, whether the model fits within it, and where it
@@ -19,15 +21,18 @@ struct Dependence {
   std::string covariate{}, component{};  ///< the component of the channel that depends most
   double log10_p{0};                     ///< analysis of variance between the bins, components counted
   std::vector<double> means{};           ///< of that component, in the order of the covariate
-  double from{0}, to{0};                 ///< of the covariate
+  std::vector<double> ses{};      ///< their standard errors by the scatter within the bin; NaN of one pose
+  std::vector<double> centers{};  ///< means of the covariate over the same bins
+  double from{0}, to{0};          ///< of the covariate
 };
 
 /// One way of looking at the residual.
 ///     whitened      readings less prediction over their noise, channel by channel
 ///     scalar        |b_i| less the field of the pose, by sensor, nT: blind to every error of angles
 ///     attitude      what the table angles had to be corrected by, deg: blind to the sensors
-///     inter-sensor  b_i less the mean of the four, nT: blind to attitude and to changes of the field
-///     closure       curl over the baseline and differences of the two centres, nT: zero for any gradient
+///     inter-sensor  b_i less the mean of all, nT: blind to attitude and to changes of the field
+///     closure       curl over the baseline and differences of the two centres, nT: zero for any gradient;
+///                   of another array than the cross its closure combinations
 struct ResidualChannel {
   std::string name{}, unit{};
   std::string meaning{};  ///< for a person
@@ -52,6 +57,8 @@ struct Comparison {
   std::vector<std::pair<std::string, std::string>> alike{};
   std::vector<MapScore> maps{};
   std::vector<fit::OutlierNode> outliers{};
+  /// What was compared; points into the pose table.
+  std::shared_ptr<const fit::joint::JointFit> fit{};
   bool fits{true};  ///< no map and no size stands out: one clean run in three hundred fails
 };
 

@@ -6,6 +6,7 @@
 
 #include "calib/effects/formula/formula.h"
 #include "calib/effects/library/effect_family.h"
+#include "proto/nearest_word.h"
 
 namespace mgtd::calib::effects::library {
 
@@ -15,10 +16,18 @@ std::vector<std::string_view> effect_names() {
   return names;
 }
 
+std::string no_such_effect(std::string_view name) {
+  std::vector<std::string> known;
+  for (const EffectFamily& family : effect_families()) known.emplace_back(family.name);
+  const auto meant = nearest_word(name, known);
+  return fmt::format("no effect is called '{}'{}", name,
+                     meant ? fmt::format(", did you mean '{}'?", *meant) : std::string());
+}
+
 Result<EffectPtr> make_effect(const EffectSpec& spec) {
   if (formula::is_formula(spec)) return formula::make_formula(spec);
   if (const EffectFamily* family = find_family(spec.name)) return family->from_spec(spec);
-  return fail(ErrorCode::usage, fmt::format("no effect is called '{}'", spec.name),
+  return fail(ErrorCode::usage, no_such_effect(spec.name),
               fmt::format("known effects: {}", fmt::join(effect_names(), ", ")));
 }
 

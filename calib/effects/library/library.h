@@ -12,6 +12,8 @@ namespace mgtd::calib::effects::library {
 
 /// Names that make_effect knows, in the order they are listed to the user.
 [[nodiscard]] std::vector<std::string_view> effect_names();
+/// "no effect is called 'axis.cubik', did you mean 'axis.cubic'?"
+[[nodiscard]] std::string no_such_effect(std::string_view name);
 /// NAME[@WHERE][,PARAM=VALUE]..., see effect_spec.h. An effect that needs the run is not bound to one yet: a
 /// fit does that. Refuses an unknown name with the list of known ones, and places and parameters it cannot
 /// have.

@@ -20,14 +20,6 @@
 namespace mgtd::calib::fit::joint {
 namespace {
 
-/// Mean strength of the field over the poses.
-double mean_field(const JointFit& fit) {
-  if (fit.problem.common_field) return fit.state.f_nT;
-  double sum = 0;
-  for (const JointPose& pose : fit.problem.poses) sum += pose.f_nT;
-  return sum / static_cast<double>(fit.problem.poses.size());
-}
-
 SiteField site_of(const JointFit& fit) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   SiteField out{.f_nT = mean_field(fit),
@@ -147,6 +139,13 @@ sensor::FieldVector size_of(const JointFit& fit, const effects::EffectPtr& effec
 }
 
 }  // namespace
+
+double mean_field(const JointFit& fit) {
+  if (fit.problem.common_field) return fit.state.f_nT;
+  double sum = 0;
+  for (const JointPose& pose : fit.problem.poses) sum += pose.f_nT;
+  return sum / static_cast<double>(fit.problem.poses.size());
+}
 
 JointOptions joint_options(const FitOptions& options) {
   JointOptions out;

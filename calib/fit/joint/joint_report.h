@@ -17,4 +17,7 @@ namespace mgtd::calib::fit::joint {
 /// The 48 parameters, the effects, their covariance and the noise of a fit, into a calibration.
 void fill_calibration(const JointFit& fit, calibration::Calibration& calibration);
 
+/// Mean strength of the field over the poses.
+[[nodiscard]] double mean_field(const JointFit& fit);
+
 }  // namespace mgtd::calib::fit::joint

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/pose_points.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calib/criticism/tests/residual_fields.h"
+
+namespace mgtd::calib::criticism::tests {
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+/// Reading less prediction, of what the fit left out too.
+Eigen::MatrixXd residuals_nT(const fit::joint::JointFit& fit) {
+  const fit::joint::PoseModel model(fit.problem, fit.state);
+  fit::joint::PoseLinear linear;
+  Eigen::MatrixXd out(fit.problem.channels(), static_cast<Eigen::Index>(fit.problem.poses.size()));
+  for (Eigen::Index k = 0; k < out.cols(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    model.linearise(fit.problem.poses[at], fit.state.nuisances[at], linear);
+    out.col(k) = fit.problem.poses[at].y_nT - linear.y_nT;
+  }
+  return out;
+}
+
+void fill_columns(const fit::joint::JointProblem& problem, PosePoints& out) {
+  std::set<std::string> names;
+  for (const fit::joint::JointPose& pose : problem.poses)
+    for (const auto& [name, value] : pose.pose->covariates) names.insert(name);
+  for (const std::string& name : names) {
+    std::vector<double>& column = out.columns[name];
+    for (const fit::joint::JointPose& pose : problem.poses) {
+      const auto found = pose.pose->covariates.find(name);
+      column.push_back(found == pose.pose->covariates.end() ? kNotKnown : found->second);
+    }
+  }
+}
+
+/// What was left out has no residual in units of noise, and what is made of it has none either.
+void hide_left_out(const fit::joint::JointFit& fit, PosePoints& out) {
+  for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
+    const fit::joint::JointPose& pose = fit.problem.poses[k];
+    const auto at = static_cast<Eigen::Index>(k);
+    for (int c = 0; c < fit.problem.channels(); ++c) {
+      if (pose.weight[c] > 0) continue;
+      out.whitened(c, at) = kNotKnown;
+      out.scalar_nT(c / 3, at) = kNotKnown;
+      out.closure_nT.col(at).setConstant(kNotKnown);
+    }
+    if (!(pose.f_weight > 0)) out.scalar_nT.col(at).setConstant(kNotKnown);
+    if (!pose.has_angles) out.attitude_deg.col(at).setConstant(kNotKnown);
+  }
+}
+
+}  // namespace
+
+Result<PosePoints> pose_points(const fit::joint::JointFit& fit) {
+  auto influence = fit::joint::pose_influences(fit);
+  if (!influence) return tl::unexpected(influence.error());
+  ResidualFields fields = residual_fields(fit);
+  PosePoints out;
+  for (const fit::joint::JointPose& pose : fit.problem.poses) {
+    out.pose.push_back(pose.pose);
+    out.t_h.push_back(pose.t_h);
+  }
+  fill_columns(fit.problem, out);
+  out.residual_nT = residuals_nT(fit);
+  out.whitened = std::move(fields.whitened);
+  out.scalar_nT = std::move(fields.scalar_nT);
+  out.attitude_deg = std::move(fields.attitude_deg);
+  out.closure_nT = std::move(fields.closure_nT);
+  out.closure_names = std::move(fields.closure_names);
+  out.direction_S = std::move(fields.field_S_nT);
+  for (Eigen::Index i = 0; i < out.direction_S.rows(); i += 3) {
+    out.direction_S.middleRows<3>(i) = out.direction_S.middleRows<3>(i).colwise().normalized().eval();
+  }
+  hide_left_out(fit, out);
+  out.left_out.resize(out.pose.size());
+  for (const fit::OutlierNode& node : fit.outliers) out.left_out.at(node.place).push_back(node.where);
+  out.influence = *std::move(influence);
+  return out;
+}
+
+}  // namespace mgtd::calib::criticism::tests

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/criticism/tests/residual_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "calib/criticism/tests/whitener.h"
+#include "calib/fit/joint/pose_residuals.h"
+#include "calib/stats/f_distribution.h"
+
+namespace mgtd::calib::criticism::tests {
+namespace {
+
+/// Signed, 3N x P, in units of their own standard deviations; 0 where left out.
+Eigen::MatrixXd own_units(const fit::joint::JointFit& fit) {
+  const fit::joint::PoseResiduals sizes = fit::joint::pose_residuals(fit.problem, fit.state);
+  const fit::joint::PoseModel model(fit.problem, fit.state);
+  fit::joint::PoseLinear linear;
+  Eigen::MatrixXd out(fit.problem.channels(), static_cast<Eigen::Index>(fit.problem.poses.size()));
+  for (Eigen::Index k = 0; k < out.cols(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    model.linearise(fit.problem.poses[at], fit.state.nuisances[at], linear);
+    for (Eigen::Index c = 0; c < out.rows(); ++c) {
+      const double size = fit.noise_inflation * static_cast<double>(sizes.t(c, k));
+      out(c, k) = std::copysign(size, fit.problem.poses[at].y_nT[c] - linear.y_nT[c]);
+    }
+  }
+  return out;
+}
+
+double normal_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+/// x with P(Beta(a, b) > x) = p; Beta(a, b) > x is F(2a, 2b) > b x / (a (1 - x)).
+double beta_upper(double a, double b, double p) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double x = (low + high) / 2;
+    const bool more = stats::f_log10_p(b * x / (a * (1 - x)), 2 * a, 2 * b) > std::log10(p);
+    (more ? low : high) = x;
+  }
+  return (low + high) / 2;
+}
+
+/// Chance of each order statistic to leave the envelope on one side.
+double local_level(std::size_t n) {
+  constexpr double kAlpha = 0.05, kSecond = 1.591;
+  const double l = std::log(static_cast<double>(n)), ll = std::log(l);
+  if (!(ll > 1)) return kAlpha / (2 * static_cast<double>(std::max<std::size_t>(n, 1)));
+  return -std::log(1 - kAlpha) / (2 * ll * l) * (1 - kSecond * std::log(ll) / ll);
+}
+
+}  // namespace
+
+double normal_quantile(double p) {
+  double low = -40, high = 40;
+  for (int i = 0; i < 80; ++i) {
+    const double z = (low + high) / 2;
+    (normal_below(z) < p ? low : high) = z;
+  }
+  return (low + high) / 2;
+}
+
+ResidualQuantiles residual_quantiles(const fit::joint::JointFit& fit) {
+  const Eigen::MatrixXd z = own_units(fit);
+  std::vector<double> sorted;
+  for (Eigen::Index k = 0; k < z.cols(); ++k)
+    for (Eigen::Index c = 0; c < z.rows(); ++c)
+      if (z(c, k) != 0) sorted.push_back(z(c, k));
+  std::sort(sorted.begin(), sorted.end());
+  ResidualQuantiles out{.n = sorted.size()};
+  if (sorted.empty()) return out;
+  const double level = local_level(out.n), n = static_cast<double>(out.n);
+  constexpr std::size_t kTails = 100;
+  const std::size_t every = std::max<std::size_t>(1, out.n / (kMostQuantiles - 2 * kTails));
+  for (std::size_t i = 0; i < out.n; ++i) {
+    if (out.n > kMostQuantiles && i >= kTails && i + kTails < out.n && i % every != 0) continue;
+    const double rank = static_cast<double>(i + 1), beyond = n + 1 - rank;
+    out.quantile.push_back(normal_quantile((rank - 0.5) / n));
+    out.residual.push_back(sorted[i]);
+    out.high.push_back(normal_quantile(beta_upper(rank, beyond, level)));
+    // The lower end of U_i is one less the upper end of the mirrored rank: no 1 - p of a small p is taken.
+    out.low.push_back(-normal_quantile(beta_upper(beyond, rank, level)));
+  }
+  return out;
+}
+
+ResidualAutocorrelation residual_autocorrelation(const fit::joint::JointFit& fit, int lags) {
+  const Eigen::MatrixXd z = own_units(fit);
+  const std::vector<Eigen::Index> order = order_in_time(fit.problem);
+  const Eigen::Index n = z.cols();
+  ResidualAutocorrelation out;
+  out.bound = 1.96 / std::sqrt(3.0 * static_cast<double>(std::max<Eigen::Index>(n, 1)));
+  for (int s = 0; s < fit.problem.sensors(); ++s) {
+    const auto rows = z.middleRows<3>(3 * s);
+    std::vector<double>& r = out.by_sensor.emplace_back();
+    for (Eigen::Index lag = 1; lag <= std::min<Eigen::Index>(lags, n - 1); ++lag) {
+      double product = 0;
+      for (Eigen::Index k = lag; k < n; ++k)
+        product += rows.col(order[static_cast<std::size_t>(k)])
+                       .dot(rows.col(order[static_cast<std::size_t>(k - lag)]));
+      r.push_back(product / std::max(rows.squaredNorm(), 1e-300));
+    }
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib::criticism::tests

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "calib/criticism/search/evidence.h"
+
+namespace mgtd::calib::report {
+
+/// "mgt.why/1".
+[[nodiscard]] nlohmann::json to_json(const criticism::search::Evidence& evidence);
+/// For the terminal, 80 columns wide: how far beyond chance, the poses that carry it, without and with the
+/// effect map by map, what else it could be and what would tell.
+[[nodiscard]] std::string to_text(const criticism::search::Evidence& evidence);
+
+}  // namespace mgtd::calib::report

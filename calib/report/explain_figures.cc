@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/explain_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/effects/library/effect_family.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/report/figures/limits_figures.h"
+#include "calib/report/figures/parameter_figures.h"
+#include "calib/report/figures/scatter_figures.h"
+#include "calib/report/figures/suspects_figure.h"
+#include "calib/report/figures/waterfall_figure.h"
+#include "calib/report/size_text.h"
+#include "calib/report/verdict_text.h"
+#include "calib/stats/probability.h"
+#include "proto/time.h"
+
+namespace mgtd::calib::report {
+namespace {
+
+/// As figures write it: "+2.999 ± 0.082 nT/°C".
+std::string typeset(std::string text) {
+  for (const auto& [plain, set] :
+       {std::pair<std::string_view, std::string_view>{"+-", "±"}, {"degC", "°C"}, {"^2", "²"}})
+    for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + set.size()))
+      text.replace(at, plain.size(), set);
+  return text;
+}
+
+constexpr std::size_t kSuspectsShown = 12;
+
+std::vector<std::string> parameter_names() {
+  return {sensor::kParameterNames.begin(), sensor::kParameterNames.end()};
+}
+
+std::vector<std::string> numbered(std::size_t sensors) {
+  std::vector<std::string> out;
+  for (std::size_t s = 1; s <= sensors; ++s) out.push_back(fmt::format("s{}", s));
+  return out;
+}
+
+double worst_sd(const fit::joint::JointFit& fit) {
+  const Gradient sd = fit::joint::calibration_tensor_sd(fit.state.sensors, fit.problem.geometry,
+                                                        fit.covariance, fit::joint::mean_field(fit));
+  double worst = 0;
+  for (const double x : components(sd)) worst = std::fmax(worst, x);
+  return worst;
+}
+
+/// Days since 1970; empty where the text is no time.
+std::optional<double> day_of(const std::string& t_utc) {
+  const auto t = parse_utc(t_utc);
+  if (!t) return std::nullopt;
+  constexpr double kNsPerDay = 86400e9;
+  return static_cast<double>(t->ns) / kNsPerDay;
+}
+
+std::vector<std::vector<double>> shifts_of(const validity::DiffReport& diff, std::size_t sensors,
+                                           const std::vector<std::string>& names) {
+  std::vector<std::vector<double>> out(sensors, std::vector<double>(names.size(), std::nan("")));
+  for (const validity::ParameterChange& p : diff.change.parameters)
+    for (std::size_t s = 0; s < sensors; ++s)
+      for (std::size_t k = 0; k < names.size(); ++k)
+        if (p.name == fmt::format("s{} {}", s + 1, names[k])) out[s][k] = p.sigmas;
+  return out;
+}
+
+}  // namespace
+
+figures::Figure suspects_of(const criticism::search::ExplainReport& report) {
+  figures::SuspectsValues v{
+      .suspects = {}, .tried = report.candidates.size(), .seen_d = criticism::tests::kSeen};
+  for (std::size_t i = 0; i < std::min(kSuspectsShown, report.candidates.size()); ++i) {
+    const criticism::tests::Candidate& c = report.candidates[i];
+    figures::Suspect s{.effect = c.effect,
+                       .where = c.where,
+                       .d = c.d,
+                       .p = stats::p_phrase(c.log10_p),
+                       .size = typeset(size_text(c))};
+    for (const auto& other : c.alternatives)
+      if (other.possible) s.could_also_be.push_back(other.effect);
+    s.named = std::find(report.named.begin(), report.named.end(), c.effect) != report.named.end();
+    s.plausible = c.plausible;
+    v.suspects.push_back(std::move(s));
+  }
+  for (const auto& u : report.untestable) v.untestable.push_back(u.effect);
+  return figures::suspects_figure(v);
+}
+
+figures::Figure detectable_of(const criticism::search::ExplainReport& report) {
+  figures::DetectableValues v;
+  for (const auto& d : report.detectable) {
+    const effects::library::EffectFamily* const family = effects::library::find_family(d.effect);
+    const bool beyond = family != nullptr && family->bound > 0 && d.value > family->bound;
+    const double usual = family == nullptr ? 0 : family->typical;
+    v.sizes.push_back({.effect = d.effect,
+                       .where = d.where,
+                       .ratio = usual > 0 && !beyond ? d.value / usual : 0,
+                       .text = typeset(detectable_text(d))});
+  }
+  for (const auto& u : report.untestable) v.untestable.push_back(u.effect);
+  return figures::detectable_figure(v);
+}
+
+figures::Figure waterfall_of(const criticism::search::Waterfall& w, std::optional<double> held_out_nT) {
+  figures::WaterfallValues v{.effects = {},
+                             .residual = {.unit = "nT",
+                                          .without = w.without_nT,
+                                          .with = w.with_nT,
+                                          .floor = w.floor_nT,
+                                          .first_share = {},
+                                          .last_share = {},
+                                          .held_out = held_out_nT},
+                             .tensor = {.unit = "nT/m",
+                                        .without = w.without_nT_per_m,
+                                        .with = w.with_nT_per_m,
+                                        .floor = w.floor_nT_per_m,
+                                        .first_share = {},
+                                        .last_share = {},
+                                        .held_out = {}}};
+  for (const auto& s : w.steps) {
+    v.effects.push_back(s.spec.empty() ? s.effect : s.spec);
+    v.residual.first_share.push_back(s.first_nT), v.residual.last_share.push_back(s.last_nT);
+    v.tensor.first_share.push_back(s.first_nT_per_m), v.tensor.last_share.push_back(s.last_nT_per_m);
+  }
+  return figures::waterfall_figure(v);
+}
+
+figures::Figure evidence_of(const criticism::search::Evidence& e) {
+  figures::EvidenceValues v{.effect = e.candidate.effect,
+                            .where = e.candidate.where,
+                            .x_label = "what the effect makes of the pose, in units of the noise",
+                            .y_label = "left there, in units of the noise",
+                            .slope_text = typeset(size_text(e.candidate)),
+                            .slope = e.added.slope,
+                            .slope_sd = e.added.slope_sd,
+                            .poses = e.added.pose,
+                            .largest_share = e.candidate.largest_pose};
+  v.x = e.added.x, v.y = e.added.y;
+  return figures::evidence_figure(v);
+}
+
+figures::Figure confusion_of(const criticism::tests::ConfusionMatrix& c) {
+  figures::ConfusionValues v{.effects = c.effects};
+  const auto n = static_cast<Eigen::Index>(c.effects.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    std::vector<double>& row = v.correlation.emplace_back();
+    // Of the two directions the worse: an effect with many coefficients holds one with few.
+    for (Eigen::Index j = 0; j < n; ++j) row.push_back(std::max(c.correlation(i, j), c.correlation(j, i)));
+  }
+  return figures::confusion_figure(v);
+}
+
+figures::Figure price_of(const fit::joint::JointFit& narrow, const fit::joint::JointFit& wide) {
+  const auto sensors = static_cast<std::size_t>(wide.problem.sensors());
+  figures::PriceValues v{.sensors = numbered(sensors),
+                         .parameters = parameter_names(),
+                         .growth = {},
+                         .tensor_before_nT_per_m = worst_sd(narrow),
+                         .tensor_after_nT_per_m = worst_sd(wide)};
+  for (std::size_t s = 0; s < sensors; ++s) {
+    std::vector<double>& row = v.growth.emplace_back();
+    for (std::size_t k = 0; k < v.parameters.size(); ++k) {
+      const auto slot = static_cast<Eigen::Index>(s * v.parameters.size() + k);
+      row.push_back(std::sqrt(wide.covariance(slot, slot) / narrow.covariance(slot, slot)));
+    }
+  }
+  return figures::price_figure(v);
+}
+
+figures::Figure impact_of(const std::vector<std::pair<std::string, fit::joint::EffectImpact>>& impacts,
+                          const fit::joint::JointFit& fit) {
+  figures::ImpactValues v{.rows = {}, .known_nT_per_m = worst_sd(fit)};
+  for (const auto& [effect, impact] : impacts) v.rows.push_back({effect, impact.component, impact.nT_per_m});
+  return figures::impact_figure(v);
+}
+
+std::optional<figures::Figure> history_of(std::vector<calibration::Calibration> all) {
+  std::erase_if(all, [](const calibration::Calibration& c) { return !day_of(c.reference.t_utc); });
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return *day_of(a.reference.t_utc) < *day_of(b.reference.t_utc);
+  });
+  std::erase_if(all, [&](const auto& c) { return c.sensors.size() != all.back().sensors.size(); });
+  if (all.size() < 2) return std::nullopt;
+  figures::HistoryValues v{.sensors = numbered(all.front().sensors.size()), .parameters = parameter_names()};
+  for (std::size_t i = 1; i < all.size(); ++i)
+    v.points.push_back(
+        {.when = all[i].reference.t_utc.substr(0, 10),
+         .day = *day_of(all[i].reference.t_utc),
+         .shifts = shifts_of(validity::diff(all[i - 1], all[i]), v.sensors.size(), v.parameters)});
+  return figures::history_figure(v);
+}
+
+}  // namespace mgtd::calib::report

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/criticism/search/evidence.h"
+#include "calib/criticism/search/explain_report.h"
+#include "calib/criticism/search/waterfall.h"
+#include "calib/criticism/tests/confusion.h"
+#include "calib/fit/joint/effect_impact.h"
+#include "calib/report/figures/figure.h"
+#include "calib/validity/diff.h"
+
+/// Figures of what explain() found: suspects and their evidence, what each effect takes out, costs and
+/// brings, and what the run cannot see or tell apart.
+namespace mgtd::calib::report {
+
+[[nodiscard]] figures::Figure suspects_of(const criticism::search::ExplainReport& report);
+[[nodiscard]] figures::Figure detectable_of(const criticism::search::ExplainReport& report);
+/// `held_out_nT`: residual on poses that the fit of the whole model has not seen.
+[[nodiscard]] figures::Figure waterfall_of(const criticism::search::Waterfall& waterfall,
+                                           std::optional<double> held_out_nT);
+[[nodiscard]] figures::Figure evidence_of(const criticism::search::Evidence& evidence);
+[[nodiscard]] figures::Figure confusion_of(const criticism::tests::ConfusionMatrix& confusion);
+
+/// Both fits with the same weights.
+[[nodiscard]] figures::Figure price_of(const fit::joint::JointFit& narrow, const fit::joint::JointFit& wide);
+/// By name of the effect. `fit`: whose standard error the shifts are held against.
+[[nodiscard]] figures::Figure impact_of(
+    const std::vector<std::pair<std::string, fit::joint::EffectImpact>>& impacts,
+    const fit::joint::JointFit& fit);
+
+/// Calibrations of one rig in the order of time; the shift of each parameter against the one before. Those
+/// whose start is not known are left out; empty with fewer than two.
+[[nodiscard]] std::optional<figures::Figure> history_of(std::vector<calibration::Calibration> calibrations);
+
+}  // namespace mgtd::calib::report

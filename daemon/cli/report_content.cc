@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/report_content.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "calib/criticism/search/evidence.h"
+#include "calib/criticism/search/model_stage.h"
+#include "calib/criticism/tests/pose_points.h"
+#include "calib/fit/joint/effect_impact.h"
+#include "calib/report/explain_figures.h"
+#include "calib/report/panel_figures.h"
+#include "calib/report/run_figures.h"
+#include "daemon/acquire/calibrated_with.h"
+#include "daemon/cli/calibration_file.h"
+#include "daemon/cli/doubts.h"
+#include "daemon/cli/formulas.h"
+#include "daemon/store/run_file.h"
+
+namespace mgtd::daemon::cli {
+namespace {
+
+using calib::criticism::tests::Comparison;
+using calib::criticism::tests::PosePoints;
+using Effects = std::vector<calib::effects::EffectPtr>;
+
+bool same_model(const Effects& a, const Effects& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return x->spec() == y->spec(); });
+}
+
+calib::fit::FitOptions with_model(calib::fit::FitOptions options, const Effects& effects) {
+  options.effects = effects;
+  return options;
+}
+
+/// A model of the run with what it leaves at each pose.
+struct SeenModel {
+  Comparison comparison;
+  PosePoints points;
+};
+
+Result<SeenModel> seen(const ReportContent& c, const calib::fit::FitOptions& asked, const Effects& effects) {
+  auto comparison = same_model(asked.effects, effects)
+                        ? Result<Comparison>(c.comparison)
+                        : calib::criticism::tests::compare(c.source.table, with_model(asked, effects));
+  if (!comparison) return tl::unexpected(comparison.error());
+  auto points = calib::criticism::tests::pose_points(*comparison->fit);
+  if (!points) return tl::unexpected(points.error());
+  return SeenModel{std::move(*comparison), std::move(*points)};
+}
+
+/// Nine panels, with the effects that the search ended with beside the bare model, and how the run was
+/// measured.
+Result<void> draw_panels(const calib::fit::FitOptions& asked, ReportContent& c) {
+  const Effects& whole = c.explained.model;
+  const auto bare = seen(c, asked, {});
+  if (!bare) return tl::unexpected(bare.error());
+  const calib::report::PanelModel before{bare->comparison, bare->points};
+  if (whole.empty()) {
+    c.panels = calib::report::panel_figures(before, nullptr);
+  } else {
+    const auto wide = seen(c, asked, whole);
+    if (!wide) return tl::unexpected(wide.error());
+    const calib::report::PanelModel after{wide->comparison, wide->points};
+    c.panels = calib::report::panel_figures(before, &after);
+  }
+  c.measured.push_back(calib::report::coverage_of(before));
+  const std::optional<double> wanted =
+      c.source.header ? c.source.header->options.until_tensor_sd_nT_per_m : std::nullopt;
+  if (auto accuracy = calib::report::accuracy_of(c.source.table, with_model(asked, whole), wanted))
+    c.measured.push_back(std::move(*accuracy));
+  c.measured.push_back(calib::report::time_figure(before));
+  if (auto closure = calib::report::closure_figure(before)) c.measured.push_back(std::move(*closure));
+  return {};
+}
+
+/// What the effects of the whole model take out, cost and bring. A fit that refuses leaves its figure out.
+void draw_effects(const calib::fit::FitOptions& asked, ReportContent& c) {
+  const PoseTable& table = c.source.table;
+  const auto options = with_model(asked, c.explained.model);
+  const auto stage = calib::criticism::search::model_stage(table, options);
+  if (!stage) return;
+  if (auto steps = calib::criticism::search::waterfall(table, options)) {
+    const auto held_out = calib::fit::joint::held_out_errors(stage->fit);
+    c.falls.push_back(
+        calib::report::waterfall_of(*steps, held_out ? std::optional(held_out->residual_nT) : std::nullopt));
+    c.waterfall = std::move(*steps);
+  }
+  const auto narrow = calib::criticism::search::fit_under_same_weights(table, *stage, {});
+  if (!narrow) return;
+  c.prices.push_back(calib::report::price_of(*narrow, stage->fit));
+  std::vector<std::pair<std::string, calib::fit::joint::EffectImpact>> impacts;
+  Eigen::Index first = 0;
+  for (const calib::effects::EffectPtr& effect : stage->options.effects) {
+    const auto n = static_cast<Eigen::Index>(effect->coefficients().size());
+    if (const auto impact = calib::fit::joint::effect_impact(*narrow, effect,
+                                                             stage->fit.state.coefficients.segment(first, n)))
+      impacts.emplace_back(effect->spec(), *impact);
+    first += n;
+  }
+  if (!impacts.empty()) c.prices.push_back(calib::report::impact_of(impacts, *narrow));
+}
+
+void draw_search(const calib::criticism::search::ExplainOptions& options, ReportContent& c) {
+  if (!c.explained.candidates.empty()) {
+    c.suspects.push_back(calib::report::suspects_of(c.explained));
+    const auto& best = c.explained.candidates.front();
+    if (const auto evidence =
+            calib::criticism::search::evidence_of(c.source.table, options, best.effect, best.where, false))
+      c.suspects.push_back(calib::report::evidence_of(*evidence));
+  }
+  if (!c.explained.detectable.empty()) c.limits.push_back(calib::report::detectable_of(c.explained));
+  if (c.explained.confusion && c.explained.confusion->effects.size() > 1)
+    c.limits.push_back(calib::report::confusion_of(*c.explained.confusion));
+}
+
+Result<void> draw_earlier(const ReportWishes& wishes, const FitFlags& flags, ReportContent& c) {
+  if (wishes.earlier.empty()) return {};
+  std::vector<calib::calibration::Calibration> all{c.fit.calibration};
+  for (const std::string& path : wishes.earlier) {
+    auto calibration = calibration_of(path, flags);
+    if (!calibration) return tl::unexpected(calibration.error());
+    all.push_back(std::move(*calibration));
+  }
+  if (auto figure = calib::report::history_of(std::move(all))) c.earlier.push_back(std::move(*figure));
+  return {};
+}
+
+std::vector<InstrumentIdentity> instruments_of(const std::string& run, const store::PoseSource& source) {
+  if (!source.header) return {};
+  const auto file = store::RunFile::open(run, store::Access::read_only);
+  if (!file) return {};
+  const auto known = file->checks(acquire::kInstrumentsStage);
+  return known ? acquire::instruments_among(*known) : std::vector<InstrumentIdentity>{};
+}
+
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./@:=+,%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+std::string report_command(const ReportWishes& w, const FitFlags& f) {
+  std::string out = "mgt report " + quoted(w.run);
+  const auto text = [&](const char* name, const std::string& value) {
+    if (!value.empty()) out += fmt::format(" {} {}", name, quoted(value));
+  };
+  const auto number = [&](const char* name, const auto& value) {
+    if (value) out += fmt::format(" {} {}", name, *value);
+  };
+  for (const std::string& further : f.further) text("--and", further);
+  for (const std::string& effect : f.with) text("--with", effect);
+  number("--field", f.field_nT);
+  number("--field-sd", f.field_sd_nT);
+  number("--inclination", f.inclination_deg);
+  number("--declination", f.declination_deg);
+  number("--table-sd", f.table_sd_deg);
+  number("--seed", f.seed);
+  number("--baseline", f.array.baseline_m);
+  text("--array", f.array.array);
+  text("--operator", w.operator_name);
+  text("--site", w.site);
+  for (const std::string& earlier : w.earlier) text("--earlier", earlier);
+  text("-o", w.output);
+  return out;
+}
+
+Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags& flags) {
+  auto source = read_source(wishes.run, flags);
+  if (!source) return tl::unexpected(source.error());
+  auto options = fit_options(flags, *source);
+  if (!options) return tl::unexpected(options.error());
+  auto fitted = calib::fit::method_choice::fit(source->table, *options);
+  if (!fitted) return tl::unexpected(fitted.error());
+  auto comparison = calib::criticism::tests::compare(source->table, *options);
+  if (!comparison) return tl::unexpected(comparison.error());
+  const calib::criticism::search::ExplainOptions search{
+      .fit = *options, .also = formulas_of(*source, *options), .confusion = true};
+  auto explained = calib::criticism::search::explain(source->table, search);
+  if (!explained) return tl::unexpected(explained.error());
+  auto history = history_of(wishes.run, *source);
+  if (!history) return tl::unexpected(history.error());
+  auto doubts = doubts_of(wishes.run, *source, *options);
+  if (!doubts) return tl::unexpected(doubts.error());
+  auto instruments = instruments_of(wishes.run, *source);
+  // Fits point to the poses; moving a table moves none of them.
+  ReportContent out{.run = std::filesystem::path(wishes.run).filename().string(),
+                    .source = std::move(*source),
+                    .instruments = std::move(instruments),
+                    .operator_name = wishes.operator_name,
+                    .site = wishes.site,
+                    .fit = std::move(*fitted),
+                    .comparison = std::move(*comparison),
+                    .explained = std::move(*explained),
+                    .waterfall = {},
+                    .history = std::move(*history),
+                    .doubts = std::move(*doubts),
+                    .command = report_command(wishes, flags)};
+  if (auto drawn = draw_panels(*options, out); !drawn) return tl::unexpected(drawn.error());
+  if (!out.explained.model.empty()) draw_effects(*options, out);
+  draw_search(search, out);
+  if (auto drawn = draw_earlier(wishes, flags, out); !drawn) return tl::unexpected(drawn.error());
+  return out;
+}
+
+}  // namespace mgtd::daemon::cli

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the pictures are drawn from, by the real programs: residuals by pose, the evidence for one effect,
+// poses that an operator leaves out.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/child_process.h"
+
+namespace mgtd::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class EvidenceOfPrograms : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string scenario = std::string(MGTD_SOURCE_DIR) + "/tests/scenarios/hidden_temperature.toml";
+    ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario, "--poses", "run157", "-o", dir_ / "poses.csv"})
+                  .exit_code,
+              0);
+    ASSERT_EQ(mgt({"import", dir_ / "poses.csv", "-o", file()}).exit_code, 0);
+  }
+  Finished run(std::vector<std::string> words) {
+    words[0] = std::string(MGTD_BIN_DIR) + "/" + words[0];
+    return run_program(std::move(words), dir_.path());
+  }
+  Finished mgt(std::vector<std::string> words) {
+    words.insert(words.begin(), "mgt");
+    return run(std::move(words));
+  }
+  json ask(std::vector<std::string> words) {
+    words.emplace_back("--json");
+    return json::parse(mgt(std::move(words)).out, nullptr, false);
+  }
+  [[nodiscard]] std::string file() const { return dir_ / "run.mgtrun"; }
+
+ private:
+  TemporaryDirectory dir_;
+};
+
+TEST_F(EvidenceOfPrograms, EveryPoseHasItsResiduals) {
+  const json plain = ask({"compare", file()});
+  EXPECT_FALSE(plain.contains("poses") && plain.at("poses").is_object()) << "only where it is asked for";
+  const json compared = ask({"compare", file(), "--poses"});
+  const json& poses = compared.at("poses");
+  for (const char* key :
+       {"pose", "residual_nT", "whitened", "scalar_nT", "attitude_deg", "closure", "left_out", "leverage"})
+    ASSERT_TRUE(poses.contains(key)) << key;
+  EXPECT_EQ(poses.at("pose").size(), 157U);
+  EXPECT_EQ(poses.at("leverage").size(), 157U);
+}
+
+TEST_F(EvidenceOfPrograms, TheHiddenEffectIsALineThroughManyPoses) {
+  const json why = ask({"why", "axis.offset.temperature", file()});
+  EXPECT_EQ(why.at("schema"), "mgt.why/1");
+  EXPECT_EQ(why.at("candidate").at("effect"), "axis.offset.temperature");
+  const Finished text = mgt({"why", "axis.offset.temperature", file(), "--at", "s3.z"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("axis.offset.temperature"));
+  EXPECT_THAT(mgt({"why", "axis.ofset.temperature", file()}).err,
+              HasSubstr("did you mean 'axis.offset.temperature'?"));
+}
+
+TEST_F(EvidenceOfPrograms, AMaskedPoseIsLeftOutByEveryCommandUntilItIsTakenInAgain) {
+  const int all = ask({"fit", file()}).at("poses");
+  EXPECT_EQ(mgt({"mask", file(), "3"}).exit_code, 2) << "a reason is needed";
+  EXPECT_EQ(mgt({"mask", file(), "999", "--why", "a car"}).exit_code, 2);
+  const json masked = ask({"mask", file(), "3", "7-9", "--why", "a car stood beside the rig"});
+  EXPECT_EQ(masked.at("masked"), json({3, 7, 8, 9}));
+  EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4);
+  EXPECT_THAT(mgt({"model", file()}).out, HasSubstr("a car stood beside the rig"));
+  const std::string exported = mgt({"export", file()}).out;
+  EXPECT_EQ(std::count(exported.begin(), exported.end(), '\n'), 158) << "a copy has every pose";
+  EXPECT_EQ(ask({"unmask", file(), "7-9"}).at("masked"), json({3}));
+  EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 1);
+  EXPECT_EQ(mgt({"undo", file()}).exit_code, 0);
+  EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "the mask as it was before";
+  EXPECT_EQ(ask({"fit", file(), "--without", "100"}).at("poses"), all - 5);
+  EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "tried, not kept";
+}
+
+}  // namespace
+}  // namespace mgtd::testing
