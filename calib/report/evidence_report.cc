@@ -14,6 +14,7 @@
 #include "calib/report/pose_points_report.h"
 #include "calib/report/shown_number.h"
 #include "calib/report/size_text.h"
+#include "calib/report/wrapped.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib::report {
@@ -22,7 +23,7 @@ namespace {
 using criticism::search::Evidence;
 using nlohmann::json;
 
-constexpr std::size_t kMapsInText = 6, kRivalsInText = 6, kPosesInText = 12, kTextWidth = 80;
+constexpr std::size_t kMapsInText = 6, kRivalsInText = 6, kPosesInText = 12;
 
 json left_json(const criticism::search::Left& left) {
   json maps = json::array();
@@ -33,25 +34,6 @@ json left_json(const criticism::search::Left& left) {
            {"dof", left.dof},
            {"maps", std::move(maps)}};
   if (left.points) out["poses"] = to_json(*left.points);
-  return out;
-}
-
-/// Words in lines of at most the width, each line indented.
-std::string wrapped(const std::string& text, std::size_t indent) {
-  std::string out, line;
-  const auto flush = [&] {
-    if (!line.empty()) out += std::string(indent, ' ') + line + "\n";
-    line.clear();
-  };
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::string word = text.substr(at, end - at);
-    if (!line.empty() && indent + line.size() + 1 + word.size() > kTextWidth) flush();
-    if (!word.empty()) line += (line.empty() ? "" : " ") + word;
-    at = end + 1;
-  }
-  flush();
   return out;
 }
 

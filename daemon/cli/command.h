@@ -66,5 +66,6 @@ void add_undo(CLI::App& app, Session& session);
 void add_unmask(CLI::App& app, Session& session);
 void add_watch(CLI::App& app, Session& session);
 void add_why(CLI::App& app, Session& session);
+void add_discover(CLI::App& app, Session& session);
 
 }  // namespace mgtd::daemon::cli

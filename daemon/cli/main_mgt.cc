@@ -48,7 +48,8 @@ constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
     "Live (talks to mgtd):     status, watch, run, calibrations, control, console\n"
     "Offline (files):          plan, fit, apply, check, diff, import, export, replay, check-config, ports\n"
-    "What is missing:          compare, explain, why, effects, add, drop, mask, unmask, undo, model, "
+    "What is missing:          compare, explain, why, discover, effects, add, drop, mask, unmask, undo, "
+    "model, "
     "define,\n"
     "                          next, improve, report\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
@@ -84,6 +85,7 @@ int main(int argc, char** argv) {
   mgtd::daemon::cli::add_diff(app, session);
   mgtd::daemon::cli::add_explain(app, session);
   mgtd::daemon::cli::add_why(app, session);
+  mgtd::daemon::cli::add_discover(app, session);
   mgtd::daemon::cli::add_effects(app, session);
   mgtd::daemon::cli::add_improve(app, session);
   mgtd::daemon::cli::add_add(app, session);

@@ -34,8 +34,11 @@ CALIB = {
                                "calib/stats", "calib/linear"],
     "calib/validity": ["calib/fit/method_choice", "calib/fit/joint", "calib/fit", "calib/calibration",
                        "calib/effects/library", "calib/poses", "calib/sensor", "calib/stats", "calib/linear"],
+    "calib/discovery": ["calib/criticism/tests", "calib/fit/joint", "calib/fit", "calib/calibration",
+                        "calib/effects/library", "calib/effects/formula", "calib/effects/laws", "calib/effects",
+                        "calib/poses", "calib/sensor", "calib/stats", "calib/linear"],
     "calib/report/figures": [],
-    "calib/report": ["calib/report/figures", "calib/criticism/search", "calib/criticism/live", "calib/validity",
+    "calib/report": ["calib/report/figures", "calib/discovery", "calib/criticism/search", "calib/criticism/live", "calib/validity",
                      "calib/design", "calib/criticism/tests", "calib/fit/checks", "calib/fit/joint", "calib/fit",
                      "calib/calibration", "calib/effects/library", "calib/effects", "calib/sensor", "calib/stats"],
 }

@@ -104,17 +104,6 @@ fit::joint::WanderingRates beside_white(const fit::joint::JointFit& fit,
   });
 }
 
-/// At the stated noise, whatever noise_inflation the fit used: what inflated it is the walk.
-fit::joint::JointFit as_stated(const fit::joint::JointFit& fit) {
-  fit::joint::JointFit out = fit;
-  if (!(fit.noise_inflation > 1)) return out;
-  for (fit::joint::JointPose& pose : out.problem.poses)
-    pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
-  out.noise_inflation = 1;
-  fit::joint::refit_nuisances(out.problem, out.state);
-  return out;
-}
-
 /// The largest step from one pose to the next, in units of the noise of a pose mean.
 double step_over_noise(const fit::joint::JointFit& fit, const fit::joint::WanderingRates& nT_per_sqrt_h) {
   const auto& poses = fit.problem.poses;
@@ -240,6 +229,16 @@ bool is_a_curve(const WanderingAlternative& alternative) {
 
 }  // namespace
 
+fit::joint::JointFit at_stated_weights(const fit::joint::JointFit& fit) {
+  fit::joint::JointFit out = fit;
+  if (!(fit.noise_inflation > 1)) return out;
+  for (fit::joint::JointPose& pose : out.problem.poses)
+    pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
+  out.noise_inflation = 1;
+  fit::joint::refit_nuisances(out.problem, out.state);
+  return out;
+}
+
 Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candidate_effects,
                 std::uint64_t seed, const Rates* before) {
   Judgement out{.fit = fit, .criticism = criticise(fit, candidate_effects, seed, before)};
@@ -256,7 +255,7 @@ Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candida
     found = {};
   if (!found.any()) return out;
   AgainstWalk walk;
-  const fit::joint::JointFit stated = as_stated(judged);
+  const fit::joint::JointFit stated = at_stated_weights(judged);
   // A few slow terms do not tell a law from a walk that is far above the noise: a law then has to make it
   // vanish, or the tests stand against the walk as it was found without any law.
   const auto mild = [&](const fit::joint::WanderingEstimate& w) {

@@ -19,4 +19,8 @@ struct Judgement {
 [[nodiscard]] Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candidate_effects,
                               std::uint64_t seed, const Rates* before = nullptr);
 
+/// The same fit with the weights that the readings are said to have, whatever JointFit::noise_inflation was
+/// needed to settle it.
+[[nodiscard]] fit::joint::JointFit at_stated_weights(const fit::joint::JointFit& fit);
+
 }  // namespace mgtd::calib::criticism::tests

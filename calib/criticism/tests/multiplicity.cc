@@ -82,17 +82,6 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
   return out;
 }
 
-/// Rate of the exponential that -ln(1 - p) follows, from its lower third.
-double rate_of(std::vector<double> log10_p) {
-  const auto count = static_cast<std::size_t>(kLower * static_cast<double>(log10_p.size()));
-  std::nth_element(log10_p.begin(), log10_p.begin() + static_cast<std::ptrdiff_t>(count), log10_p.end());
-  const auto exposure = [](double l) { return -std::log1p(-std::min(std::pow(10.0, l), 1 - 1e-12)); };
-  const double limit = exposure(log10_p[count]);
-  double sum = limit * static_cast<double>(log10_p.size() - count);
-  for (std::size_t i = 0; i < count; ++i) sum += exposure(log10_p[i]);
-  return static_cast<double>(count) / sum;
-}
-
 /// Smallest priced log10 p of a family, by draw.
 std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std::size_t f,
                              std::map<int, Tail>& tails) {
@@ -125,6 +114,16 @@ std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std
 
 }  // namespace
 
+double questions_asked(std::vector<double> log10_p) {
+  const auto count = static_cast<std::size_t>(kLower * static_cast<double>(log10_p.size()));
+  std::nth_element(log10_p.begin(), log10_p.begin() + static_cast<std::ptrdiff_t>(count), log10_p.end());
+  const auto exposure = [](double l) { return -std::log1p(-std::min(std::pow(10.0, l), 1 - 1e-12)); };
+  const double limit = exposure(log10_p[count]);
+  double sum = limit * static_cast<double>(log10_p.size() - count);
+  for (std::size_t i = 0; i < count; ++i) sum += exposure(log10_p[i]);
+  return static_cast<double>(count) / sum;
+}
+
 double best_of(double log10_p, double m) {
   if (log10_p < -10) return log10_p + std::log10(m);
   return std::log10(-std::expm1(m * std::log1p(-std::pow(10.0, std::min(log10_p, -1e-12)))));
@@ -139,15 +138,15 @@ Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed) 
   for (std::size_t f = 0; f < families.size(); ++f) {
     const ScoredFamily& family = families[f];
     const std::vector<double> own = smallest(family, together, f, tails);
-    const double m = rate_of(own);
+    const double m = questions_asked(own);
     for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
     double& asked = out.family[family.candidate_effect->name] = m;
     if (family.signatures.size() > kTogether) {
       const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1);
-      asked = rate_of(smallest(family, alone, 0, tails));
+      asked = questions_asked(smallest(family, alone, 0, tails));
     }
   }
-  out.best = std::max(1.0, rate_of(std::move(best)));
+  out.best = std::max(1.0, questions_asked(std::move(best)));
   return out;
 }
 

@@ -28,6 +28,9 @@ struct Rates {
 /// Sets `asked` and `calibrated` of each family. False where a family has no rate.
 bool calibrate(std::vector<ScoredFamily>& families, const Rates& rates);
 
+/// The m of a smallest p-value, from draws of it (log10 p), as above.
+[[nodiscard]] double questions_asked(std::vector<double> log10_p);
+
 /// 1 - (1 - p)^m of logarithms.
 [[nodiscard]] double best_of(double log10_p, double m);
 

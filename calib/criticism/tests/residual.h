@@ -33,6 +33,9 @@ class Residual {
   /// what is left of an absorbed law is the noise that the residual has too.
   [[nodiscard]] double absorbed() const { return absorbed_; }
 
+  /// What lengths are divided by: square root of the last scale2.
+  [[nodiscard]] double unit() const { return unit_; }
+
   /// From now on everything is in units of noise with `scale2` times the variance of the weights.
   void measure_by(double scale2);
 

@@ -10,7 +10,8 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numbers>
+
+#include "calib/effects/formula/parser_functions.h"
 
 namespace mgtd::calib::effects::formula {
 namespace {
@@ -19,26 +20,13 @@ constexpr const char* kRemedy =
     "operators + - * / ^, comparisons, a ? b : c, and sin, cos, tan (of radians), sind, cosd, tand (of "
     "degrees), exp, ln, sqrt, abs, sign, min, max, tanh";
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
-double sind(double deg) { return std::sin(deg * kRadiansPerDegree); }
-double cosd(double deg) { return std::cos(deg * kRadiansPerDegree); }
-double tand(double deg) { return std::tan(deg * kRadiansPerDegree); }
-
-/// What every expression knows beside the functions of muParser.
-void define_own(mu::Parser& parser) {
-  parser.DefineConst("pi", std::numbers::pi);
-  parser.DefineFun("sind", sind);
-  parser.DefineFun("cosd", cosd);
-  parser.DefineFun("tand", tand);
-}
-
 /// A parser carries the state of one evaluation, so every thread has its own of each expression.
 struct Compiled {
   mu::Parser parser;
   std::vector<double> values;
 
   Compiled(const std::string& text, const std::vector<std::string>& names) : values(names.size()) {
-    define_own(parser);
+    define_functions(parser);
     for (std::size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &values[i]);
     parser.SetExpr(text);
   }
@@ -100,7 +88,7 @@ Result<Expression> Expression::parse(std::string_view text) {
   if (const auto ok = one_value(text); !ok) return tl::unexpected(ok.error());
   try {
     mu::Parser parser;
-    define_own(parser);
+    define_functions(parser);
     parser.SetExpr(std::string(text));
     std::vector<std::string> names;
     for (const auto& [name, value] : parser.GetUsedVar()) names.push_back(name);

@@ -9,7 +9,9 @@
 #include <random>
 
 #include "calib/effects/formula/formula_effect.h"
+#include "calib/effects/formula/history_name.h"
 #include "calib/effects/laws/axis_effect.h"
+#include "calib/poses/pose_columns.h"
 #include "proto/number.h"
 
 namespace mgtd::calib::effects::formula {
@@ -128,6 +130,27 @@ Result<void> linear(const EffectSpec& spec, const Expression& expression,
   return {};
 }
 
+/// The sensor whose reading a column is; empty for other columns.
+std::optional<int> reading_of(const std::string& column, const PoseTable& table) {
+  const auto sensors = static_cast<int>(poses::sensors_of(table));
+  for (int sensor = 0; sensor < sensors; ++sensor)
+    for (const char axis : {'x', 'y', 'z'})
+      if (column == fmt::format("s{}_{}_nT", sensor + 1, axis)) return sensor;
+  return std::nullopt;
+}
+
+/// The column that a name needs; empty where it needs none.
+std::string column_needed(const FormulaName& name, Level level) {
+  if (name.source == Source::column) return name.name;
+  if (name.source != Source::history) return {};
+  const HistoryName looks_back = *history_name(name.name);
+  const FormulaName of = formula_name(looks_back.of, level, std::nullopt, 0);
+  const bool field = of.source == Source::own || of.source == Source::input;
+  if (of.source == Source::temperature || (field && looks_back.kind == HistoryName::Kind::previous))
+    return {};
+  return of.source == Source::column ? of.name : name.name;
+}
+
 }  // namespace
 
 std::optional<FormulaScan> open_scan(const EffectSpec& spec) {
@@ -186,12 +209,20 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
   const auto& formula = static_cast<const FormulaEffect&>(**effect);
   const std::vector<std::string> there = usable_columns(table);
   for (const FormulaName& name : formula.names()) {
-    if (name.source != Source::column) continue;
-    if (std::find(there.begin(), there.end(), name.name) != there.end()) continue;
+    const std::string column = column_needed(name, formula.level());
+    if (column.empty() || column == "pose") continue;
+    if (std::find(there.begin(), there.end(), column) != there.end()) continue;
+    if (const auto sensor = reading_of(column, table)) {
+      if (formula.at(*sensor).empty()) continue;
+      return tl::unexpected(expression_error(
+          *spec.find("expr"), column_of(*spec.find("expr"), name.name),
+          fmt::format("{} acts on s{}, whose reading it is to explain", spec.name, *sensor + 1),
+          "use u, ux, uy, uz for the sensor's own field; readings of other sensors may stand in a formula"));
+    }
     return tl::unexpected(expression_error(
         *spec.find("expr"), column_of(*spec.find("expr"), name.name),
         fmt::format("no pose has a '{}'", name.name),
-        fmt::format("columns: {}; coefficients k or k1 to k3; t_h, {}", fmt::join(there, ", "),
+        fmt::format("columns: {}; coefficients k or k1 to k3; t_h, pose, {}", fmt::join(there, ", "),
                     formula.level() == Level::axis       ? "T_degC, u, ux, uy, uz"
                     : formula.level() == Level::platform ? "T_degC, b, bx, by, bz, gx, gy, gz"
                                                          : "px, py, pz")));

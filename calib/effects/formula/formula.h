@@ -20,13 +20,13 @@
 ///     a declared number    scanned from .. to where the spec gives a range, fixed where it gives a value
 ///     t_h                  hours since the start; T_degC the sensor's own temperature
 ///     azimuth_deg, pitch_deg, roll_deg, sense, mount, dwell_s, since_stop_s, f_nT, s1_T_degC .. s4_T_degC
+///     pose                 its number; prev_X, lag600_X, rate_X: what was before (history_name.h)
 ///     u, ux, uy, uz        axis: the axis' own field term and those of its sensor, nT
 ///     b, bx, by, bz        platform: the same of the field at the sensor, nT; gx, gy, gz unit gravity
 ///     px, py, pz           site: place, m, from the centre of the array
 /// and any other column of the pose table. Coefficients must come in linearly: that is tried and refused
 /// otherwise. Derivatives by the field are central differences; see derivative_check.h.
 namespace mgtd::calib::effects::formula {
-
 inline constexpr std::size_t kFormulaCoefficients = 3;
 
 /// A number of a formula that is looked for.

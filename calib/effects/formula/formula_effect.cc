@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/effects/formula/history_name.h"
+#include "calib/effects/formula/run_values.h"
 #include "calib/effects/laws/axis_effect.h"
+#include "calib/effects/laws/run_memory.h"
 
 namespace mgtd::calib::effects::formula {
 namespace {
@@ -60,13 +63,51 @@ FormulaEffect::FormulaEffect(EffectSpec spec, Level level, Expression expression
     }
   }
   for (Coefficient& c : coefficients_) c.prior_sd = prior_sd;
-  for (const FormulaName& n : names_) {
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const FormulaName& n = names_[i];
     if (n.source == Source::input) inputs_.push_back(n.index);
+    if (n.source == Source::history) looking_back_.push_back(i);
     uses_own_ = uses_own_ || n.source == Source::own;
   }
 }
 
+std::size_t FormulaEffect::place_before(std::size_t looking_back, int sensor, int axis) const {
+  const auto channel = static_cast<std::size_t>(3 * sensor + axis);
+  return looking_back * 3 * static_cast<std::size_t>(scale_.sensors()) + channel;
+}
+
+Result<std::shared_ptr<const Effect>> FormulaEffect::bound(const EffectContext& context) const {
+  if (looking_back_.empty()) return std::shared_ptr<const Effect>();
+  const auto run = RunValues::of(context);
+  if (!run) return tl::unexpected(run.error());
+  auto before = std::make_shared<Before>();
+  for (std::size_t j = 0; j < looking_back_.size(); ++j) {
+    for (int channel = 0; channel < 3 * scale_.sensors(); ++channel) {
+      const std::vector<double> values = run->of(names_[looking_back_[j]], channel / 3, channel % 3);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        std::vector<double>& at = (*before)[context.table->poses[k].number];
+        at.resize(looking_back_.size() * 3 * static_cast<std::size_t>(scale_.sensors()));
+        at[place_before(j, channel / 3, channel % 3)] = values[k];
+      }
+    }
+  }
+  auto out = std::make_shared<FormulaEffect>(*this);
+  out->before_ = std::move(before);
+  return out;
+}
+
 std::string_view FormulaEffect::missing(const Pose& pose) const {
+  for (std::size_t j = 0; j < looking_back_.size(); ++j) {
+    if (!before_) return laws::kNoMemory;
+    const auto found = before_->find(pose.number);
+    if (found == before_->end()) return laws::kNoMemory;
+    const std::string& name = names_[looking_back_[j]].name;
+    if (history_name(name)->kind == HistoryName::Kind::previous) continue;  // the first pose has none
+    for (int sensor = 0; sensor < scale_.sensors(); ++sensor)
+      for (int axis = 0; axis < 3; ++axis)
+        if (first(sensor, axis) >= 0 && !std::isfinite(found->second[place_before(j, sensor, axis)]))
+          return name;
+  }
   for (const FormulaName& n : names_) {
     if (n.source == Source::column && !n.get(pose)) return n.name;
     if (n.source != Source::temperature) continue;
@@ -98,6 +139,18 @@ void FormulaEffect::set_inputs(const Inputs& in, int axis, Values& values) const
     if (names_[i].source == Source::own) values[i] = in[static_cast<std::size_t>(axis)];
     if (names_[i].source == Source::input) values[i] = in[names_[i].index];
   }
+}
+
+bool FormulaEffect::set_before(const Conditions& at, int sensor, int axis, Values& values) const {
+  if (looking_back_.empty()) return true;
+  const std::vector<double>& before = before_->at(at.pose.number);
+  bool all = true;
+  for (std::size_t j = 0; j < looking_back_.size(); ++j) {
+    const double x = before[place_before(j, sensor, axis)];
+    values[looking_back_[j]] = x;
+    all = all && std::isfinite(x);
+  }
+  return all;
 }
 
 double FormulaEffect::value(Values& values, const Own& c) const {
@@ -139,7 +192,7 @@ void FormulaEffect::term(const Conditions& at, int sensor, std::span<const doubl
     Own own{};
     std::copy_n(c.begin() + from, per_axis_, own.begin());
     set_inputs(inputs, axis, values);
-    out[static_cast<std::size_t>(axis)] = value(values, own);
+    if (set_before(at, sensor, axis, values)) out[static_cast<std::size_t>(axis)] = value(values, own);
   }
 }
 
@@ -155,6 +208,7 @@ void FormulaEffect::term(const Conditions& at, int sensor, std::span<const Jet> 
     const int from = first(sensor, axis);
     if (from < 0) continue;
     set_inputs(inputs, axis, values);
+    if (!set_before(at, sensor, axis, values)) continue;
     Own own{};
     bool any = false;
     for (std::size_t j = 0; j < per_axis_; ++j) {

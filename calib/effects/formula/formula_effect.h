@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "calib/effects/effect_spec.h"
@@ -28,6 +30,8 @@ class FormulaEffect final : public Effect {
   [[nodiscard]] std::span<const int> at(int sensor) const override {
     return level_ == Level::site ? std::span<const int>(site_) : scale_.at(sensor);
   }
+  /// With the values of the names that look back over the run; null where it has none.
+  [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
   [[nodiscard]] std::string_view missing(const Pose& pose) const override;
   /// Also refuses poses at which the formula has no value.
   [[nodiscard]] Result<void> check(const PoseTable& table) const override;
@@ -42,10 +46,15 @@ class FormulaEffect final : public Effect {
   using Values = std::array<double, kFormulaNames>;
   using Inputs = std::array<double, 6>;
   using Own = std::array<double, 3>;  ///< coefficients of one axis
+  /// By number of a pose: a value for each name that looks back, sensor and axis, in this order.
+  using Before = std::unordered_map<int, std::vector<double>>;
 
+  [[nodiscard]] std::size_t place_before(std::size_t looking_back, int sensor, int axis) const;
   [[nodiscard]] int first(int sensor, int axis) const;
   void set_conditions(const Conditions& at, int sensor, Values& values) const;
   void set_inputs(const Inputs& in, int axis, Values& values) const;
+  /// What was before the pose; false where it has nothing before it, and the term is zero.
+  [[nodiscard]] bool set_before(const Conditions& at, int sensor, int axis, Values& values) const;
   [[nodiscard]] double value(Values& values, const Own& c) const;
   [[nodiscard]] double slope(Values& values, const Inputs& in, int axis, std::size_t input,
                              const Own& c) const;
@@ -55,8 +64,10 @@ class FormulaEffect final : public Effect {
   Expression expression_;
   std::vector<FormulaName> names_;
   std::size_t per_axis_{1};
-  bool implicit_{true};              ///< no coefficient in the text: the whole is multiplied by one
-  std::vector<std::size_t> inputs_;  ///< that it uses
+  bool implicit_{true};                    ///< no coefficient in the text: the whole is multiplied by one
+  std::vector<std::size_t> inputs_;        ///< that it uses
+  std::vector<std::size_t> looking_back_;  ///< names that look back over the run
+  std::shared_ptr<const Before> before_;
   bool uses_own_{false};
   laws::AxisScale scale_;
   std::vector<Coefficient> coefficients_;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "calib/effects/effect_context.h"
+#include "calib/effects/formula/history_name.h"
 #include "calib/poses/pose_columns.h"
 
 namespace mgtd::calib::effects::formula {
@@ -33,11 +34,10 @@ std::optional<std::size_t> coefficient_index(std::string_view name) {
   return std::nullopt;
 }
 
-/// Readings are what a formula explains; it cannot be made of them.
 const poses::PoseColumn* format_column(const std::string& name) {
   const auto& all = poses::pose_columns(static_cast<std::size_t>(kMostSensors));
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const poses::PoseColumn& c) { return c.name == name && !c.required; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const poses::PoseColumn& c) { return c.name == name; });
   return found == all.end() ? nullptr : &*found;
 }
 
@@ -54,6 +54,7 @@ double usual_size(const FormulaName& name, Level level) {
     case Source::temperature:
       return kReferenceT_degC;
     case Source::column:
+    case Source::history:
       return 10;
     default:
       return 1;
@@ -77,6 +78,12 @@ FormulaName formula_name(const std::string& name, Level level, const std::option
   } else if (const auto at = std::find(known.inputs.begin(), known.inputs.end(), name);
              at != known.inputs.end()) {
     out.source = Source::input, out.index = static_cast<std::size_t>(at - known.inputs.begin());
+  } else if (level != Level::site && history_name(name)) {
+    out.source = Source::history;
+  } else if (name == "pose") {
+    out.get = [](const Pose& pose) {
+      return pose.number > 0 ? std::optional(static_cast<double>(pose.number)) : std::nullopt;
+    };
   } else {
     // A temperature of a sensor that the array does not have may be a column of the user's own.
     out.get = [name, column = format_column(name)](const Pose& pose) {

@@ -19,7 +19,8 @@ struct FormulaName {
     temperature,  ///< of the sensor's own head
     own,          ///< the component of the field along the axis the term is for
     input,        ///< `index` of those of the level
-    column        ///< of the pose table
+    column,       ///< of the pose table
+    history       ///< what was before the pose: history_name.h
   };
   std::string name;
   Source source{Source::column};

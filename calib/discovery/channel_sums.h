@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "calib/criticism/tests/residual.h"
+
+/// Everything that a search for laws needs of a fit, in as many dimensions as there are poses.
+///
+/// A law adds g(k) to what channel c reads at pose k. With Z_c the projected columns of one unit at each pose
+/// (nuisances and the model's own parameters taken out, poses uncorrelated) its signature is Z_c g, and with
+/// r the residual
+///
+///     s_c = Z_c' r                score of g       g' s_c
+///     G_cd = Z_c' Z_d             product of two   g' G_cd h
+///
+/// Z_c itself is never made: where poses are uncorrelated G_cd = diag(h_cd) - U_c' U_d, h_cd the products of
+/// the whitened columns pose by pose and U_c what the model's parameters can take of them. Where the noise is
+/// correlated from pose to pose h_cd is a full matrix.
+///
+/// Channels 0 .. 3N-1 are those of the readings; behind them stand five components of a gradient of the
+/// site's field (kGradient), where the poses have table angles.
+namespace mgtd::calib::discovery {
+
+inline constexpr int kGradient = 5;  ///< components Gxx, Gyy, Gxy, Gxz, Gyz
+
+/// Of the length of a formula less its mean: what is left of an absorbed one.
+inline constexpr double kAbsorbedShare = 2e-4;
+/// Eigenvalues of products of unit columns below this are rounding.
+inline constexpr double kSameDirection = 1e-6;
+
+/// By channel; columns are draws or one residual.
+using Scores = std::vector<Eigen::MatrixXd>;
+
+/// A law with its coefficients: nT at each pose of the channels that it acts on; an empty vector elsewhere.
+using LawOnChannels = std::vector<Eigen::VectorXd>;
+
+/// Rows of one unit of each component of the gradient, as LinearRows; no column without table angles or for
+/// one sensor.
+[[nodiscard]] Eigen::MatrixXd gradient_rows(const fit::joint::JointProblem& problem,
+                                            const fit::joint::JointState& state);
+
+class ChannelSums {
+ public:
+  ChannelSums(const fit::joint::JointFit& fit, const criticism::tests::Residual& residual);
+
+  [[nodiscard]] Eigen::Index poses() const { return poses_; }
+  /// Of the readings.
+  [[nodiscard]] int channels() const { return channels_; }
+  [[nodiscard]] bool has_gradient() const { return total_ > channels_; }
+  /// With the components of the gradient.
+  [[nodiscard]] int total() const { return total_; }
+
+  [[nodiscard]] Eigen::VectorXd score(int channel) const {
+    return scores_[static_cast<std::size_t>(channel)].col(0);
+  }
+  /// h_cd G: columns of `g` as they are before projection, in the products with channel c.
+  [[nodiscard]] Eigen::MatrixXd before_projection(int c, int d, const Eigen::MatrixXd& g) const;
+  /// U_c G.
+  [[nodiscard]] Eigen::MatrixXd taken_up(int c, const Eigen::MatrixXd& g) const {
+    return taken_[static_cast<std::size_t>(c)] * g;
+  }
+  /// G_cd G.
+  [[nodiscard]] Eigen::MatrixXd product(int c, int d, const Eigen::MatrixXd& g) const;
+
+  /// Product of the signatures of two laws.
+  [[nodiscard]] double product(const LawOnChannels& a, const LawOnChannels& b) const;
+  /// Of the signature of a law with the residual.
+  [[nodiscard]] double by_residual(const LawOnChannels& a) const;
+  /// A signature with every channel's unit columns: Z_c' z, by channel.
+  [[nodiscard]] std::vector<Eigen::VectorXd> by_channel(const LawOnChannels& a) const;
+
+  /// Takes the direction of a law out of everything: from now on it counts as a parameter of the model.
+  /// Nothing happens where the model takes up the law whole.
+  void take_out(const LawOnChannels& law);
+
+  /// Scores of noise alone, `count` draws in the columns of each channel. The same seed, the same draws.
+  [[nodiscard]] Scores draws(Eigen::Index count, std::uint64_t seed) const;
+
+ private:
+  /// Whitened columns of one unit at each pose of a channel.
+  struct Column {
+    Eigen::VectorXd block;  ///< side by side: each pose has rows of its own
+    Eigen::MatrixXd full;   ///< where poses are correlated: rows x poses
+  };
+  [[nodiscard]] Eigen::MatrixXd column_products(const Column& a, const Column& b) const;
+
+  Eigen::Index poses_, rows_;
+  int channels_, total_;
+  bool correlated_;
+  std::vector<Column> columns_;
+  std::vector<std::vector<Eigen::MatrixXd>> before_;  ///< h_cd, d >= c: poses x 1 or poses x poses
+  std::vector<Eigen::MatrixXd> taken_;                ///< U_c
+  Eigen::MatrixXd basis_;                             ///< of the model's parameters, as in the residual
+  Scores scores_;
+  struct TakenOut {
+    LawOnChannels law;  ///< of unit length
+    std::vector<Eigen::VectorXd> by_channel;
+  };
+  std::vector<TakenOut> taken_out_;
+};
+
+}  // namespace mgtd::calib::discovery

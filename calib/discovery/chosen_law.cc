@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/chosen_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "calib/discovery/formula_text.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+/// Formulas whose probabilities add up to this are shown.
+constexpr double kShownSet = 0.99;
+constexpr std::size_t kMostShown = 40;
+/// Of a fall of chi-square: two formulas that differ by less are the same on these poses.
+constexpr double kAlike = 1e-9;
+
+std::vector<Share> shares(const std::vector<RankedLaw>& ranked,
+                          const std::function<std::string(const RankedLaw&)>& name) {
+  constexpr double kShown = 0.001;
+  std::map<std::string, double> sums;
+  double all = 0;
+  for (const RankedLaw& law : ranked) {
+    if (law.kind != RankedLaw::Kind::formula) continue;
+    sums[name(law)] += law.P;
+    all += law.P;
+  }
+  std::vector<Share> out;
+  for (const auto& [of, P] : sums)
+    if (P > kShown * all) out.push_back({of, P / all});
+  std::stable_sort(out.begin(), out.end(), [](const Share& a, const Share& b) { return a.P > b.P; });
+  return out;
+}
+
+double size_nT(const FittedLaw& law) {
+  double squares = 0;
+  Eigen::Index n = 0;
+  for (const Eigen::VectorXd& on_channel : law.law) {
+    if (on_channel.size() == 0) continue;
+    squares += (on_channel.array() - on_channel.mean()).square().sum();
+    n += on_channel.size();
+  }
+  return n == 0 ? 0 : std::sqrt(squares / static_cast<double>(n));
+}
+
+FoundFormula described(const RankedLaw& ranked, const FittedLaw& fitted, const Family& family,
+                       const std::string& name, int channels) {
+  FoundFormula out{.formula = shown(fitted.columns, fitted.place),
+                   .columns = fitted.columns,
+                   .where = fitted.place.name(),
+                   .library = ranked.effect,
+                   .specs = specs_of(fitted.columns, fitted.place, name)};
+  for (const std::string& covariate : family.covariates)
+    out.covariates.push_back(shown_covariate(covariate, fitted.place));
+  out.P = ranked.P, out.S = fitted.S, out.k = fitted.k, out.symbols = family.symbols;
+  out.size_nT = size_nT(fitted);
+  if (family.refined) out.inner = ranked.inner, out.inner_unit = family.inner_unit;
+  const auto places = coefficient_places(fitted.columns, fitted.place, channels);
+  for (Eigen::Index i = 0; i < fitted.value.size(); ++i) {
+    const double variance = fitted.covariance(i, i);
+    if (variance > 0)
+      out.coefficients.push_back({places[static_cast<std::size_t>(i)], fitted.value[i], std::sqrt(variance)});
+  }
+  return out;
+}
+
+FoundFormula described(const RankedLaw& library) {
+  FoundFormula out{
+      .formula = library.effect, .columns = {}, .where = library.where, .library = library.effect};
+  out.P = library.P, out.S = library.S, out.k = library.k, out.symbols = library.symbols;
+  return out;
+}
+
+/// Numbers the formulas that these poses cannot tell from one another, and says at which size each would be
+/// told from the first.
+void sort_into_classes(const std::vector<std::optional<FittedLaw>>& fitted, const ChannelSums& sums,
+                       std::vector<FoundFormula>& formulas) {
+  int classes = 0;
+  for (std::size_t i = 0; i < formulas.size(); ++i) {
+    formulas[i].same_as = 0;
+    for (std::size_t j = 0; j < i && fitted[i] && formulas[i].same_as == 0; ++j)
+      if (fitted[j] && beyond(*fitted[j], *fitted[i], sums) < kToldApart)
+        formulas[i].same_as = formulas[j].same_as;
+    if (formulas[i].same_as == 0) formulas[i].same_as = ++classes;
+    if (i > 0 && fitted[0] && fitted[i]) {
+      const double left = beyond(*fitted[0], *fitted[i], sums);
+      formulas[i].needed_nT = left > kAlike * fitted[0]->S
+                                  ? formulas[0].size_nT * std::sqrt(kToldApart / left)
+                                  : std::numeric_limits<double>::infinity();
+    }
+  }
+}
+
+}  // namespace
+
+Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, const LawRound& round,
+                             double questions, const std::string& name) {
+  ChosenLaw out;
+  out.law.log10_p = tests::best_of(round.log10_p_best, questions);
+  out.law.where = shares(round.ranked, [](const RankedLaw& law) { return law.where; });
+  out.law.covariates = shares(round.ranked, [&](const RankedLaw& law) {
+    std::string all;
+    for (const std::string& covariate : bench.grammar.families[law.family].covariates)
+      all += (all.empty() ? "" : ", ") + shown_covariate(covariate, law.place);
+    return all;
+  });
+  double sum = 0;
+  std::vector<std::optional<FittedLaw>> fitted;
+  for (const RankedLaw& law : round.ranked) {
+    if (sum > kShownSet || out.law.formulas.size() >= kMostShown) break;
+    sum += law.P;
+    if (law.kind == RankedLaw::Kind::library) {
+      out.law.formulas.push_back(described(law));
+      fitted.emplace_back();
+      continue;
+    }
+    const Family& family = bench.grammar.families[law.family];
+    auto one = fitted_law(family.columns(law.inner), law.place, bench.inputs, sums);
+    if (!one) return tl::unexpected(one.error());
+    out.law.formulas.push_back(described(law, *one, family, name, sums.channels()));
+    fitted.emplace_back(*std::move(one));
+  }
+  sort_into_classes(fitted, sums, out.law.formulas);
+  const Family& family = bench.grammar.families[round.head.family];
+  auto head = fitted_law(family.columns(round.head.inner), round.head.place, bench.inputs, sums);
+  if (!head) return tl::unexpected(head.error());
+  out.head = *std::move(head);
+  out.law.d = out.head.d();
+  for (auto& one : fitted)
+    if (one && one->place == out.head.place) out.set.push_back(*std::move(one));
+  return out;
+}
+
+}  // namespace mgtd::calib::discovery

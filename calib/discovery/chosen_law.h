@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/discovery/discovery_report.h"
+#include "calib/discovery/law_round.h"
+
+/// The outcome of one round as it is reported, with the fitted formulas behind it.
+namespace mgtd::calib::discovery {
+
+struct ChosenLaw {
+  FoundLaw law;
+  FittedLaw head;              ///< the formula that leads
+  std::vector<FittedLaw> set;  ///< formulas of the 99 % set at the place of the head, the head first
+};
+
+/// `questions`: independent ones of the whole search. `name`: of the effects that the formulas become.
+[[nodiscard]] Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums,
+                                           const LawRound& round, double questions, const std::string& name);
+
+}  // namespace mgtd::calib::discovery

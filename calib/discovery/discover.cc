@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/discover.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/criticism/tests/multiplicity.h"
+#include "calib/discovery/law_checks.h"
+#include "calib/discovery/law_sequence.h"
+#include "calib/discovery/law_verdict.h"
+#include "calib/discovery/noise_in_force.h"
+#include "calib/effects/library/library.h"
+#include "calib/fit/joint/cross_validation.h"
+#include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/pose_residuals.h"
+#include "calib/sensor/channels.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+namespace tests = criticism::tests;
+
+bool significant(double log10_p) { return log10_p < std::log10(kFalseDiscovery); }
+
+/// A fit with the first formula of some laws; empty where one of them is no effect, or the fit does not
+/// settle.
+Result<std::optional<fit::joint::JointFit>> fit_with(const PoseTable& table, fit::FitOptions options,
+                                                     const std::vector<std::string>& specs, int sensors) {
+  for (const std::string& spec : specs) {
+    auto effect = effects::library::make_effect(spec, sensors);
+    if (!effect) return tl::unexpected(effect.error());
+    options.effects.push_back(*std::move(effect));
+  }
+  const auto joint = fit::joint::profiled_options(table, options);
+  if (!joint) return tl::unexpected(joint.error());
+  auto fit = fit::joint::fit_joint_at_size(table, *joint);
+  if (!fit) return std::nullopt;
+  return *std::move(fit);
+}
+
+/// The noise that the search stands against. Where the residual says that it is larger than the readings do,
+/// or lasts, the law itself may say so: it is judged again with the leading formula in the model.
+Result<NoiseInForce> noise_of(const PoseTable& table, const DiscoverOptions& options,
+                              const fit::joint::JointFit& fit, const tests::CandidateEffects& candidates,
+                              const Grammar& formulas, const FormulaValues& values, LawInputs& inputs) {
+  constexpr int kTries = 2;
+  NoiseInForce out = noise_in_force(fit, candidates, options.fit.seed);
+  for (int i = 0; i < kTries; ++i) {
+    const bool doubtful =
+        out.noise.scale2 != 1 || out.residual.whitener().rho() != 0 || out.wanders || fit.noise_inflation > 1;
+    if (!doubtful) break;
+    const Workbench bench{.grammar = formulas,
+                          .inputs = inputs,
+                          .values = values,
+                          .problem = out.fit.problem,
+                          .noise = out.noise};
+    const ChannelSums sums(out.fit, out.residual);
+    const auto round = law_round(bench, sums, false);
+    if (!round) return tl::unexpected(round.error());
+    const auto leading = chosen_law(bench, sums, *round, 1, "law1");
+    if (!leading) return tl::unexpected(leading.error());
+    const auto with =
+        fit_with(table, options.fit, leading->law.formulas.front().specs, inputs.channels() / 3);
+    if (!with) return tl::unexpected(with.error());
+    if (!*with || leading->law.formulas.front().specs.empty()) break;
+    out = noise_beside_law(fit, noise_in_force(**with, candidates, options.fit.seed));
+  }
+  return out;
+}
+
+Result<void> fits_in_memory(const NoiseInForce& in_force) {
+  const Eigen::Index poses = in_force.residual.poses(), channels = in_force.fit.problem.channels();
+  if (in_force.residual.whitener().rho() == 0 || poses * channels <= kMostCorrelated) return {};
+  return fail(
+      ErrorCode::refused,
+      fmt::format("the noise is correlated from pose to pose, and of {} axes at most {} poses of such "
+                  "noise are searched; these are {}",
+                  channels, kMostCorrelated / channels, poses),
+      "take every n-th pose, or means of several; mgt explain searches the library on all of them");
+}
+
+std::vector<tests::ScoredFamily> scored_library(const NoiseInForce& in_force,
+                                                const tests::CandidateEffects& candidates) {
+  std::vector<tests::ScoredFamily> out;
+  for (const tests::CandidateEffect& candidate : candidates.testable) {
+    if (candidate.dipole_at) continue;  // explain looks for its place
+    out.push_back(tests::score_family(in_force.fit.problem, in_force.fit.state, in_force.residual,
+                                      in_force.noise, candidate));
+  }
+  return out;
+}
+
+/// What no part of the choice has seen.
+Result<void> check(const PoseTable& table, const DiscoverOptions& options, const fit::joint::JointFit& fit,
+                   const NoiseInForce& in_force, const Workbench& bench, std::vector<ChosenLaw>& laws,
+                   DiscoveryReport& out) {
+  FoundLaw& first = laws.front().law;
+  first.halves_ratio = halves_ratio(in_force.fit, in_force.noise.scale2, laws.front().head);
+  const auto fall = held_out_fall(in_force.fit, in_force.residual, bench);
+  if (!fall) return tl::unexpected(fall.error());
+  first.held_out_fall = *fall;
+  const auto spread = extrapolation_spread(laws.front().set, table, in_force.fit);
+  if (!spread) return tl::unexpected(spread.error());
+  first.extrapolation_spread = *spread;
+  std::vector<std::string> specs;
+  for (const ChosenLaw& law : laws) {
+    const std::vector<std::string>& of_law = law.law.formulas.front().specs;
+    if (of_law.empty()) return {};
+    specs.insert(specs.end(), of_law.begin(), of_law.end());
+  }
+  const auto with = fit_with(table, options.fit, specs, fit.problem.sensors());
+  if (!with) return tl::unexpected(with.error());
+  if (!*with) return {};
+  out.after = {.residual_nT = fit::joint::pose_residuals((*with)->problem, (*with)->state).residual_nT(),
+               .unseen_before_nT = fit::joint::left_out_nT(fit),
+               .unseen_after_nT = fit::joint::left_out_nT(**with)};
+  return {};
+}
+
+}  // namespace
+
+Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& options) {
+  const auto joint = fit::joint::profiled_options(table, options.fit);
+  if (!joint) return tl::unexpected(joint.error());
+  const auto fit = fit::joint::fit_joint_at_size(table, *joint);
+  if (!fit) return tl::unexpected(fit.error());
+  auto inputs = LawInputs::of(*fit, table);
+  if (!inputs) return tl::unexpected(inputs.error());
+  const Grammar formulas = grammar(*inputs);
+  const auto values = FormulaValues::of(formulas, *inputs);
+  if (!values) return tl::unexpected(values.error());
+  const tests::CandidateEffects candidates = tests::library_candidates(table);
+  const auto in_force = noise_of(table, options, *fit, candidates, formulas, *values, *inputs);
+  if (!in_force) return tl::unexpected(in_force.error());
+  if (const auto ok = fits_in_memory(*in_force); !ok) return tl::unexpected(ok.error());
+  const Workbench bench{.grammar = formulas,
+                        .inputs = *inputs,
+                        .values = *values,
+                        .problem = in_force->fit.problem,
+                        .noise = in_force->noise,
+                        .library = scored_library(*in_force, candidates)};
+  const ChannelSums bare(in_force->fit, in_force->residual);
+  DiscoveryReport out;
+  out.formulas = formulas.members(), out.grammar_hash = formulas.hash(), out.draws = options.draws;
+  out.chi2 = in_force->residual.chi2(), out.dof = in_force->residual.dof();
+  out.rho = in_force->residual.whitener().rho(), out.wanders = in_force->wanders;
+  out.noise_nT = fit->noise_nT();
+  out.residual_nT = fit::joint::pose_residuals(fit->problem, fit->state).residual_nT();
+  out.questions = tests::questions_asked(
+      best_of_noise(LawSearch(*values, bare), bare, in_force->noise, options.draws, options.fit.seed));
+  auto found = law_sequence(bench, bare, out.questions);
+  if (!found) return tl::unexpected(found.error());
+  out.hypotheses = found->hypotheses;
+  out.log10_p_left = found->log10_p_left;
+  const LeftOn left = left_on(found->left);
+  out.left_sigmas = left.sigmas, out.left_on = sensor::channel_name(left.channel);
+  out.verdict = verdict_of(*in_force, found->laws, out);
+  if (significant(found->laws.front().law.log10_p) && options.checks)
+    if (const auto ok = check(table, options, *fit, *in_force, bench, found->laws, out); !ok)
+      return tl::unexpected(ok.error());
+  for (ChosenLaw& law : found->laws) out.laws.push_back(std::move(law.law));
+  return out;
+}
+
+}  // namespace mgtd::calib::discovery

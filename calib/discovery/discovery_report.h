@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/discovery/fitted_law.h"
+#include "calib/discovery/law_ranking.h"
+#include "calib/discovery/law_shape.h"
+#include "calib/fit/joint/joint_fit.h"
+
+/// What discover() finds, as values; see discover.h.
+namespace mgtd::calib::discovery {
+
+enum class Verdict { pass, law, law_set, library, shape_only, noise_like };
+[[nodiscard]] std::string_view to_string(Verdict verdict);
+
+struct LawCoefficient {
+  std::string where{};  ///< "s3.z"; a component of the gradient: "Gxx"
+  double value{0}, sd{0};
+};
+
+/// A formula of the 99 % set.
+struct FoundFormula {
+  std::string formula{};  ///< for a person: T, x, y, z (readings without offset over 50 000 nT), t_h
+  Columns columns{};      ///< as `mgt define` takes them
+  std::string where{};
+  std::vector<std::string> covariates{};
+  std::string library{};  ///< the effect of the library that it is, or one that does as well
+  std::vector<std::string>
+      specs{};                    ///< effects, as --with reads them; none for a gradient or a library effect
+  double P{0}, S{0}, size_nT{0};  ///< size: rms of the law over poses and axes where it acts
+  int k{0}, symbols{0}, same_as{1};  ///< class: formulas of one number cannot be told apart on these poses
+  double needed_nT{0};  ///< size at which it would be told from the first with 99 %; 0: the first;
+                        ///< infinite: never, on these poses
+  std::optional<double> inner{};
+  std::string inner_unit{};
+  std::vector<LawCoefficient> coefficients{};
+};
+
+struct Share {
+  std::string name{};
+  double P{0};
+};
+
+/// One law and what else it could be.
+struct FoundLaw {
+  std::vector<FoundFormula> formulas{};  ///< the 99 % set, best first; the first is in the model afterwards
+  std::vector<Share> covariates{}, where{};
+  double log10_p{0};  ///< of the whole search
+  double d{0};
+  double walk_P{0}, jumps_P{0};
+  double over_walk{0}, over_jumps{0};  ///< 2 ln of the odds of all formulas against them
+  std::string random_where{};          ///< where those were asked about
+  bool random_beside{false};  ///< they describe best what is left beside the laws, not instead of them
+  std::optional<double> halves_ratio{}, held_out_fall{};
+  std::optional<double> extrapolation_spread{};
+  std::optional<LawShape> shape{};
+};
+
+struct DiscoveryReport {
+  Verdict verdict{Verdict::pass};
+  std::vector<FoundLaw> laws{};  ///< strongest first; the first is found even where it is not believed
+  double log10_p_left{0};        ///< of the search in what is left after the laws
+  std::string left_on{};         ///< an axis on which more scatters than noise, after the laws
+  double left_sigmas{0};
+  std::size_t formulas{0}, hypotheses{0};
+  std::string grammar_hash{};
+  double questions{0};  ///< independent ones, by draws
+  int draws{0};
+  double chi2{0}, dof{0};
+  double noise_nT{0}, residual_nT{0};
+  double rho{0};        ///< correlation from pose to pose in force
+  bool wanders{false};  ///< the offsets wander, as far as the tests of the library can tell
+  struct After {
+    double residual_nT{0};
+    std::optional<double> unseen_before_nT{}, unseen_after_nT{};
+  };
+  std::optional<After> after{};  ///< of a fit with the first formula of each law
+};
+
+}  // namespace mgtd::calib::discovery

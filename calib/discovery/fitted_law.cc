@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/fitted_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/linear/symmetric_eigen.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+/// Values of the columns on each channel; those of the gradient are alike.
+Result<std::vector<Eigen::MatrixXd>> values_on(const Columns& columns, const std::vector<int>& on,
+                                               LawInputs& inputs) {
+  std::vector<Eigen::MatrixXd> out;
+  for (const int c : on) {
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(inputs.poses(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      const auto column = inputs(columns[j], c < inputs.channels() ? c : 0);
+      if (!column) return tl::unexpected(column.error());
+      if (column->size() > 0) values.col(static_cast<Eigen::Index>(j)) = *column;
+    }
+    out.push_back(std::move(values));
+  }
+  return out;
+}
+
+LawOnChannels on_channels(const std::vector<Eigen::MatrixXd>& values, const std::vector<int>& on, int total,
+                          const Eigen::VectorXd& coefficients) {
+  LawOnChannels out(static_cast<std::size_t>(total));
+  for (std::size_t a = 0; a < on.size(); ++a) {
+    const Eigen::Index count = values[a].cols();
+    out[static_cast<std::size_t>(on[a])] =
+        values[a] * coefficients.segment(static_cast<Eigen::Index>(a) * count, count);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<LawOnChannels> law_on(const Columns& columns, const Place& place, const Eigen::VectorXd& value,
+                             LawInputs& inputs, int channels, int total) {
+  const std::vector<int> on = place.channels(channels);
+  const auto values = values_on(columns, on, inputs);
+  if (!values) return tl::unexpected(values.error());
+  return on_channels(*values, on, total, value);
+}
+
+double FittedLaw::d() const { return std::sqrt(std::max(0.0, S - k)); }
+
+Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInputs& inputs,
+                             const ChannelSums& sums) {
+  FittedLaw out;
+  out.columns = columns;
+  out.place = place;
+  const std::vector<int> on = place.channels(sums.channels());
+  const auto values = values_on(columns, on, inputs);
+  if (!values) return tl::unexpected(values.error());
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  const Eigen::Index n = count * static_cast<Eigen::Index>(on.size());
+  Eigen::MatrixXd A(n, n);
+  Eigen::VectorXd v(n), length2(n);
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
+  for (std::size_t a = 0; a < on.size(); ++a) {
+    const auto at = static_cast<Eigen::Index>(a) * count;
+    const Eigen::MatrixXd before = sums.before_projection(on[a], on[a], (*values)[a]);
+    const double of_one = one.dot(sums.before_projection(on[a], on[a], one).col(0));
+    length2.segment(at, count) = (*values)[a].cwiseProduct(before).colwise().sum().transpose() -
+                                 (one.transpose() * before).transpose().cwiseAbs2() / of_one;
+    v.segment(at, count) = (*values)[a].transpose() * sums.score(on[a]);
+    for (std::size_t b = 0; b < on.size(); ++b)
+      A.block(at, static_cast<Eigen::Index>(b) * count, count, count) =
+          (*values)[a].transpose() * sums.product(on[a], on[b], (*values)[b]);
+  }
+  const Eigen::VectorXd scale =
+      (A.diagonal().array() > kAbsorbedShare * kAbsorbedShare * length2.array() && A.diagonal().array() > 0)
+          .select(A.diagonal().array().max(1e-300).rsqrt(), 0.0);
+  const linear::SymmetricEigen eigen = linear::symmetric_eigen(scale.asDiagonal() * A * scale.asDiagonal());
+  const Eigen::Index rank = (eigen.values.array() > kSameDirection).count();
+  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors.rightCols(rank) *
+                            eigen.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::VectorXd along = V.transpose() * v;
+  out.k = static_cast<int>(rank);
+  out.S = along.squaredNorm();
+  out.value = V * along;
+  out.covariance = V * V.transpose();
+  out.law = on_channels(*values, on, sums.total(), out.value);
+  for (Eigen::Index j = 0; j < rank; ++j)
+    out.basis.push_back(on_channels(*values, on, sums.total(), V.col(j)));
+  return out;
+}
+
+double beyond(const FittedLaw& a, const FittedLaw& b, const ChannelSums& sums) {
+  const std::vector<Eigen::VectorXd> signature = sums.by_channel(a.law);
+  double out = sums.product(a.law, a.law);
+  for (const LawOnChannels& direction : b.basis) {
+    double along = 0;
+    for (std::size_t c = 0; c < direction.size(); ++c)
+      if (direction[c].size() > 0) along += direction[c].dot(signature[c]);
+    out -= along * along;
+  }
+  return std::max(0.0, out);
+}
+
+}  // namespace mgtd::calib::discovery

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/law_inputs.h"
+
+#include <cmath>
+#include <unordered_map>
+
+#include "calib/effects/formula/history_name.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+using effects::formula::FormulaName;
+using Source = FormulaName::Source;
+
+bool of_the_field(const FormulaName& name) {
+  if (name.source == Source::history)
+    return of_the_field(effects::formula::formula_name(effects::formula::history_name(name.name)->of,
+                                                       effects::Level::axis, std::nullopt, 0));
+  return name.source == Source::own || name.source == Source::input || name.name.ends_with("_nT") ||
+         name.name.ends_with("_deg") || name.name == "pose" || name.name == "sense" || name.name == "mount";
+}
+
+}  // namespace
+
+Result<LawInputs> LawInputs::of(const fit::joint::JointFit& fit, const PoseTable& run) {
+  effects::EffectContext context{.table = &run, .offset_nT = PerSensor<Eigen::Vector3d>()};
+  for (const sensor::SensorModel& sensor : fit.state.sensors) context.offset_nT->push_back(sensor.offset_nT);
+  auto values = effects::formula::RunValues::of(context);
+  if (!values) return tl::unexpected(values.error());
+  std::unordered_map<int, std::size_t> by_number;
+  for (std::size_t k = 0; k < run.poses.size(); ++k) by_number.emplace(run.poses[k].number, k);
+  std::vector<std::size_t> rows;
+  for (const fit::joint::JointPose& pose : fit.problem.poses) {
+    const auto found = by_number.find(pose.pose->number);
+    if (found == by_number.end()) return fail(ErrorCode::internal, "a pose of the fit is not in its table");
+    rows.push_back(found->second);
+  }
+  return LawInputs(Data{*std::move(values), std::move(rows)});
+}
+
+Eigen::VectorXd LawInputs::Data::name(const std::string& text, int channel) const {
+  const FormulaName name = effects::formula::formula_name(text, effects::Level::axis, std::nullopt, 0);
+  const std::vector<double> all = values.of(name, channel / 3, channel % 3);
+  Eigen::VectorXd out(static_cast<Eigen::Index>(rows.size()));
+  double sum = 0, count = 0;
+  for (Eigen::Index k = 0; k < out.size(); ++k) {
+    out[k] = all[rows[static_cast<std::size_t>(k)]];
+    if (std::isfinite(out[k])) sum += out[k], ++count;
+  }
+  if (stretch != 1 && count > 0 && !of_the_field(name))
+    out = (sum / count + stretch * (out.array() - sum / count)).matrix();
+  return out;
+}
+
+Result<Eigen::VectorXd> LawInputs::operator()(const std::string& expression, int channel) {
+  if (tables_.empty()) {
+    for (int c = 0; c < channels(); ++c)
+      tables_.emplace_back(poses(), [data = data_.get(), c](const std::string& asked) {
+        return std::optional(data->name(asked, c));
+      });
+  }
+  auto out = tables_[static_cast<std::size_t>(channel)](expression);
+  if (!out) return out;
+  bool any = false;
+  for (double& x : *out) {
+    if (std::isfinite(x)) {
+      any = true;
+    } else {
+      x = 0;
+    }
+  }
+  if (!any) out->resize(0);
+  return out;
+}
+
+}  // namespace mgtd::calib::discovery

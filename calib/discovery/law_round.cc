@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/law_round.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/discovery/random_offset.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+/// Formulas whose inner number is refined.
+constexpr std::size_t kRefined = 30;
+/// A law of the library is a name and a coefficient.
+constexpr int kLibrarySymbols = 2;
+constexpr int kRandomSymbols = 2;
+/// The same law: S differs by less than this share, or by this much.
+constexpr double kSameShare = 2e-3, kSameFall = 0.3;
+
+double log10_p_of(const Tried& t, const criticism::tests::NoiseReference& noise, int channels) {
+  const auto axes = static_cast<int>(t.place.channels(channels).size());
+  return std::min(0.0,
+                  noise.log10_p(t.S, t.k, std::min(axes, channels)) + std::log10(t.place.alike(channels)));
+}
+
+/// The library's effects, place by place; those that are a formula already only lend it their name.
+void add_library(const Workbench& bench, std::vector<RankedLaw>& ranked) {
+  std::vector<RankedLaw> more;
+  for (const criticism::tests::ScoredFamily& family : bench.library) {
+    const auto& hypotheses = family.candidate_effect->hypotheses;
+    const auto values = static_cast<double>(std::max<std::size_t>(1, family.signatures.size()));
+    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+      RankedLaw law{.kind = RankedLaw::Kind::library,
+                    .effect = family.candidate_effect->name,
+                    .place = {},
+                    .where = hypotheses[h].where,
+                    .symbols = kLibrarySymbols};
+      double best = 0, sum = 0;
+      for (const criticism::tests::Score& score : family.scores) {
+        if (score.hypothesis != h) continue;
+        const double q = price_paid(score.S, score.k);
+        if (sum == 0 || q > best) {
+          sum = sum * std::exp((best - q) / 2) + 1;
+          best = q, law.S = score.S, law.k = score.k;
+        } else {
+          sum += std::exp((q - best) / 2);
+        }
+      }
+      if (sum == 0) continue;
+      const auto same = std::find_if(ranked.begin(), ranked.end(), [&](const RankedLaw& formula) {
+        return formula.where == law.where && formula.k == law.k && formula.effect.empty() &&
+               std::abs(formula.S - law.S) < kSameFall + kSameShare * law.S && law.S > 2 * law.k + 8;
+      });
+      if (same != ranked.end()) {
+        same->effect = law.effect;
+        continue;
+      }
+      law.score = best + 2 * std::log(sum / values) - 2 * std::log(hypotheses[h].alike) -
+                  2 * kSymbolPrice * law.symbols;
+      more.push_back(std::move(law));
+    }
+  }
+  ranked.insert(ranked.end(), more.begin(), more.end());
+}
+
+/// Walk and jumps where the head acts, and on all axes; the better place counts.
+void add_random(const Workbench& bench, const ChannelSums& sums, LawRound& round) {
+  const int channels = sums.channels();
+  std::vector<Place> asked{round.head.place};
+  if (round.head.place.kind != Place::Kind::array && channels > 3) asked.push_back({Place::Kind::array, 0});
+  double best = round.walk = round.jumps = -std::numeric_limits<double>::infinity();
+  for (const Place& place : asked) {
+    for (const RandomOffset kind : {RandomOffset::walk, RandomOffset::jumps}) {
+      // Jumps of all axes are noise that is larger than it is said to be: that is judged beforehand.
+      if (kind == RandomOffset::jumps && place.kind == Place::Kind::array) continue;
+      const double score = evidence_of(kind, place.channels(channels), sums, bench.problem) -
+                           2 * std::log(place.alike(channels)) - 2 * kSymbolPrice * kRandomSymbols;
+      double& of_kind = kind == RandomOffset::walk ? round.walk : round.jumps;
+      of_kind = std::max(of_kind, score);
+      if (!(score > best)) continue;
+      best = score;
+      round.random_where = place.name();
+    }
+  }
+}
+
+/// 2 ln of the sum of all evidence.
+double together(const std::vector<RankedLaw>& ranked) {
+  double sum = 0;
+  for (const RankedLaw& law : ranked) sum += std::exp((law.score - ranked.front().score) / 2);
+  return ranked.front().score + 2 * std::log(sum);
+}
+
+}  // namespace
+
+Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library) {
+  const LawSearch search(bench.values, sums);
+  const std::vector<Tried> tried = search.scores();
+  LawRound out{.hypotheses = tried.size()};
+  for (const Tried& t : tried)
+    out.log10_p_best = std::min(out.log10_p_best, log10_p_of(t, bench.noise, sums.channels()));
+  out.ranked = rank_formulas(tried, bench.values, sums.channels());
+  if (out.ranked.empty()) return fail(ErrorCode::refused, "no formula can be tried on these poses");
+  if (const auto ok = refine_inner(out.ranked, kRefined, bench.grammar, bench.inputs, sums); !ok)
+    return tl::unexpected(ok.error());
+  if (with_library) add_library(bench, out.ranked);
+  share_probability(out.ranked);
+  out.score = together(out.ranked);
+  out.head = *std::find_if(out.ranked.begin(), out.ranked.end(),
+                           [](const RankedLaw& law) { return law.kind == RankedLaw::Kind::formula; });
+  add_random(bench, sums, out);
+  return out;
+}
+
+std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& sums,
+                                  const criticism::tests::NoiseReference& noise, int draws,
+                                  std::uint64_t seed) {
+  std::vector<double> out(static_cast<std::size_t>(draws), 0.0);
+  for (const LawSearch::Largest& largest : search.largest(sums.draws(draws, seed))) {
+    const double price = std::log10(largest.alike);
+    for (Eigen::Index i = 0; i < largest.S.size(); ++i) {
+      double& least = out[static_cast<std::size_t>(i)];
+      least = std::min(
+          least, noise.log10_p(largest.S[i], largest.k, std::min(largest.axes, sums.channels())) + price);
+    }
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib::discovery

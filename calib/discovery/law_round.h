@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "calib/criticism/tests/criticism.h"
+#include "calib/discovery/discovery_report.h"
+#include "calib/discovery/law_search.h"
+
+/// One round of the search: everything is scored against what is left, what leads is ranked beside its
+/// rivals.
+namespace mgtd::calib::discovery {
+
+/// What a search works with, from the first round to the last.
+struct Workbench {
+  const Grammar& grammar;
+  LawInputs& inputs;
+  const FormulaValues& values;
+  const fit::joint::JointProblem& problem;
+  criticism::tests::NoiseReference noise;
+  std::vector<criticism::tests::ScoredFamily> library{};  ///< scored on the first residual
+};
+
+/// What the search of one residual says.
+struct LawRound {
+  double log10_p_best{0};  ///< of the best question, places of its kind priced
+  std::size_t hypotheses{0};
+  std::vector<RankedLaw> ranked{};  ///< with P; the library beside the formulas
+  RankedLaw head{};                 ///< the best formula
+  double score{0};                  ///< 2 ln of the evidence of all of them, prices paid
+  double walk{0}, jumps{0};         ///< the same of an offset that walks or jumps, where the head acts
+  std::string random_where{};       ///< of the better one
+};
+
+[[nodiscard]] Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library);
+/// log10 of the best question of draws of noise, by draw.
+[[nodiscard]] std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& sums,
+                                                const criticism::tests::NoiseReference& noise, int draws,
+                                                std::uint64_t seed);
+
+}  // namespace mgtd::calib::discovery

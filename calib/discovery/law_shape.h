@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calib/discovery/fitted_law.h"
+
+/// The shape of a law over one covariate, with its band: cubic B-splines on the octiles of the covariate,
+/// times the reading for a gain, under a prior of curvature whose scale is that of the largest evidence,
+///
+///     beta = C Z'r,   C = (Z'Z + P)^-1,   P = tau_c (second differences) + tau_r 1.
+///
+/// Gauge: a constant is a parameter of the calibration (and so is a slope, of a curve over the reading
+/// itself), so that curve, band and every formula drawn beside it have their projection on it taken out.
+namespace mgtd::calib::discovery {
+
+struct LawShape {
+  std::string covariate{}, where{};
+  bool of_gain{false};  ///< nT at a reading of 50 000 nT
+  std::vector<double> x{}, y_nT{}, sd_nT{};
+  double simultaneous{1.96};  ///< in sd: the whole curve is inside with 95 %
+  struct Formula {
+    std::string formula{};
+    std::vector<double> y_nT{};  ///< at x, in the same gauge
+  };
+  std::vector<Formula> formulas{};
+};
+
+}  // namespace mgtd::calib::discovery

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace mu {
+class Parser;
+}
+
+namespace mgtd::calib::effects::formula {
+
+/// What every expression knows beside the functions of muParser: pi, and sind, cosd, tand of degrees.
+void define_functions(mu::Parser& parser);
+
+}  // namespace mgtd::calib::effects::formula

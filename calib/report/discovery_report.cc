@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/report/discovery_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "calib/report/json_number.h"
+#include "calib/report/wrapped.h"
+#include "calib/stats/probability.h"
+
+namespace mgtd::calib::report {
+namespace {
+
+using discovery::DiscoveryReport;
+using discovery::FoundFormula;
+using discovery::FoundLaw;
+using discovery::Verdict;
+using nlohmann::json;
+
+constexpr std::size_t kShown = 8, kSharesShown = 4, kCoefficientsShown = 4;
+/// Of extrapolation_spread, above which formulas disagree outside the run.
+constexpr double kDisagree = 0.3;
+
+json optional_number(const std::optional<double>& x) { return x ? number_or_null(*x) : json(); }
+
+json formula_json(const FoundFormula& f, const FoundLaw& law, bool first) {
+  json coefficients = json::array();
+  for (const discovery::LawCoefficient& c : f.coefficients)
+    coefficients.push_back({{"where", c.where}, {"value", c.value}, {"sd", c.sd}, {"unit", "nT"}});
+  return {{"formula", f.formula},
+          {"where", f.where},
+          {"covariates", f.covariates},
+          {"P", f.P},
+          {"chi2_fall", f.S},
+          {"k", f.k},
+          {"symbols", f.symbols},
+          {"class", f.same_as},
+          {"size_nT", f.size_nT},
+          {"needed_nT", number_or_null(f.needed_nT)},
+          {"library", f.library.empty() ? json() : json(f.library)},
+          {"inner", f.inner ? json{{"value", *f.inner}, {"unit", f.inner_unit}} : json()},
+          {"coefficients", std::move(coefficients)},
+          {"define", f.specs},
+          {"held_out_chi2_fall", first ? optional_number(law.held_out_fall) : json()},
+          {"halves_ratio", first ? optional_number(law.halves_ratio) : json()}};
+}
+
+json shares_json(const std::vector<discovery::Share>& shares) {
+  json out = json::array();
+  for (const discovery::Share& share : shares) out.push_back({{"name", share.name}, {"P", share.P}});
+  return out;
+}
+
+json law_json(const FoundLaw& law) {
+  json formulas = json::array();
+  for (std::size_t i = 0; i < law.formulas.size(); ++i)
+    formulas.push_back(formula_json(law.formulas[i], law, i == 0));
+  json out{{"log10_p_search", law.log10_p},
+           {"d", law.d},
+           {"covariates", shares_json(law.covariates)},
+           {"where", shares_json(law.where)},
+           {"formulas", std::move(formulas)},
+           {"stochastic",
+            {{"walk_P", law.walk_P},
+             {"jumps_P", law.jumps_P},
+             {"two_ln_over_walk", number_or_null(law.over_walk)},
+             {"two_ln_over_jumps", number_or_null(law.over_jumps)},
+             {"beside", law.random_beside},
+             {"where", law.random_where}}},
+           {"extrapolation_spread", optional_number(law.extrapolation_spread)}};
+  if (law.shape) {
+    const discovery::LawShape& s = *law.shape;
+    std::vector<double> low, high;
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      low.push_back(s.y_nT[i] - 1.96 * s.sd_nT[i]);
+      high.push_back(s.y_nT[i] + 1.96 * s.sd_nT[i]);
+    }
+    json drawn = json::array();
+    for (const auto& f : s.formulas) drawn.push_back({{"formula", f.formula}, {"y_nT", f.y_nT}});
+    out["curve"] = {{"covariate", s.covariate},
+                    {"where", s.where},
+                    {"of_gain", s.of_gain},
+                    {"x", s.x},
+                    {"y_nT", s.y_nT},
+                    {"lo_nT", low},
+                    {"hi_nT", high},
+                    {"simultaneous_sd", s.simultaneous},
+                    {"formulas", std::move(drawn)}};
+  }
+  return out;
+}
+
+std::string what_next(const DiscoveryReport& r, const std::string& run) {
+  switch (r.verdict) {
+    case Verdict::pass:
+      return "nothing: no formula stands out from the noise of this run";
+    case Verdict::library:
+      return "mgt explain " + run + " names it, with its rivals and what it costs";
+    case Verdict::law:
+    case Verdict::law_set:
+      return r.laws.front().formulas.front().specs.empty()
+                 ? "measure again, and look whether the same formula leads"
+                 : "keep the formula with the commands below; it stays exploratory until a second run "
+                   "confirms it (mgt define --from)";
+    case Verdict::shape_only:
+      return "record more (supplies, loads, temperatures of the electronics) and run again; mgt report " +
+             run + " shows the residual against everything that was recorded";
+    case Verdict::noise_like:
+      if (!r.laws.empty() && r.laws.front().over_jumps < r.laws.front().over_walk)
+        return "record what switches between the poses (supplies, loads, presence) and run again";
+      return "repeat the run: what walks does not repeat, and a law does";
+  }
+  return {};
+}
+
+/// The commands that keep what leads.
+std::vector<std::string> commands(const DiscoveryReport& r, const std::string& run) {
+  std::vector<std::string> out;
+  if (r.verdict != Verdict::law && r.verdict != Verdict::law_set) return out;
+  for (const FoundLaw& law : r.laws) {
+    for (const std::string& spec : law.formulas.front().specs) {
+      const std::string name = spec.substr(0, spec.find('@')),
+                        where = spec.substr(name.size() + 1, spec.find(',') - name.size() - 1),
+                        expression = spec.substr(spec.find("expr=") + 5);
+      out.push_back(fmt::format("mgt define {} {} '{}' --scale {}", run, name, expression, where));
+      out.push_back(fmt::format("mgt add {} {}", name, run));
+    }
+  }
+  return out;
+}
+
+std::string headline(const DiscoveryReport& r) {
+  const FoundLaw* law = r.laws.empty() ? nullptr : &r.laws.front();
+  const FoundFormula* first = law == nullptr ? nullptr : &law->formulas.front();
+  switch (r.verdict) {
+    case Verdict::pass:
+      return "PASS: no formula stands out from noise.";
+    case Verdict::law:
+      return r.laws.size() == 1 ? fmt::format("LAW: {} at {}.", first->formula, first->where)
+                                : fmt::format("LAW: {} formulas, each told from every other.", r.laws.size());
+    case Verdict::law_set:
+      return fmt::format("LAW-SET: {} at {}, or one of {} others that these poses do not exclude.",
+                         first->formula, first->where, law->formulas.size() - 1);
+    case Verdict::library:
+      return fmt::format("LIBRARY: {} at {} describes it.", first->formula, first->where);
+    case Verdict::shape_only:
+      return fmt::format("SHAPE-ONLY: something acts on {}, and no formula accounts for it.",
+                         law == nullptr ? r.left_on : first->where);
+    case Verdict::noise_like:
+      if (law == nullptr || law->log10_p >= -2)
+        return fmt::format("NOISE-LIKE: {} scatters more than its noise, and nothing recorded goes with it.",
+                           r.left_on);
+      return law->over_jumps < law->over_walk
+                 ? "NOISE-LIKE: jumps from pose to pose, unrelated to anything recorded."
+                 : "NOISE-LIKE: an offset that walks describes it better than any formula.";
+  }
+  return {};
+}
+
+std::string shares_text(const std::vector<discovery::Share>& shares) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < std::min(kSharesShown, shares.size()); ++i)
+    out.push_back(fmt::format("{} {:.2f}", shares[i].name, shares[i].P));
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+void tell_coefficients(const FoundFormula& f, std::string& out) {
+  const auto to = std::back_inserter(out);
+  const std::size_t n = std::min(kCoefficientsShown, f.coefficients.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const discovery::LawCoefficient& c = f.coefficients[i];
+    fmt::format_to(to, "     {} {:.4g} +- {:.2g} nT per unit of the formula\n", c.where, c.value, c.sd);
+  }
+  if (f.coefficients.size() > n) fmt::format_to(to, "     and {} more\n", f.coefficients.size() - n);
+}
+
+void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::string& out) {
+  const auto to = std::back_inserter(out);
+  out += "\n";
+  if (laws > 1) fmt::format_to(to, "law {} of {}\n", number, laws);
+  out += wrapped(fmt::format("d = {:.1f}; chance that the whole search finds as much in noise: p {}", law.d,
+                             stats::p_text(law.log10_p)));
+  out += wrapped("depends on " + shares_text(law.covariates));
+  out += wrapped("acts on " + shares_text(law.where));
+  fmt::format_to(to, "\n{:>2}  {:<42} {:<9} {:>5} {:>8} {:>2} {:>2}\n", "", "formula", "where", "P", "fall",
+                 "k", "C");
+  for (std::size_t i = 0; i < std::min(kShown, law.formulas.size()); ++i) {
+    const FoundFormula& f = law.formulas[i];
+    fmt::format_to(to, "{:>2}  {:<42} {:<9} {:>5.2f} {:>8.1f} {:>2} {:>2}\n", i + 1, f.formula, f.where, f.P,
+                   f.S, f.k, f.symbols);
+    if (!f.library.empty() && f.library != f.formula)
+      fmt::format_to(to, "     in the library: {}\n", f.library);
+    if (i == 0) tell_coefficients(f, out);
+  }
+  if (law.formulas.size() > kShown)
+    fmt::format_to(to, "    and {} more in the 99 % set\n", law.formulas.size() - kShown);
+  if (number == 1)
+    fmt::format_to(to, "    {}: offset walks {:.2f}, jumps from pose to pose {:.2f}\n",
+                   law.random_beside ? "beside it" : "no formula", law.walk_P, law.jumps_P);
+  out += "P: probability; fall: of chi-square; k: coefficients; C: symbols\n";
+  std::vector<std::size_t> alike;
+  for (std::size_t i = 1; i < law.formulas.size(); ++i)
+    if (law.formulas[i].same_as == law.formulas.front().same_as) alike.push_back(i + 1);
+  if (!alike.empty()) {
+    double needed = 0;
+    for (std::size_t i = 1; i < law.formulas.size(); ++i)
+      if (law.formulas[i].same_as == law.formulas.front().same_as)
+        needed = std::max(needed, law.formulas[i].needed_nT);
+    alike.resize(std::min(kShown, alike.size()));
+    std::string told = fmt::format("cannot be told from 1 on these poses: {}", fmt::join(alike, ", "));
+    if (std::isfinite(needed) && needed > 0) {
+      told += fmt::format("; all of them could at {:.3g} nT rms (it has {:.2g})", needed,
+                          law.formulas.front().size_nT);
+    } else {
+      told += "; some are the same on these poses, however large";
+    }
+    out += "\n" + wrapped(told);
+  }
+  if (law.halves_ratio)
+    out += wrapped(fmt::format("one half of the poses shows {:.2f} times the size that the other half shows",
+                               *law.halves_ratio));
+  if (law.held_out_fall)
+    out += wrapped(fmt::format("on poses that took no part in the search chi-square {} by {:.0f}",
+                               *law.held_out_fall > 0 ? "falls" : "RISES", std::abs(*law.held_out_fall)));
+  if (law.extrapolation_spread && *law.extrapolation_spread > kDisagree)
+    fmt::format_to(to, "OUTSIDE what the run covered the formulas disagree by {:.0f} %: do not extrapolate\n",
+                   100 * *law.extrapolation_spread);
+}
+
+}  // namespace
+
+json to_json(const DiscoveryReport& r, const std::string& run) {
+  json laws = json::array();
+  for (const FoundLaw& law : r.laws) laws.push_back(law_json(law));
+  json out{{"schema", "mgt.discover/1"},
+           {"verdict", std::string(discovery::to_string(r.verdict))},
+           {"hypotheses", r.hypotheses},
+           {"grammar", {{"formulas", r.formulas}, {"hash", r.grammar_hash}}},
+           {"questions", r.questions},
+           {"draws", r.draws},
+           {"chi2", r.chi2},
+           {"dof", r.dof},
+           {"noise_nT", r.noise_nT},
+           {"residual_nT", r.residual_nT},
+           {"rho", r.rho},
+           {"wanders", r.wanders},
+           {"log10_p_left", r.log10_p_left},
+           {"left", {{"where", r.left_on}, {"sigmas", r.left_sigmas}}},
+           {"laws", laws},
+           {"after", json()},
+           {"next", json::array({what_next(r, run)})},
+           {"commands", commands(r, run)},
+           {"text", to_text(r, run)}};
+  // The strongest law once more, where a reader of one law looks for it.
+  const json first = laws.empty() ? json::object() : laws.front();
+  for (const char* key : {"log10_p_search", "d", "covariates", "where", "formulas", "stochastic", "curve",
+                          "extrapolation_spread"})
+    out[key] = first.contains(key) ? first[key] : json();
+  if (r.after)
+    out["after"] = {{"residual_nT", r.after->residual_nT},
+                    {"unseen_before_nT", optional_number(r.after->unseen_before_nT)},
+                    {"unseen_after_nT", optional_number(r.after->unseen_after_nT)}};
+  return out;
+}
+
+std::string to_text(const DiscoveryReport& r, const std::string& run) {
+  std::string out = wrapped(headline(r));
+  const auto to = std::back_inserter(out);
+  out += wrapped(fmt::format(
+      "residual {:.3g} nT, noise {:.3g} nT; {} formulas (grammar {}), {} questions with their places",
+      r.residual_nT, r.noise_nT, r.formulas, r.grammar_hash, r.hypotheses));
+  if (r.wanders) out += wrapped("the offsets of this run wander: slow laws are held against that");
+  const bool show = r.verdict != Verdict::pass && !(r.laws.empty() || r.laws.front().log10_p >= -2);
+  if (show)
+    for (std::size_t i = 0; i < r.laws.size(); ++i) tell_law(r.laws[i], i + 1, r.laws.size(), out);
+  if (show)
+    fmt::format_to(to, "left after {}: p {}; most on {}, {:.1f} standard deviations of chi-square\n",
+                   r.laws.size() == 1 ? "it" : "them", stats::p_text(r.log10_p_left), r.left_on,
+                   r.left_sigmas);
+  if (r.after) {
+    fmt::format_to(to, "a fit with {}: residual {:.3g} -> {:.3g} nT", r.laws.size() == 1 ? "it" : "them",
+                   r.residual_nT, r.after->residual_nT);
+    if (r.after->unseen_before_nT && r.after->unseen_after_nT)
+      fmt::format_to(to, "; on poses held out {:.3g} -> {:.3g} nT", *r.after->unseen_before_nT,
+                     *r.after->unseen_after_nT);
+    out += "\n";
+  }
+  out += "\n" + wrapped("next: " + what_next(r, run));
+  for (const std::string& command : commands(r, run)) out += "  " + command + "\n";
+  return out;
+}
+
+}  // namespace mgtd::calib::report

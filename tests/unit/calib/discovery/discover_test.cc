@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/discover.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "calib/report/discovery_report.h"
+#include "tests/unit/calib/discovery/discovery_scene.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+using calib::testing::Hidden;
+using ::testing::HasSubstr;
+
+DiscoveryReport found_in(const Hidden& hidden, std::uint64_t seed, bool checks = false) {
+  const PoseTable table = testing::run_with({.noise_nT = 0.05, .hidden = hidden}, seed);
+  return testing::must(discover(table, {.fit = {}, .draws = 300, .checks = checks}));
+}
+
+/// Added to one channel.
+Hidden on(int channel, const std::function<double(const Pose&)>& law) {
+  return [channel, law](const Pose& p, int i, int a, const Eigen::Vector3d&) {
+    return 3 * i + a == channel ? law(p) : 0.0;
+  };
+}
+
+TEST(Discover, NoiseHasNoLaw) {
+  for (const std::uint64_t seed : {4U, 5U, 6U}) {
+    const DiscoveryReport r = found_in({}, seed);
+    EXPECT_EQ(r.verdict, Verdict::pass) << report::to_text(r, "run.csv");
+    EXPECT_GT(r.hypotheses, 15'000U);
+  }
+}
+
+TEST(Discover, NamesAHarmonicOfTheAzimuth) {
+  const DiscoveryReport r =
+      found_in(on(5, [](const Pose& p) { return 0.12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 4, true);
+  ASSERT_EQ(r.verdict, Verdict::law) << report::to_text(r, "run.csv");
+  const FoundLaw& law = r.laws.front();
+  EXPECT_EQ(law.formulas.front().formula, "a*sind(3*azimuth_deg) + b*cosd(3*azimuth_deg)");
+  EXPECT_EQ(law.formulas.front().where, "s2.z");
+  ASSERT_EQ(law.formulas.front().coefficients.size(), 2U);
+  const auto& c = law.formulas.front().coefficients;
+  EXPECT_NEAR(std::hypot(c[0].value, c[1].value), 0.12, 4 * c[0].sd);
+  ASSERT_TRUE(law.halves_ratio && law.held_out_fall && r.after);
+  EXPECT_NEAR(*law.halves_ratio, 1, 0.4);
+  EXPECT_GT(*law.held_out_fall, 50);
+  EXPECT_LT(*r.after->unseen_after_nT, *r.after->unseen_before_nT);
+}
+
+/// A law of each sensor's own temperature, on all axes: the role is found, not one of four columns.
+TEST(Discover, FindsTheRoleOfATemperature) {
+  const DiscoveryReport r = found_in(
+      [](const Pose& p, int i, int a, const Eigen::Vector3d&) {
+        return (0.1 + 0.03 * (3 * i + a)) * std::pow(*p.T_degC[static_cast<std::size_t>(i)] - 21, 3) / 9;
+      },
+      5);
+  ASSERT_FALSE(r.laws.empty());
+  const FoundLaw& law = r.laws.front();
+  EXPECT_EQ(law.formulas.front().where, "each-axis") << report::to_text(r, "run.csv");
+  EXPECT_EQ(law.covariates.front().name, "T_degC") << report::to_text(r, "run.csv");
+}
+
+TEST(Discover, NamesTwoLawsOnOneAxis) {
+  const DiscoveryReport r =
+      found_in(on(1,
+                  [](const Pose& p) {
+                    return 0.15 * std::sin(3 * *p.azimuth_rad) + 0.5 * (testing::motor_A(p) - 0.5);
+                  }),
+               6);
+  ASSERT_EQ(r.laws.size(), 2U) << report::to_text(r, "run.csv");
+  std::map<std::string, int> covariates;
+  for (const FoundLaw& law : r.laws) ++covariates[law.covariates.front().name];
+  EXPECT_EQ(covariates["motor_A"], 1);
+  EXPECT_EQ(covariates["azimuth_deg"], 1);
+}
+
+/// Nothing that was recorded goes with it: no formula is named.
+TEST(Discover, AnUnrecordedLoadIsNoLaw) {
+  const DiscoveryReport r = found_in(on(8,
+                                        [](const Pose& p) {
+                                          std::mt19937_64 rng(static_cast<std::uint64_t>(p.number) * 104729);
+                                          return rng() % 2 == 0 ? 0.15 : 0.0;
+                                        }),
+                                     7);
+  EXPECT_EQ(r.verdict, Verdict::noise_like) << report::to_text(r, "run.csv");
+  EXPECT_LT(r.laws.front().over_jumps, 0);
+}
+
+TEST(Discover, AnOffsetThatWalksIsNoLaw) {
+  std::map<int, double> offset;
+  double now = 0;
+  std::mt19937_64 rng(8);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k <= 200; ++k) offset[k] = now += 0.03 * normal(rng);
+  const DiscoveryReport r = found_in(on(3, [offset](const Pose& p) { return offset.at(p.number); }), 8);
+  EXPECT_EQ(r.verdict, Verdict::noise_like) << report::to_text(r, "run.csv");
+}
+
+/// A law a hundred times the noise hides the noise from the tests until it is in the model.
+TEST(Discover, ALargeLawDoesNotHideTheNoise) {
+  const DiscoveryReport r =
+      found_in(on(5, [](const Pose& p) { return 12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 4);
+  EXPECT_EQ(r.verdict, Verdict::law) << report::to_text(r, "run.csv");
+  EXPECT_GT(r.laws.front().d, 500);
+}
+
+/// One of two laws leaves the other, which a random offset would take up too.
+TEST(Discover, ALawBesideAnUnrecordedLoadIsOnlyAShape) {
+  const DiscoveryReport r =
+      found_in(on(8,
+                  [](const Pose& p) {
+                    std::mt19937_64 rng(static_cast<std::uint64_t>(p.number) * 104729);
+                    return (rng() % 2 == 0 ? 0.15 : 0.0) + 0.4 * std::sin(3 * *p.azimuth_rad);
+                  }),
+               7);
+  EXPECT_EQ(r.verdict, Verdict::shape_only) << report::to_text(r, "run.csv");
+  EXPECT_EQ(r.laws.front().covariates.front().name, "azimuth_deg");
+}
+
+TEST(Discover, TellsTheSameInWordsAndNumbers) {
+  const DiscoveryReport r =
+      found_in(on(5, [](const Pose& p) { return 0.12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 4);
+  const nlohmann::json j = report::to_json(r, "run.csv");
+  EXPECT_EQ(j["schema"], "mgt.discover/1");
+  EXPECT_EQ(j["verdict"], "LAW");
+  EXPECT_EQ(j["formulas"][0]["where"], "s2.z");
+  EXPECT_EQ(j["hypotheses"], r.hypotheses);
+  for (const char* key : {"log10_p_search", "d", "covariates", "where", "stochastic", "curve", "after",
+                          "extrapolation_spread", "next", "text"})
+    EXPECT_TRUE(j.contains(key)) << key;
+  const std::string text = report::to_text(r, "run.csv");
+  EXPECT_THAT(text, HasSubstr("LAW: a*sind(3*azimuth_deg) + b*cosd(3*azimuth_deg) at s2.z."));
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, end - at);
+    EXPECT_TRUE(line.size() <= 80 || line.starts_with("  mgt ")) << line;
+    at = end + 1;
+  }
+}
+
+}  // namespace
+}  // namespace mgtd::calib::discovery
