@@ -12,10 +12,14 @@ namespace {
 
 namespace tests = criticism::tests;
 
-/// Of a length before projection, below which what is left is rounding.
-constexpr double kRounding = 1e-9;
-
 }  // namespace
+
+Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
+                            const Eigen::VectorXd& whole2) {
+  const auto least =
+      (kAbsorbedShare * kAbsorbedShare * about_mean2.array()).max(kRounding * kRounding * whole2.array());
+  return (left2.array() > least && left2.array() > 0).select(left2.array().max(1e-300).rsqrt(), 0.0);
+}
 
 Eigen::MatrixXd gradient_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   if (!problem.has_angles || problem.sensors() < 2)
@@ -142,7 +146,7 @@ void ChannelSums::take_out(const LawOnChannels& law) {
     if (law[c].size() > 0)
       before += law[c].dot(before_projection(static_cast<int>(c), static_cast<int>(c), law[c]).col(0));
   const double length2 = product(law, law);
-  if (!(length2 > kRounding * before)) return;
+  if (!(length2 > kRounding * kRounding * before)) return;
   TakenOut out{.law = law, .by_channel = {}};
   for (Eigen::VectorXd& on_channel : out.law) on_channel /= std::sqrt(length2);
   out.by_channel = by_channel(out.law);

@@ -28,6 +28,14 @@ inline constexpr int kGradient = 5;  ///< components Gxx, Gyy, Gxy, Gxz, Gyz
 
 /// Of the length of a formula less its mean: what is left of an absorbed one.
 inline constexpr double kAbsorbedShare = 2e-4;
+/// Of the whole length, below which what is left is rounding.
+inline constexpr double kRounding = 1e-6;
+
+/// One over the length that columns have left after projection; zero for absorbed ones. Squares of lengths:
+/// what is left, what there was without the mean, and all of it.
+[[nodiscard]] Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
+                                          const Eigen::VectorXd& whole2);
+
 /// Eigenvalues of products of unit columns below this are rounding.
 inline constexpr double kSameDirection = 1e-6;
 

@@ -59,22 +59,21 @@ Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInpu
   const auto count = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = count * static_cast<Eigen::Index>(on.size());
   Eigen::MatrixXd A(n, n);
-  Eigen::VectorXd v(n), length2(n);
+  Eigen::VectorXd v(n), length2(n), whole(n);
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
   for (std::size_t a = 0; a < on.size(); ++a) {
     const auto at = static_cast<Eigen::Index>(a) * count;
     const Eigen::MatrixXd before = sums.before_projection(on[a], on[a], (*values)[a]);
     const double of_one = one.dot(sums.before_projection(on[a], on[a], one).col(0));
-    length2.segment(at, count) = (*values)[a].cwiseProduct(before).colwise().sum().transpose() -
-                                 (one.transpose() * before).transpose().cwiseAbs2() / of_one;
+    whole.segment(at, count) = (*values)[a].cwiseProduct(before).colwise().sum().transpose();
+    length2.segment(at, count) =
+        whole.segment(at, count) - (one.transpose() * before).transpose().cwiseAbs2() / of_one;
     v.segment(at, count) = (*values)[a].transpose() * sums.score(on[a]);
     for (std::size_t b = 0; b < on.size(); ++b)
       A.block(at, static_cast<Eigen::Index>(b) * count, count, count) =
           (*values)[a].transpose() * sums.product(on[a], on[b], (*values)[b]);
   }
-  const Eigen::VectorXd scale =
-      (A.diagonal().array() > kAbsorbedShare * kAbsorbedShare * length2.array() && A.diagonal().array() > 0)
-          .select(A.diagonal().array().max(1e-300).rsqrt(), 0.0);
+  const Eigen::VectorXd scale = length_left(A.diagonal(), length2, whole);
   const linear::SymmetricEigen eigen = linear::symmetric_eigen(scale.asDiagonal() * A * scale.asDiagonal());
   const Eigen::Index rank = (eigen.values.array() > kSameDirection).count();
   const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors.rightCols(rank) *

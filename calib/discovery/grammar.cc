@@ -315,11 +315,19 @@ class Writer {
   Family& product(const Factor& a, const Factor& b, int symbols) {
     std::vector<std::string> covariates{a.covariate};
     if (b.covariate != a.covariate) covariates.push_back(b.covariate);
-    const std::string mean = a.about_mean + "*" + b.about_mean, zero = a.about_zero + "*" + b.about_zero;
+    Columns forms;
+    for (const std::string& of_a : {a.about_mean, a.about_zero}) {
+      for (const std::string& of_b : {b.about_mean, b.about_zero}) {
+        const std::string form = of_a + "*" + of_b;
+        if (std::find(forms.begin(), forms.end(), form) == forms.end()) forms.push_back(form);
+      }
+    }
+    std::vector<double> which;
+    for (std::size_t i = 0; i < forms.size(); ++i) which.push_back(static_cast<double>(i));
     Family& out = add({.covariates = std::move(covariates),
                        .symbols = symbols,
-                       .inner = mean == zero ? std::vector<double>{0} : std::vector<double>{0, 1},
-                       .columns = [mean, zero](double i) { return Columns{i == 0 ? mean : zero}; }});
+                       .inner = which,
+                       .columns = [forms](double i) { return Columns{forms[static_cast<std::size_t>(i)]}; }});
     out.foreign_sensor = std::max(a.foreign_sensor, b.foreign_sensor);
     out.common = a.common && b.common;
     return out;

@@ -25,8 +25,8 @@
 ///     neighbours       size, powers, sign of a reading of another sensor, and reading times its temperature
 ///
 /// What is linear in the field, and a constant, is a parameter of the calibration already. The number that a
-/// formula has inside (a time constant, a knot) is tried at the values of a grid. Products are tried about
-/// the mean of their factors and about zero (20 degC). A symbol is a name, a number or an operation; a law
+/// formula has inside (a time constant, a knot) is tried at the values of a grid. Products are tried with
+/// each factor about its mean and about zero (20 degC). A symbol is a name, a number or an operation; a law
 /// that reads another sensor counts one more.
 namespace mgtd::calib::discovery {
 

@@ -23,8 +23,9 @@ bool of_the_field(const FormulaName& name) {
 }  // namespace
 
 Result<LawInputs> LawInputs::of(const fit::joint::JointFit& fit, const PoseTable& run) {
-  effects::EffectContext context{.table = &run, .offset_nT = PerSensor<Eigen::Vector3d>()};
-  for (const sensor::SensorModel& sensor : fit.state.sensors) context.offset_nT->push_back(sensor.offset_nT);
+  PerSensor<Eigen::Vector3d> offset_nT(fit.state.sensors.size());
+  for (std::size_t i = 0; i < offset_nT.size(); ++i) offset_nT[i] = fit.state.sensors[i].offset_nT;
+  const effects::EffectContext context{.table = &run, .offset_nT = offset_nT};
   auto values = effects::formula::RunValues::of(context);
   if (!values) return tl::unexpected(values.error());
   std::unordered_map<int, std::size_t> by_number;

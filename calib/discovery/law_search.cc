@@ -103,9 +103,7 @@ LawSearch::OnChannel LawSearch::on_channel(int c) const {
     const Eigen::MatrixXd left = before - u.transpose() * u;
     const Eigen::ArrayXd length2 =
         before.diagonal().array() - (one.transpose() * h).transpose().array().square() / of_one;
-    const Eigen::VectorXd scale =
-        (left.diagonal().array() > kAbsorbedShare * kAbsorbedShare * length2 && left.diagonal().array() > 0)
-            .select(left.diagonal().array().max(1e-300).rsqrt(), 0.0);
+    const Eigen::VectorXd scale = length_left(left.diagonal(), length2, before.diagonal());
     if (m.count == 1) {
       if (scale[0] == 0) continue;
       out.columns.col(m.first) = g.col(0) * scale[0];

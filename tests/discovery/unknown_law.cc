@@ -70,9 +70,9 @@ std::vector<UnknownLaw> make_laws() {
   add("temperature times time", R"(.*\*.*)", "t_h, s3_T_degC", [](std::mt19937_64&) -> AxisLaw {
     return [](const Pose& p, const Eigen::Vector3d&) { return (T_of(p) - 21) * hours(p); };
   });
-  add("square of the temperature", R"(.*T.*\^2)", "s3_T_degC", [](std::mt19937_64& rng) -> AxisLaw {
+  add("cube of the temperature", R"(.*T.*\^3)", "s3_T_degC", [](std::mt19937_64& rng) -> AxisLaw {
     const double centre = uniform(rng, 20, 22);
-    return [centre](const Pose& p, const Eigen::Vector3d&) { return std::pow(T_of(p) - centre, 2); };
+    return [centre](const Pose& p, const Eigen::Vector3d&) { return std::pow(T_of(p) - centre, 3); };
   });
   add("knee in the temperature", R"(max\(0, .*T.*\))", "s3_T_degC", [](std::mt19937_64& rng) -> AxisLaw {
     const double knee = uniform(rng, 19.5, 22.5);

@@ -59,8 +59,9 @@ TEST(Grammar, AFormulaIsTheEffectThatItsSpecMakes) {
     const std::string spec = specs_of(columns, place, "law").front();
     const auto made = effects::library::make_effect(spec, 4);
     ASSERT_TRUE(made) << spec << ": " << made.error().text();
-    effects::EffectContext context{.table = &s->table, .offset_nT = PerSensor<Eigen::Vector3d>()};
-    for (const auto& sensor : s->fit.state.sensors) context.offset_nT->push_back(sensor.offset_nT);
+    PerSensor<Eigen::Vector3d> offset_nT(4);
+    for (std::size_t i = 0; i < 4; ++i) offset_nT[i] = s->fit.state.sensors[i].offset_nT;
+    const effects::EffectContext context{.table = &s->table, .offset_nT = offset_nT};
     const auto effects = effects::library::bound_to_run({*made}, context);
     ASSERT_TRUE(effects) << spec << ": " << effects.error().text();
     const effects::Effect& effect = *effects->front();
