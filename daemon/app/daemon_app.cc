@@ -44,7 +44,9 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       console_(io,
                {.listen = config_.console_listen,
                 .hosts = config_.console_hosts,
-                .control_from_network = config_.console_control_from_network},
+                .control_from_network = config_.console_control_from_network,
+                .workbench = serve::console::WorkbenchConfig{.runs = runs_directory(config_),
+                                                             .mgt = serve::console::mgt_beside_us()}},
                console_source()),
       run_(
           config_, runs_directory(config_), store_, worker_, core_.run(),
@@ -91,11 +93,10 @@ Result<void> DaemonApp::start() {
 serve::console::ConsoleSource DaemonApp::console_source() {
   return {.hello =
               [this] {
-                const nlohmann::ordered_json hello{{"software", "mgtd " MGTD_VERSION},
-                                                   {"rig", config_.rig_name},
-                                                   {"speed_up", config_.speed_up},
-                                                   {"rate_hz", config_.rate_hz},
-                                                   {"array", to_json(array_)}};
+                const nlohmann::ordered_json hello{
+                    {"software", "mgtd " MGTD_VERSION}, {"mode", "rig"},
+                    {"rig", config_.rig_name},          {"speed_up", config_.speed_up},
+                    {"rate_hz", config_.rate_hz},       {"array", to_json(array_)}};
                 return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
               },
           .metrics = [this] { return serve::console::metrics(report()); },

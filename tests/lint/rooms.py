@@ -50,11 +50,11 @@ DAEMON = {
     "daemon/acquire": ["daemon/config", "daemon/store"],
     "daemon/run": ["daemon/acquire", "daemon/config", "daemon/plan", "daemon/store"],
     "daemon/serve": ["daemon/config", "daemon/store"],
-    "daemon/serve/console": ["daemon/serve", "daemon/config"],
+    "daemon/serve/console": ["daemon/serve", "daemon/config", "daemon/store"],
     "daemon/core": ["daemon/run", "daemon/acquire", "daemon/config"],
     "daemon/app": ["daemon/core", "daemon/run", "daemon/serve/console", "daemon/serve", "daemon/acquire", "daemon/config", "daemon/plan",
                    "daemon/store"],
-    "daemon/cli": ["daemon/run", "daemon/serve", "daemon/acquire", "daemon/config", "daemon/plan",
+    "daemon/cli": ["daemon/run", "daemon/serve/console", "daemon/serve", "daemon/acquire", "daemon/config", "daemon/plan",
                    "daemon/store"],
 }
 

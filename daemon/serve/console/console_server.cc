@@ -8,7 +8,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 
 #include "daemon/config/tcp_address.h"
 #include "daemon/serve/console/host_rule.h"
+#include "daemon/serve/console/http_message.h"
 #include "daemon/serve/console/page_files.h"
 #include "daemon/serve/console/web_peer.h"
 #include "daemon/serve/listener.h"
@@ -31,8 +31,6 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using boost::system::error_code;
 using Stream = beast::basic_stream<asio::generic::stream_protocol>;
-using Request = http::request<http::empty_body>;
-using Response = http::response<http::string_body>;
 
 namespace {
 
@@ -40,40 +38,7 @@ constexpr auto kPatience = std::chrono::seconds(10);
 constexpr auto kWrongTokenWait = std::chrono::seconds(1);
 constexpr std::uint32_t kHeadLimit = 8'192;
 constexpr std::size_t kTokenLine = 256;
-
-std::optional<std::string_view> field(const Request& request, std::string_view name) {
-  const auto found = request.find(beast::string_view(name.data(), name.size()));
-  if (found == request.end()) return std::nullopt;
-  return std::string_view(found->value().data(), found->value().size());
-}
-
-RequestHead head_of(const Request& request) {
-  return {.host = field(request, "Host").value_or(""),
-          .origin = field(request, "Origin"),
-          .fetch_site = field(request, "Sec-Fetch-Site"),
-          .websocket = beast::websocket::is_upgrade(request)};
-}
-
-/// On every answer. The page may load and reach nothing but what this server hands out.
-void forbid_all_else(Response& response, std::string_view host) {
-  const std::string policy = fmt::format(
-      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self' "
-      "ws://{}; "
-      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'; require-trusted-types-for 'script'; "
-      "trusted-types 'none'",
-      host);
-  response.set("Content-Security-Policy", policy);
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("Cross-Origin-Resource-Policy", "same-origin");
-  response.set("Cross-Origin-Opener-Policy", "same-origin");
-  response.set(http::field::cache_control, "no-store");
-}
-
-std::string in_json(const Error& error) {
-  return nlohmann::json{{"error", {{"message", error.message}, {"remedy", error.remedy}}}}.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+constexpr std::uint64_t kBodyLimit = 65'536, kLongAnswer = 1'000'000;
 
 /// Where a peer is; empty where the kernel does not say.
 std::optional<asio::ip::address> address_of(Listener::Socket& socket) {
@@ -95,7 +60,9 @@ class ConsoleServer::State : public std::enable_shared_from_this<State> {
       : io_(io),
         config_(std::move(config)),
         source_(std::move(source)),
-        rate_(config_.rate, clock_.now().mono) {}
+        rate_(config_.rate, clock_.now().mono) {
+    if (config_.workbench) desk_.emplace(io_, *config_.workbench);
+  }
 
   Result<void> start();
   void stop();
@@ -108,6 +75,7 @@ class ConsoleServer::State : public std::enable_shared_from_this<State> {
   [[nodiscard]] Response answered(const Request& request);
   [[nodiscard]] Response content(const Request& request, std::string_view target);
   [[nodiscard]] Result<void> may_come(const Request& request);
+  [[nodiscard]] Response of_job(const Request& request);
 
   asio::io_context& io_;
   ConsoleConfig config_;
@@ -117,6 +85,7 @@ class ConsoleServer::State : public std::enable_shared_from_this<State> {
   ConsoleToken token_{ConsoleToken::random()};
   std::optional<HostRule> rule_;
   std::optional<Listener> listener_;
+  std::optional<JobDesk> desk_;
   std::string address_;
   std::set<std::shared_ptr<Session>> sessions_;
 };
@@ -130,12 +99,13 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
   void read() {
     parser_.emplace();
     parser_->header_limit(kHeadLimit);
-    parser_->body_limit(0);
+    parser_->body_limit(kBodyLimit);
     stream_.expires_after(kPatience);
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code ec, std::size_t) {
-      if (ec) return self->read_failed(ec);
-      self->act(self->parser_->release());
-    });
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](error_code ec, std::size_t) {
+                              if (ec) return self->read_failed(ec);
+                              self->read_body();
+                            });
   }
   void close() {
     if (web_) return gone();
@@ -148,10 +118,24 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     if (ec == http::error::header_limit || ec == http::error::body_limit ||
         ec == http::error::buffer_overflow) {
       Response response{http::status::payload_too_large, 11};
-      response.body() = in_json({ErrorCode::bad_input, "a request has at most 8 kB and no body", ""});
+      response.body() =
+          in_json({ErrorCode::bad_input,
+                   "a request has at most 8 kB and no body; a job has a body of at most 64 kB", ""});
       return answer(std::move(response), "", false);
     }
     close();
+  }
+
+  /// Only a job has one, and whoever asks for it is known by then.
+  void read_body() {
+    if (parser_->is_done()) return act(parser_->release());
+    const Request& head = parser_->get();
+    if (!asks_for_job(head) || !server_->desk_) return read_failed(http::error::body_limit);
+    if (auto allowed = may_ask_for_jobs(head); !allowed) return refuse_job(head, allowed.error());
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code ec, std::size_t) {
+      if (ec) return self->read_failed(ec);
+      self->act(self->parser_->release());
+    });
   }
 
   void act(Request request) {
@@ -161,11 +145,35 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
       auto allowed = server_->may_come(request);
       if (allowed && target == "/control") allowed = may_control();
       if (!allowed) return answer(refusal(request, allowed.error()), host, false);
-      if (target == "/stream" || target == "/control")
+      if ((target == "/stream" && server_->source_.stream) ||
+          (target == "/control" && server_->source_.control))
         return upgrade(std::move(request), target == "/control");
     }
     const bool keep_alive = request.keep_alive();
+    if (asks_for_job(request) && server_->desk_) {
+      if (auto allowed = may_ask_for_jobs(request); !allowed) return refuse_job(request, allowed.error());
+    }
     answer(server_->answered(request), host, keep_alive);
+  }
+
+  [[nodiscard]] Result<void> may_ask_for_jobs(const Request& request) const {
+    constexpr std::string_view kBearer = "Bearer ";
+    if (auto allowed = server_->may_come(request); !allowed) return allowed;
+    if (auto allowed = may_control(); !allowed) return allowed;
+    const std::string_view offered = field(request, "Authorization").value_or("");
+    if (offered.starts_with(kBearer) && server_->token_.is(offered.substr(kBearer.size()))) return {};
+    return fail(ErrorCode::refused, "computing needs the token, which is new at every start",
+                "open the address that mgt console or mgt serve prints");
+  }
+
+  /// Late, so that guessing takes long.
+  void refuse_job(const Request& request, const Error& why) {
+    spdlog::warn("console: a job was refused to {}: {}", from_ ? from_->to_string() : "an unknown place",
+                 why.message);
+    response_ = refusal(request, why);
+    timer_.emplace(stream_.get_executor(), kWrongTokenWait);
+    timer_->async_wait(
+        [self = shared_from_this()](error_code) { self->answer(std::move(self->response_), "", false); });
   }
 
   [[nodiscard]] Result<void> may_control() const {
@@ -175,17 +183,11 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
         "open a tunnel (ssh -L 7451:127.0.0.1:7451 RIG), or set control_from = \"network\" in [console]");
   }
 
-  static Response refusal(const Request& request, const Error& why) {
-    Response response{http::status::forbidden, request.version()};
-    response.set(http::field::content_type, "application/json");
-    response.body() = in_json(why);
-    return response;
-  }
-
   void answer(Response response, const std::string& host, bool keep_alive) {
     forbid_all_else(response, host);
     response.keep_alive(keep_alive);
     response.prepare_payload();
+    if (response.body().size() > kLongAnswer) stream_.expires_after(6 * kPatience);
     response_ = std::move(response);
     http::async_write(stream_, response_,
                       [self = shared_from_this(), keep_alive](error_code ec, std::size_t) {
@@ -253,7 +255,7 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
   std::optional<asio::ip::address> from_;
   Stream stream_;
   beast::flat_buffer buffer_{kHeadLimit + 1024};
-  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<http::request_parser<http::string_body>> parser_;
   Response response_;
   Request request_;
   std::optional<WebStream> web_;
@@ -283,6 +285,7 @@ Result<void> ConsoleServer::State::start() {
 void ConsoleServer::State::stop() {
   listener_.reset();
   address_.clear();
+  if (desk_) desk_->stop();
   for (const auto& session : std::set(sessions_)) session->close();
 }
 
@@ -296,19 +299,24 @@ void ConsoleServer::State::admit(Listener::Socket socket) {
 Result<void> ConsoleServer::State::may_come(const Request& request) { return rule_->admit(head_of(request)); }
 
 Response ConsoleServer::State::answered(const Request& request) {
-  const auto error = [&](http::status status, const Error& why) {
-    Response response{status, request.version()};
-    response.set(http::field::content_type, "application/json");
-    response.body() = in_json(why);
-    return response;
-  };
   if (!rate_.admit(clock_.now().mono))
-    return error(http::status::too_many_requests,
-                 {ErrorCode::refused, "too many requests a second", "ask less often"});
-  if (auto allowed = may_come(request); !allowed) return error(http::status::forbidden, allowed.error());
+    return refusal(request, {ErrorCode::refused, "too many requests a second", "ask less often"},
+                   http::status::too_many_requests);
+  if (auto allowed = may_come(request); !allowed) return refusal(request, allowed.error());
+  if (asks_for_job(request) && desk_) return of_job(request);
   if (request.method() != http::verb::get)
-    return error(http::status::method_not_allowed, {ErrorCode::bad_input, "only GET is answered", ""});
+    return refusal(request, {ErrorCode::bad_input, "only GET is answered", ""},
+                   http::status::method_not_allowed);
   return content(request, {request.target().data(), request.target().size()});
+}
+
+Response ConsoleServer::State::of_job(const Request& request) {
+  JobAnswer given = desk_->answer({request.method_string().data(), request.method_string().size()},
+                                  path_of(request), request.body());
+  Response response{static_cast<http::status>(given.status), request.version()};
+  response.set(http::field::content_type, given.type);
+  response.body() = std::move(given.body);
+  return response;
 }
 
 Response ConsoleServer::State::content(const Request& request, std::string_view target) {
@@ -323,8 +331,9 @@ Response ConsoleServer::State::content(const Request& request, std::string_view 
   };
   constexpr std::string_view kJson = "application/json", kPages = "/page/";
   if (path == "/api/hello") return with(kJson, source_.hello());
-  if (path == "/metrics") return with("text/plain; version=0.0.4", source_.metrics());
-  if (path == "/lane") {
+  if (path == "/runs" && desk_) return with(kJson, desk_->runs());
+  if (path == "/metrics" && source_.metrics) return with("text/plain; version=0.0.4", source_.metrics());
+  if (path == "/lane" && source_.lane) {
     auto lane = source_.lane(query);
     if (lane) return with(kJson, *std::move(lane));
     response.result(http::status::bad_request);

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/serve/console/console_token.h"
+#include "daemon/serve/console/job_desk.h"
 #include "daemon/serve/peer.h"
 #include "daemon/serve/request_rate.h"
 #include "proto/error.h"
@@ -20,16 +22,19 @@
 ///     GET /api/hello           what the page has to know before anything else, JSON
 ///     GET /metrics             Prometheus text
 ///     GET /lane?...            history of one channel (lane_request.h)
+///     GET /runs                run files and pose tables (job_desk.h)
+///     POST /jobs, GET and DELETE /jobs/N, GET /jobs/N/result
+///                              computations on them, with the token in Authorization: Bearer ..
 ///     WebSocket /stream        the lines of the live stream, as on its own sockets
 ///     WebSocket /control       the lines of the control socket, after a first line {"token":".."}
 ///
-/// Who is answered: host_rule.h for every request; control needs the token and, unless the configuration
-/// allows the network, a browser on this computer. Answers forbid the page everything but itself (Content
-/// Security Policy, trusted types). There is no cookie, so no page of others can ride on one.
+/// Who is answered: host_rule.h for every request; control and jobs need the token and, unless the
+/// configuration allows the network, a browser on this computer. Answers forbid the page everything but
+/// itself (Content Security Policy, trusted types). There is no cookie, so no page of others can ride on one.
 ///
-/// Requests have 8 kB and ten seconds; connections and their rate are limited; a peer that does not read is
-/// dropped by the server that feeds it. Everything runs on the io_context's thread; the server must not
-/// outlive the io_context.
+/// Requests have 8 kB and ten seconds, a job's body 64 kB after its token was seen to be right; connections
+/// and their rate are limited; a peer that does not read is dropped by the server that feeds it. Everything
+/// runs on the io_context's thread; the server must not outlive the io_context.
 namespace mgtd::daemon::serve::console {
 
 struct ConsoleConfig {
@@ -37,10 +42,11 @@ struct ConsoleConfig {
   std::vector<std::string> hosts{};      ///< further names under which it is reached
   bool control_from_network{false};      ///< else from this computer alone
   std::size_t max_connections{48};
-  RateLimit rate{.per_s = 20, .burst = 200};  ///< of requests, all clients together
+  RateLimit rate{.per_s = 20, .burst = 200};   ///< of requests, all clients together
+  std::optional<WorkbenchConfig> workbench{};  ///< runs to work on
 };
 
-/// What the owner answers.
+/// What the owner answers; what is empty is not there.
 struct ConsoleSource {
   std::function<std::string()> hello, metrics;
   std::function<Result<std::string>(std::string_view query)> lane;

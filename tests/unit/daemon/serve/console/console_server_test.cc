@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -174,6 +175,59 @@ TEST_F(ConsoleServerTest, TooManyConnectionsAndRequestsAreRefused) {
   EXPECT_EQ(third.count("mgtd_up"), 0U);
   second.send(get("/metrics"));
   EXPECT_TRUE(wait(second, "429 Too Many Requests"));
+}
+
+class ConsoleServerWithRuns : public ConsoleServerTest {
+ protected:
+  void SetUp() override {
+    std::ofstream(dir_ / "a.csv") << "pose,s1_x_nT\n1,2\n";
+    start({.rate = {.per_s = 1000, .burst = 1000},
+           .workbench = WorkbenchConfig{.runs = dir_ / "", .mgt = "/bin/echo"}});
+  }
+  [[nodiscard]] std::string job(const std::string& method, const std::string& target, const std::string& body,
+                                const std::string& more = "") const {
+    return method + " " + target + " HTTP/1.1\r\nHost: " + host_ + "\r\n" + more +
+           "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+  }
+  [[nodiscard]] std::string bearer() const {
+    return "Authorization: Bearer " + server_->token().text() + "\r\n";
+  }
+
+  mgtd::testing::ScratchDirectory dir_;
+  const std::string body_ = R"({"verb":"explain","run":"a.csv"})";
+};
+
+TEST_F(ConsoleServerWithRuns, ComputesForWhoHasTheToken) {
+  ask(get("/runs"), R"("name":"a.csv")");
+  ask(job("POST", "/jobs", body_, bearer()), R"({"job":1})");
+  ASSERT_TRUE(run_until(io_, [this] {
+    LinePeer peer = connect();
+    peer.send(get("/jobs/1", bearer()));
+    return wait(peer, R"("state":)") && peer.count(R"("state":"done")") == 1;
+  }));
+  ask(get("/jobs/1/result", bearer()), "explain " + (dir_ / "a.csv") + " --confusion --impact --json");
+  ask(get("/jobs/9", bearer()), "404 Not Found");
+  ask(job("POST", "/jobs", R"({"verb":"explain","run":"../a.csv"})", bearer()), "404 Not Found");
+  ask(job("POST", "/jobs", R"({"verb":"undo","run":"a.csv"})", bearer()), "keeps no model");
+  ask(job("DELETE", "/jobs/1", "", bearer()), R"("state":"cancelled")");
+}
+
+TEST_F(ConsoleServerWithRuns, ComputesForNobodyElse) {
+  ask(job("POST", "/jobs", body_), "403 Forbidden");
+  ask(job("POST", "/jobs", body_, "Authorization: Bearer 0000\r\n"), "403 Forbidden");
+  ask(job("POST", "/jobs", body_, bearer() + "Origin: http://evil.org\r\n"), "403 Forbidden");
+  ask(job("DELETE", "/jobs/1", "", "Authorization: Bearer 0000\r\n"), "403 Forbidden");
+  ask(get("/jobs/1"), "403 Forbidden");
+  ask(job("POST", "/elsewhere", body_, bearer()), "413 Payload Too Large");
+  ask("POST /jobs HTTP/1.1\r\nHost: " + host_ + "\r\n" + bearer() + "Content-Length: 70000\r\n\r\n",
+      "413 Payload Too Large");
+  ask(get("/jobs/1", bearer()), "404 Not Found");
+}
+
+TEST_F(ConsoleServerTest, WithoutRunsThereAreNoJobs) {
+  start();
+  ask(get("/runs"), "404 Not Found");
+  ask(get("/jobs/1"), "404 Not Found");
 }
 
 TEST_F(ConsoleServerTest, WithoutAnAddressThereIsNoConsole) {
