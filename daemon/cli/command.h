@@ -61,6 +61,7 @@ void add_ports(CLI::App& app, Session& session);
 void add_replay(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 void add_run(CLI::App& app, Session& session);
+void add_serve(CLI::App& app, Session& session);
 void add_status(CLI::App& app, Session& session);
 void add_undo(CLI::App& app, Session& session);
 void add_unmask(CLI::App& app, Session& session);

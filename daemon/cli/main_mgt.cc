@@ -51,7 +51,7 @@ constexpr const char* kDescription =
     "What is missing:          compare, explain, why, discover, effects, add, drop, mask, unmask, undo, "
     "model, "
     "define,\n"
-    "                          next, improve, report\n\n"
+    "                          next, improve, report, serve (in a browser)\n\n"
     "A first calibration:      mgt run dry-run ; mgt run start ; mgt calibrations accept ID\n"
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
     "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
   mgtd::daemon::cli::add_next(app, session);
   mgtd::daemon::cli::add_replay(app, session);
   mgtd::daemon::cli::add_report(app, session);
+  mgtd::daemon::cli::add_serve(app, session);
   mgtd::daemon::cli::add_import(app, session);
   mgtd::daemon::cli::add_export(app, session);
   mgtd::daemon::cli::add_check_config(app, session);
