@@ -26,7 +26,8 @@ nlohmann::json to_json(const criticism::tests::FormulaExamination& x) {
           {"log10_p", x.log10_p},
           {"coefficients", std::move(coefficients)},
           {"detectable_above", {{"value", x.detectable}, {"unit", x.unit}}},
-          {"resembles", std::move(alike)}};
+          {"resembles", std::move(alike)},
+          {"signature", {{"pose", x.signature.pose}, {"x", x.signature.x}, {"y", x.signature.y}}}};
 }
 
 std::string to_text(const criticism::tests::FormulaExamination& x) {

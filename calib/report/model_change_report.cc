@@ -42,8 +42,11 @@ json to_json(const criticism::search::ModelChange& c) {
   json coefficients = json::array();
   for (const calibration::EffectCoefficient& x : c.coefficients)
     coefficients.push_back({{"name", x.name}, {"value", x.value}, {"sd", x.sd}, {"unit", x.unit}});
-  json vetoes = json::array();
-  for (const criticism::search::Veto veto : c.vetoes()) vetoes.push_back(name_of(veto));
+  json vetoes = json::array(), reasons = json::array();
+  for (const criticism::search::Veto veto : c.vetoes()) {
+    vetoes.push_back(name_of(veto));
+    reasons.push_back(to_text(c, veto));
+  }
   return {{"schema", "mgt.model-change/1"},
           {"action", c.adding ? "add" : "drop"},
           {"effect", c.effect},
@@ -68,6 +71,7 @@ json to_json(const criticism::search::ModelChange& c) {
           {"held_out_after_nT", or_null(c.held_out_after_nT)},
           {"variance_price", {{"growth_of_sd", c.price.sd_ratio}, {"parameter", c.price.parameter}}},
           {"vetoes", std::move(vetoes)},
+          {"veto_reasons", std::move(reasons)},
           {"vetoed", c.vetoed()}};
 }
 

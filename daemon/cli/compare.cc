@@ -6,6 +6,7 @@
 #include "calib/criticism/tests/comparison.h"
 #include "calib/criticism/tests/pose_points.h"
 #include "calib/report/comparison_report.h"
+#include "calib/report/figure_words.h"
 #include "calib/report/pose_points_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
@@ -50,7 +51,10 @@ int run_compare(const Session& session, const CompareArguments& args) {
   }
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*comparison);
-    if (args.poses) out["poses"] = calib::report::to_json(*points);
+    if (args.poses) {
+      out["poses"] = calib::report::to_json(*points);
+      out.update(calib::report::panels_json({*comparison, *points}));
+    }
     print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*comparison));

@@ -38,12 +38,14 @@ roll_deg are; sin cos tan of radians; exp ln sqrt abs sign min max tanh ...
 Says how much of it the calibration absorbs already and which effect of the library it resembles. On the run it
 was thought of it stays exploratory; on a second run, --from FIRST.mgtrun confirms it or not.
 
-Exit code 0: kept. 1: not kept (absorbed whole), or not confirmed.)";
+--try examines it and keeps nothing; it takes a pose table too.
+
+Exit code 0: kept, or worth keeping. 1: not kept (absorbed whole), or not confirmed.)";
 
 struct DefineArguments {
   std::string run, name, expression, level{"axis"}, scale, unit{"nT"}, scan, from;
   std::optional<double> prior;
-  bool drop{false};
+  bool drop{false}, tried{false};
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -120,7 +122,7 @@ Result<void> keep(KeptRun& run, const store::Definition& definition) {
   std::vector<store::Definition> all = run.source.definitions;
   std::erase_if(all, [&](const store::Definition& d) { return d.name == definition.name; });
   all.push_back(definition);
-  return run.file.set_document(store::kFormulasDocument, store::to_text(all));
+  return run.file->set_document(store::kFormulasDocument, store::to_text(all));
 }
 
 /// What this run says of a formula from another one.
@@ -147,7 +149,9 @@ void print(const Session& session, const DefineArguments& args,
     out["spec"] = definition.spec;
     out["exploratory"] = definition.exploratory();
     out["confirmed"] = c.asked ? json(c.given) : json();
-    out["kept"] = !nothing_left(x);
+    out["kept"] = !nothing_left(x) && !args.tried;
+    out["tried"] = args.tried;
+    out["text"] = calib::report::to_text(x);
     print_json(out);
     return;
   }
@@ -155,6 +159,10 @@ void print(const Session& session, const DefineArguments& args,
   if (x.wholly_absorbed()) return;
   if (nothing_left(x)) {
     fmt::print("not kept: nothing of it is left to be seen on these poses\n");
+    return;
+  }
+  if (args.tried) {
+    fmt::print("tried: nothing is kept\n");
     return;
   }
   if (!c.asked) {
@@ -183,7 +191,7 @@ int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
     return report(session, {ErrorCode::state, "the model of the run holds " + args.name,
                             fmt::format("mgt drop {} {} takes it out first", args.name, args.run)});
   }
-  if (auto ok = run.file.set_document(store::kFormulasDocument, store::to_text(all)); !ok)
+  if (auto ok = run.file->set_document(store::kFormulasDocument, store::to_text(all)); !ok)
     return report(session, ok.error());
   if (session.json) {
     print_json({{"schema", "mgt.define/1"}, {"dropped", args.name}});
@@ -194,9 +202,9 @@ int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
 }
 
 int run_define(const Session& session, const DefineArguments& args) {
-  auto run = open_kept_run(args.run, *args.flags);
+  auto run = open_kept_run(args.run, *args.flags, args.tried ? Keeping::nothing : Keeping::steps);
   if (!run) return report(session, run.error());
-  if (args.drop) return drop(session, args, *run);
+  if (args.drop && !args.tried) return drop(session, args, *run);
   if (args.from.empty() == args.expression.empty()) {
     return report(session, {ErrorCode::usage, "a formula is given, or taken from another run with --from",
                             "mgt define RUN NAME 'EXPR', or mgt define RUN NAME --from OTHER.mgtrun"});
@@ -231,7 +239,7 @@ int run_define(const Session& session, const DefineArguments& args) {
   } else {
     definition.found = x->coefficients;
   }
-  if (!nothing_left(*x)) {
+  if (!nothing_left(*x) && !args.tried) {
     for (const store::Definition& d : run->source.definitions)
       if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);
     if (auto ok = keep(*run, definition); !ok) return report(session, ok.error());
@@ -258,6 +266,7 @@ void add_define(CLI::App& app, Session& session) {
   command->add_option("--prior", args->prior, "standard deviation of the coefficients about zero");
   command->add_option("--scan", args->scan,
                       "NAME=FROM:TO, a number in it that is searched for in this range");
+  command->add_flag("--try", args->tried, "examine it, keep nothing");
   command->add_flag("--drop", args->drop, "delete the formula of this name");
   command->add_option("--from", args->from, "run file that keeps the formula: does this run confirm it?");
   args->flags = add_kept_model_flags(command);

@@ -5,8 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calib/report/explain_figures.h"
 #include "calib/report/explain_json.h"
 #include "calib/report/explain_text.h"
+#include "calib/report/figure_words.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
@@ -35,6 +37,18 @@ struct ExplainArguments {
   std::shared_ptr<FitFlags> flags;
 };
 
+/// What stands beside the pictures of the search.
+nlohmann::json figures_json(const calib::criticism::search::ExplainReport& explained) {
+  nlohmann::json out = nlohmann::json::array();
+  if (!explained.candidates.empty())
+    out.push_back(calib::report::words_json(calib::report::suspects_of(explained)));
+  if (!explained.detectable.empty())
+    out.push_back(calib::report::words_json(calib::report::detectable_of(explained)));
+  if (explained.confusion && explained.confusion->effects.size() > 1)
+    out.push_back(calib::report::words_json(calib::report::confusion_of(*explained.confusion)));
+  return out;
+}
+
 int run_explain(const Session& session, const ExplainArguments& args) {
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
@@ -52,6 +66,7 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*explained);
     out["chosen_in_doubt"] = doubts_json(*doubts);
+    if (args.confusion) out["figures"] = figures_json(*explained);
     print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*explained));

@@ -25,10 +25,15 @@ WallTime now() {
 
 }  // namespace
 
-Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
+Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags, Keeping keeping) {
   auto source = store::read_run(path);
   if (!source) return tl::unexpected(source.error());
   tell_masked(*source);
+  if (keeping == Keeping::nothing) {
+    auto options = fit_options(flags, *source);
+    if (!options) return tl::unexpected(options.error());
+    return KeptRun{std::nullopt, std::move(*source), std::move(*options)};
+  }
   if (!source->header) {
     return fail(
         ErrorCode::usage, path + " is a pose table, which keeps no model",
@@ -50,7 +55,7 @@ Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags) {
 
 Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                        const nlohmann::json& result) {
-  return run.file.append_model_step(
+  return run.file->append_model_step(
       {now(), who(), action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "daemon/cli/fit_flags.h"
@@ -12,12 +13,17 @@
 namespace mgtd::daemon::cli {
 
 struct KeptRun {
-  store::RunFile file;
+  std::optional<store::RunFile> file;  ///< empty: nothing is kept
   store::PoseSource source;
   calib::fit::FitOptions options;  ///< with the kept model
 };
 
-[[nodiscard]] Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags);
+/// Whether a command leaves a step behind, or only tries it: then a pose table will do, and a run that is
+/// still being measured.
+enum class Keeping { steps, nothing };
+
+[[nodiscard]] Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags,
+                                            Keeping keeping = Keeping::steps);
 
 /// The next step, by this user with this version, now.
 [[nodiscard]] Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,

@@ -11,6 +11,8 @@
 #include "calib/criticism/search/model_change.h"
 #include "calib/effects/library/library.h"
 #include "calib/report/choice_text.h"
+#include "calib/report/explain_figures.h"
+#include "calib/report/figure_words.h"
 #include "calib/report/model_change_report.h"
 #include "calib/report/waterfall_report.h"
 #include "daemon/cli/command.h"
@@ -34,11 +36,13 @@ constexpr const char* kAddHelp =
     "  mgt explain run.mgtrun\n"
     "  mgt add axis.offset.temperature@s3.z run.mgtrun\n"
     "  mgt undo run.mgtrun\n\n"
-    "Exit code 0: kept. 1: not kept.";
+    "--try fits and tells all the same and keeps nothing; it takes a pose table too.\n\n"
+    "Exit code 0: kept, or worth keeping. 1: not kept.";
 
 struct ModelArguments {
   std::string effect, run;
-  bool force{false};
+  bool force{false}, tried{false};
+  [[nodiscard]] Keeping keeping() const { return tried ? Keeping::nothing : Keeping::steps; }
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -58,7 +62,7 @@ std::string model_text(const std::vector<std::string>& specs) {
 int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
              const calib::criticism::search::ModelChange& change, const std::string& spec,
              const calib::fit::FitOptions& options, const calib::criticism::search::Choice& choice) {
-  const bool keep = args.force || !change.vetoed();
+  const bool good = args.force || !change.vetoed(), keep = good && !args.tried;
   json made = calib::report::to_json(change);
   if (!choice.spec.empty()) made["choice"] = to_json(choice);
   if (keep) {
@@ -69,7 +73,12 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
   if (session.json) {
     json out = std::move(made);
     out["kept"] = keep;
+    out["tried"] = args.tried;
+    out["open"] = choice.open() ? calib::report::to_text(choice) : std::string();
     out["waterfall"] = steps ? calib::report::to_json(*steps) : json();
+    if (steps)
+      out["waterfall"]["figure"] =
+          calib::report::words_json(calib::report::waterfall_of(*steps, change.held_out_after_nT));
     print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(change));
@@ -77,16 +86,17 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
     if (choice.open()) fmt::print("\n{}\n", calib::report::to_text(choice));
     if (keep) fmt::print("\nkept in {}; mgt undo takes it back\n", args.run);
   }
-  if (!keep) {
+  if (args.tried && !session.json) fmt::print("\ntried: nothing is kept\n");
+  if (!good) {
     for (const calib::criticism::search::Veto veto : change.vetoes())
       fmt::print(stderr, "mgt: not kept: {}\n", calib::report::to_text(change, veto));
     fmt::print(stderr, "     these poses do not support this change; --force keeps it all the same\n");
   }
-  return keep ? 0 : 1;
+  return good ? 0 : 1;
 }
 
 int run_add(const Session& session, const ModelArguments& args) {
-  auto run = open_kept_run(args.run, *args.flags);
+  auto run = open_kept_run(args.run, *args.flags, args.keeping());
   if (!run) return report(session, run.error());
   const int sensors = calib::effects::EffectContext{.table = &run->source.table, .offset_nT = {}}.sensors();
   const auto effect =
@@ -119,7 +129,7 @@ Result<std::size_t> place_of(const KeptRun& run, const std::string& effect) {
 }
 
 int run_drop(const Session& session, const ModelArguments& args) {
-  auto run = open_kept_run(args.run, *args.flags);
+  auto run = open_kept_run(args.run, *args.flags, args.keeping());
   if (!run) return report(session, run.error());
   const auto place = place_of(*run, args.effect);
   if (!place) return report(session, place.error());
@@ -134,7 +144,7 @@ int run_drop(const Session& session, const ModelArguments& args) {
 int run_undo(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
-  const auto steps = run->file.model_steps();
+  const auto steps = run->file->model_steps();
   if (!steps) return report(session, steps.error());
   const auto last = store::undoable(*steps);
   if (!last) {
@@ -224,6 +234,7 @@ void add_add(CLI::App& app, Session& session) {
   command->add_option("EFFECT", args->effect, "NAME[@WHERE][,PARAM=VALUE]: see mgt effects")->required();
   add_run_argument(command, *args);
   command->add_flag("--force", args->force, "keep it even if these poses speak against it");
+  command->add_flag("--try", args->tried, "fit and tell, keep nothing");
   args->flags = add_kept_model_flags(command);
 }
 
@@ -235,6 +246,7 @@ void add_drop(CLI::App& app, Session& session) {
   command->add_option("EFFECT", args->effect, "its name, or its whole spec")->required();
   add_run_argument(command, *args);
   command->add_flag("--force", args->force, "take it out even if held-out poses get worse");
+  command->add_flag("--try", args->tried, "fit and tell, keep nothing");
   args->flags = add_kept_model_flags(command);
 }
 

@@ -3,6 +3,8 @@
 
 #include "calib/criticism/search/evidence.h"
 #include "calib/report/evidence_report.h"
+#include "calib/report/explain_figures.h"
+#include "calib/report/figure_words.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
@@ -41,7 +43,9 @@ int run_why(const Session& session, WhyArguments args) {
   });
   if (!evidence) return report(session, evidence.error());
   if (session.json) {
-    print_json(calib::report::to_json(*evidence));
+    nlohmann::json out = calib::report::to_json(*evidence);
+    if (args.poses) out["figure"] = calib::report::words_json(calib::report::evidence_of(*evidence));
+    print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*evidence));
   }

@@ -83,5 +83,48 @@ TEST_F(EvidenceOfPrograms, AMaskedPoseIsLeftOutByEveryCommandUntilItIsTakenInAga
   EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "tried, not kept";
 }
 
+/// A page draws the panels itself; what stands beside them is said here.
+TEST_F(EvidenceOfPrograms, PanelsAndFiguresHaveTheirWords) {
+  const json compared = ask({"compare", file(), "--poses"});
+  ASSERT_EQ(compared.at("panels").size(), 9U);
+  for (const json& panel : compared.at("panels"))
+    EXPECT_THAT(panel.at("good").get<std::string>(), HasSubstr("Here "));
+  EXPECT_EQ(compared.at("panels").at(0).at("stands_out"), true) << "the residual follows the time";
+  const json& quantiles = compared.at("quantiles");
+  EXPECT_EQ(quantiles.at("pose").size(), quantiles.at("residual").size());
+  EXPECT_EQ(compared.at("autocorrelation").at("by_sensor").size(), 4U);
+  EXPECT_EQ(ask({"explain", file(), "--confusion"}).at("figures").size(), 3U);
+  EXPECT_FALSE(ask({"explain", file()}).contains("figures"));
+}
+
+TEST_F(EvidenceOfPrograms, ATryTellsAllAndKeepsNothing) {
+  const json tried = ask({"add", "axis.offset.temperature@s3.z", file(), "--try"});
+  EXPECT_EQ(tried.at("kept"), false);
+  EXPECT_EQ(tried.at("vetoed"), false);
+  const json history = ask({"model", file()}).at("history");
+  EXPECT_TRUE(history.empty()) << history;
+  const json added = ask({"add", "axis.offset.temperature@s3.z", file()});
+  for (const char* key : {"rms_after_nT", "held_out_after_nT", "predicted_fall", "realised_fall"})
+    EXPECT_EQ(tried.at(key), added.at(key)) << key;
+  EXPECT_EQ(ask({"drop", "axis.offset.temperature", file(), "--try"}).at("vetoed"), true);
+  EXPECT_EQ(ask({"model", file()}).at("model").size(), 1U);
+}
+
+TEST_F(EvidenceOfPrograms, ATryTakesAPoseTable) {
+  const std::string table = file().substr(0, file().rfind('/')) + "/poses.csv";
+  EXPECT_EQ(mgt({"add", "axis.offset.temperature@s3.z", table}).exit_code, 2) << "it keeps no model";
+  EXPECT_EQ(ask({"add", "axis.offset.temperature@s3.z", table, "--try"}).at("vetoed"), false);
+  const json tried = ask({"define", table, "warm", "T_degC", "--try"});
+  EXPECT_EQ(tried.at("kept"), false);
+  EXPECT_EQ(tried.at("signature").at("x").size(), 157U);
+  EXPECT_THAT(tried.at("text").get<std::string>(), HasSubstr("axis.offset.temperature"));
+}
+
+TEST_F(EvidenceOfPrograms, AVetoHasItsReason) {
+  const json refused = ask({"add", "axis.cubic", file(), "--try"});
+  EXPECT_EQ(refused.at("vetoed"), true);
+  EXPECT_THAT(refused.at("veto_reasons").at(0).get<std::string>(), HasSubstr("the limit is"));
+}
+
 }  // namespace
 }  // namespace mgtd::testing

@@ -56,29 +56,6 @@ Result<void> ask_at(const std::string& where, tests::ScoredFamily& family) {
   return {};
 }
 
-AddedVariable added_variable(const tests::Criticism& c, std::size_t f, const fit::joint::JointFit& fit) {
-  const tests::ScoredFamily& family = c.families[f];
-  const tests::Signature& s = family.signatures[family.winner().variant];
-  const tests::OneStep step = tests::one_step(s, family.where());
-  const Eigen::VectorXd z = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
-  const Eigen::VectorXd& r = c.residual.value();
-  const double length2 = z.squaredNorm();
-  AddedVariable out;
-  if (!(length2 > 0)) return out;
-  out.slope = z.dot(r) / length2;
-  out.slope_sd = 1 / std::sqrt(length2);
-  const Eigen::Index rows = c.residual.rows_per_pose();
-  for (Eigen::Index k = 0; k < c.residual.poses(); ++k) {
-    const auto z_k = z.segment(k * rows, rows);
-    const double x = z_k.norm(), product = z_k.dot(r.segment(k * rows, rows));
-    out.pose.push_back(fit.problem.poses[static_cast<std::size_t>(k)].pose->number);
-    out.x.push_back(x);
-    out.y.push_back(x > 0 ? product / x : 0);
-    out.share.push_back(product / z.dot(r));
-  }
-  return out;
-}
-
 Result<Left> left_of(const fit::joint::JointFit& fit, const tests::Criticism& c, double table_sd_rad,
                      bool points) {
   Left out{.residual_nT = residual_of(fit),
@@ -148,7 +125,9 @@ Result<Evidence> evidence_of(const PoseTable& table, const ExplainOptions& optio
   out.candidate = tests::candidate_of(family, c, judged.fit.noise_inflation);
   out.candidate.alternatives = tests::alternatives_of(c.families, *f, without.seed);
   tests::weigh_poses(judged.fit, c.evidence_by_pose(*f), out.candidate);
-  out.added = added_variable(c, *f, judged.fit);
+  const tests::Signature& signature = family.signatures[family.winner().variant];
+  out.added = tests::added_variable(signature, tests::one_step(signature, family.where()), c.residual,
+                                    judged.fit.problem);
   out.candidate.impact = tests::impact_of(judged.fit, family);
   out.tells = tells_of(name);
   const double table_sd_rad = judged.fit.table_sd_rad;

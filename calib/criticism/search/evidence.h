@@ -5,19 +5,13 @@
 #include <vector>
 
 #include "calib/criticism/search/explain_options.h"
+#include "calib/criticism/tests/added_variable.h"
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/pose_points.h"
 #include "calib/criticism/tests/residual_maps.h"
 
 /// The evidence for one effect that a model may lack: the poses that show it, what the fit leaves without and
 /// with it, what else could stand in its place, and what would tell them apart.
-///
-/// Added-variable pairs. With r the residual, z what the effect in its fitted form makes of it (calibration,
-/// attitudes and fields free in both) and r_k, z_k the part of pose k,
-///     x_k = |z_k|,   y_k = z_k' r_k / |z_k|
-/// lie about a line through the origin, in units of the noise: its slope is the size of the effect in units
-/// of the size that was fitted, one, with standard deviation 1/sqrt(S). One pose with leverage shows as one
-/// point far to the right.
 namespace mgtd::calib::criticism::search {
 
 /// What a fit leaves.
@@ -28,17 +22,10 @@ struct Left {
   std::shared_ptr<const fit::joint::JointFit> fit{};  ///< points into the pose table
 };
 
-struct AddedVariable {
-  std::vector<int> pose{};       ///< numbers
-  std::vector<double> x{}, y{};  ///< in units of the noise
-  std::vector<double> share{};   ///< of the evidence
-  double slope{0}, slope_sd{0};
-};
-
 struct Evidence {
   tests::Candidate candidate{};
   bool in_model{false};  ///< it was in the model, and `before` is without it
-  AddedVariable added;
+  tests::AddedVariable added;
   Left before, after;
   /// How the effect differs from others that look alike, by the library; empty for a formula.
   struct Tell {

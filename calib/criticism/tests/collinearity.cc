@@ -126,6 +126,7 @@ Result<FormulaExamination> examine_formula(const PoseTable& table, const fit::Fi
   out.absorbed = length > 0 ? 1 - s.columns.squaredNorm() / length : 1;
   if (!scored.testable()) return out;
   tell_coefficients(*candidate_effect, scored, out);
+  out.signature = added_variable(s, one_step(s, scored.where()), residual, fit->problem);
   out.alike = alike(*fit, residual, table, s.columns);
   return out;
 }

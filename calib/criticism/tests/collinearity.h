@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/criticism/tests/added_variable.h"
 #include "calib/criticism/tests/candidate_effect.h"
 #include "calib/fit/method_choice/fit.h"
 
@@ -27,6 +28,7 @@ struct FormulaExamination {
   double detectable{0};  ///< smallest value of its worst coefficient that is seen in 99 of 100 runs like this
   std::string unit{};
   std::vector<Collinearity> alike{};  ///< strongest first; at most five
+  AddedVariable signature{};          ///< by pose, before it is in any model
 
   [[nodiscard]] bool wholly_absorbed() const { return rank == 0; }
   [[nodiscard]] double d() const;

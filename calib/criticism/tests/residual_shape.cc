@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "calib/criticism/tests/whitener.h"
 #include "calib/fit/joint/pose_residuals.h"
@@ -63,10 +64,11 @@ double normal_quantile(double p) {
 
 ResidualQuantiles residual_quantiles(const fit::joint::JointFit& fit) {
   const Eigen::MatrixXd z = own_units(fit);
-  std::vector<double> sorted;
+  std::vector<std::pair<double, int>> sorted;
   for (Eigen::Index k = 0; k < z.cols(); ++k)
     for (Eigen::Index c = 0; c < z.rows(); ++c)
-      if (z(c, k) != 0) sorted.push_back(z(c, k));
+      if (z(c, k) != 0)
+        sorted.emplace_back(z(c, k), fit.problem.poses[static_cast<std::size_t>(k)].pose->number);
   std::sort(sorted.begin(), sorted.end());
   ResidualQuantiles out{.n = sorted.size()};
   if (sorted.empty()) return out;
@@ -77,7 +79,8 @@ ResidualQuantiles residual_quantiles(const fit::joint::JointFit& fit) {
     if (out.n > kMostQuantiles && i >= kTails && i + kTails < out.n && i % every != 0) continue;
     const double rank = static_cast<double>(i + 1), beyond = n + 1 - rank;
     out.quantile.push_back(normal_quantile((rank - 0.5) / n));
-    out.residual.push_back(sorted[i]);
+    out.residual.push_back(sorted[i].first);
+    out.pose.push_back(sorted[i].second);
     out.high.push_back(normal_quantile(beta_upper(rank, beyond, level)));
     // The lower end of U_i is one less the upper end of the mirrored rank: no 1 - p of a small p is taken.
     out.low.push_back(-normal_quantile(beta_upper(beyond, rank, level)));

@@ -19,6 +19,7 @@ namespace mgtd::calib::criticism::tests {
 struct ResidualQuantiles {
   std::size_t n{0};
   std::vector<double> quantile{}, residual{}, low{}, high{};
+  std::vector<int> pose{};  ///< number of the pose that the residual is of
 };
 inline constexpr std::size_t kMostQuantiles = 600;
 [[nodiscard]] ResidualQuantiles residual_quantiles(const fit::joint::JointFit& fit);
