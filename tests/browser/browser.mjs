@@ -52,6 +52,7 @@ export class Browser {
   }
   async open(url, width = 1280, height = 800) {
     await this.#call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 600 });
+    await this.#call("Page.navigate", { url: "about:blank" });  // the same address with another fragment would load nothing
     await this.#call("Page.navigate", { url });
     await until(() => this.run("document.body && 'ready' in document.body.dataset"), `the page at ${url}`);
   }

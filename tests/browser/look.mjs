@@ -2,36 +2,84 @@
 // Pictures of every screen of a running console, in three sizes and three themes, to be looked at:
 //
 //   node --experimental-websocket tests/browser/look.mjs "$(mgt console)" docs/console
+//   node --experimental-websocket tests/browser/look.mjs ADDRESS-OF-MGT-SERVE FOLDER RUN.mgtrun
 //
-// Also says where an element leaves the page or is cut.
+// Of a run also what stands behind each button of the workbench; nothing is changed in it. Says where an element leaves the
+// page, is cut, or lies over another.
 import { mkdirSync } from "node:fs";
 import { Browser, until } from "./browser.mjs";
 
-const [url, folder] = process.argv.slice(2);
+const [url, folder, run] = process.argv.slice(2);
 if (!url || !folder) {
-  console.error("usage: node --experimental-websocket tests/browser/look.mjs URL FOLDER");
+  console.error("usage: node --experimental-websocket tests/browser/look.mjs URL FOLDER [RUN]");
   process.exit(2);
 }
 mkdirSync(folder, { recursive: true });
 const browser = await Browser.start();
 let wrong = 0;
-for (const [width, height] of [[1280, 800], [1024, 768], [390, 844]]) {
-  await browser.open(url, width, height);
+
+/** Texts that leave the page or their button, and cards that lie over each other. */
+const kFaults = `(() => {
+  const out = [], seen = (e) => e.getClientRects().length > 0, name = (e) => e.id || e.dataset.panel || e.textContent.slice(0, 30);
+  if (document.documentElement.scrollWidth > innerWidth) out.push((document.documentElement.scrollWidth - innerWidth) + " px beyond the right edge");
+  for (const e of document.querySelectorAll("button, h1, h2, h3, p, figure, .card, li")) {
+    if (!seen(e) || e.closest("#tool")) continue;
+    const box = e.getBoundingClientRect();
+    if (box.right > innerWidth + 1) out.push(name(e) + ": leaves the page");
+    if (e.scrollWidth > e.clientWidth + 2 && e.clientWidth > 0) out.push(name(e) + ": its text is cut");
+  }
+  const boxes = [...document.querySelectorAll("figure, .card")].filter(seen).filter((e) => !e.parentElement.closest("figure, .card")).map((e) => [name(e), e.getBoundingClientRect()]);
+  for (const [i, [a, p]] of boxes.entries()) for (const [b, q] of boxes.slice(i + 1))
+    if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1) out.push(a + " and " + b + " overlap");
+  return out;
+})()`;
+
+async function picture(name) {
+  await browser.run("scrollTo(0, 0)");
+  await new Promise((resolve) => setTimeout(resolve, 300));  // points have come to rest
+  for (const fault of await browser.run(kFaults)) {
+    console.log(`${name}: ${fault}`);
+    ++wrong;
+  }
+  await browser.picture(`${folder}/${name}.png`);
+}
+/** By the button, so that everything that is drawn gets its colours. */
+const theme = (name) => browser.run(`while ((document.documentElement.dataset.theme ?? "") !== "${name}") document.getElementById("theme").click()`);
+
+async function rig(width) {
   await until(async () => (await browser.text("link")) === "live", "a live stream");
   await new Promise((resolve) => setTimeout(resolve, 5000));  // the lanes fill
-  for (const theme of ["light", "dark", "sun"]) {
-    await browser.run(`document.documentElement.dataset.theme = "${theme}"`);
-    for (const screen of ["live", "run", "calibrations"]) {
+  for (const colours of ["light", "dark", "sun"]) {
+    await theme(colours);
+    for (const screen of ["live", "run", "calibrations", "workbench"]) {
       await browser.click(`tab-${screen}`);
       await new Promise((resolve) => setTimeout(resolve, 1200));
-      const beyond = await browser.run("document.documentElement.scrollWidth - innerWidth");
-      if (beyond > 0) {
-        console.log(`${screen} ${width} ${theme}: ${beyond} px beyond the right edge`);
-        ++wrong;
-      }
-      await browser.picture(`${folder}/${screen}-${width}-${theme}.png`);
+      await picture(`${screen}-${width}-${colours}`);
     }
   }
+}
+
+async function workbench(width) {
+  await until(() => browser.run(`document.querySelector('[data-run="${run}"]') !== null`), `${run} in the list`);
+  await picture(`runs-${width}-light`);
+  await browser.run(`document.querySelector('[data-run="${run}"]').click()`);
+  await until(() => browser.run("'shown' in document.getElementById('bench-run').dataset"), "the run", 300000);
+  await browser.run("document.querySelector('.suspect').click()");
+  await until(() => browser.run("document.getElementById('try') !== null"), "the evidence", 300000);
+  for (const colours of ["light", "dark", "sun"]) {
+    await theme(colours);
+    await browser.click("tool-alike");
+    await picture(`workbench-${width}-${colours}`);
+  }
+  for (const tool of ["next", "formula", "limits", "parameters", "history"]) {
+    await browser.click(`tool-${tool}`);
+    await picture(`workbench-${tool}-${width}`);
+  }
+}
+
+for (const [width, height] of [[1280, 800], [1024, 768], [390, 844]]) {
+  await browser.open(url, width, height);
+  await (run ? workbench(width) : rig(width));
 }
 for (const line of browser.log) console.log(`the browser says: ${line}`);
 await browser.close();

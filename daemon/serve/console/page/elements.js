@@ -20,7 +20,7 @@ export function fill(element, ...children) { element.replaceChildren(...children
 export function rows(head, body) {
   const cell = (tag) => (value) => {
     const node = value instanceof Node;
-    const isNumber = typeof value === "number" || (typeof value === "string" && /^-?\d+\.\d+( ± \S+)?$/.test(value));
+    const isNumber = typeof value === "number" || (typeof value === "string" && /^[+-]?\d+(\.\d+)?(e[+-]?\d+)?( ± \S+)?$/.test(value));
     return make(tag, { class: isNumber ? "number" : "", scope: tag === "th" ? "col" : null }, node ? value : String(value ?? ""));
   };
   return [make("thead", {}, make("tr", {}, head.map(cell("th")))),

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import { cards } from "./cards.js";
+import { Bench } from "./bench.js";
 import { by, fill, make, rows } from "./elements.js";
+import { Jobs } from "./jobs.js";
 import { Lanes, windows } from "./lanes.js";
 import { Control, openStream, takeToken } from "./link.js";
 import { active, chip, showRun, wanted } from "./run.js";
 
-const control = new Control(takeToken());
+const token = takeToken(), control = new Control(token);
 const lanes = new Lanes(by("canvas"), (text) => { by("cursor").textContent = text; });
 let status = null, run = null, sample = null, sampled_ms = 0, screen = "live", alarms = 0, judged = 0;
 
@@ -15,6 +17,14 @@ function banner(text, note = false) {
   by("banner").hidden = !text;
 }
 const inWords = (error) => `${error.message ?? error}${error.remedy ? `: ${error.remedy}` : ""}`;
+
+/** What is being computed, with a way to end it. */
+function tellJobs(list) {
+  by("jobs").hidden = list.length === 0;
+  fill(by("jobs"), list.map((job) => make("span", {}, job.state === "running" ? `${job.elapsed_s.toFixed(1)} s: ` : "waits: ", make("code", {}, job.command), job.said ? ` ${job.said} ` : " ",
+                                          make("button", { class: "small", onclick: () => jobs.cancel(job.id) }, "Cancel"))));
+}
+const jobs = new Jobs(token, tellJobs), bench = new Bench(jobs, (text) => banner(text, true));
 
 /** Asks the daemon to do something; what it refuses is said in its own words. */
 async function act(cmd, args = {}) {
@@ -29,14 +39,16 @@ async function act(cmd, args = {}) {
   }
 }
 
+const kScreens = ["live", "run", "calibrations", "workbench"];
 function show(name) {
   screen = name;
-  for (const id of ["live", "run", "calibrations"]) {
+  for (const id of kScreens) {
     by(id).hidden = id !== name;
     id === name ? by(`tab-${id}`).setAttribute("aria-current", "page") : by(`tab-${id}`).removeAttribute("aria-current");
   }
   if (name === "calibrations") listCalibrations();
   if (name === "live") lanes.redraw();
+  if (name === "workbench" && !bench.open) bench.list().catch((error) => banner(inWords(error), true));
 }
 
 async function listCalibrations() {
@@ -104,24 +116,38 @@ function takeRun(message) {
   showRun(run, act);
 }
 
-openStream({
-  message: (message) => {
-    if (message.class === "TENSOR") takeSample(message);
-    else if (message.class === "GAP") lanes.gap(message.why);
-    else if (message.class === "STATUS") takeStatus(message);
-    else if (message.class === "RUN") takeRun(message);
-  },
-  state: (state, since) => {
-    const at = since ? since.toISOString().slice(11, 19) + "Z" : "";
-    by("link").textContent = { live: "live", stale: `stale: no word since ${at}`, gone: at ? `no connection since ${at}` : "no connection" }[state];
-    by("link").className = state === "live" ? "good" : "bad";
-    document.body.classList.toggle("stale", state !== "live");
-    if (state !== "live") document.title = `! ${status?.rig ?? "mgtd"}`;
-    banner(state === "gone" ? "The daemon does not answer; what is shown is old. A run goes on without this page. This page connects again by itself." : "");
-  },
-});
+/** The rig behind the page. */
+function followRig() {
+  openStream({
+    message: (message) => {
+      if (message.class === "TENSOR") takeSample(message);
+      else if (message.class === "GAP") lanes.gap(message.why);
+      else if (message.class === "STATUS") takeStatus(message);
+      else if (message.class === "RUN") takeRun(message);
+    },
+    state: (state, since) => {
+      const at = since ? since.toISOString().slice(11, 19) + "Z" : "";
+      by("link").textContent = { live: "live", stale: `stale: no word since ${at}`, gone: at ? `no connection since ${at}` : "no connection" }[state];
+      by("link").className = state === "live" ? "good" : "bad";
+      document.body.classList.toggle("stale", state !== "live");
+      if (state !== "live") document.title = `! ${status?.rig ?? "mgtd"}`;
+      banner(state === "gone" ? "The daemon does not answer; what is shown is old. A run goes on without this page. This page connects again by itself." : "");
+    },
+  });
+}
 
-for (const name of ["live", "run", "calibrations"]) by(`tab-${name}`).addEventListener("click", () => show(name));
+/** Files without a rig: the workbench alone. */
+function serveFiles(hello) {
+  for (const id of ["live", "run", "calibrations"]) by(`tab-${id}`).hidden = true;
+  by("rig").textContent = hello.rig;
+  document.title = hello.rig;
+  by("link").textContent = "files";
+  by("who").textContent = `${hello.software}, without a rig.` + (token ? "" : " This page may look; open the address that mgt serve prints.");
+  show("workbench");
+  bench.list(hello.run);
+}
+
+for (const name of kScreens) by(`tab-${name}`).addEventListener("click", () => show(name));
 for (const [label, seconds] of windows) {
   const button = make("button", { "aria-pressed": String(seconds === lanes.window_s), onclick: () => {
     lanes.window_s = seconds;
@@ -146,6 +172,10 @@ by("theme").addEventListener("click", () => {
   next ? (document.documentElement.dataset.theme = next) : delete document.documentElement.dataset.theme;
   by("theme").textContent = `Theme${next ? `: ${next}` : ""}`;
   lanes.redraw();
+  bench.recolour();
 });
-show("live");
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lanes.redraw(); bench.recolour(); });
+const hello = await (await fetch("/api/hello")).json();
+if (hello.mode === "files") serveFiles(hello);
+else { show("live"); followRig(); }
 document.body.dataset.ready = "";
