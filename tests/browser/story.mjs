@@ -136,6 +136,14 @@ try {
   await browser.click("tool-next");
   await browser.click("ask-next");
   await until(async () => (await text("tool")).includes("minutes"), "what to measure next");
+  await browser.click("bench-runs");
+  await until(() => browser.run("document.querySelector('[data-run=\"poses.csv\"]') !== null"), "the list again");
+  await browser.run("document.querySelector('[data-run=\"poses.csv\"]').click()");
+  await until(async () => (await shown()) !== "", "the pose table");
+  await browser.click("bench-import");
+  await until(async () => (await text("run-name")) === "poses.mgtrun" && (await shown()) !== "", "a run file made of it");
+  holds("a pose table becomes a run file", mgt("model", join(folder, "poses.mgtrun")).model.length === 0 && !(await browser.run("document.getElementById('mask').hidden")));
+
   holds("the browser has nothing to complain of", browser.log.length === 0, browser.log);
   console.log(`told: ${told} things`);
 } catch (error) {

@@ -20,6 +20,7 @@ namespace {
 using nlohmann::json;
 using enum ArgumentKind;
 
+constexpr int kMostPose = 1'000'000'000;
 constexpr std::size_t kLongestText = 500, kMostSpecs = 32, kMostPoses = 20'000;
 
 // What every judging command takes: effects beside the model, poses left out this once.
@@ -98,7 +99,8 @@ bool is_effect(const json& value) {
 
 bool are_poses(const json& value) {
   return value.is_array() && !value.empty() && value.size() <= kMostPoses &&
-         std::all_of(value.begin(), value.end(), [](const json& p) { return p.is_number_integer(); });
+         std::all_of(value.begin(), value.end(),
+                     [](const json& p) { return p.is_number_integer() && p >= 0 && p <= kMostPose; });
 }
 
 bool is_name(const std::string& text) {

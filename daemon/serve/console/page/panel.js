@@ -4,7 +4,7 @@
 import { binMeans, extent, ticks } from "./numbers.js";
 
 const kMostMarks = 2000, kNear_px = 14, kMove_ms = 450;
-const kMargin = { left: 52, right: 10, top: 8, bottom: 34 };
+const kMargin = { left: 44, right: 10, top: 8, bottom: 34 };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const kTones = ["--s1", "--s2", "--s3", "--s4"];
 export const tone = (i) => css(kTones[i % kTones.length]);
@@ -84,11 +84,12 @@ export class Panel {
     const base = new OffscreenCanvas(this.#canvas.width, this.#canvas.height), g = base.getContext("2d"), spec = this.#spec;
     g.setTransform(scale, 0, 0, scale, 0, 0);
     g.font = `${css("--small")} 'DejaVu Sans', sans-serif`;
-    const left = kMargin.left, right = width - kMargin.right, top = kMargin.top, bottom = height - kMargin.bottom;
-    const { x: rx, y: ry } = this.#range;
+    const right = width - kMargin.right, top = kMargin.top, bottom = height - kMargin.bottom, { x: rx, y: ry } = this.#range;
+    const ty = ticks(ry[0], ry[1], (bottom - top) / 30);
+    const left = Math.max(kMargin.left, 26 + Math.max(...ty.at.map((v) => g.measureText(ty.text(v)).width)));
     const X = this.#toX = (v) => left + ((v - rx[0]) / (rx[1] - rx[0])) * (right - left);
     const Y = this.#toY = (v) => bottom - ((v - ry[0]) / (ry[1] - ry[0])) * (bottom - top);
-    this.#axes(g, { left, right, top, bottom, X, Y, rx, ry });
+    this.#axes(g, { left, right, top, bottom, X, Y, rx, ry, ty });
     g.save();
     g.beginPath(); g.rect(left, top - 3, right - left, bottom - top + 6); g.clip();
     if (spec.band) this.#band(g, spec.band, X, Y);
@@ -99,11 +100,11 @@ export class Panel {
     if (spec.series.length > 1) this.#legend(g, right, top);
     return base;
   }
-  #axes(g, { left, right, top, bottom, X, Y, rx, ry }) {
+  #axes(g, { left, right, top, bottom, X, Y, rx, ry, ty }) {
     g.lineWidth = 1;
     g.fillStyle = css("--soft");
     g.strokeStyle = css("--line");
-    const tx = ticks(rx[0], rx[1], (right - left) / 48), ty = ticks(ry[0], ry[1], (bottom - top) / 30);
+    const tx = ticks(rx[0], rx[1], (right - left) / 45);
     g.textAlign = "right"; g.textBaseline = "middle";
     for (const v of ty.at) {
       g.globalAlpha = 0.5;
@@ -169,13 +170,13 @@ export class Panel {
   #density(g) {
     const size = 5, cells = new Map();
     for (const m of this.#marks) {
-      const key = `${Math.floor(m.x / size)} ${Math.floor(m.y / size)}`;
+      const key = `${Math.floor(m.x / size)} ${Math.floor(m.y / size)} ${this.#spec.series[m.series].shape ?? m.series}`;
       cells.set(key, (cells.get(key) ?? 0) + 1);
     }
     const most = Math.max(1, ...cells.values());
-    g.fillStyle = tone(0);
     for (const [key, n] of cells) {
-      const [i, j] = key.split(" ").map(Number);
+      const [i, j, series] = key.split(" ").map(Number);
+      g.fillStyle = tone(series);
       g.globalAlpha = 0.15 + 0.85 * Math.sqrt(n / most);
       g.fillRect(i * size, j * size, size, size);
     }
@@ -197,7 +198,7 @@ export class Panel {
     g.textAlign = "right"; g.textBaseline = "middle";
     let x = right - 4;
     for (let i = this.#spec.series.length - 1; i >= 0; --i) {
-      const { name, shape } = this.#spec.series[i], wide = g.measureText(name).width;
+      const { shape } = this.#spec.series[i], name = this.#spec.series[i].name.replace("combination ", "no. "), wide = g.measureText(name).width;
       g.fillStyle = css("--card"); g.fillRect(x - wide - 15, top + 1, wide + 18, 15);
       g.fillStyle = css("--ink"); g.fillText(name, x, top + 9);
       g.fillStyle = tone(shape ?? i); mark(g, shape ?? i, x - wide - 7, top + 9, 3); g.fill();

@@ -42,7 +42,7 @@ export function panelsOf(compare, channel) {
     autocorrelation: () => ({ kind: "memory", spec: compare.autocorrelation }),
     "residual-scalar": () => many(time, p.scalar_nT, sensors, "|b| − F, nT"),
     "residual-attitude": () => many(azimuth.values.some((v) => v !== null) ? azimuth : time, p.attitude_deg, ["x", "y", "z"], "correction, deg"),
-    "residual-closure": () => many(time, p.closure, Object.keys(p.closure).slice(0, kClosures), "closure, nT"),
+    "residual-closure": () => many(time, p.closure, Object.keys(p.closure).sort((a, b) => a.localeCompare(b, "en", { numeric: true })).slice(0, kClosures), "closure, nT"),
   };
   return compare.panels.map((words) => {
     const column = /^residual-\d+$/.test(words.name) ? words.title.replace("Residual against ", "") : null;

@@ -112,8 +112,8 @@ export class Memory {
     const { g, width, height } = begun, left = 52, right = width - 10, top = 8, bottom = height - 34;
     const { by_sensor, bound } = this.#spec, lags = by_sensor[0]?.length ?? 0;
     const most = Math.max(0.3, bound, ...by_sensor.flat().map((r) => Math.abs(r ?? 0)));
-    const low = Math.min(-0.3, ...by_sensor.flat()), span = most * 1.05 - low * 1.05;
-    const Y = (v) => bottom - ((v - low * 1.05) / span) * (bottom - top), X = (lag) => left + ((lag + 0.5) / (lags + 1)) * (right - left);
+    const low = 1.05 * Math.min(-0.3, ...by_sensor.flat()), high = 1.2 * most, span = high - low;
+    const Y = (v) => bottom - ((v - low) / span) * (bottom - top), X = (lag) => left + ((lag + 0.5) / (lags + 1)) * (right - left);
     g.fillStyle = css("--line"); g.globalAlpha = 0.6;
     g.fillRect(left, Y(bound), right - left, Y(-bound) - Y(bound));
     g.globalAlpha = 1;
@@ -125,7 +125,7 @@ export class Memory {
     g.strokeStyle = css("--line"); g.strokeRect(left, top, right - left, bottom - top);
     g.strokeStyle = css("--soft"); g.beginPath(); g.moveTo(left, Y(0)); g.lineTo(right, Y(0)); g.stroke();
     g.fillStyle = css("--soft"); g.textAlign = "right"; g.textBaseline = "middle";
-    for (const v of ticks(low * 1.05, most * 1.05, 5).at) g.fillText(v.toFixed(1), left - 5, Y(v));
+    for (const v of ticks(low, high, 5).at) g.fillText(v.toFixed(1), left - 5, Y(v));
     g.textAlign = "center"; g.textBaseline = "alphabetic";
     for (const lag of [1, 5, 10, 15, 20]) if (lag <= lags) g.fillText(String(lag), X(lag - 0.5), bottom + 14);
     g.fillText("lag, poses", (left + right) / 2, bottom + 29);

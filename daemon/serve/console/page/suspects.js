@@ -18,7 +18,7 @@ export function showSuspects(explain, words, chosen, choose) {
   const list = explain.candidates, above = list.filter((c) => c.d >= kSeen_d).length;
   const strong = list.slice(0, Math.max(kLeast, Math.min(kMost, above)));
   const twins = new Set();
-  for (const c of strong) if (c.d >= kSeen_d && explain.named.includes(c.effect))
+  for (const c of strong) if (explain.named.includes(c.effect))
     for (const r of c.rivals) if (r.possible) { twins.add(c.effect); twins.add(r.effect); }
   const row = (c, i) => {
     const bar = make("i", { class: `bar ${explain.named.includes(c.effect) ? "named" : ""} ${twins.has(c.effect) ? "hatched" : ""}` });

@@ -66,6 +66,8 @@ TEST(JobRequest, WhatIsNotInTheTableIsRefused) {
   EXPECT_THAT(refusal(R"({"verb":"add","run":"a","args":{"effect":"axis.cubic","force":1}})"),
               HasSubstr("true or false"));
   refusal(R"({"verb":"mask","run":"a","args":{"poses":["1"],"why":"x"}})");
+  refusal(R"({"verb":"mask","run":"a","args":{"poses":[-1],"why":"x"}})");  // would be an option
+  refusal(R"({"verb":"mask","run":"a","args":{"poses":[99999999999],"why":"x"}})");
   refusal(R"({"verb":"define","run":"a","args":{"name":"x","formula":"k","prior":"1"}})");
   refusal(R"({"verb":"explain","run":"a","args":[]})");
   refusal("[]");
