@@ -63,10 +63,12 @@ std::vector<std::string> model_options(const FitFlags& f) {
 }
 
 std::string hello(const ServeArguments& args, bool one) {
-  const auto path = std::filesystem::absolute(args.what).lexically_normal();
+  std::error_code ec;
+  const auto path = std::filesystem::canonical(args.what, ec);
   return nlohmann::json{{"software", "mgt " MGTD_VERSION},
                         {"mode", "files"},
-                        {"rig", one ? path.filename().string() : path.string()},
+                        {"rig", path.filename().string()},
+                        {"path", path.string()},
                         {"run", one ? nlohmann::json(path.filename().string()) : nlohmann::json()}}
       .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -2,14 +2,15 @@
 // Pictures of every screen of a running console, in three sizes and three themes, to be looked at:
 //
 //   node --experimental-websocket tests/browser/look.mjs "$(mgt console)" docs/console
-//   node --experimental-websocket tests/browser/look.mjs ADDRESS-OF-MGT-SERVE FOLDER RUN.mgtrun
+//   node --experimental-websocket tests/browser/look.mjs ADDRESS-OF-MGT-SERVE FOLDER RUN.mgtrun [add]
 //
-// Of a run also what stands behind each button of the workbench; nothing is changed in it. Says where an element leaves the
+// Of a run also what stands behind each button of the workbench; nothing is changed in it, unless the word add has the first
+// suspect added, and taken out again. Says where an element leaves the
 // page, is cut, or lies over another.
 import { mkdirSync } from "node:fs";
 import { Browser, until } from "./browser.mjs";
 
-const [url, folder, run] = process.argv.slice(2);
+const [url, folder, run, add] = process.argv.slice(2);
 if (!url || !folder) {
   console.error("usage: node --experimental-websocket tests/browser/look.mjs URL FOLDER [RUN]");
   process.exit(2);
@@ -75,6 +76,19 @@ async function workbench(width) {
     await browser.click(`tool-${tool}`);
     await picture(`workbench-${tool}-${width}`);
   }
+  if (!add) return;
+  const changed = async (id) => {
+    const before = await browser.run("document.getElementById('bench-run').dataset.shown");
+    await browser.click(id);
+    await until(() => browser.run(`![undefined, "${before}"].includes(document.getElementById("bench-run").dataset.shown)`), id, 300000);
+  };
+  await browser.click("tool-history");
+  await changed("add");
+  for (const colours of ["light", "dark", "sun"]) {
+    await theme(colours);
+    await picture(`workbench-added-${width}-${colours}`);
+  }
+  await changed("undo");
 }
 
 for (const [width, height] of [[1280, 800], [1024, 768], [390, 844]]) {

@@ -142,7 +142,7 @@ function serveFiles(hello) {
   by("rig").textContent = hello.rig;
   document.title = hello.rig;
   by("link").textContent = "files";
-  by("who").textContent = `${hello.software}, without a rig.` + (token ? "" : " This page may look; open the address that mgt serve prints.");
+  by("who").textContent = `${hello.software}, without a rig: ${hello.path}.` + (token ? "" : " This page may look; open the address that mgt serve prints.");
   show("workbench");
   bench.list(hello.run);
 }
