@@ -6,11 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/search/next_pair.h"
+#include "calib/poses/pose_list.h"
 #include "calib/report/next_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
+#include "daemon/plan/plan_from_list.h"
+#include "proto/run_request.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -27,6 +30,7 @@ constexpr const char* kNextHelp =
 struct NextArguments {
   std::string run, output;
   std::vector<std::string> pair;
+  bool poses{false};
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -48,6 +52,16 @@ Result<calib::criticism::search::NextReport> next_about(
       table, {.fit = options},
       std::pair{std::string(calib::effects::family_name(open->spec)),
                 std::string(calib::effects::family_name(open->alternatives.front()))});
+}
+
+/// What the daemon takes to measure a step (run.start).
+nlohmann::json run_of(const calib::criticism::search::NextStep& step) {
+  const auto list = calib::poses::read_pose_list(calib::report::pose_list(step), "mgt next");
+  if (!list) return {};
+  RunRequest request;
+  request.list = "mgt next";
+  request.poses = plan::requested_poses(*list);
+  return to_json(request);
 }
 
 int run_next(const Session& session, const NextArguments& args) {
@@ -83,6 +97,8 @@ int run_next(const Session& session, const NextArguments& args) {
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*next);
     out["chosen_in_doubt"] = doubts_json(*doubts);
+    for (std::size_t i = 0; args.poses && i < next->steps.size(); ++i)
+      out["next"][i]["run"] = run_of(next->steps[i]);
     print_json(out);
   } else {
     fmt::print("{}{}", doubts_text(*doubts), calib::report::to_text(*next));
@@ -101,6 +117,7 @@ void add_next(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("EFFECT", args->pair, "two effects, by name")->expected(0, 2);
   command->add_option("-o,--output", args->output, "write the poses of the best one here (CSV)");
+  command->add_flag("--poses", args->poses, "with --json: each as the arguments of a run that measures it");
   args->flags = add_model_flags(command);
 }
 

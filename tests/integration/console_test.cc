@@ -15,7 +15,8 @@ using ::testing::HasSubstr;
 
 /// The body of an answer that holds `wanted`.
 bool answers(const std::string& host, const std::string& target, const std::string& wanted) {
-  LinePeer peer = LinePeer::tcp(static_cast<std::uint16_t>(std::stoi(host.substr(host.rfind(':') + 1))));
+  const std::size_t port = host.find(':') + 1;
+  LinePeer peer = LinePeer::tcp(static_cast<std::uint16_t>(std::stoi(host.substr(port))));
   peer.send("GET " + target + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n");
   return eventually([&] {
            peer.pump();
@@ -37,6 +38,17 @@ TEST(ConsoleOnTheBench, IsAtTheAddressThatMgtPrints) {
   EXPECT_TRUE(answers(host, "/metrics", "mgtd_device_live{device=\"s1\"} 1"));
   EXPECT_TRUE(answers(host, "/", "lanes"));
   EXPECT_TRUE(eventually([&] { return bench.ask({"status"}).at("sampler").at("epochs") > 50; }));
+}
+
+TEST(ConsoleOnTheBench, ComputesOnTheRunsOfTheDaemonBesideTheAcquisition) {
+  Bench bench;
+  bench.start_daemon();
+  const json console = bench.ask({"console"});
+  const std::string address = console.at("address"), host = address.substr(7, address.size() - 8);
+  const std::string bearer = "\r\nAuthorization: Bearer " + console.at("token").get<std::string>();
+  EXPECT_TRUE(answers(host, "/runs", "\"runs\":["));
+  EXPECT_TRUE(answers(host, "/jobs/1", "403 Forbidden")) << "without the token";
+  EXPECT_TRUE(answers(host + bearer, "/jobs/1", "no such job"));
 }
 
 TEST(ConsoleOnTheBench, AnOccupiedAddressIsSaidAndTheRigIsMeasuredAllTheSame) {

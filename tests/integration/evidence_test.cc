@@ -120,6 +120,13 @@ TEST_F(EvidenceOfPrograms, ATryTakesAPoseTable) {
   EXPECT_THAT(tried.at("text").get<std::string>(), HasSubstr("axis.offset.temperature"));
 }
 
+TEST_F(EvidenceOfPrograms, WhatToMeasureNextIsARun) {
+  const json next = ask({"next", file(), "--poses"});
+  const json& step = next.at("next").at(0);
+  EXPECT_EQ(step.at("run").at("poses").size(), step.at("poses").get<std::size_t>());
+  EXPECT_TRUE(step.at("run").at("poses").at(0).contains("azimuth_deg"));
+}
+
 TEST_F(EvidenceOfPrograms, AVetoHasItsReason) {
   const json refused = ask({"add", "axis.cubic", file(), "--try"});
   EXPECT_EQ(refused.at("vetoed"), true);

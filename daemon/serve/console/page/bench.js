@@ -12,11 +12,13 @@ const kTools = { next: "What to measure next", formula: "Formula", alike: "Told 
 const kColour = { PASS: "good", EXPLAINED: "warn", AMBIGUOUS: "warn", PARTIAL: "warn", UNKNOWN: "bad", "BAD-DATA": "bad" };
 
 export class Bench {
-  #jobs; #say; #state = { pose: null, selected: new Set() }; #panels; #evidence; #formula; #map = null; #run = null; #channel = null; #chosen = null; #tool = "next"; #opened = 0;
+  #jobs; #say; #measure; #state = { pose: null, selected: new Set() }; #panels; #evidence; #formula; #map = null; #run = null; #channel = null; #chosen = null; #tool = "next"; #opened = 0;
   #answers = {};  // of mgt on this run, by verb
   #commands = {};
 
-  constructor(jobs, say) {
+  /** `measure(step)`: null without a rig. */
+  constructor(jobs, say, measure) {
+    this.#measure = measure;
     this.#jobs = jobs;
     this.#say = say;
     const on = { hover: (pose) => this.#hover(pose), select: (poses, more) => this.#select(poses, more) };
@@ -245,7 +247,7 @@ export class Bench {
     if (id === "parameters") return fill(by("tool"), fit ? showParameters(fit) : wait);
     if (id === "history") return fill(by("tool"), showHistory(model, async (pose) => { if (await this.#ask("unmask", { poses: [pose] })) this.#load(true); }));
     const known = this.#answers.next;
-    if (known) return fill(by("tool"), showNext(known));
+    if (known) return fill(by("tool"), showNext(known, this.#measure()));
     fill(by("tool"), make("p", {}, make("button", { id: "ask-next", onclick: async () => { const next = await this.#ask("next"); if (next) { this.#answers.next = next; this.#show("next"); } } },
       "Which measurement would settle it?")));
   }

@@ -24,7 +24,17 @@ function tellJobs(list) {
   fill(by("jobs"), list.map((job) => make("span", {}, job.state === "running" ? `${job.elapsed_s.toFixed(1)} s: ` : "waits: ", make("code", {}, job.command), job.said ? ` ${job.said} ` : " ",
                                           make("button", { class: "small", onclick: () => jobs.cancel(job.id) }, "Cancel"))));
 }
-const jobs = new Jobs(token, tellJobs), bench = new Bench(jobs, (text) => banner(text, true));
+const jobs = new Jobs(token, tellJobs), bench = new Bench(jobs, (text) => banner(text, true), () => (rigged ? measure : null));
+let rigged = false, listed = null;  // a list of poses in the place of a plan
+/** What the workbench wants to be measured next becomes the run of the form. */
+function measure(step) {
+  listed = step?.run ?? null;
+  by("listed").hidden = by("plan-instead").hidden = !listed;
+  by("plan-fields").hidden = Boolean(listed);
+  by("plan").textContent = "";
+  by("listed").textContent = step ? `${step.poses} poses: ${step.action}` : "";
+  if (listed) show("run");
+}
 
 /** Asks the daemon to do something; what it refuses is said in its own words. */
 async function act(cmd, args = {}) {
@@ -159,12 +169,12 @@ by("pause").addEventListener("click", () => act("run.pause"));
 by("abort").addEventListener("click", () => { if (confirm("Abort the run? Its poses stay on disk.")) act("run.abort"); });
 by("rollback").addEventListener("click", () => { if (confirm("Roll back to the calibration before?")) act("calibrations.rollback"); });
 by("look").addEventListener("click", async () => {
-  const plan = await act("run.dry-run", wanted(by("run-form")));
+  const plan = await act("run.dry-run", listed ?? wanted(by("run-form")));
   if (plan) by("plan").textContent = `${plan.poses} poses, ${Math.round(plan.minutes)} minutes.`;
 });
 by("run-form").addEventListener("submit", (event) => {
   event.preventDefault();
-  if (confirm("Start the run? The table moves at once.")) act("run.start", wanted(event.target));
+  if (confirm("Start the run? The table moves at once.")) act("run.start", listed ?? wanted(event.target));
 });
 const kThemes = ["", "light", "dark", "sun"];
 by("theme").addEventListener("click", () => {
@@ -177,5 +187,6 @@ by("theme").addEventListener("click", () => {
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lanes.redraw(); bench.recolour(); });
 const hello = await (await fetch("/api/hello")).json();
 if (hello.mode === "files") serveFiles(hello);
-else { show("live"); followRig(); }
+else { rigged = true; show("live"); followRig(); }
+by("plan-instead").addEventListener("click", () => measure(null));
 document.body.dataset.ready = "";

@@ -7,11 +7,13 @@ import { Panel } from "./panel.js";
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const time = (t) => t.slice(0, 19).replace("T", " ") + "Z";
 
-export function showNext(next, words) {
+/** `measure(step)` takes its poses to the form of a run; null without a rig. */
+export function showNext(next, measure) {
   if (next.next.length === 0) return [make("p", {}, next.text)];
   return [make("p", {}, make("b", {}, next.effect), next.rival ? [" or ", make("b", {}, next.rival), "?"] : ""),
-          table("What to measure, the best first", ["", "minutes", "right name, now", "right name, then", "by"],
-                next.next.map((s) => [s.action, s.minutes.toFixed(0), sig(s.p_right_before), sig(s.p_right_after), s.by_the_rig ? "the rig" : "hand"])),
+          table("What to measure, the best first", ["", "minutes", "right name, now", "right name, then", "by", ""],
+                next.next.map((s) => [s.action, s.minutes.toFixed(0), sig(s.p_right_before), sig(s.p_right_after), s.by_the_rig ? "the rig" : "hand",
+                                      measure && s.run ? make("button", { class: "small", onclick: () => measure(s) }, "Measure this") : ""])),
           next.text ? make("p", {}, next.text) : null];
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arithmetic of the page, without a browser: numbers as text, ticks, means of bins, the projection of the skies; and that
+// no file of the page has a way to make markup of a text.
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
+const page = join(dirname(fileURLToPath(import.meta.url)), "../../daemon/serve/console/page");
+/** A module of the page; those that only name the document are loaded without one. */
+const load = (name) => import(`data:text/javascript,${encodeURIComponent(readFileSync(join(page, name), "utf8").replace(/from "\.\/(\w+)\.js"/g, (_, other) =>
+  `from "data:text/javascript,${encodeURIComponent(readFileSync(join(page, `${other}.js`), "utf8").replace(/^import .*$/gm, "const css = () => '';").replace(/^const css = \(name.*$/gm, ""))}"`))}`);
+const { binMeans, chance, extent, plusMinus, sig, ticks } = await load("numbers.js");
+
+assert.deepEqual([0.60506, 0.019, 31.5, 928065, 0, 1e-8, null, NaN].map((v) => sig(v)), ["0.605", "0.0190", "31.5", "928065", "0", "1.00e-8", "--", "--"]);
+assert.equal(plusMinus(2.99874, 0.00233, "nT/degC"), "+2.9987 ± 0.0023 nT/°C");
+assert.equal(plusMinus(-12.3, 0, "nT"), "-12.3 nT");
+assert.deepEqual([-500, -7, -1, null].map(chance), ["< 1e-30", "1e-7", "0.10", "--"]);
+
+for (const [low, high, wanted] of [[0, 1, 5], [-2.7, 3.4, 4], [1e-9, 4e-9, 3], [53900, 53910, 6], [-1e6, 1e6, 2]]) {
+  const { at, text } = ticks(low, high, wanted);
+  assert.ok(at.every((v) => v >= low - 1e-6 * (high - low) && v <= high + 1e-6 * (high - low)), `ticks beyond ${low} to ${high}`);
+  assert.ok(at.length >= 1 && at.length <= 2 * wanted + 2, `${at.length} ticks for ${wanted}`);
+  assert.equal(new Set(at.map(text)).size, at.length, "two ticks with one text");
+}
+assert.deepEqual(extent([[null, 1, 3], [2]]), [0.88, 3.12]);
+assert.deepEqual(extent([[]]), [-1, 1]);
+const [least, greatest] = extent([[-1, 3]], true);
+assert.equal(least, -greatest);
+
+const x = Array.from({ length: 80 }, (_, i) => (i * 37) % 80), bins = binMeans(x, x.map((v) => 2 * v));
+assert.equal(bins.length, 8);
+for (const bin of bins) assert.ok(Math.abs(bin.y - 2 * bin.x) < 1e-9);
+assert.ok(bins.every((b, i) => i === 0 || b.x > bins[i - 1].x));
+assert.equal(binMeans([1, null, 2], [1, 2, null]).length, 0, "too few to have a mean");
+
+// Equal area: the share of directions that falls into a part of the map is the share of its area.
+const { mollweide } = await load("skies.js");
+let inner = 0, all = 0;
+for (let i = 0; i < 40; ++i)
+  for (let k = 0; k < 80; ++k) {
+    const z = -1 + (2 * (i + 0.5)) / 40, longitude = -Math.PI + (2 * Math.PI * (k + 0.5)) / 80, r = Math.sqrt(1 - z * z);
+    const [u, v] = mollweide([r * Math.cos(longitude), r * Math.sin(longitude), z]), radius2 = u * u + 4 * v * v;
+    assert.ok(radius2 < 1 + 1e-9, "beyond the edge");
+    inner += radius2 < 0.25 ? 1 : 0;
+    ++all;
+  }
+assert.ok(Math.abs(inner / all - 0.25) < 0.01, `${inner / all} of the directions on a quarter of the map`);
+assert.deepEqual(mollweide([1, 0, 0]).map((v) => Math.abs(v)), [0, 0]);
+assert.ok(Math.abs(mollweide([0, 0, 1])[1] - 0.5) < 1e-9);
+
+let gzipped = 0;
+for (const name of readdirSync(page)) {
+  const bytes = readFileSync(join(page, name)), found = /innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function|style=|setAttribute\("style|DOMParser/.exec(bytes.toString());
+  assert.equal(found, null, `${name} has ${found}: a text of a file could become markup`);
+  gzipped += gzipSync(bytes, { level: 9 }).length;
+}
+assert.ok(gzipped < 100_000, `the page has ${gzipped} bytes gzipped`);
+console.log(`the page: its numbers are right, and it has ${gzipped} bytes gzipped`);
