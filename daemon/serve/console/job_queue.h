@@ -21,9 +21,9 @@ enum class JobState { waiting, running, done, failed, cancelled };
 
 struct JobLimits {
   std::size_t waiting{8};
-  std::size_t kept_bytes{64'000'000};  ///< of results
-  std::size_t kept_jobs{64};           ///< that have ended
-  Duration forgotten{std::chrono::seconds(20)};
+  std::size_t kept_bytes{64'000'000};             ///< of results
+  std::size_t kept_jobs{64};                      ///< that have ended
+  Duration forgotten{std::chrono::seconds(120)};  ///< a page in the background asks once a minute
 };
 
 struct JobTask {
