@@ -91,6 +91,12 @@ try {
   holds("Enter selects it", (await text("selected")).startsWith("1 selected: 1"), await text("selected"));
   await key("Escape");
 
+  await browser.run(`{ const c = document.querySelector("[data-panel=residual-time] canvas"), r = c.getBoundingClientRect(); c.setPointerCapture = () => {};
+    const mouse = (what, x, y) => c.dispatchEvent(new PointerEvent(what, { clientX: r.left + x, clientY: r.top + y, pointerId: 1, bubbles: true }));
+    mouse("pointerdown", 1, 1); mouse("pointermove", r.width - 1, r.height - 1); mouse("pointerup", r.width - 1, r.height - 1); }`);
+  holds("a frame around all poses selects them all", (await text("selected")).startsWith("157 selected"), await text("selected"));
+  await key("Escape");
+
   await browser.run("document.querySelector('.suspect').click()");
   await until(() => exists("add"), "the evidence");
   holds("the evidence is that of mgt why", (await text("evidence")).includes(mgt("why", explained.candidates[0].effect, run, "--at", explained.candidates[0].where, "--poses").figure.good));

@@ -64,7 +64,7 @@ export class Panel {
     g.clearRect(0, 0, canvas.width, canvas.height);
     g.drawImage(this.#base, 0, 0);
     g.setTransform(scale, 0, 0, scale, 0, 0);
-    for (const m of this.#marks) if (state.selected.has(m.pose) && m.pose !== state.pose) this.#ring(g, m, 4.5, css("--warn"), 1.5);
+    for (const m of this.#marks) if (state.selected.has(m.pose) && m.pose !== state.pose) this.#ring(g, m, state.selected.size > 30 ? 3.4 : 4.5, css("--warn"), state.selected.size > 30 ? 1 : 1.5);
     for (const m of this.#marks) if (m.pose === state.pose) this.#ring(g, m, 6.5, css("--ink"), 2.2);
     if (this.#drag) {
       g.strokeStyle = css("--warn");

@@ -87,7 +87,11 @@ export class Panels {
       own.title.textContent = p.title ?? p.words.title;
       own.figure.classList.toggle("stands-out", p.words.stands_out);
       const drawn = p.spec.series?.[0]?.name;
-      own.good.textContent = (p.judged && drawn !== p.judged ? `${p.judged}: ` : "") + short(p.words);
+      own.say = () => {
+        const wide = own.figure.classList.contains("wide"), of = p.judged && drawn !== p.judged ? `${p.judged}: ` : "";
+        own.good.textContent = wide ? `${p.words.caption} Good: ${of}${p.words.good}` : of + short(p.words);
+      };
+      own.say();
       own.good.title = own.figure.title = `${p.words.caption} Good: ${p.words.good}`;
       own.canvas.setAttribute("aria-label", `${p.words.title}. ${p.words.good}`);
     });
@@ -96,10 +100,11 @@ export class Panels {
   #build(list) {
     this.#panels = list.map((p) => {
       const canvas = make("canvas", { role: "img", class: "panel" }), title = make("h3", {}), good = make("p", { class: "good-one" });
-      const wide = make("button", { class: "small", title: "larger", "aria-label": "larger", onclick: () => { figure.classList.toggle("wide"); this.redraw(); } }, "⤢");
+      const wide = make("button", { class: "small", title: "larger", "aria-label": "larger", onclick: () => { figure.classList.toggle("wide"); own.say(); this.redraw(); } }, "⤢");
       const figure = make("figure", { "data-panel": p.words.name }, make("header", {}, title, wide), canvas, good);
       const drawer = p.kind === "skies" ? new Skies(canvas, this.#on) : p.kind === "memory" ? new Memory(canvas) : new Panel(canvas, this.#on);
-      return { name: p.words.name, figure, canvas, title, good, drawer };
+      const own = { name: p.words.name, figure, canvas, title, good, drawer, say: () => {} };
+      return own;
     });
     fill(this.#place, this.#panels.map((p) => p.figure));
   }
