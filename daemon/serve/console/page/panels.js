@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nine panels of a run: what the model leaves, by pose, linked. Their sentences are those of mgt.
-import { by, fill, make } from "./elements.js";
+import { fill, make, table } from "./elements.js";
 import { Panel } from "./panel.js";
 import { Memory, Skies } from "./skies.js";
 
@@ -57,6 +57,16 @@ function short(words) {
   return at < 0 ? words.good : words.good.slice(at);
 }
 
+/** The numbers of a panel, for who does not see it or wants them. */
+function dataOf({ kind, spec, words }) {
+  const text = (v) => (v === null || v === undefined ? "" : Number(v.toPrecision(6)));
+  if (kind === "memory") return table(words.title, ["lag", ...spec.by_sensor.map((_, s) => `s${s + 1}`)], spec.by_sensor[0].map((_, k) => [k + 1, ...spec.by_sensor.map((r) => text(r[k]))]));
+  if (kind === "skies") return table(words.title, ["pose", ...spec.skies.map((s) => `${s.name}, ${spec.unit}`)], spec.poses.map((pose, k) => [pose, ...spec.skies.map((s) => text(s.values[k]))]));
+  const [first] = spec.series, poses = first.pose ?? spec.poses;
+  return table(words.title, ["pose", spec.x.label, ...spec.series.map((s) => (spec.series.length > 1 ? s.name : spec.y.label))],
+               poses.map((pose, k) => [pose, text((first.x ?? spec.x.values)[k]), ...spec.series.map((s) => text(s.values[k]))]));
+}
+
 export class Panels {
   #place; #on; #panels = []; #state; #dirty = true; #keep = false;
   constructor(place, state, on) {
@@ -92,6 +102,8 @@ export class Panels {
         own.good.textContent = wide ? `${p.words.caption} Good: ${of}${p.words.good}` : of + short(p.words);
       };
       own.say();
+      own.table = () => dataOf(p);
+      own.data.open = false;
       own.good.title = own.figure.title = `${p.words.caption} Good: ${p.words.good}`;
       own.canvas.setAttribute("aria-label", `${p.words.title}. ${p.words.good}`);
     });
@@ -101,9 +113,10 @@ export class Panels {
     this.#panels = list.map((p) => {
       const canvas = make("canvas", { role: "img", class: "panel" }), title = make("h3", {}), good = make("p", { class: "good-one" });
       const wide = make("button", { class: "small", title: "larger", "aria-label": "larger", onclick: () => { figure.classList.toggle("wide"); own.say(); this.redraw(); } }, "⤢");
-      const figure = make("figure", { "data-panel": p.words.name }, make("header", {}, title, wide), canvas, good);
+      const place = make("div", { class: "data" }), data = make("details", { ontoggle: () => fill(place, data.open ? own.table() : null) }, make("summary", {}, "data"), place);
+      const figure = make("figure", { "data-panel": p.words.name }, make("header", {}, title, wide), canvas, good, data);
       const drawer = p.kind === "skies" ? new Skies(canvas, this.#on) : p.kind === "memory" ? new Memory(canvas) : new Panel(canvas, this.#on);
-      const own = { name: p.words.name, figure, canvas, title, good, drawer, say: () => {} };
+      const own = { name: p.words.name, figure, canvas, title, good, data, drawer, say: () => {}, table: () => null };
       return own;
     });
     fill(this.#place, this.#panels.map((p) => p.figure));

@@ -31,7 +31,7 @@ export function showParameters(fit) {
   const known = names.filter(([key]) => fit.sensors[0]?.[key]);
   const effects = fit.effects.flatMap((e) => e.coefficients.map((c) => [e.effect, c.name, plusMinus(c.value, c.sd, c.unit)]));
   const checks = fit.checks.filter((c) => !c.passed).map((c) => [c.name, c.measured, c.limit, c.remedy]);
-  return [table(`Calibration of ${fit.poses} poses: ${fit.accepted ? "its checks passed" : "refused by its checks"}`, ["", ...fit.sensors.map((_, i) => `s${i + 1}`)],
+  return [table(`Calibration of ${fit.poses} poses, ${fit.accepted ? "accepted" : "not accepted"}`, ["", ...fit.sensors.map((_, i) => `s${i + 1}`)],
                 known.map(([key, label]) => [label, ...fit.sensors.map((s) => plusMinus(s[key].value, s[key].sd))])),
           effects.length ? table("Effects in the model", ["", "", ""], effects) : null,
           checks.length ? table("Checks that failed", ["", "measured", "limit", "what to do"], checks) : null,
