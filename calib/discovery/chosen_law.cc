@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "calib/criticism/tests/multiplicity.h"
 #include "calib/discovery/formula_text.h"
 
 namespace mgtd::calib::discovery {
@@ -99,7 +100,7 @@ void sort_into_classes(const std::vector<std::optional<FittedLaw>>& fitted, cons
 Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, const LawRound& round,
                              double questions, const std::string& name) {
   ChosenLaw out;
-  out.law.log10_p = tests::best_of(round.log10_p_best, questions);
+  out.law.log10_p = criticism::tests::best_of(round.log10_p_best, questions);
   out.law.where = shares(round.ranked, [](const RankedLaw& law) { return law.where; });
   out.law.covariates = shares(round.ranked, [&](const RankedLaw& law) {
     std::string all;
@@ -129,8 +130,13 @@ Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, co
   if (!head) return tl::unexpected(head.error());
   out.head = *std::move(head);
   out.law.d = out.head.d();
-  for (auto& one : fitted)
-    if (one && one->place == out.head.place) out.set.push_back(*std::move(one));
+  out.covariates = family.covariates;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (!fitted[i] || !(fitted[i]->place == out.head.place)) continue;
+    if (bench.grammar.families[round.ranked[i].family].covariates == out.covariates)
+      out.alike.push_back(*fitted[i]);
+    out.set.push_back(*std::move(fitted[i]));
+  }
   return out;
 }
 

@@ -13,6 +13,8 @@ struct ChosenLaw {
   FoundLaw law;
   FittedLaw head;              ///< the formula that leads
   std::vector<FittedLaw> set;  ///< formulas of the 99 % set at the place of the head, the head first
+  std::vector<std::string> covariates{};  ///< of the head, as formulas name them
+  std::vector<FittedLaw> alike{};         ///< of the set, those of the same covariates
 };
 
 /// `questions`: independent ones of the whole search. `name`: of the effects that the formulas become.

@@ -92,11 +92,16 @@ std::vector<tests::ScoredFamily> scored_library(const NoiseInForce& in_force,
   return out;
 }
 
-/// What no part of the choice has seen.
+/// The shape of the first law, and what no part of the choice has seen.
 Result<void> check(const PoseTable& table, const DiscoverOptions& options, const fit::joint::JointFit& fit,
-                   const NoiseInForce& in_force, const Workbench& bench, std::vector<ChosenLaw>& laws,
-                   DiscoveryReport& out) {
+                   const NoiseInForce& in_force, const Workbench& bench, ChannelSums sums,
+                   std::vector<ChosenLaw>& laws, DiscoveryReport& out) {
   FoundLaw& first = laws.front().law;
+  for (std::size_t i = 1; i < laws.size(); ++i)
+    for (const LawOnChannels& direction : laws[i].head.basis) sums.take_out(direction);
+  auto shape = law_shape(laws.front().alike, laws.front().covariates, bench.inputs, sums, options.fit.seed);
+  if (!shape) return tl::unexpected(shape.error());
+  first.shape = *std::move(shape);
   first.halves_ratio = halves_ratio(in_force.fit, in_force.noise.scale2, laws.front().head);
   const auto fall = held_out_fall(in_force.fit, in_force.residual, bench);
   if (!fall) return tl::unexpected(fall.error());
@@ -158,7 +163,7 @@ Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& 
   out.left_sigmas = left.sigmas, out.left_on = sensor::channel_name(left.channel);
   out.verdict = verdict_of(*in_force, found->laws, out);
   if (significant(found->laws.front().law.log10_p) && options.checks)
-    if (const auto ok = check(table, options, *fit, *in_force, bench, found->laws, out); !ok)
+    if (const auto ok = check(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)
       return tl::unexpected(ok.error());
   for (ChosenLaw& law : found->laws) out.laws.push_back(std::move(law.law));
   return out;

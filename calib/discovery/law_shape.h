@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,7 +10,7 @@
 /// The shape of a law over one covariate, with its band: cubic B-splines on the octiles of the covariate,
 /// times the reading for a gain, under a prior of curvature whose scale is that of the largest evidence,
 ///
-///     beta = C Z'r,   C = (Z'Z + P)^-1,   P = tau_c (second differences) + tau_r 1.
+///     beta = C Z'r,   C = (Z'Z + P)^-1,   P = tau_c D'D + tau_r 1,   D second differences.
 ///
 /// Gauge: a constant is a parameter of the calibration (and so is a slope, of a curve over the reading
 /// itself), so that curve, band and every formula drawn beside it have their projection on it taken out.
@@ -25,5 +27,13 @@ struct LawShape {
   };
   std::vector<Formula> formulas{};
 };
+
+/// Over the covariate of the first formula, on the axis where it is largest, with the other formulas of the
+/// same covariate. Empty where a formula depends on several quantities (but for a gain), or on what was
+/// before.
+[[nodiscard]] Result<std::optional<LawShape>> law_shape(const std::vector<FittedLaw>& formulas,
+                                                        const std::vector<std::string>& covariates,
+                                                        LawInputs& inputs, const ChannelSums& sums,
+                                                        std::uint64_t seed);
 
 }  // namespace mgtd::calib::discovery

@@ -179,6 +179,21 @@ void tell_coefficients(const FoundFormula& f, std::string& out) {
   if (f.coefficients.size() > n) fmt::format_to(to, "     and {} more\n", f.coefficients.size() - n);
 }
 
+/// Five points of the curve.
+std::string shape_text(const discovery::LawShape& s) {
+  std::vector<std::string> points;
+  double widest = 0;
+  for (std::size_t i = 0; i < s.x.size(); i += (s.x.size() - 1) / 4) {
+    points.push_back(fmt::format("{:+.2g} nT at {:.4g}", s.y_nT[i], s.x[i]));
+    widest = std::max(widest, s.simultaneous * s.sd_nT[i]);
+  }
+  return fmt::format(
+      "the shape of {} over {}, up to a constant{}: {}; the whole curve lies within {:.2g} nT of it "
+      "with 95 %",
+      s.where, s.covariate, s.of_gain ? " and at a reading of 50 000 nT" : "", fmt::join(points, ", "),
+      widest);
+}
+
 void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::string& out) {
   const auto to = std::back_inserter(out);
   out += "\n";
@@ -221,6 +236,7 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
     }
     out += "\n" + wrapped(told);
   }
+  if (law.shape) out += wrapped(shape_text(*law.shape));
   if (law.halves_ratio)
     out += wrapped(fmt::format("one half of the poses shows {:.2f} times the size that the other half shows",
                                *law.halves_ratio));

@@ -79,6 +79,29 @@ TEST(Discover, NamesTwoLawsOnOneAxis) {
   EXPECT_EQ(covariates["azimuth_deg"], 1);
 }
 
+/// The curve has no formula in it: the knee must lie within its band, up to a constant.
+TEST(Discover, DrawsTheShape) {
+  const auto knee = [](double T) { return 0.3 * std::max(0.0, T - 21.5); };
+  const DiscoveryReport r = found_in(on(7, [&](const Pose& p) { return knee(*p.T_degC[2]); }), 9, true);
+  ASSERT_TRUE(!r.laws.empty() && r.laws.front().shape) << report::to_text(r, "run.csv");
+  const LawShape& shape = *r.laws.front().shape;
+  EXPECT_EQ(shape.covariate, "s3_T_degC");
+  EXPECT_EQ(shape.where, "s3.y");
+  ASSERT_FALSE(shape.formulas.empty());
+  double constant = 0;
+  for (std::size_t i = 0; i < shape.x.size(); ++i)
+    constant += (shape.y_nT[i] - knee(shape.x[i])) / static_cast<double>(shape.x.size());
+  int outside = 0;
+  for (std::size_t i = 0; i < shape.x.size(); ++i) {
+    EXPECT_LT(shape.sd_nT[i], 0.1);
+    const double off = std::abs(shape.y_nT[i] - knee(shape.x[i]) - constant);
+    if (off > shape.simultaneous * shape.sd_nT[i] + 0.02) ++outside;
+  }
+  EXPECT_LE(outside, 4);
+  const auto j = report::to_json(r, "run.csv");
+  EXPECT_EQ(j["curve"]["x"].size(), shape.x.size());
+}
+
 /// Nothing that was recorded goes with it: no formula is named.
 TEST(Discover, AnUnrecordedLoadIsNoLaw) {
   const DiscoveryReport r = found_in(on(8,

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/discovery/law_shape.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/discovery/formula_text.h"
+#include "calib/effects/effect_context.h"
+#include "calib/linear/normal_draws.h"
+
+namespace mgtd::calib::discovery {
+namespace {
+
+constexpr int kPieces = 8, kPoints = 41;
+
+/// Cubic B-splines on quantiles of what was seen; beyond its ends there is nothing.
+class Splines {
+ public:
+  explicit Splines(Eigen::VectorXd seen) {
+    std::sort(seen.begin(), seen.end());
+    std::vector<double> inner;
+    for (int i = 0; i <= kPieces; ++i) {
+      const double at = seen[(seen.size() - 1) * i / kPieces];
+      if (inner.empty() || at > inner.back()) inner.push_back(at);
+    }
+    knots_.assign(3, inner.front());
+    knots_.insert(knots_.end(), inner.begin(), inner.end());
+    knots_.insert(knots_.end(), 3, inner.back());
+  }
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(knots_.size()) - 4; }
+  [[nodiscard]] bool any() const { return count() > 4; }
+  [[nodiscard]] double low() const { return knots_.front(); }
+  [[nodiscard]] double high() const { return knots_.back(); }
+
+  /// A row for each x (Cox and de Boor).
+  [[nodiscard]] Eigen::MatrixXd at(const Eigen::VectorXd& x) const {
+    Eigen::MatrixXd out(x.size(), count());
+    for (Eigen::Index i = 0; i < x.size(); ++i) out.row(i) = row(x[i]);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] Eigen::RowVectorXd row(double x) const {
+    const std::size_t n = knots_.size();
+    std::vector<double> b(n - 1, 0.0);
+    std::size_t last = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i)
+      if (knots_[i + 1] > knots_[i] && x >= knots_[i]) last = i;
+    b[last] = 1;
+    for (std::size_t degree = 1; degree <= 3; ++degree) {
+      for (std::size_t i = 0; i + degree + 1 < n; ++i) {
+        const double left = knots_[i + degree] - knots_[i], right = knots_[i + degree + 1] - knots_[i + 1];
+        b[i] = (left > 0 ? (x - knots_[i]) / left * b[i] : 0) +
+               (right > 0 ? (knots_[i + degree + 1] - x) / right * b[i + 1] : 0);
+      }
+    }
+    return Eigen::Map<const Eigen::RowVectorXd>(b.data(), count());
+  }
+
+  std::vector<double> knots_;
+};
+
+/// Precision of the prior with the largest evidence.
+Eigen::MatrixXd best_prior(const Eigen::MatrixXd& A, const Eigen::VectorXd& v) {
+  const Eigen::Index n = A.cols();
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n - 2, n);
+  for (Eigen::Index i = 0; i + 2 < n; ++i) D(i, i) = 1, D(i, i + 1) = -2, D(i, i + 2) = 1;
+  const double unit = std::max(A.trace() / static_cast<double>(n), 1e-300);
+  Eigen::MatrixXd best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int c = -10; c <= 6; ++c) {
+    for (int r = -10; r <= 0; r += 2) {
+      const Eigen::MatrixXd P = unit * (std::pow(10.0, c / 2.0) * D.transpose() * D +
+                                        std::pow(10.0, r / 2.0) * Eigen::MatrixXd::Identity(n, n));
+      const Eigen::LLT<Eigen::MatrixXd> prior(P), posterior(A + P);
+      const double evidence = v.dot(posterior.solve(v)) +
+                              2 * prior.matrixLLT().diagonal().array().log().sum() -
+                              2 * posterior.matrixLLT().diagonal().array().log().sum();
+      if (evidence > most) most = evidence, best = P;
+    }
+  }
+  return best;
+}
+
+/// The axis where a law is largest.
+int channel_of(const FittedLaw& law, int channels) {
+  int out = -1;
+  double most = 0;
+  for (int c = 0; c < channels; ++c) {
+    const Eigen::VectorXd& f = law.law[static_cast<std::size_t>(c)];
+    if (f.size() == 0) continue;
+    const double size = (f.array() - f.mean()).matrix().norm();
+    if (out < 0 || size > most) out = c, most = size;
+  }
+  return out;
+}
+
+/// Values at `x` of points that go straight from one to the next.
+double between(const std::vector<std::pair<double, double>>& points, double x) {
+  const auto next = std::lower_bound(points.begin(), points.end(), std::pair{x, -1e300});
+  if (next == points.begin()) return points.front().second;
+  if (next == points.end()) return points.back().second;
+  const auto& [a, fa] = *(next - 1);
+  const auto& [b, fb] = *next;
+  return b > a ? fa + (fb - fa) * (x - a) / (b - a) : fa;
+}
+
+}  // namespace
+
+Result<std::optional<LawShape>> law_shape(const std::vector<FittedLaw>& formulas,
+                                          const std::vector<std::string>& covariates, LawInputs& inputs,
+                                          const ChannelSums& sums, std::uint64_t seed) {
+  const bool of_gain = covariates.size() == 2 && covariates.front() == "u";
+  if (formulas.empty() || (covariates.size() != 1 && !of_gain)) return std::nullopt;
+  const std::string& covariate = covariates.back();
+  const int c = channel_of(formulas.front(), sums.channels());
+  if (c < 0 || covariate == "gravity" || covariate == "pose" || covariate.starts_with("prev_"))
+    return std::nullopt;
+  const Eigen::VectorXd u = inputs.name(covariate, c);
+  if (!u.allFinite()) return std::nullopt;
+  const Splines splines(u);
+  if (!splines.any()) return std::nullopt;
+  const double field = effects::kReferenceField_nT;
+  const Eigen::VectorXd x =
+      of_gain ? Eigen::VectorXd(inputs.name("u", c) / field) : Eigen::VectorXd::Ones(u.size());
+  const Eigen::MatrixXd at_poses = splines.at(u), B = x.asDiagonal() * at_poses;
+  const Eigen::MatrixXd A = B.transpose() * sums.product(c, c, B);
+  const Eigen::VectorXd v = B.transpose() * sums.score(c);
+  const Eigen::MatrixXd C =
+      Eigen::LLT<Eigen::MatrixXd>(A + best_prior(A, v)).solve(Eigen::MatrixXd::Identity(A.rows(), A.rows()));
+  // Gauge: what the calibration takes up of any curve goes out of this one.
+  const bool own = covariate == "u" || covariate == "ux" || covariate == "uy" || covariate == "uz";
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(u.size());
+  const Eigen::VectorXd weight =
+      sums.before_projection(c, c, one).col(0).cwiseProduct(x).cwiseProduct(x).cwiseMax(0);
+  const Eigen::VectorXd points = Eigen::VectorXd::LinSpaced(kPoints, splines.low(), splines.high());
+  Eigen::MatrixXd F(u.size(), own ? 2 : 1), F_at(kPoints, F.cols());
+  F.col(0).setOnes(), F_at.col(0).setOnes();
+  if (own) F.col(1) = u, F_at.col(1) = points;
+  const Eigen::MatrixXd to_gauge =
+      F_at * Eigen::LDLT<Eigen::MatrixXd>(F.transpose() * weight.asDiagonal() * F)
+                 .solve(F.transpose() * weight.asDiagonal());
+  const Eigen::MatrixXd M = splines.at(points) - to_gauge * at_poses;
+  const Eigen::VectorXd y = M * (C * v), sd = (M * C * M.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+  LawShape out{.covariate = shown_covariate(covariate, {Place::Kind::axis, c}),
+               .where = Place{Place::Kind::axis, c}.name(),
+               .of_gain = of_gain};
+  out.x.assign(points.begin(), points.end());
+  out.y_nT.assign(y.begin(), y.end());
+  out.sd_nT.assign(sd.begin(), sd.end());
+  constexpr Eigen::Index kDraws = 400;
+  const Eigen::MatrixXd draws = M * linear::normal_draws(C, kDraws, seed);
+  std::vector<double> largest;
+  for (Eigen::Index i = 0; i < kDraws; ++i)
+    largest.push_back((draws.col(i).array().abs() / sd.array().max(1e-300)).maxCoeff());
+  std::sort(largest.begin(), largest.end());
+  out.simultaneous = largest[static_cast<std::size_t>(0.95 * kDraws)];
+  for (const FittedLaw& formula : formulas) {
+    const Eigen::VectorXd& f = formula.law[static_cast<std::size_t>(c)];
+    if (f.size() == 0) continue;
+    std::vector<std::pair<double, double>> seen;
+    Eigen::VectorXd over_x(u.size());
+    for (Eigen::Index k = 0; k < u.size(); ++k) {
+      constexpr double kSmall = 0.02;  // of a reading, which says nothing of its gain
+      over_x[k] = std::abs(x[k]) > kSmall ? f[k] / x[k] : 0;
+      if (std::abs(x[k]) > kSmall) seen.emplace_back(u[k], over_x[k]);
+    }
+    if (seen.empty()) continue;
+    std::sort(seen.begin(), seen.end());
+    const Eigen::VectorXd gauge = to_gauge * over_x;
+    LawShape::Formula drawn{.formula = shown(formula.columns, formula.place), .y_nT = {}};
+    for (Eigen::Index i = 0; i < kPoints; ++i) drawn.y_nT.push_back(between(seen, points[i]) - gauge[i]);
+    out.formulas.push_back(std::move(drawn));
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib::discovery
