@@ -56,6 +56,7 @@ constexpr std::array kVerbs{
     JobVerb{"explain", kJudged, "--confusion --impact --json"},
     JobVerb{"fit", kJudged, "--json"},
     JobVerb{"why", kOfOne, "--poses --json"},
+    JobVerb{"discover", kJudged, "--json"},
     JobVerb{"next", kNext, "--poses --json"},
     JobVerb{.name = "model",
             .arguments = kRunAlone,

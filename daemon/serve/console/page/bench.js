@@ -5,10 +5,11 @@ import { by, fill, make } from "./elements.js";
 import { sig } from "./numbers.js";
 import { Panels, panelsOf, poseLine } from "./panels.js";
 import { Evidence, number, showChange, showFall, showSuspects } from "./suspects.js";
+import { showLaws } from "./law.js";
 import { ConfusionMap, FormulaForm, showHistory, showLimits, showNext, showParameters } from "./tools.js";
 
 const kLong = 3000;  // poses: a search takes a minute and most of the memory
-const kTools = { next: "What to measure next", formula: "Formula", alike: "Told apart", limits: "Limits", parameters: "Parameters", history: "History" };
+const kTools = { next: "What to measure next", formula: "Formula", law: "A law of no library", alike: "Told apart", limits: "Limits", parameters: "Parameters", history: "History" };
 const kColour = { PASS: "good", EXPLAINED: "warn", AMBIGUOUS: "warn", PARTIAL: "warn", UNKNOWN: "bad", "BAD-DATA": "bad" };
 
 export class Bench {
@@ -100,6 +101,7 @@ export class Bench {
   /** Everything about the run as it is now. `keep`: the same run with another model. */
   async #load(keep) {
     const opened = ++this.#opened;
+    delete this.#answers.discover;
     by("bench-run").classList.toggle("veiled", keep);
     delete by("bench-run").dataset.shown;
     const long = (this.#run.poses ?? 0) > kLong && !keep;
@@ -242,6 +244,7 @@ export class Bench {
     const { explain, fit, model, compare } = this.#answers, words = (name) => explain?.figures.find((f) => f.name === name);
     const wait = [make("p", { class: "caption" }, "not computed yet")];
     if (id === "formula") return void fill(by("tool"), compare ? this.#formula.elements(this.#names(compare)) : wait);
+    if (id === "law") return this.#showLaw();
     if (id === "alike") { fill(by("tool"), this.#map?.elements ?? wait); return this.#map?.draw(); }
     if (id === "limits") return fill(by("tool"), explain ? showLimits(explain, words("detectable")) : wait);
     if (id === "parameters") return fill(by("tool"), fit ? showParameters(fit) : wait);
@@ -250,6 +253,20 @@ export class Bench {
     if (known) return fill(by("tool"), showNext(known, this.#measure()));
     fill(by("tool"), make("p", {}, make("button", { id: "ask-next", onclick: async () => { const next = await this.#ask("next"); if (next) { this.#answers.next = next; this.#show("next"); } } },
       "Which measurement would settle it?")));
+  }
+  #showLaw() {
+    const found = this.#answers.discover;
+    if (found) return fill(by("tool"), showLaws(found, this.#run.kind === "run" ? () => this.#keepLaw(found) : null));
+    fill(by("tool"), make("p", {}, "Tries every formula of a fixed grammar on every axis, sensor and the array, and says which one the readings follow, and how sure that is. "),
+      make("button", { id: "ask-law", onclick: async () => { const discover = await this.#ask("discover"); if (discover) { this.#answers.discover = discover; this.#show("law"); } } }, "Look for its formula"));
+  }
+  /** Each effect of the leading formula is defined, then added: the page's step is the terminal's. */
+  async #keepLaw(found) {
+    for (const spec of found.laws.flatMap((law) => law.formulas[0].define)) {
+      const [, name, scale, formula] = spec.match(/^([^@]+)@([^,]+),.*?expr=(.*)$/);
+      if (!(await this.#ask("define", { name, formula, level: "axis", scale, unit: "nT" }))) return;
+      await this.#change("add", name, {});
+    }
   }
   #names(compare) {
     const p = compare.poses, has = (list) => list?.some((v) => v !== null);
