@@ -139,6 +139,9 @@ try {
   await changing(() => browser.click("formula-keep"));
   holds("the formula is kept when asked", mgt("model", run).formulas[0]?.name === "mine");
 
+  await browser.click("tool-next");
+  await browser.click("ask-next");
+  await until(async () => (await text("tool")).includes("minutes"), "what to measure next");
   await browser.click("tool-law");
   await browser.click("ask-law");
   await until(() => browser.run("document.querySelector('[data-key=\"law-verdict\"]') !== null"), "the search for a law");
@@ -147,9 +150,6 @@ try {
   await changing(() => browser.click("keep-law"));
   holds("its formula is kept in the model", mgt("model", run).model.some((spec) => spec.startsWith("law1@")), mgt("model", run).model);
 
-  await browser.click("tool-next");
-  await browser.click("ask-next");
-  await until(async () => (await text("tool")).includes("minutes"), "what to measure next");
   await browser.click("bench-runs");
   await until(() => browser.run("document.querySelector('[data-run=\"poses.csv\"]') !== null"), "the list again");
   await browser.run("document.querySelector('[data-run=\"poses.csv\"]').click()");
