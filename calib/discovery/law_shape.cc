@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "calib/discovery/formula_text.h"
 #include "calib/effects/effect_context.h"
 #include "calib/linear/normal_draws.h"
+#include "proto/units.h"
 
 namespace mgtd::calib::discovery {
 namespace {
 
-constexpr int kPieces = 8, kPoints = 41;
+constexpr int kPieces = 8, kPoints = 61, kHarmonics = 6;
 
 /// Cubic B-splines on quantiles of what was seen; beyond its ends there is nothing.
 class Splines {
@@ -62,17 +64,45 @@ class Splines {
   std::vector<double> knots_;
 };
 
+/// Functions of which a curve is made: splines, or harmonics of an angle that goes all the way round.
+struct Functions {
+  std::optional<Splines> splines{};
+  double low{0}, high{360};
+
+  [[nodiscard]] Eigen::MatrixXd at(const Eigen::VectorXd& x) const {
+    if (splines) return splines->at(x);
+    Eigen::MatrixXd out(x.size(), 2 * kHarmonics);
+    for (int n = 1; n <= kHarmonics; ++n) {
+      const Eigen::ArrayXd angle = x.array() * to_rad(n);
+      out.col(2 * n - 2) = angle.cos();
+      out.col(2 * n - 1) = angle.sin();
+    }
+    return out;
+  }
+  /// Its form is the curvature of the curve.
+  [[nodiscard]] Eigen::MatrixXd curvature() const {
+    if (!splines) {
+      Eigen::VectorXd out(2 * kHarmonics);
+      for (int n = 1; n <= kHarmonics; ++n) out[2 * n - 2] = out[2 * n - 1] = std::pow(n, 4);
+      return out.asDiagonal();
+    }
+    const Eigen::Index n = splines->count();
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n - 2, n);
+    for (Eigen::Index i = 0; i + 2 < n; ++i) D(i, i) = 1, D(i, i + 1) = -2, D(i, i + 2) = 1;
+    return D.transpose() * D;
+  }
+};
+
 /// Precision of the prior with the largest evidence.
-Eigen::MatrixXd best_prior(const Eigen::MatrixXd& A, const Eigen::VectorXd& v) {
+Eigen::MatrixXd best_prior(const Eigen::MatrixXd& A, const Eigen::VectorXd& v,
+                           const Eigen::MatrixXd& curvature) {
   const Eigen::Index n = A.cols();
-  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(n - 2, n);
-  for (Eigen::Index i = 0; i + 2 < n; ++i) D(i, i) = 1, D(i, i + 1) = -2, D(i, i + 2) = 1;
   const double unit = std::max(A.trace() / static_cast<double>(n), 1e-300);
   Eigen::MatrixXd best;
   double most = -std::numeric_limits<double>::infinity();
   for (int c = -10; c <= 6; ++c) {
     for (int r = -10; r <= 0; r += 2) {
-      const Eigen::MatrixXd P = unit * (std::pow(10.0, c / 2.0) * D.transpose() * D +
+      const Eigen::MatrixXd P = unit * (std::pow(10.0, c / 2.0) * curvature +
                                         std::pow(10.0, r / 2.0) * Eigen::MatrixXd::Identity(n, n));
       const Eigen::LLT<Eigen::MatrixXd> prior(P), posterior(A + P);
       const double evidence = v.dot(posterior.solve(v)) +
@@ -120,29 +150,33 @@ Result<std::optional<LawShape>> law_shape(const std::vector<FittedLaw>& formulas
     return std::nullopt;
   const Eigen::VectorXd u = inputs.name(covariate, c);
   if (!u.allFinite()) return std::nullopt;
-  const Splines splines(u);
-  if (!splines.any()) return std::nullopt;
+  Functions functions;
+  if (covariate != "azimuth_deg") {
+    functions.splines.emplace(u);
+    if (!functions.splines->any()) return std::nullopt;
+    functions.low = functions.splines->low(), functions.high = functions.splines->high();
+  }
   const double field = effects::kReferenceField_nT;
   const Eigen::VectorXd x =
       of_gain ? Eigen::VectorXd(inputs.name("u", c) / field) : Eigen::VectorXd::Ones(u.size());
-  const Eigen::MatrixXd at_poses = splines.at(u), B = x.asDiagonal() * at_poses;
+  const Eigen::MatrixXd at_poses = functions.at(u), B = x.asDiagonal() * at_poses;
   const Eigen::MatrixXd A = B.transpose() * sums.product(c, c, B);
   const Eigen::VectorXd v = B.transpose() * sums.score(c);
-  const Eigen::MatrixXd C =
-      Eigen::LLT<Eigen::MatrixXd>(A + best_prior(A, v)).solve(Eigen::MatrixXd::Identity(A.rows(), A.rows()));
+  const Eigen::MatrixXd C = Eigen::LLT<Eigen::MatrixXd>(A + best_prior(A, v, functions.curvature()))
+                                .solve(Eigen::MatrixXd::Identity(A.rows(), A.rows()));
   // Gauge: what the calibration takes up of any curve goes out of this one.
   const bool own = covariate == "u" || covariate == "ux" || covariate == "uy" || covariate == "uz";
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(u.size());
   const Eigen::VectorXd weight =
       sums.before_projection(c, c, one).col(0).cwiseProduct(x).cwiseProduct(x).cwiseMax(0);
-  const Eigen::VectorXd points = Eigen::VectorXd::LinSpaced(kPoints, splines.low(), splines.high());
+  const Eigen::VectorXd points = Eigen::VectorXd::LinSpaced(kPoints, functions.low, functions.high);
   Eigen::MatrixXd F(u.size(), own ? 2 : 1), F_at(kPoints, F.cols());
   F.col(0).setOnes(), F_at.col(0).setOnes();
   if (own) F.col(1) = u, F_at.col(1) = points;
   const Eigen::MatrixXd to_gauge =
       F_at * Eigen::LDLT<Eigen::MatrixXd>(F.transpose() * weight.asDiagonal() * F)
                  .solve(F.transpose() * weight.asDiagonal());
-  const Eigen::MatrixXd M = splines.at(points) - to_gauge * at_poses;
+  const Eigen::MatrixXd M = functions.at(points) - to_gauge * at_poses;
   const Eigen::VectorXd y = M * (C * v), sd = (M * C * M.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
   LawShape out{.covariate = shown_covariate(covariate, {Place::Kind::axis, c}),
                .where = Place{Place::Kind::axis, c}.name(),

@@ -8,7 +8,8 @@
 #include "calib/discovery/fitted_law.h"
 
 /// The shape of a law over one covariate, with its band: cubic B-splines on the octiles of the covariate,
-/// times the reading for a gain, under a prior of curvature whose scale is that of the largest evidence,
+/// six harmonics of the azimuth, times the reading for a gain, under a prior of curvature whose scale is that
+/// of the largest evidence,
 ///
 ///     beta = C Z'r,   C = (Z'Z + P)^-1,   P = tau_c D'D + tau_r 1,   D second differences.
 ///

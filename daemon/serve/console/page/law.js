@@ -13,7 +13,7 @@ function drawCurve(canvas, curve) {
   canvas.style.height = `${height}px`;
   canvas.width = width * scale;
   canvas.height = height * scale;
-  const g = canvas.getContext("2d"), left = 64, right = 12, top = 12, bottom = 40;
+  const g = canvas.getContext("2d"), left = 92, right = 12, top = 12, bottom = 40;
   g.scale(scale, scale);
   const half = curve.hi_nT.map((h, i) => (h - curve.y_nT[i]) / 1.96 * curve.simultaneous_sd);
   const low = curve.y_nT.map((y, i) => y - half[i]), high = curve.y_nT.map((y, i) => y + half[i]);
@@ -31,7 +31,7 @@ function drawCurve(canvas, curve) {
   for (const x of [x0, (x0 + x1) / 2, x1]) g.fillText(sig(x, 3), Math.min(Math.max(px(x), left + 14), width - 24), height - bottom + 5);
   g.fillText(curve.covariate, left + (width - left - right) / 2, height - bottom + 22);
   g.textAlign = "right"; g.textBaseline = "middle";
-  for (const y of [y0, (y0 + y1) / 2, y1]) g.fillText(sig(y, 2), left - 6, Math.min(Math.max(py(y), top + 6), height - bottom - 6));
+  for (const y of [y0, 0, y1]) g.fillText(sig(y, 2), left - 6, Math.min(Math.max(py(y), top + 6), height - bottom - 6));
   g.save(); g.translate(12, top + (height - top - bottom) / 2); g.rotate(-Math.PI / 2); g.textAlign = "center"; g.fillText(`${curve.where}, nT`, 0, 0); g.restore();
 }
 
@@ -41,9 +41,9 @@ export function showLaws(found, keep) {
   if (canvas) requestAnimationFrame(() => drawCurve(canvas, found.curve));
   const believed = found.verdict !== "PASS" && found.log10_p_search < -2;
   return [make("p", {}, make("b", { class: `word ${kColour[found.verdict] ?? ""}`, "data-key": "law-verdict" }, found.verdict)),
-          canvas ? make("figure", {}, canvas, make("figcaption", { class: "caption" }, "The curve has no formula in it: splines, up to a constant, with the band that holds all of it with 95 %; dashed the leading formula. Good: the dashes stay in the band.")) : null,
-          believed ? found.laws.map((law) => table("The formula, and what else it could be", ["", "where", "P", "fall of χ²", "coefficients"],
-                                                   law.formulas.slice(0, 8).map((f) => [f.formula, f.where, f.P.toFixed(2), f.chi2_fall.toFixed(1), f.k]))) : null,
+          canvas ? make("figure", {}, canvas, make("figcaption", { class: "caption" }, "The curve has no formula in it: splines or harmonics, up to a constant, with the band that holds all of it with 95 %; dashed the leading formula. Good: the dashes stay in the band.")) : null,
+          ...(believed ? found.laws.map((law) => table("The formula, and what else it could be", ["", "where", "P", "fall of χ²", "coefficients"],
+                                                   law.formulas.slice(0, 8).map((f) => [f.formula, f.where, f.P.toFixed(2), f.chi2_fall.toFixed(1), f.k]))) : []),
           make("details", {}, make("summary", {}, "All that mgt discover says"), make("pre", {}, found.text)),
           keep && found.commands.length ? make("button", { id: "keep-law", class: "main", onclick: keep }, "Keep the formula in the model") : null];
 }
