@@ -71,6 +71,7 @@ export class Browser {
     const ended = new Promise((resolve) => this.#child.once("exit", resolve));
     this.#child.kill();
     await ended;
-    rmSync(this.#folder, { recursive: true, force: true, maxRetries: 5 });
+    // Chromium's helpers may write for a moment longer than it lives; what they leave is the system's to clear.
+    try { rmSync(this.#folder, { recursive: true, force: true, maxRetries: 5 }); } catch { /* left behind */ }
   }
 }
