@@ -187,7 +187,7 @@ void Surveyor::measure(const PlannedPose& planned, SurveyRow& pose) {
   if (rho != 0 && n > 1 && scenario().noise.tells_n_eff)
     pose.n_eff = std::max(1.0, n * (1 - rho) / (1 + rho));
   if (const int sense = world_.axis(azimuth).sense(); sense != 0) pose.sense = sense;
-  pose.dwell_s = planned.dwell_s;
+  if (planned.dwell_s > 0) pose.dwell_s = planned.dwell_s;
   if (!planned.cage_nT) pose.since_stop_s = design_.settle_s + planned.dwell_s / 2;
   for (const Covariate& c : scenario().covariates) {
     double mean = 0;

@@ -57,6 +57,14 @@ TEST(SimulatedTable, MeansScatterAsSamplesDo) {
   EXPECT_NEAR(spread[0] / spread[1], 1, 0.02);
 }
 
+/// One reading a pose: a length of zero is no measurement, and readers of the table refuse it.
+TEST(SimulatedTable, APoseOfASingleReadingHasNoDwell) {
+  const PoseTable table = simulated_table(table6(), grid_of_5832(), 1);
+  ASSERT_EQ(table.poses.size(), 5832U);
+  EXPECT_EQ(table.poses.front().dwell_s, std::nullopt);
+  EXPECT_EQ(table.poses.front().n, 1);
+}
+
 TEST(SimulatedTable, ADwellThatDriftsIsAveraged) {
   Scenario scenario = table6();
   scenario.noise.noise_nT = 0;
