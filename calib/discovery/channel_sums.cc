@@ -2,7 +2,6 @@
 #include "calib/discovery/channel_sums.h"
 
 #include <cmath>
-#include <random>
 
 #include "calib/criticism/tests/rows.h"
 #include "calib/effects/laws/site_gradient.h"
@@ -160,27 +159,22 @@ void ChannelSums::take_out(const LawOnChannels& law) {
   taken_out_.push_back(std::move(out));
 }
 
-Scores ChannelSums::draws(Eigen::Index count, std::uint64_t seed) const {
-  constexpr Eigen::Index kTogether = 250;
-  std::mt19937_64 rng(seed);
+Scores ChannelSums::draws(Eigen::Index count, std::mt19937_64& random) const {
   std::normal_distribution<double> normal;
   const Eigen::Index n = poses_ * rows_;
+  const Eigen::MatrixXd noise =
+      Eigen::MatrixXd::NullaryExpr(basis_.rows(), count, [&] { return normal(random); });
+  const Eigen::MatrixXd taken = basis_.transpose() * noise;
   Scores out(static_cast<std::size_t>(total_), Eigen::MatrixXd(poses_, count));
-  for (Eigen::Index first = 0; first < count; first += kTogether) {
-    const Eigen::Index m = std::min(kTogether, count - first);
-    const Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(basis_.rows(), m, [&] { return normal(rng); });
-    const Eigen::MatrixXd taken = basis_.transpose() * noise;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      auto scores = out[c].middleCols(first, m);
-      if (correlated_) {
-        scores.noalias() = columns_[c].full.transpose() * noise.topRows(n);
-      } else {
-        for (Eigen::Index k = 0; k < poses_; ++k)
-          scores.row(k).noalias() =
-              columns_[c].block.segment(k * rows_, rows_).transpose() * noise.middleRows(k * rows_, rows_);
-      }
-      scores.noalias() -= taken_[c].topRows(basis_.cols()).transpose() * taken;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (correlated_) {
+      out[c].noalias() = columns_[c].full.transpose() * noise.topRows(n);
+    } else {
+      for (Eigen::Index k = 0; k < poses_; ++k)
+        out[c].row(k).noalias() =
+            columns_[c].block.segment(k * rows_, rows_).transpose() * noise.middleRows(k * rows_, rows_);
     }
+    out[c].noalias() -= taken_[c].topRows(basis_.cols()).transpose() * taken;
   }
   for (const TakenOut& law : taken_out_) {
     Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(count);
@@ -189,6 +183,21 @@ Scores ChannelSums::draws(Eigen::Index count, std::uint64_t seed) const {
     for (std::size_t c = 0; c < out.size(); ++c) out[c].noalias() -= law.by_channel[c] * along;
   }
   return out;
+}
+
+ChannelSums::Moments ChannelSums::moments(int channel) const {
+  const auto c = static_cast<std::size_t>(channel);
+  const Eigen::MatrixXd& h = before_[c].front();
+  const Eigen::MatrixXd& U = taken_[c];
+  if (correlated_) {
+    const Eigen::MatrixXd G = h - U.transpose() * U;
+    return {.trace = G.trace(), .squares = G.squaredNorm()};
+  }
+  // |diag(h) - U'U|^2 without the matrix of poses by poses.
+  const Eigen::ArrayXd own = U.colwise().squaredNorm().transpose().array();
+  return {
+      .trace = h.sum() - own.sum(),
+      .squares = h.squaredNorm() - 2 * (h.col(0).array() * own).sum() + (U * U.transpose()).squaredNorm()};
 }
 
 }  // namespace mgtd::calib::discovery

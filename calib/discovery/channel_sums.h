@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include "calib/criticism/tests/residual.h"
@@ -84,8 +85,15 @@ class ChannelSums {
   /// Nothing happens where the model takes up the law whole.
   void take_out(const LawOnChannels& law);
 
-  /// Scores of noise alone, `count` draws in the columns of each channel. The same seed, the same draws.
-  [[nodiscard]] Scores draws(Eigen::Index count, std::uint64_t seed) const;
+  /// Scores of noise alone, `count` draws in the columns of each channel.
+  [[nodiscard]] Scores draws(Eigen::Index count, std::mt19937_64& random) const;
+
+  /// G_cc as a whole: the mean and the variance of |s_c|^2 where s_c is noise are its trace and twice its
+  /// squares.
+  struct Moments {
+    double trace{0}, squares{0};
+  };
+  [[nodiscard]] Moments moments(int channel) const;
 
  private:
   /// Whitened columns of one unit at each pose of a channel.

@@ -175,10 +175,9 @@ Result<std::optional<double>> extrapolation_spread(const std::vector<FittedLaw>&
 
 LeftOn left_on(const ChannelSums& sums) {
   LeftOn out;
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(sums.poses(), sums.poses());
   for (int c = 0; c < sums.channels(); ++c) {
-    const Eigen::MatrixXd G = sums.product(c, c, one);
-    const double sigmas = (sums.score(c).squaredNorm() - G.trace()) / std::sqrt(2 * G.squaredNorm());
+    const ChannelSums::Moments G = sums.moments(c);
+    const double sigmas = (sums.score(c).squaredNorm() - G.trace) / std::sqrt(2 * G.squares);
     if (sigmas > out.sigmas || c == 0) out = {c, sigmas};
   }
   return out;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "calib/discovery/random_offset.h"
 
@@ -115,14 +116,20 @@ Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool
 std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& sums,
                                   const criticism::tests::NoiseReference& noise, int draws,
                                   std::uint64_t seed) {
-  std::vector<double> out(static_cast<std::size_t>(draws), 0.0);
-  for (const LawSearch::Largest& largest : search.largest(sums.draws(draws, seed))) {
-    const double price = std::log10(largest.alike);
-    for (Eigen::Index i = 0; i < largest.S.size(); ++i) {
-      double& least = out[static_cast<std::size_t>(i)];
-      least = std::min(
-          least, noise.log10_p(largest.S[i], largest.k, std::min(largest.axes, sums.channels())) + price);
+  constexpr int kTogether = 250;  // scores of every formula on every draw: some ten megabytes, not hundreds
+  std::mt19937_64 random(seed);
+  std::vector<double> out;
+  while (static_cast<int>(out.size()) < draws) {
+    const int count = std::min(kTogether, draws - static_cast<int>(out.size()));
+    std::vector<double> least(static_cast<std::size_t>(count), 0.0);
+    for (const LawSearch::Largest& largest : search.largest(sums.draws(count, random))) {
+      const double price = std::log10(largest.alike);
+      for (std::size_t i = 0; i < least.size(); ++i)
+        least[i] = std::min(least[i], noise.log10_p(largest.S[static_cast<Eigen::Index>(i)], largest.k,
+                                                    std::min(largest.axes, sums.channels())) +
+                                          price);
     }
+    out.insert(out.end(), least.begin(), least.end());
   }
   return out;
 }

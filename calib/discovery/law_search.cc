@@ -122,16 +122,27 @@ LawSearch::OnChannel LawSearch::on_channel(int c) const {
 LawSearch::Wide LawSearch::wide(const Place& place) const {
   const std::vector<int> on = place.channels(sums_.channels());
   const auto& members = values_.members();
-  // Products of the columns of each pair of channels; a member needs its own block only.
-  std::vector<std::vector<Eigen::MatrixXd>> before(on.size());
   std::vector<Eigen::MatrixXd> taken;
   for (const int c : on) taken.push_back(sums_.taken_up(c, channels_[static_cast<std::size_t>(c)].columns));
-  for (std::size_t a = 0; a < on.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      before[a].push_back(
-          sums_.before_projection(on[a], on[b], channels_[static_cast<std::size_t>(on[b])].columns));
+  // Of each pair of channels, for some members at a time: of all they would fill the memory.
+  constexpr std::size_t kTogether = 128;
+  std::vector<std::vector<Eigen::MatrixXd>> before(on.size());
+  Eigen::Index begin = 0;
+  const auto make_before = [&](std::size_t i) {
+    const FormulaValues::Member& last = members[std::min(i + kTogether, members.size()) - 1];
+    begin = members[i].first;
+    for (std::size_t a = 0; a < on.size(); ++a) {
+      before[a].clear();
+      for (std::size_t b = 0; b < a; ++b)
+        before[a].push_back(
+            sums_.before_projection(on[a], on[b],
+                                    channels_[static_cast<std::size_t>(on[b])].columns.middleCols(
+                                        begin, last.first + last.count - begin)));
+    }
+  };
   Wide out{.place = place, .combinations = {}};
   for (std::size_t i = 0; i < members.size(); ++i) {
+    if (i % kTogether == 0) make_before(i);
     const FormulaValues::Member& m = members[i];
     if (!values_.asked(values_.grammar().families[m.family], place)) continue;
     const Eigen::Index n = m.count * static_cast<Eigen::Index>(on.size());
@@ -145,7 +156,7 @@ LawSearch::Wide LawSearch::wide(const Place& place) const {
       for (std::size_t b = 0; b < a; ++b)
         products.block(at, static_cast<Eigen::Index>(b) * m.count, m.count, m.count) =
             channel.columns.middleCols(m.first, m.count).transpose() *
-                before[a][b].middleCols(m.first, m.count) -
+                before[a][b].middleCols(m.first - begin, m.count) -
             taken[a].middleCols(m.first, m.count).transpose() * taken[b].middleCols(m.first, m.count);
     }
     if (columns == 0) continue;

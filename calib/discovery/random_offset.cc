@@ -1,22 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/random_offset.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "calib/fit/joint/wandering_estimate.h"
-#include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::discovery {
 namespace {
 
-struct Spectrum {
-  Eigen::ArrayXd g, z2;
+/// A' G A = Q T Q' with T tridiagonal, and z = Q' A' s: every a takes a pass along the diagonal.
+class Tridiagonal {
+ public:
+  Tridiagonal(const Eigen::MatrixXd& products, const Eigen::VectorXd& by_residual) {
+    const Eigen::Tridiagonalization<Eigen::MatrixXd> of(products);
+    diagonal_ = of.diagonal(), beside_ = of.subDiagonal();
+    z_ = of.matrixQ().transpose() * by_residual;
+  }
+
+  [[nodiscard]] double largest_eigenvalue() const {
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>()
+        .computeFromTridiagonal(diagonal_, beside_, Eigen::EigenvaluesOnly)
+        .eigenvalues()
+        .tail<1>()
+        .value();
+  }
+
+  /// a z' (1 + a T)^-1 z - ln det (1 + a T), by L D L'.
+  [[nodiscard]] double two_ln_odds(double a) const {
+    double out = 0, d = 1, w = 0;
+    for (Eigen::Index i = 0; i < diagonal_.size(); ++i) {
+      const double l = i == 0 ? 0 : a * beside_[i - 1] / d;
+      d = 1 + a * diagonal_[i] - l * l * d;
+      w = z_[i] - l * w;
+      out += a * w * w / d - std::log(d);
+    }
+    return out;
+  }
+
+ private:
+  Eigen::VectorXd diagonal_, beside_, z_;
 };
 
 /// Of all channels together: what one of them shows is in the residual of the others, too.
-Spectrum spectrum(const Eigen::MatrixXd& A, const std::vector<int>& channels, const ChannelSums& sums) {
+Tridiagonal tridiagonal(const Eigen::MatrixXd& A, const std::vector<int>& channels, const ChannelSums& sums) {
   const Eigen::Index n = A.cols(), count = static_cast<Eigen::Index>(channels.size());
   Eigen::MatrixXd products(n * count, n * count);
   Eigen::VectorXd by_residual(n * count);
@@ -27,9 +56,7 @@ Spectrum spectrum(const Eigen::MatrixXd& A, const std::vector<int>& channels, co
       products.block(i * n, j * n, n, n) =
           A.transpose() * sums.product(c, channels[static_cast<std::size_t>(j)], A);
   }
-  const linear::SymmetricEigen eigen = linear::symmetric_eigen(products);
-  return {.g = eigen.values.array().max(0.0),
-          .z2 = (eigen.vectors.transpose() * by_residual).array().square()};
+  return {products, by_residual};
 }
 
 Eigen::MatrixXd factor_of(RandomOffset kind, const fit::joint::JointProblem& problem) {
@@ -52,14 +79,12 @@ double evidence_of(RandomOffset kind, const std::vector<int>& channels, const Ch
   constexpr double kNever = -std::numeric_limits<double>::infinity();
   const Eigen::MatrixXd A = factor_of(kind, problem);
   if (A.size() == 0 || channels.empty() || channels.back() >= sums.channels()) return kNever;
-  const Spectrum all = spectrum(A, channels, sums);
-  const double largest = all.g.maxCoeff();
+  const Tridiagonal all = tridiagonal(A, channels, sums);
+  const double largest = all.largest_eigenvalue();
   if (!(largest > 0)) return kNever;
   std::vector<double> q;
-  for (int i = 0; i < kValues; ++i) {
-    const double a = kFirst * std::pow(kLast / kFirst, i / (kValues - 1.0)) / largest;
-    q.push_back((a * all.z2 / (1 + a * all.g) - (1 + a * all.g).log()).sum());
-  }
+  for (int i = 0; i < kValues; ++i)
+    q.push_back(all.two_ln_odds(kFirst * std::pow(kLast / kFirst, i / (kValues - 1.0)) / largest));
   const double top = *std::max_element(q.begin(), q.end());
   double mean = 0;
   for (const double x : q) mean += std::exp((x - top) / 2) / kValues;

@@ -5,9 +5,9 @@
 
 /// The random rivals of every formula: the offset of a channel is f ~ N(0, a K), where it walks (K from
 /// fit/joint/wandering.h) or jumps from pose to pose, unrelated to anything recorded (K = 1). With K = A A',
-/// g the eigenvalues of A' G A and z the rotated A' s,
+/// H = A' G A and z = A' s,
 ///
-///     2 ln E = 2 ln of the mean over a of exp 1/2 sum_j [a z_j^2 / (1 + a g_j) - ln(1 + a g_j)]
+///     2 ln E = 2 ln of the mean over a of exp 1/2 [a z' (1 + a H)^-1 z - ln det(1 + a H)]
 ///
 /// Over several channels one a holds for all.
 namespace mgtd::calib::discovery {

@@ -69,7 +69,8 @@ TEST_P(ChannelSumsOf, DrawsHaveTheCovarianceOfTheScores) {
   const LawOnChannels a = random_law(s->sums, rng), b = random_law(s->sums, rng);
   s->sums.take_out(b);
   constexpr Eigen::Index kDraws = 4000;
-  const Scores draws = s->sums.draws(kDraws, 11);
+  std::mt19937_64 random(11);
+  const Scores draws = s->sums.draws(kDraws, random);
   Eigen::RowVectorXd of_a = Eigen::RowVectorXd::Zero(kDraws), of_b = of_a;
   for (std::size_t c = 0; c < a.size(); ++c) {
     if (a[c].size() > 0) of_a += a[c].transpose() * draws[c];
@@ -78,6 +79,19 @@ TEST_P(ChannelSumsOf, DrawsHaveTheCovarianceOfTheScores) {
   // Variance of a sum of 4000 squares: 2.2 %.
   EXPECT_NEAR(of_a.squaredNorm() / kDraws / s->sums.product(a, a), 1, 0.09);
   EXPECT_NEAR(of_b.squaredNorm() / kDraws, 0, 1e-6 * of_a.squaredNorm() / kDraws);
+}
+
+TEST_P(ChannelSumsOf, MomentsAreThoseOfTheWholeMatrix) {
+  const auto s = testing::scene({}, 5, GetParam());
+  std::mt19937_64 rng(8);
+  s->sums.take_out(random_law(s->sums, rng));
+  for (int c = 0; c < s->sums.channels(); ++c) {
+    const Eigen::MatrixXd G =
+        s->sums.product(c, c, Eigen::MatrixXd::Identity(s->sums.poses(), s->sums.poses()));
+    const ChannelSums::Moments moments = s->sums.moments(c);
+    EXPECT_NEAR(moments.trace, G.trace(), 1e-9 * G.trace());
+    EXPECT_NEAR(moments.squares, G.squaredNorm(), 1e-9 * G.squaredNorm());
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, ChannelSumsOf, ::testing::Values(0.0, 0.4));
