@@ -125,6 +125,22 @@ void tell_masked(const store::PoseSource& source) {
              store::pose_numbers_text(numbers));
 }
 
+std::vector<std::pair<std::string, std::string>> field_options(const FitFlags& f) {
+  std::vector<std::pair<std::string, std::string>> out;
+  const auto number = [&](const char* name, const auto& value) {
+    if (value) out.emplace_back(name, fmt::format("{}", *value));
+  };
+  number("--field", f.field_nT);
+  number("--field-sd", f.field_sd_nT);
+  number("--inclination", f.inclination_deg);
+  number("--declination", f.declination_deg);
+  number("--table-sd", f.table_sd_deg);
+  number("--seed", f.seed);
+  number("--baseline", f.array.baseline_m);
+  if (!f.array.array.empty()) out.emplace_back("--array", f.array.array);
+  return out;
+}
+
 Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
   auto source = store::read_runs(run, flags.further);
   if (source) tell_masked(*source);

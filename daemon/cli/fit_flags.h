@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/fit/method_choice/fit.h"
@@ -34,6 +35,9 @@ std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command);
 void add_field_flags(CLI::App* command, FitFlags& flags);
 /// That about the table's angles alone.
 void add_table_flag(CLI::App* command, FitFlags& flags);
+
+/// What was said of the field, the seed and the array, as options of a command line: name and value.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> field_options(const FitFlags& flags);
 
 /// RUN, and the further runs behind it.
 [[nodiscard]] Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags);

@@ -18,6 +18,7 @@
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/store/run_file.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -137,35 +138,16 @@ std::vector<InstrumentIdentity> instruments_of(const std::string& run, const sto
   return known ? acquire::instruments_among(*known) : std::vector<InstrumentIdentity>{};
 }
 
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./@:=+,%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 }  // namespace
 
 std::string report_command(const ReportWishes& w, const FitFlags& f) {
-  std::string out = "mgt report " + quoted(w.run);
+  std::string out = "mgt report " + shell_word(w.run);
   const auto text = [&](const char* name, const std::string& value) {
-    if (!value.empty()) out += fmt::format(" {} {}", name, quoted(value));
-  };
-  const auto number = [&](const char* name, const auto& value) {
-    if (value) out += fmt::format(" {} {}", name, *value);
+    if (!value.empty()) out += fmt::format(" {} {}", name, shell_word(value));
   };
   for (const std::string& further : f.further) text("--and", further);
   for (const std::string& effect : f.with) text("--with", effect);
-  number("--field", f.field_nT);
-  number("--field-sd", f.field_sd_nT);
-  number("--inclination", f.inclination_deg);
-  number("--declination", f.declination_deg);
-  number("--table-sd", f.table_sd_deg);
-  number("--seed", f.seed);
-  number("--baseline", f.array.baseline_m);
-  text("--array", f.array.array);
+  for (const auto& [name, value] : field_options(f)) text(name.c_str(), value);
   text("--operator", w.operator_name);
   text("--site", w.site);
   for (const std::string& earlier : w.earlier) text("--earlier", earlier);

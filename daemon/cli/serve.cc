@@ -47,18 +47,10 @@ struct ServeArguments {
 
 /// What the command line says of the field and the array, for every job.
 std::vector<std::string> model_options(const FitFlags& f) {
+  FitFlags from_anywhere = f;
+  if (!f.array.array.empty()) from_anywhere.array.array = std::filesystem::absolute(f.array.array).string();
   std::vector<std::string> out;
-  const auto number = [&](const char* name, const auto& value) {
-    if (value) out.push_back(fmt::format("{}={}", name, *value));
-  };
-  number("--field", f.field_nT);
-  number("--field-sd", f.field_sd_nT);
-  number("--inclination", f.inclination_deg);
-  number("--declination", f.declination_deg);
-  number("--table-sd", f.table_sd_deg);
-  number("--seed", f.seed);
-  number("--baseline", f.array.baseline_m);
-  if (!f.array.array.empty()) out.push_back("--array=" + std::filesystem::absolute(f.array.array).string());
+  for (const auto& [name, value] : field_options(from_anywhere)) out.push_back(name + "=" + value);
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "calib/effects/effect_spec.h"
 #include "daemon/store/pose_numbers.h"
 #include "proto/json_line.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::daemon::serve::console {
 namespace {
@@ -176,15 +177,6 @@ std::vector<std::string> split(std::string_view words) {
   return out;
 }
 
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./@:=+,%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 }  // namespace
 
 std::span<const JobVerb> job_verbs() { return kVerbs; }
@@ -258,7 +250,7 @@ std::vector<std::string> job_words(const JobRequest& request, const std::string&
 
 std::string typed(const std::vector<std::string>& words) {
   std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + quoted(word);
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + shell_word(word);
   return out;
 }
 
