@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/channel_sums.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/criticism/tests/rows.h"
 #include "calib/effects/laws/site_gradient.h"
+#include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::discovery {
 namespace {
@@ -14,16 +16,48 @@ namespace tests = criticism::tests;
 }  // namespace
 
 Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
-                            const Eigen::VectorXd& whole2) {
-  const auto least =
-      (kAbsorbedShare * kAbsorbedShare * about_mean2.array()).max(kRounding * kRounding * whole2.array());
+                            const Eigen::VectorXd& whole2, double share) {
+  const auto least = (share * share * about_mean2.array()).max(kRounding * kRounding * whole2.array());
   return (left2.array() > least && left2.array() > 0).select(left2.array().max(1e-300).rsqrt(), 0.0);
+}
+
+Eigen::MatrixXd combinations(const Eigen::MatrixXd& left, const Eigen::MatrixXd& before, double share) {
+  constexpr double kSameDirection = 1e-6;  // eigenvalues below are rounding
+  const auto orthonormal = [](const Eigen::MatrixXd& products, double least) -> Eigen::MatrixXd {
+    const linear::SymmetricEigen eigen = linear::symmetric_eigen(products);
+    const Eigen::Index rank = (eigen.values.array() > least).count();
+    return eigen.vectors.rightCols(rank) *
+           eigen.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal().toDenseMatrix();
+  };
+  // A single column has been held against its length already.
+  if (share <= kAbsorbedShare || left.rows() == 1) return orthonormal(left, kSameDirection);
+  const Eigen::MatrixXd unit = orthonormal(before, kSameDirection * before.trace());
+  if (unit.cols() == 0) return unit;
+  return unit * orthonormal(unit.transpose() * left.selfadjointView<Eigen::Lower>() * unit, share * share);
 }
 
 Eigen::MatrixXd gradient_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   if (!problem.has_angles || problem.sensors() < 2)
     return {static_cast<Eigen::Index>(problem.poses.size()) * problem.pose_rows(), 0};
   return tests::effect_rows(problem, state, std::make_shared<const effects::laws::SiteGradient>());
+}
+
+Eigen::VectorXd law_rows(const LawOnChannels& law, const fit::joint::JointProblem& problem,
+                         const Eigen::MatrixXd& of_gradient) {
+  const Eigen::Index block = problem.pose_rows();
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(block * static_cast<Eigen::Index>(problem.poses.size()));
+  for (std::size_t c = 0; c < law.size(); ++c) {
+    const auto channel = static_cast<Eigen::Index>(c);
+    for (Eigen::Index k = 0; k < law[c].size(); ++k) {
+      if (channel < problem.channels()) {
+        out[k * block + channel] += problem.poses[static_cast<std::size_t>(k)].weight[channel] * law[c][k];
+      } else {
+        out.segment(k * block, block) +=
+            law[c][k] * of_gradient.col(channel - problem.channels()).segment(k * block, block);
+      }
+    }
+  }
+  return out;
 }
 
 namespace {
@@ -57,6 +91,7 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
       rows_(residual.rows_per_pose()),
       channels_(fit.problem.channels()),
       correlated_(residual.whitener().rho() != 0 || residual.whitener().wanders()),
+      absorbed_share_(std::max(kAbsorbedShare, residual.absorbed())),
       basis_(residual.basis()) {
   const Eigen::MatrixXd rows = unit_rows(fit.problem, fit.state);
   total_ = static_cast<int>(rows.cols());

@@ -32,13 +32,16 @@ inline constexpr double kAbsorbedShare = 2e-4;
 /// Of the whole length, below which what is left is rounding.
 inline constexpr double kRounding = 1e-6;
 
-/// One over the length that columns have left after projection; zero for absorbed ones. Squares of lengths:
-/// what is left, what there was without the mean, and all of it.
+/// One over the length that columns have left after projection; zero for absorbed ones, that have less than
+/// `share` left. Squares of lengths: what is left, what there was without the mean, and all of it.
 [[nodiscard]] Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
-                                          const Eigen::VectorXd& whole2);
+                                          const Eigen::VectorXd& whole2, double share);
 
-/// Eigenvalues of products of unit columns below this are rounding.
-inline constexpr double kSameDirection = 1e-6;
+/// Combinations of unit columns that are orthonormal after projection, one a column. `left`: their products
+/// after projection, `before`: without it, lower triangles. Where `share` is that of noisy readings a
+/// combination that has less of its length left is absorbed, though each of its columns has more.
+[[nodiscard]] Eigen::MatrixXd combinations(const Eigen::MatrixXd& left, const Eigen::MatrixXd& before,
+                                           double share);
 
 /// By channel; columns are draws or one residual.
 using Scores = std::vector<Eigen::MatrixXd>;
@@ -51,6 +54,10 @@ using LawOnChannels = std::vector<Eigen::VectorXd>;
 [[nodiscard]] Eigen::MatrixXd gradient_rows(const fit::joint::JointProblem& problem,
                                             const fit::joint::JointState& state);
 
+/// Rows of a law, as LinearRows. `of_gradient`: gradient_rows().
+[[nodiscard]] Eigen::VectorXd law_rows(const LawOnChannels& law, const fit::joint::JointProblem& problem,
+                                       const Eigen::MatrixXd& of_gradient);
+
 class ChannelSums {
  public:
   ChannelSums(const fit::joint::JointFit& fit, const criticism::tests::Residual& residual);
@@ -59,6 +66,9 @@ class ChannelSums {
   /// Of the readings.
   [[nodiscard]] int channels() const { return channels_; }
   [[nodiscard]] bool has_gradient() const { return total_ > channels_; }
+  /// Share of its length below which a projected formula says nothing: kAbsorbedShare, and more where the
+  /// readings are so noisy that what is left of a formula of them is their noise (Residual::absorbed).
+  [[nodiscard]] double absorbed_share() const { return absorbed_share_; }
   /// With the components of the gradient.
   [[nodiscard]] int total() const { return total_; }
 
@@ -106,6 +116,7 @@ class ChannelSums {
   Eigen::Index poses_, rows_;
   int channels_, total_;
   bool correlated_;
+  double absorbed_share_;
   std::vector<Column> columns_;
   std::vector<std::vector<Eigen::MatrixXd>> before_;  ///< h_cd, d >= c: poses x 1 or poses x poses
   std::vector<Eigen::MatrixXd> taken_;                ///< U_c

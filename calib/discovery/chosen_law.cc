@@ -19,15 +19,17 @@ constexpr std::size_t kMostShown = 40;
 /// Of a fall of chi-square: two formulas that differ by less are the same on these poses.
 constexpr double kAlike = 1e-9;
 
-std::vector<Share> shares(const std::vector<RankedLaw>& ranked,
+/// Of the formulas alone: beside an effect of the library all of theirs may be too small for a number.
+std::vector<Share> shares(const std::vector<RankedLaw>& ranked, double of_head,
                           const std::function<std::string(const RankedLaw&)>& name) {
   constexpr double kShown = 0.001;
   std::map<std::string, double> sums;
   double all = 0;
   for (const RankedLaw& law : ranked) {
     if (law.kind != RankedLaw::Kind::formula) continue;
-    sums[name(law)] += law.P;
-    all += law.P;
+    const double P = std::exp((law.score - of_head) / 2);
+    sums[name(law)] += P;
+    all += P;
   }
   std::vector<Share> out;
   for (const auto& [of, P] : sums)
@@ -101,8 +103,9 @@ Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, co
                              double questions, const std::string& name) {
   ChosenLaw out;
   out.law.log10_p = criticism::tests::best_of(round.log10_p_best, questions);
-  out.law.where = shares(round.ranked, [](const RankedLaw& law) { return law.where; });
-  out.law.covariates = shares(round.ranked, [&](const RankedLaw& law) {
+  out.law.stands_out = stands_out(out.law.log10_p);
+  out.law.where = shares(round.ranked, round.head.score, [](const RankedLaw& law) { return law.where; });
+  out.law.covariates = shares(round.ranked, round.head.score, [&](const RankedLaw& law) {
     std::string all;
     for (const std::string& covariate : bench.grammar.families[law.family].covariates)
       all += (all.empty() ? "" : ", ") + shown_covariate(covariate, law.place);

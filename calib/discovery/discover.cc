@@ -22,8 +22,6 @@ namespace {
 
 namespace tests = criticism::tests;
 
-bool significant(double log10_p) { return log10_p < std::log10(kFalseDiscovery); }
-
 /// A fit with the first formula of some laws; empty where one of them is no effect, or the fit does not
 /// settle.
 Result<std::optional<fit::joint::JointFit>> fit_with(const PoseTable& table, fit::FitOptions options,
@@ -70,15 +68,23 @@ Result<NoiseInForce> noise_of(const PoseTable& table, const DiscoverOptions& opt
   return out;
 }
 
-Result<void> fits_in_memory(const NoiseInForce& in_force) {
-  const Eigen::Index poses = in_force.residual.poses(), channels = in_force.fit.problem.channels();
-  if (in_force.residual.whitener().rho() == 0 || poses * channels <= kMostCorrelated) return {};
-  return fail(
-      ErrorCode::refused,
-      fmt::format("the noise is correlated from pose to pose, and of {} axes at most {} poses of such "
-                  "noise are searched; these are {}",
-                  channels, kMostCorrelated / channels, poses),
-      "take every n-th pose, or means of several; mgt explain searches the library on all of them");
+bool fitted(const Pose& pose) { return pose.set != "check"; }
+
+/// Of the poses of a run some, evenly: the others stay in it as poses that no fit takes, and what looks back
+/// over the run sees them.
+PoseTable every_few(PoseTable table, std::size_t most) {
+  const auto all = static_cast<std::size_t>(std::count_if(table.poses.begin(), table.poses.end(), fitted));
+  if (all <= most) return table;
+  std::size_t k = 0, taken = 0;
+  for (Pose& pose : table.poses) {
+    if (!fitted(pose)) continue;
+    if (k++ == taken * all / most) {
+      ++taken;
+    } else {
+      pose.set = "check";
+    }
+  }
+  return table;
 }
 
 std::vector<tests::ScoredFamily> scored_library(const NoiseInForce& in_force,
@@ -97,8 +103,7 @@ Result<void> check(const PoseTable& table, const DiscoverOptions& options, const
                    const NoiseInForce& in_force, const Workbench& bench, ChannelSums sums,
                    std::vector<ChosenLaw>& laws, DiscoveryReport& out) {
   FoundLaw& first = laws.front().law;
-  for (std::size_t i = 1; i < laws.size(); ++i)
-    for (const LawOnChannels& direction : laws[i].head.basis) sums.take_out(direction);
+  for (std::size_t i = 1; i < laws.size(); ++i) take_out(laws[i].head, sums);
   auto shape = law_shape(laws.front().alike, laws.front().covariates, bench.inputs, sums, options.fit.seed);
   if (!shape) return tl::unexpected(shape.error());
   first.shape = *std::move(shape);
@@ -124,9 +129,9 @@ Result<void> check(const PoseTable& table, const DiscoverOptions& options, const
   return {};
 }
 
-}  // namespace
-
-Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& options) {
+/// Of a run of at most as many poses as a search can hold.
+Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions& options, std::size_t most) {
+  const PoseTable table = every_few(run, most);
   const auto joint = fit::joint::profiled_options(table, options.fit);
   if (!joint) return tl::unexpected(joint.error());
   const auto fit = fit::joint::fit_joint_at_size(table, *joint);
@@ -139,7 +144,9 @@ Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& 
   const tests::CandidateEffects candidates = tests::library_candidates(table);
   const auto in_force = noise_of(table, options, *fit, candidates, formulas, *values, *inputs);
   if (!in_force) return tl::unexpected(in_force.error());
-  if (const auto ok = fits_in_memory(*in_force); !ok) return tl::unexpected(ok.error());
+  const auto channels = static_cast<std::size_t>(fit->problem.channels());
+  if (in_force->residual.whitener().rho() != 0 && fit->problem.poses.size() * channels > kMostCorrelated)
+    return discover_in(run, options, kMostCorrelated / channels);
   const Workbench bench{.grammar = formulas,
                         .inputs = *inputs,
                         .values = *values,
@@ -148,6 +155,8 @@ Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& 
                         .library = scored_library(*in_force, candidates)};
   const ChannelSums bare(in_force->fit, in_force->residual);
   DiscoveryReport out;
+  out.poses = static_cast<std::size_t>(std::count_if(run.poses.begin(), run.poses.end(), fitted));
+  out.searched = fit->problem.poses.size();
   out.formulas = formulas.members(), out.grammar_hash = formulas.hash(), out.draws = options.draws;
   out.chi2 = in_force->residual.chi2(), out.dof = in_force->residual.dof();
   out.rho = in_force->residual.whitener().rho(), out.wanders = in_force->wanders;
@@ -161,12 +170,19 @@ Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& 
   out.log10_p_left = found->log10_p_left;
   const LeftOn left = left_on(found->left);
   out.left_sigmas = left.sigmas, out.left_on = sensor::channel_name(left.channel);
+  out.may_be_drift = may_be_drift(*in_force, found->laws.front());
   out.verdict = verdict_of(*in_force, found->laws, out);
-  if (significant(found->laws.front().law.log10_p) && options.checks)
+  if (found->laws.front().law.stands_out && options.checks)
     if (const auto ok = check(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)
       return tl::unexpected(ok.error());
   for (ChosenLaw& law : found->laws) out.laws.push_back(std::move(law.law));
   return out;
+}
+
+}  // namespace
+
+Result<DiscoveryReport> discover(const PoseTable& run, const DiscoverOptions& options) {
+  return discover_in(run, options, kMostPoses);
 }
 
 }  // namespace mgtd::calib::discovery

@@ -27,10 +27,11 @@ struct DiscoverOptions {
   bool checks{true};  ///< fits again with the law, repeats the search in folds and halves
 };
 
-/// Poses times channels that a search can hold in memory where noise is correlated from pose to pose.
-inline constexpr Eigen::Index kMostCorrelated = 7000;
+/// Poses that a search can hold in memory, and poses times channels where noise is correlated from pose to
+/// pose. Of a longer run so many are taken, evenly; the report says how many.
+inline constexpr std::size_t kMostPoses = 600, kMostCorrelated = 7000;
 
-/// Refuses what a fit refuses, and a run too long for correlated noise.
-[[nodiscard]] Result<DiscoveryReport> discover(const PoseTable& table, const DiscoverOptions& options);
+/// Refuses what a fit refuses.
+[[nodiscard]] Result<DiscoveryReport> discover(const PoseTable& run, const DiscoverOptions& options);
 
 }  // namespace mgtd::calib::discovery

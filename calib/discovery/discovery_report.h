@@ -50,6 +50,7 @@ struct FoundLaw {
   std::vector<FoundFormula> formulas{};  ///< the 99 % set, best first; the first is in the model afterwards
   std::vector<Share> covariates{}, where{};
   double log10_p{0};  ///< of the whole search
+  bool stands_out{false};
   double d{0};
   double walk_P{0}, jumps_P{0};
   double over_walk{0}, over_jumps{0};  ///< 2 ln of the odds of all formulas against them
@@ -66,14 +67,16 @@ struct DiscoveryReport {
   double log10_p_left{0};        ///< of the search in what is left after the laws
   std::string left_on{};         ///< an axis on which more scatters than noise, after the laws
   double left_sigmas{0};
+  std::size_t poses{0}, searched{0};  ///< of the run, and those that the search took
   std::size_t formulas{0}, hypotheses{0};
   std::string grammar_hash{};
   double questions{0};  ///< independent ones, by draws
   int draws{0};
   double chi2{0}, dof{0};
   double noise_nT{0}, residual_nT{0};
-  double rho{0};        ///< correlation from pose to pose in force
-  bool wanders{false};  ///< the offsets wander, as far as the tests of the library can tell
+  double rho{0};             ///< correlation from pose to pose in force
+  bool may_be_drift{false};  ///< law_verdict.h
+  bool wanders{false};       ///< the offsets wander, as far as the tests of the library can tell
   struct After {
     double residual_nT{0};
     std::optional<double> unseen_before_nT{}, unseen_after_nT{};

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/linear/symmetric_eigen.h"
-
 namespace mgtd::calib::discovery {
 namespace {
 
@@ -58,7 +56,7 @@ Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInpu
   if (!values) return tl::unexpected(values.error());
   const auto count = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = count * static_cast<Eigen::Index>(on.size());
-  Eigen::MatrixXd A(n, n);
+  Eigen::MatrixXd A(n, n), B(n, n);
   Eigen::VectorXd v(n), length2(n), whole(n);
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
   for (std::size_t a = 0; a < on.size(); ++a) {
@@ -69,24 +67,30 @@ Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInpu
     length2.segment(at, count) =
         whole.segment(at, count) - (one.transpose() * before).transpose().cwiseAbs2() / of_one;
     v.segment(at, count) = (*values)[a].transpose() * sums.score(on[a]);
-    for (std::size_t b = 0; b < on.size(); ++b)
-      A.block(at, static_cast<Eigen::Index>(b) * count, count, count) =
-          (*values)[a].transpose() * sums.product(on[a], on[b], (*values)[b]);
+    for (std::size_t b = 0; b < on.size(); ++b) {
+      const auto beside = static_cast<Eigen::Index>(b) * count;
+      A.block(at, beside, count, count) = (*values)[a].transpose() * sums.product(on[a], on[b], (*values)[b]);
+      B.block(at, beside, count, count) =
+          (*values)[a].transpose() * sums.before_projection(on[a], on[b], (*values)[b]);
+    }
   }
-  const Eigen::VectorXd scale = length_left(A.diagonal(), length2, whole);
-  const linear::SymmetricEigen eigen = linear::symmetric_eigen(scale.asDiagonal() * A * scale.asDiagonal());
-  const Eigen::Index rank = (eigen.values.array() > kSameDirection).count();
-  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors.rightCols(rank) *
-                            eigen.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::VectorXd scale = length_left(A.diagonal(), length2, whole, sums.absorbed_share());
+  const Eigen::MatrixXd V =
+      scale.asDiagonal() * combinations(scale.asDiagonal() * A * scale.asDiagonal(),
+                                        scale.asDiagonal() * B * scale.asDiagonal(), sums.absorbed_share());
   const Eigen::VectorXd along = V.transpose() * v;
-  out.k = static_cast<int>(rank);
+  out.k = static_cast<int>(V.cols());
   out.S = along.squaredNorm();
   out.value = V * along;
   out.covariance = V * V.transpose();
   out.law = on_channels(*values, on, sums.total(), out.value);
-  for (Eigen::Index j = 0; j < rank; ++j)
+  for (Eigen::Index j = 0; j < V.cols(); ++j)
     out.basis.push_back(on_channels(*values, on, sums.total(), V.col(j)));
   return out;
+}
+
+void take_out(const FittedLaw& law, ChannelSums& sums) {
+  for (const LawOnChannels& direction : law.basis) sums.take_out(direction);
 }
 
 double beyond(const FittedLaw& a, const FittedLaw& b, const ChannelSums& sums) {

@@ -34,6 +34,9 @@ struct FittedLaw {
 [[nodiscard]] Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInputs& inputs,
                                            const ChannelSums& sums);
 
+/// All directions of a law: ChannelSums::take_out.
+void take_out(const FittedLaw& law, ChannelSums& sums);
+
 /// Square of the length of what law a, as it was fitted, has beyond everything that b can be, whatever its
 /// coefficients. Two laws are told apart with 99 % when this is above kToldApart.
 [[nodiscard]] double beyond(const FittedLaw& a, const FittedLaw& b, const ChannelSums& sums);

@@ -56,25 +56,6 @@ Eigen::MatrixXd rows_of(const Eigen::MatrixXd& all, Eigen::Index block,
   return out;
 }
 
-/// Rows of a law at every pose, as LinearRows.
-Eigen::VectorXd rows_of(const LawOnChannels& law, const fit::joint::JointProblem& problem,
-                        const Eigen::MatrixXd& of_gradient) {
-  const Eigen::Index block = problem.pose_rows();
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(block * static_cast<Eigen::Index>(problem.poses.size()));
-  for (std::size_t c = 0; c < law.size(); ++c) {
-    const auto channel = static_cast<Eigen::Index>(c);
-    for (Eigen::Index k = 0; k < law[c].size(); ++k) {
-      if (channel < problem.channels()) {
-        out[k * block + channel] += problem.poses[static_cast<std::size_t>(k)].weight[channel] * law[c][k];
-      } else {
-        out.segment(k * block, block) +=
-            law[c][k] * of_gradient.col(channel - problem.channels()).segment(k * block, block);
-      }
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 std::optional<double> halves_ratio(const fit::joint::JointFit& fit, double scale2, const FittedLaw& law) {
@@ -128,7 +109,7 @@ Result<std::optional<double>> held_out_fall(const fit::joint::JointFit& fit, con
                             fit.problem.channels(), sums.total());
     if (!law) return tl::unexpected(law.error());
     const Eigen::VectorXd z =
-        residual.whitener().apply(rows_of(*law, fit.problem, gradient_rows(fit.problem, fit.state))) /
+        residual.whitener().apply(law_rows(*law, fit.problem, gradient_rows(fit.problem, fit.state))) /
         residual.unit();
     // Parameters of the calibration follow from the poses that were seen, without the law and with it.
     const Eigen::MatrixXd train = rows_of(white, block, seen), test = rows_of(white, block, held),

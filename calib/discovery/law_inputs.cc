@@ -5,12 +5,31 @@
 #include <unordered_map>
 
 #include "calib/effects/formula/history_name.h"
+#include "calib/fit/joint/pose_model.h"
 
 namespace mgtd::calib::discovery {
 namespace {
 
 using effects::formula::FormulaName;
 using Source = FormulaName::Source;
+
+/// Readings that the fit predicts, less offset: poses x channels. What is measured has the noise of a reading
+/// in it, and of a noisy sensor without angles a gain that shrinks everything would take the residual with
+/// it.
+Eigen::MatrixXd field_terms(const fit::joint::JointFit& fit) {
+  const auto poses = static_cast<Eigen::Index>(fit.problem.poses.size());
+  Eigen::MatrixXd out(poses, fit.problem.channels());
+  const fit::joint::PoseModel model(fit.problem, fit.state);
+  fit::joint::PoseLinear linear;
+  for (Eigen::Index k = 0; k < poses; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    model.linearise(fit.problem.poses[at], fit.state.nuisances[at], linear);
+    out.row(k) = linear.y_nT.transpose();
+  }
+  for (Eigen::Index c = 0; c < out.cols(); ++c)
+    out.col(c).array() -= fit.state.sensors[static_cast<std::size_t>(c / 3)].offset_nT[c % 3];
+  return out;
+}
 
 bool of_the_field(const FormulaName& name) {
   if (name.source == Source::history)
@@ -36,11 +55,14 @@ Result<LawInputs> LawInputs::of(const fit::joint::JointFit& fit, const PoseTable
     if (found == by_number.end()) return fail(ErrorCode::internal, "a pose of the fit is not in its table");
     rows.push_back(found->second);
   }
-  return LawInputs(Data{*std::move(values), std::move(rows)});
+  return LawInputs(Data{.values = *std::move(values), .rows = std::move(rows), .field_nT = field_terms(fit)});
 }
 
 Eigen::VectorXd LawInputs::Data::name(const std::string& text, int channel) const {
   const FormulaName name = effects::formula::formula_name(text, effects::Level::axis, std::nullopt, 0);
+  if (name.source == Source::own) return field_nT.col(channel);
+  if (name.source == Source::input)
+    return field_nT.col(channel - channel % 3 + static_cast<Eigen::Index>(name.index));
   const std::vector<double> all = values.of(name, channel / 3, channel % 3);
   Eigen::VectorXd out(static_cast<Eigen::Index>(rows.size()));
   double sum = 0, count = 0;

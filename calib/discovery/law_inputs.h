@@ -40,6 +40,7 @@ class LawInputs {
   struct Data {
     effects::formula::RunValues values;
     std::vector<std::size_t> rows;  ///< in the table, of the poses that were fitted
+    Eigen::MatrixXd field_nT;       ///< what a formula calls u, ux, uy, uz, as fitted
     double stretch{1};
     [[nodiscard]] Eigen::VectorXd name(const std::string& name, int channel) const;
   };

@@ -94,6 +94,8 @@ double together(const std::vector<RankedLaw>& ranked) {
 
 }  // namespace
 
+bool stands_out(double log10_p) { return log10_p < std::log10(kFalseDiscovery); }
+
 Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library) {
   const LawSearch search(bench.values, sums);
   const std::vector<Tried> tried = search.scores();

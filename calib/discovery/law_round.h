@@ -11,6 +11,11 @@
 /// rivals.
 namespace mgtd::calib::discovery {
 
+/// Chance of a formula where nothing is there, of the whole search.
+inline constexpr double kFalseDiscovery = 0.01;
+/// The whole search finds as much in noise less often than that.
+[[nodiscard]] bool stands_out(double log10_p);
+
 /// What a search works with, from the first round to the last.
 struct Workbench {
   const Grammar& grammar;

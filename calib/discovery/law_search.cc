@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <map>
 
-#include "calib/linear/symmetric_eigen.h"
-
 namespace mgtd::calib::discovery {
 namespace {
 
@@ -103,18 +101,19 @@ LawSearch::OnChannel LawSearch::on_channel(int c) const {
     const Eigen::MatrixXd left = before - u.transpose() * u;
     const Eigen::ArrayXd length2 =
         before.diagonal().array() - (one.transpose() * h).transpose().array().square() / of_one;
-    const Eigen::VectorXd scale = length_left(left.diagonal(), length2, before.diagonal());
+    const Eigen::VectorXd scale =
+        length_left(left.diagonal(), length2, before.diagonal(), sums_.absorbed_share());
     if (m.count == 1) {
       if (scale[0] == 0) continue;
       out.columns.col(m.first) = g.col(0) * scale[0];
       out.rank[i] = 1;
       continue;
     }
-    const linear::SymmetricEigen eigen =
-        linear::symmetric_eigen(scale.asDiagonal() * left * scale.asDiagonal());
-    for (Eigen::Index j = m.count - 1; j >= 0 && eigen.values[j] > kSameDirection; --j)
-      out.columns.col(m.first + out.rank[i]++) =
-          g * (scale.asDiagonal() * eigen.vectors.col(j) / std::sqrt(eigen.values[j]));
+    const Eigen::MatrixXd basis =
+        combinations(scale.asDiagonal() * left * scale.asDiagonal(),
+                     scale.asDiagonal() * before * scale.asDiagonal(), sums_.absorbed_share());
+    out.rank[i] = static_cast<int>(basis.cols());
+    out.columns.middleCols(m.first, basis.cols()) = g * (scale.asDiagonal() * basis);
   }
   return out;
 }
@@ -133,7 +132,7 @@ LawSearch::Wide LawSearch::wide(const Place& place) const {
     begin = members[i].first;
     for (std::size_t a = 0; a < on.size(); ++a) {
       before[a].clear();
-      for (std::size_t b = 0; b < a; ++b)
+      for (std::size_t b = 0; b <= a; ++b)
         before[a].push_back(
             sums_.before_projection(on[a], on[b],
                                     channels_[static_cast<std::size_t>(on[b])].columns.middleCols(
@@ -146,25 +145,23 @@ LawSearch::Wide LawSearch::wide(const Place& place) const {
     const FormulaValues::Member& m = members[i];
     if (!values_.asked(values_.grammar().families[m.family], place)) continue;
     const Eigen::Index n = m.count * static_cast<Eigen::Index>(on.size());
-    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, n), whole = left;
     int columns = 0;
     for (std::size_t a = 0; a < on.size(); ++a) {
       const OnChannel& channel = channels_[static_cast<std::size_t>(on[a])];
       const auto at = static_cast<Eigen::Index>(a) * m.count;
-      products.block(at, at, channel.rank[i], channel.rank[i]).setIdentity();
       columns += channel.rank[i];
-      for (std::size_t b = 0; b < a; ++b)
-        products.block(at, static_cast<Eigen::Index>(b) * m.count, m.count, m.count) =
-            channel.columns.middleCols(m.first, m.count).transpose() *
-                before[a][b].middleCols(m.first - begin, m.count) -
-            taken[a].middleCols(m.first, m.count).transpose() * taken[b].middleCols(m.first, m.count);
+      for (std::size_t b = 0; b <= a; ++b) {
+        auto block = left.block(at, static_cast<Eigen::Index>(b) * m.count, m.count, m.count);
+        block = channel.columns.middleCols(m.first, m.count).transpose() *
+                before[a][b].middleCols(m.first - begin, m.count);
+        whole.block(at, static_cast<Eigen::Index>(b) * m.count, m.count, m.count) = block;
+        block -= taken[a].middleCols(m.first, m.count).transpose() * taken[b].middleCols(m.first, m.count);
+      }
     }
     if (columns == 0) continue;
-    const linear::SymmetricEigen eigen = linear::symmetric_eigen(products);
-    const Eigen::Index rank = (eigen.values.array() > kSameDirection).count();
-    out.combinations.push_back(
-        {i, eigen.vectors.rightCols(rank) *
-                eigen.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal().toDenseMatrix()});
+    Eigen::MatrixXd basis = combinations(left, whole, sums_.absorbed_share());
+    if (basis.cols() > 0) out.combinations.push_back({i, std::move(basis)});
   }
   return out;
 }

@@ -8,14 +8,9 @@
 #include <limits>
 
 #include "calib/criticism/tests/multiplicity.h"
-#include "calib/discovery/law_verdict.h"
 
 namespace mgtd::calib::discovery {
 namespace {
-
-void take_out(const FittedLaw& law, ChannelSums& sums) {
-  for (const LawOnChannels& direction : law.basis) sums.take_out(direction);
-}
 
 std::string name_of(std::size_t law) { return fmt::format("law{}", law + 1); }
 
@@ -81,14 +76,13 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
     if (!round) return tl::unexpected(round.error());
     if (out.laws.empty()) out.hypotheses = round->hypotheses;
     models.add(out.laws.size(), T, *round);
-    const bool stands_out =
-        criticism::tests::best_of(round->log10_p_best, questions) < std::log10(kFalseDiscovery);
-    if (out.laws.size() >= kMostLaws || (!out.laws.empty() && !stands_out)) break;
+    const bool more = stands_out(criticism::tests::best_of(round->log10_p_best, questions));
+    if (out.laws.size() >= kMostLaws || (!out.laws.empty() && !more)) break;
     auto one = chosen_law(bench, out.left, *round, questions, name_of(out.laws.size()));
     if (!one) return tl::unexpected(one.error());
     out.laws.push_back(*std::move(one));
     T += round->score;
-    if (!stands_out) {
+    if (!more) {
       models.laws = T;
       break;
     }
@@ -100,7 +94,7 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
   if (const auto ok = sweep(bench, bare, questions, out.laws); !ok) return tl::unexpected(ok.error());
   hold_against_random(models, out.laws.front().law);
   out.left = bare;
-  if (out.laws.front().law.log10_p < std::log10(kFalseDiscovery))
+  if (out.laws.front().law.stands_out)
     for (const ChosenLaw& law : out.laws) take_out(law.head, out.left);
   const auto left = law_round(bench, out.left, false);
   if (!left) return tl::unexpected(left.error());

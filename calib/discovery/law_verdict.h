@@ -8,8 +8,9 @@
 /// The verdict on a run, from the laws that were found in it and from what is left after them.
 namespace mgtd::calib::discovery {
 
-/// Chance of a formula where nothing is there, of the whole search.
-inline constexpr double kFalseDiscovery = 0.01;
+/// A recording has one sample a pose, and samples that follow one another are no replicates: what drifts for
+/// a while, whatever its cause, looks like a law of time or of anything else that drifts.
+[[nodiscard]] bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first);
 
 /// `report`: with what is left after the laws.
 [[nodiscard]] Verdict verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,

@@ -9,9 +9,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "calib/effects/effect_spec.h"
 #include "calib/report/json_number.h"
 #include "calib/report/wrapped.h"
 #include "calib/stats/probability.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -27,6 +29,27 @@ constexpr std::size_t kShown = 8, kSharesShown = 4, kCoefficientsShown = 4;
 constexpr double kDisagree = 0.3;
 
 json optional_number(const std::optional<double>& x) { return x ? number_or_null(*x) : json(); }
+
+/// An effect as `mgt define` takes it.
+struct Definition {
+  std::string spec, name, scale, formula;
+};
+std::vector<Definition> definitions(const FoundFormula& f) {
+  std::vector<Definition> out;
+  for (const std::string& text : f.specs) {
+    const auto spec = effects::EffectSpec::parse(text);
+    const std::string* const formula = spec ? spec->find("expr") : nullptr;
+    if (formula != nullptr && spec->where) out.push_back({text, spec->name, spec->where->text(), *formula});
+  }
+  return out;
+}
+
+json define_json(const FoundFormula& f) {
+  json out = json::array();
+  for (const Definition& d : definitions(f))
+    out.push_back({{"spec", d.spec}, {"name", d.name}, {"scale", d.scale}, {"formula", d.formula}});
+  return out;
+}
 
 json formula_json(const FoundFormula& f, const FoundLaw& law, bool first) {
   json coefficients = json::array();
@@ -45,7 +68,7 @@ json formula_json(const FoundFormula& f, const FoundLaw& law, bool first) {
           {"library", f.library.empty() ? json() : json(f.library)},
           {"inner", f.inner ? json{{"value", *f.inner}, {"unit", f.inner_unit}} : json()},
           {"coefficients", std::move(coefficients)},
-          {"define", f.specs},
+          {"define", define_json(f)},
           {"held_out_chi2_fall", first ? optional_number(law.held_out_fall) : json()},
           {"halves_ratio", first ? optional_number(law.halves_ratio) : json()}};
 }
@@ -61,6 +84,7 @@ json law_json(const FoundLaw& law) {
   for (std::size_t i = 0; i < law.formulas.size(); ++i)
     formulas.push_back(formula_json(law.formulas[i], law, i == 0));
   json out{{"log10_p_search", law.log10_p},
+           {"stands_out", law.stands_out},
            {"d", law.d},
            {"covariates", shares_json(law.covariates)},
            {"where", shares_json(law.where)},
@@ -108,6 +132,9 @@ std::string what_next(const DiscoveryReport& r, const std::string& run) {
                  : "keep the formula with the commands below; it stays exploratory until a second run "
                    "confirms it (mgt define --from)";
     case Verdict::shape_only:
+      if (r.may_be_drift)
+        return "stay at each attitude for some seconds, come back to the first ones at the end, and compare: "
+               "what drifts does not come back with the attitude";
       return "record more (supplies, loads, temperatures of the electronics) and run again; mgt report " +
              run + " shows the residual against everything that was recorded";
     case Verdict::noise_like:
@@ -123,12 +150,10 @@ std::vector<std::string> commands(const DiscoveryReport& r, const std::string& r
   std::vector<std::string> out;
   if (r.verdict != Verdict::law && r.verdict != Verdict::law_set) return out;
   for (const FoundLaw& law : r.laws) {
-    for (const std::string& spec : law.formulas.front().specs) {
-      const std::string name = spec.substr(0, spec.find('@')),
-                        where = spec.substr(name.size() + 1, spec.find(',') - name.size() - 1),
-                        expression = spec.substr(spec.find("expr=") + 5);
-      out.push_back(fmt::format("mgt define {} {} '{}' --scale {}", run, name, expression, where));
-      out.push_back(fmt::format("mgt add {} {}", name, run));
+    for (const Definition& d : definitions(law.formulas.front())) {
+      out.push_back(fmt::format("mgt define {} {} {} --scale {}", shell_word(run), d.name,
+                                shell_word(d.formula), d.scale));
+      out.push_back(fmt::format("mgt add {} {}", d.name, shell_word(run)));
     }
   }
   return out;
@@ -152,7 +177,7 @@ std::string headline(const DiscoveryReport& r) {
       return fmt::format("SHAPE-ONLY: something acts on {}, and no formula accounts for it.",
                          law == nullptr ? r.left_on : first->where);
     case Verdict::noise_like:
-      if (law == nullptr || law->log10_p >= -2)
+      if (law == nullptr || !law->stands_out)
         return fmt::format("NOISE-LIKE: {} scatters more than its noise, and nothing recorded goes with it.",
                            r.left_on);
       return law->over_jumps < law->over_walk
@@ -255,6 +280,8 @@ json to_json(const DiscoveryReport& r, const std::string& run) {
   for (const FoundLaw& law : r.laws) laws.push_back(law_json(law));
   json out{{"schema", "mgt.discover/1"},
            {"verdict", std::string(discovery::to_string(r.verdict))},
+           {"poses", r.poses},
+           {"poses_searched", r.searched},
            {"hypotheses", r.hypotheses},
            {"grammar", {{"formulas", r.formulas}, {"hash", r.grammar_hash}}},
            {"questions", r.questions},
@@ -265,6 +292,7 @@ json to_json(const DiscoveryReport& r, const std::string& run) {
            {"residual_nT", r.residual_nT},
            {"rho", r.rho},
            {"wanders", r.wanders},
+           {"may_be_drift", r.may_be_drift},
            {"log10_p_left", r.log10_p_left},
            {"left", {{"where", r.left_on}, {"sigmas", r.left_sigmas}}},
            {"laws", laws},
@@ -274,8 +302,8 @@ json to_json(const DiscoveryReport& r, const std::string& run) {
            {"text", to_text(r, run)}};
   // The strongest law once more, where a reader of one law looks for it.
   const json first = laws.empty() ? json::object() : laws.front();
-  for (const char* key : {"log10_p_search", "d", "covariates", "where", "formulas", "stochastic", "curve",
-                          "extrapolation_spread"})
+  for (const char* key : {"log10_p_search", "stands_out", "d", "covariates", "where", "formulas",
+                          "stochastic", "curve", "extrapolation_spread"})
     out[key] = first.contains(key) ? first[key] : json();
   if (r.after)
     out["after"] = {{"residual_nT", r.after->residual_nT},
@@ -290,11 +318,19 @@ std::string to_text(const DiscoveryReport& r, const std::string& run) {
   out += wrapped(fmt::format(
       "residual {:.3g} nT, noise {:.3g} nT; {} formulas (grammar {}), {} questions with their places",
       r.residual_nT, r.noise_nT, r.formulas, r.grammar_hash, r.hypotheses));
+  if (r.searched < r.poses)
+    out += wrapped(fmt::format("{} of the {} poses are searched, evenly chosen: a search takes no more",
+                               r.searched, r.poses));
+  if (r.may_be_drift && r.verdict == Verdict::shape_only)
+    out += wrapped(
+        "one sample a pose: samples that follow one another are no replicates, and what drifts for a while, "
+        "whatever its cause, looks like such a law");
   if (r.wanders) out += wrapped("the offsets of this run wander: slow laws are held against that");
-  const bool show = r.verdict != Verdict::pass && !(r.laws.empty() || r.laws.front().log10_p >= -2);
-  if (show)
-    for (std::size_t i = 0; i < r.laws.size(); ++i) tell_law(r.laws[i], i + 1, r.laws.size(), out);
-  if (show)
+  const bool show = r.verdict != Verdict::pass && !r.laws.empty() && r.laws.front().stands_out;
+  // Of what is not believed the first says enough.
+  const std::size_t told = r.verdict == Verdict::noise_like ? 1 : r.laws.size();
+  for (std::size_t i = 0; show && i < told; ++i) tell_law(r.laws[i], i + 1, told, out);
+  if (show && told == r.laws.size())
     fmt::format_to(to, "left after {}: p {}; most on {}, {:.1f} standard deviations of chi-square\n",
                    r.laws.size() == 1 ? "it" : "them", stats::p_text(r.log10_p_left), r.left_on,
                    r.left_sigmas);

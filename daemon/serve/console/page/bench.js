@@ -262,8 +262,7 @@ export class Bench {
   }
   /** Each effect of the leading formula is defined, then added: the page's step is the terminal's. */
   async #keepLaw(found) {
-    for (const spec of found.laws.flatMap((law) => law.formulas[0].define)) {
-      const [, name, scale, formula] = spec.match(/^([^@]+)@([^,]+),.*?expr=(.*)$/);
+    for (const { name, scale, formula } of found.laws.flatMap((law) => law.formulas[0].define)) {
       if (!(await this.#ask("define", { name, formula, level: "axis", scale, unit: "nT" }))) return;
       await this.#change("add", name, {});
     }

@@ -39,7 +39,7 @@ function drawCurve(canvas, curve) {
 export function showLaws(found, keep) {
   const canvas = found.curve ? make("canvas", { class: "curve", role: "img", "aria-label": `the shape of ${found.curve.where} over ${found.curve.covariate}` }) : null;
   if (canvas) requestAnimationFrame(() => drawCurve(canvas, found.curve));
-  const believed = found.verdict !== "PASS" && found.log10_p_search < -2;
+  const believed = found.verdict !== "PASS" && found.stands_out;
   return [make("p", {}, make("b", { class: `word ${kColour[found.verdict] ?? ""}`, "data-key": "law-verdict" }, found.verdict)),
           canvas ? make("figure", {}, canvas, make("figcaption", { class: "caption" }, "The curve has no formula in it: splines or harmonics, up to a constant, with the band that holds all of it with 95 %; dashed the leading formula. Good: the dashes stay in the band.")) : null,
           ...(believed ? found.laws.map((law) => table("The formula, and what else it could be", ["", "where", "P", "fall of χ²", "coefficients"],
