@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "calib/discovery/scalars.h"
 #include "calib/effects/effect_context.h"
 #include "proto/sha256.h"
 
@@ -17,35 +17,12 @@ constexpr double kField_nT = effects::kReferenceField_nT;
 constexpr int kHarmonics = 6, kGainHarmonics = 3;
 constexpr Eigen::Index kMostPeriods = 400;
 
-std::string number(double x) { return fmt::format("{:.6g}", x); }
-
-/// "T_degC-21.3", "T_degC+3.1"
-std::string less(const std::string& text, double c) {
-  if (std::abs(c) < 1e-9) return text;
-  return c < 0 ? fmt::format("{}+{}", text, number(-c)) : fmt::format("{}-{}", text, number(c));
-}
-
 /// From `first` to `last` in equal ratios.
 std::vector<double> ratios(double first, double last, int n) {
   std::vector<double> out;
   for (int i = 0; i < n; ++i) out.push_back(first * std::pow(last / first, i / (n - 1.0)));
   return out;
 }
-
-/// Something that a law may be a function of.
-struct Scalar {
-  std::string text;       ///< its expression
-  std::string covariate;  ///< its name
-  int symbols{1};
-  int foreign_sensor{-1};
-  bool common{true};
-  double mean{0}, zero{0};
-  std::vector<double> deciles{};
-  bool curve{true};  ///< takes more than two values
-  [[nodiscard]] std::string about(double centre) const {
-    return centre == 0 ? text : fmt::format("({})", less(text, centre));
-  }
-};
 
 /// What stands in a product: about its mean, or about its zero.
 struct Factor {
@@ -56,14 +33,14 @@ struct Factor {
 
 class Writer {
  public:
-  explicit Writer(const LawInputs& inputs) : inputs_(inputs) { find_scalars(); }
+  explicit Writer(const LawInputs& inputs) : inputs_(inputs), scalars_(scalars_of(inputs)) {}
 
   Grammar write() {
-    for (const Scalar& s : scalars_) curves(s);
+    for (const Scalar& s : scalars_.all) curves(s);
     time();
-    for (const Scalar& s : scalars_)
+    for (const Scalar& s : scalars_.all)
       if (s.covariate.ends_with("T_degC")) heat(s);
-    for (const std::string& angle : angles_) harmonics(angle);
+    for (const std::string& angle : scalars_.angles) harmonics(angle);
     gravity();
     readings();
     before();
@@ -102,69 +79,6 @@ class Writer {
     return family;
   }
 
-  /// Values of a name over the channels that read it.
-  std::vector<double> pooled(const std::string& name, bool common) const {
-    std::vector<double> out;
-    for (int c = 0; c < (common ? 1 : inputs_.channels()); c += 3)
-      for (const double x : inputs_.name(name, c))
-        if (std::isfinite(x)) out.push_back(x);
-    return out;
-  }
-  bool varies(const std::vector<double>& values) const {
-    if (values.empty()) return false;
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return *high - *low > 1e-9 * (std::abs(*high) + std::abs(*low));
-  }
-  void find(const std::string& name, std::string text, bool common, double zero, int foreign_sensor) {
-    std::vector<double> values = pooled(name, common);
-    if (!varies(values)) return;
-    if (text.find("360") != std::string::npos)
-      for (double& x : values) x -= x > 180 ? 360 : 0;
-    std::sort(values.begin(), values.end());
-    Scalar s{.text = std::move(text),
-             .covariate = name,
-             .symbols = foreign_sensor < 0 ? 1 : 2,
-             .foreign_sensor = foreign_sensor,
-             .common = common,
-             .zero = zero};
-    for (const double x : values) s.mean += x / static_cast<double>(values.size());
-    for (int i = 1; i < 10; ++i) {
-      const double x = values[values.size() * static_cast<std::size_t>(i) / 10];
-      if (x > values.front() && x < values.back() && (s.deciles.empty() || x > s.deciles.back()))
-        s.deciles.push_back(x);
-    }
-    std::set<double> levels;
-    for (const double x : values)
-      if (levels.size() < 3) levels.insert(x);
-    s.curve = levels.size() > 2;
-    scalars_.push_back(std::move(s));
-  }
-  void find_scalars() {
-    find("t_h", "t_h", true, 0, -1);
-    find("T_degC", "T_degC", false, effects::kReferenceT_degC, -1);
-    for (int s = 0; s < inputs_.channels() / 3 && inputs_.channels() > 3; ++s) {
-      const std::string name = fmt::format("s{}_T_degC", s + 1);
-      find(name, name, true, effects::kReferenceT_degC, s);
-    }
-    std::set<std::string> columns;
-    for (const Pose& pose : inputs_.run().poses)
-      for (const auto& [name, value] : pose.covariates) columns.insert(name);
-    for (const std::string& name : columns) find(name, name, true, 0, -1);
-    for (const char* name : {"azimuth_deg", "pitch_deg", "roll_deg"}) {
-      const bool azimuth = std::string_view(name) == "azimuth_deg";
-      const std::size_t before = scalars_.size();
-      find(name, azimuth ? "(azimuth_deg-360*(azimuth_deg>180))" : name, true, 0, -1);
-      if (scalars_.size() > before) angles_.emplace_back(name);
-      if (azimuth) find(name, name, true, 0, -1);  // as a cable winds, and as a circle is cut behind
-    }
-    find("sense", "sense", true, 0, -1);
-  }
-  [[nodiscard]] const Scalar* scalar(std::string_view covariate) const {
-    const auto found = std::find_if(scalars_.begin(), scalars_.end(),
-                                    [&](const Scalar& s) { return s.covariate == covariate; });
-    return found == scalars_.end() ? nullptr : &*found;
-  }
-
   void curves(const Scalar& s) {
     on(s, 0, {s.text});
     if (!s.curve) return;
@@ -175,10 +89,11 @@ class Writer {
     on(s, 1, {fmt::format("abs({})", u)});
     on(s, 2, {u, u + "^2"});
     if (s.deciles.empty()) return;
-    on(s, 2, s.deciles, "", [t = s.text](double c) { return Columns{fmt::format("({}>{})", t, number(c))}; });
+    on(s, 2, s.deciles, "",
+       [t = s.text](double c) { return Columns{fmt::format("({}>{})", t, number_text(c))}; });
     on(s, 2, s.deciles, "", [s](double c) { return Columns{fmt::format("max(0, {})", s.about(c))}; });
     on(s, 2, s.deciles, "",
-       [t = s.text](double c) { return Columns{fmt::format("max(0, {}-{})", number(c), t)}; });
+       [t = s.text](double c) { return Columns{fmt::format("max(0, {}-{})", number_text(c), t)}; });
   }
 
   [[nodiscard]] std::vector<double> periods_h() const {
@@ -190,14 +105,14 @@ class Writer {
       out.push_back(2 * length_h / static_cast<double>(j));
     return out;
   }
-  static std::string decay(double tau_s) { return fmt::format("exp(-3600*t_h/{})", number(tau_s)); }
+  static std::string decay(double tau_s) { return fmt::format("exp(-3600*t_h/{})", number_text(tau_s)); }
   static Columns period(double hours, const std::string& times) {
-    const std::string angle = fmt::format("(2*pi*t_h/{})", number(hours));
+    const std::string angle = fmt::format("(2*pi*t_h/{})", number_text(hours));
     return {times + "sin" + angle, times + "cos" + angle};
   }
 
   void time() {
-    const Scalar* t = scalar("t_h");
+    const Scalar* t = scalars_.find("t_h");
     if (t == nullptr) return;
     on(*t, 1, {"sqrt(max(t_h, 0))"});
     on(*t, 2, kDecays_s, "s", [](double tau) { return Columns{decay(tau)}; });
@@ -208,7 +123,7 @@ class Writer {
     return fmt::format("lag{}_{}", std::max(1L, std::lround(tau_s)), of);
   }
   void heat(const Scalar& T) {
-    if (scalar("t_h") == nullptr) return;
+    if (scalars_.find("t_h") == nullptr) return;
     const std::string rate = "rate_" + T.covariate;
     on(T, 2, kLags_s, "s", [of = T.covariate](double tau) { return Columns{lag(tau, of)}; });
     on(T, 1, {rate});
@@ -224,7 +139,7 @@ class Writer {
     if (angle != "azimuth_deg") add({angle}, 3, {fmt::format("abs(sind({}))", angle)});
   }
   void gravity() {
-    if (angles_.size() < 3) return;
+    if (scalars_.angles.size() < 3) return;
     const Columns g{kGravity.begin(), kGravity.end()};
     for (const std::string& component : g) add({"gravity"}, 3, {component});
     add({"gravity"}, 4, {g[0], g[1]});
@@ -252,7 +167,7 @@ class Writer {
     return family;
   }
   static std::string over_field(const std::string& name) {
-    return fmt::format("({}/{})", name, number(kField_nT));
+    return fmt::format("({}/{})", name, number_text(kField_nT));
   }
   [[nodiscard]] std::vector<double> knots() const {
     double most = 0;
@@ -274,11 +189,11 @@ class Writer {
       of_reading(name, 3, {fmt::format("{}*abs({})", x, x)});
       if (name != "u") continue;
       of_reading(name, 3, ratios(0.03, 0.6, 8),
-                 [x](double w) { return Columns{fmt::format("tanh({}/{})", x, number(w))}; });
-      of_reading(name, 3, at, [x](double c) { return Columns{fmt::format("max(0, {})", less(x, c))}; });
-      of_reading(name, 3, at, [x](double c) { return Columns{fmt::format("({}>{})", x, number(c))}; });
+                 [x](double w) { return Columns{fmt::format("tanh({}/{})", x, number_text(w))}; });
+      of_reading(name, 3, at, [x](double c) { return Columns{fmt::format("max(0, {})", less_text(x, c))}; });
+      of_reading(name, 3, at, [x](double c) { return Columns{fmt::format("({}>{})", x, number_text(c))}; });
       of_reading(name, 4, sizes,
-                 [x](double c) { return Columns{fmt::format("max(0, abs({})-{})", x, number(c))}; });
+                 [x](double c) { return Columns{fmt::format("max(0, abs({})-{})", x, number_text(c))}; });
     }
     for (std::size_t a = 0; a < 3; ++a) {
       const std::string xa = over_field(kAxes[a]);
@@ -306,7 +221,7 @@ class Writer {
       of_reading(name, 3, {fmt::format("sign({})", x)});
     }
     of_reading("prev_u", 4, {fmt::format("{}*{}", over_field("prev_u"), over_field("u"))});
-    of_reading("prev_u", 4, {fmt::format("abs(prev_u-u)/{}", number(kField_nT))});
+    of_reading("prev_u", 4, {fmt::format("abs(prev_u-u)/{}", number_text(kField_nT))});
   }
 
   [[nodiscard]] static Factor factor(const Scalar& s) {
@@ -334,21 +249,21 @@ class Writer {
   }
   void products() {
     std::vector<Factor> factors;
-    for (const Scalar& s : scalars_)
+    for (const Scalar& s : scalars_.all)
       if (s.covariate != "azimuth_deg" && s.covariate != "roll_deg") factors.push_back(factor(s));
-    if (scalars_.empty()) return;
+    if (scalars_.all.empty()) return;
     const std::string parity = "cos(pi*pose)";
     add({"pose"}, 1, {parity});
     factors.push_back({parity, parity, "pose"});
-    for (const std::string& angle : angles_)
+    for (const std::string& angle : scalars_.angles)
       for (const char* of : {"sind", "cosd"})
         factors.push_back({fmt::format("{}({})", of, angle), fmt::format("{}({})", of, angle), angle, 2});
     for (std::size_t i = 0; i < factors.size(); ++i)
       for (std::size_t j = i + 1; j < factors.size(); ++j)
         product(factors[i], factors[j], factors[i].symbols + factors[j].symbols + 1);
-    const Scalar* t = scalar("t_h");
+    const Scalar* t = scalars_.find("t_h");
     if (t == nullptr) return;
-    for (const Scalar& T : scalars_) {
+    for (const Scalar& T : scalars_.all) {
       if (!T.covariate.ends_with("T_degC")) continue;
       const Factor time = factor(*t), heat = factor(T);
       const auto squared = [](const Factor& f) {
@@ -359,7 +274,7 @@ class Writer {
       product(squared(heat), time, T.symbols + 3);
       product(heat, squared(time), T.symbols + 3);
       on(T, 4, kLags_s, "s", [T](double tau) {
-        return Columns{fmt::format("({})*t_h", less(lag(tau, T.covariate), T.mean))};
+        return Columns{fmt::format("({})*t_h", less_text(lag(tau, T.covariate), T.mean))};
       }).covariates.emplace_back("t_h");
     }
   }
@@ -371,7 +286,7 @@ class Writer {
   }
   void gains() {
     const Factor x{over_field("u"), over_field("u"), "u", 1, -1, false};
-    for (const Scalar& s : scalars_) {
+    for (const Scalar& s : scalars_.all) {
       const bool recorded = !s.covariate.ends_with("_deg");
       if (!recorded) continue;
       product(x, factor(s), s.symbols + 2);
@@ -397,13 +312,14 @@ class Writer {
            {.covariates = {s.covariate},
             .symbols = s.symbols + 4,
             .inner = s.deciles,
-            .columns = [u, s](double c) { return Columns{fmt::format("{}({}>{})", u, s.text, number(c))}; },
+            .columns = [u,
+                        s](double c) { return Columns{fmt::format("{}({}>{})", u, s.text, number_text(c))}; },
             .refined = true});
     }
     product(x, {"cos(pi*pose)", "cos(pi*pose)", "pose"}, 3);
     gains_of_time_and_heat();
     const std::string u = over_field("u") + "*";
-    for (const std::string& angle : angles_) {
+    for (const std::string& angle : scalars_.angles) {
       for (int n = 1; n <= kGainHarmonics; ++n) {
         const std::string sin = fmt::format("{}sind({}*{})", u, n, angle),
                           cos = fmt::format("{}cosd({}*{})", u, n, angle);
@@ -413,9 +329,9 @@ class Writer {
     }
   }
   void gains_of_time_and_heat() {
-    if (scalar("t_h") == nullptr) return;
+    if (scalars_.find("t_h") == nullptr) return;
     const std::string u = over_field("u") + "*";
-    if (const Scalar* T = scalar("T_degC")) {
+    if (const Scalar* T = scalars_.find("T_degC")) {
       placed(add({"u", "T_degC"}, 4, {u + "rate_T_degC"}), "u");
       gain("u", {.covariates = {"T_degC"},
                  .symbols = 5,
@@ -423,7 +339,7 @@ class Writer {
                  .inner_unit = "s",
                  .columns =
                      [u, T = *T](double tau) {
-                       return Columns{fmt::format("{}({})", u, less(lag(tau, T.covariate), T.mean))};
+                       return Columns{fmt::format("{}({})", u, less_text(lag(tau, T.covariate), T.mean))};
                      },
                  .refined = true});
     }
@@ -448,12 +364,12 @@ class Writer {
         const int channel = 3 * s + axis;
         const std::string name = fmt::format("s{}_{}_nT", s + 1, "xyz"[axis]);
         const double offset_nT = inputs_.name(name, channel)[0] - inputs_.name("u", channel)[0];
-        const std::string x = fmt::format("(({})/{})", less(name, offset_nT), number(kField_nT));
+        const std::string x = fmt::format("(({})/{})", less_text(name, offset_nT), number_text(kField_nT));
         for (const std::string& text :
              {fmt::format("abs({})", x), x + "^2", x + "^3", fmt::format("sign({})", x)})
           neighbour(s, {name}, 4, text);
         const std::string T = fmt::format("s{}_T_degC", s + 1);
-        if (const Scalar* own = scalar(T)) neighbour(s, {name, T}, 5, x + "*" + own->about(own->mean));
+        if (const Scalar* own = scalars_.find(T)) neighbour(s, {name, T}, 5, x + "*" + own->about(own->mean));
       }
     }
   }
@@ -469,8 +385,7 @@ class Writer {
   static inline const std::array<std::string, 4> kReadings{"u", "ux", "uy", "uz"};
 
   const LawInputs& inputs_;
-  std::vector<Scalar> scalars_;
-  std::vector<std::string> angles_;
+  Scalars scalars_;
   Grammar out_;
 };
 

@@ -239,8 +239,8 @@ int main(int argc, char** argv) {
       fmt::format("build/bin/discovery --clean {} --runs {} --draws {}", clean, runs, draws);
   try {
     std::string page = fmt::format(
-        "# The discovery benchmark\n\nWritten by this command (1000 clean runs, 60 of each cell and 2000 "
-        "draws, its defaults, take some hours):\n\n    {}\n\n157 poses of the Table 6 rig (36 "
+        "# The discovery benchmark\n\nWritten by this command (its defaults: 1000 clean runs, 60 of each "
+        "cell, 2000 draws):\n\n    {}\n\n157 poses of the Table 6 rig (36 "
         "level, 121 "
         "random), 0.05 nT of noise a pose and axis, table angles to 0.1 degrees, a scalar reference, "
         "temperatures up and "

@@ -66,7 +66,7 @@ FormulaEffect::FormulaEffect(EffectSpec spec, Level level, Expression expression
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const FormulaName& n = names_[i];
     if (n.source == Source::input) inputs_.push_back(n.index);
-    if (n.source == Source::history) looking_back_.push_back(i);
+    if (n.source == Source::history) looking_back_.push_back({i, history_name(n.name)->kind});
     uses_own_ = uses_own_ || n.source == Source::own;
   }
 }
@@ -83,7 +83,7 @@ Result<std::shared_ptr<const Effect>> FormulaEffect::bound(const EffectContext& 
   auto before = std::make_shared<Before>();
   for (std::size_t j = 0; j < looking_back_.size(); ++j) {
     for (int channel = 0; channel < 3 * scale_.sensors(); ++channel) {
-      const std::vector<double> values = run->of(names_[looking_back_[j]], channel / 3, channel % 3);
+      const std::vector<double> values = run->of(names_[looking_back_[j].name], channel / 3, channel % 3);
       for (std::size_t k = 0; k < values.size(); ++k) {
         std::vector<double>& at = (*before)[context.table->poses[k].number];
         at.resize(looking_back_.size() * 3 * static_cast<std::size_t>(scale_.sensors()));
@@ -101,12 +101,11 @@ std::string_view FormulaEffect::missing(const Pose& pose) const {
     if (!before_) return laws::kNoMemory;
     const auto found = before_->find(pose.number);
     if (found == before_->end()) return laws::kNoMemory;
-    const std::string& name = names_[looking_back_[j]].name;
-    if (history_name(name)->kind == HistoryName::Kind::previous) continue;  // the first pose has none
+    if (looking_back_[j].kind == HistoryName::Kind::previous) continue;  // the first pose has none
     for (int sensor = 0; sensor < scale_.sensors(); ++sensor)
       for (int axis = 0; axis < 3; ++axis)
         if (first(sensor, axis) >= 0 && !std::isfinite(found->second[place_before(j, sensor, axis)]))
-          return name;
+          return names_[looking_back_[j].name].name;
   }
   for (const FormulaName& n : names_) {
     if (n.source == Source::column && !n.get(pose)) return n.name;
@@ -147,7 +146,7 @@ bool FormulaEffect::set_before(const Conditions& at, int sensor, int axis, Value
   bool all = true;
   for (std::size_t j = 0; j < looking_back_.size(); ++j) {
     const double x = before[place_before(j, sensor, axis)];
-    values[looking_back_[j]] = x;
+    values[looking_back_[j].name] = x;
     all = all && std::isfinite(x);
   }
   return all;

@@ -9,6 +9,7 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/formula/expression.h"
 #include "calib/effects/formula/formula_names.h"
+#include "calib/effects/formula/history_name.h"
 #include "calib/effects/laws/axis_scale.h"
 
 /// A user's formula as a term of the model: see formula.h. The derivative by a coefficient is exact (the term
@@ -64,9 +65,13 @@ class FormulaEffect final : public Effect {
   Expression expression_;
   std::vector<FormulaName> names_;
   std::size_t per_axis_{1};
-  bool implicit_{true};                    ///< no coefficient in the text: the whole is multiplied by one
-  std::vector<std::size_t> inputs_;        ///< that it uses
-  std::vector<std::size_t> looking_back_;  ///< names that look back over the run
+  bool implicit_{true};              ///< no coefficient in the text: the whole is multiplied by one
+  std::vector<std::size_t> inputs_;  ///< that it uses
+  struct LookingBack {
+    std::size_t name;  ///< of names_
+    HistoryName::Kind kind;
+  };
+  std::vector<LookingBack> looking_back_;
   std::shared_ptr<const Before> before_;
   bool uses_own_{false};
   laws::AxisScale scale_;

@@ -52,14 +52,34 @@ std::vector<double> slope_around(std::span<const double> t_h, std::span<const do
   return out;
 }
 
+/// A name that no column of the user's has by chance.
+bool of_a_sensor(std::string_view name) {
+  if (name == "T_degC") return true;
+  const auto end = name.find('_');
+  if (!name.starts_with('s') || end == std::string_view::npos || end < 2) return false;
+  const std::string_view digits = name.substr(1, end - 1), quantity = name.substr(end + 1);
+  return digits.find_first_not_of("0123456789") == std::string_view::npos &&
+         (quantity == "T_degC" || quantity == "x_nT" || quantity == "y_nT" || quantity == "z_nT");
+}
+
+bool of_the_field(std::string_view name) {
+  return name == "u" || name == "ux" || name == "uy" || name == "uz";
+}
+
 }  // namespace
 
 std::optional<HistoryName> history_name(std::string_view name) {
   constexpr std::string_view kPrevious = "prev_", kRate = "rate_", kLag = "lag";
-  if (name.starts_with(kPrevious))
-    return HistoryName{.kind = HistoryName::Kind::previous, .of = std::string(name.substr(kPrevious.size()))};
-  if (name.starts_with(kRate))
-    return HistoryName{.kind = HistoryName::Kind::rate, .of = std::string(name.substr(kRate.size()))};
+  if (name.starts_with(kPrevious)) {
+    const std::string_view of = name.substr(kPrevious.size());
+    if (!of_a_sensor(of) && !of_the_field(of)) return std::nullopt;
+    return HistoryName{.kind = HistoryName::Kind::previous, .of = std::string(of)};
+  }
+  if (name.starts_with(kRate)) {
+    const std::string_view of = name.substr(kRate.size());
+    if (!of_a_sensor(of)) return std::nullopt;
+    return HistoryName{.kind = HistoryName::Kind::rate, .of = std::string(of)};
+  }
   const auto end = name.find('_');
   if (!name.starts_with(kLag) || end == std::string_view::npos) return std::nullopt;
   const auto tau_s = parse_number(name.substr(kLag.size(), end - kLag.size()));

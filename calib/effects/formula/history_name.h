@@ -12,8 +12,10 @@
 ///     lag600_X     X behind a low-pass of 600 s, dz/dt = (X - z)/tau its unit
 ///     rate_X       slope of X over the nine poses around             its unit an hour
 ///
-/// X is T_degC (the sensor's own), u, ux, uy, uz (prev only) or a column. X is taken to go straight from pose
-/// to pose; the low-pass begins at rest. A pose before which there is none has no prev_X.
+/// X is T_degC (the sensor's own), s3_T_degC, a reading s3_x_nT, or, of prev alone, u, ux, uy, uz; of a lag
+/// any column, too. What else begins with prev_ or rate_ is a column of the user's own, like rate_hz. X is
+/// taken to go straight from pose to pose; the low-pass begins at rest. A pose before which there is none has
+/// no prev_X.
 namespace mgtd::calib::effects::formula {
 
 struct HistoryName {

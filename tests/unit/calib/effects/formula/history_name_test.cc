@@ -16,7 +16,11 @@ TEST(HistoryName, IsReadFromItsParts) {
   EXPECT_EQ(lag->kind, HistoryName::Kind::lag);
   EXPECT_EQ(lag->tau_s, 600);
   EXPECT_EQ(lag->of, "T_degC");
-  for (const char* other : {"lamp_A", "lag_T", "lag0_T_degC", "lagging", "T_degC"})
+  EXPECT_EQ(history_name("prev_s3_x_nT")->of, "s3_x_nT");
+  EXPECT_EQ(history_name("lag60_lamp_A")->of, "lamp_A");
+  // Columns of the user's own.
+  for (const char* other : {"lamp_A", "lag_T", "lag0_T_degC", "lagging", "T_degC", "rate_hz", "prev_pose",
+                            "rate_u", "rate_s_T_degC", "prev_sx_T_degC"})
     EXPECT_FALSE(history_name(other)) << other;
 }
 
@@ -41,7 +45,7 @@ TEST(HistoryName, ALagIsTheLowPassOfARamp) {
 TEST(HistoryName, ARateIsTheSlopeAnHour) {
   std::vector<double> t, x;
   for (int k = 0; k < 30; ++k) t.push_back(0.01 * k * (1 + 0.1 * (k % 3))), x.push_back(3 - 4 * t.back());
-  for (const double slope : history(*history_name("rate_X"), t, x)) EXPECT_NEAR(slope, -4, 1e-9);
+  for (const double slope : history(*history_name("rate_T_degC"), t, x)) EXPECT_NEAR(slope, -4, 1e-9);
 }
 
 }  // namespace
