@@ -111,6 +111,7 @@ Result<RunRequest> parse_run_request(const Json& args) {
   arguments.number("dwell_long_s", 0.05, 3600, request.dwell_long_s);
   arguments.seed("seed", request.seed);
   arguments.number("until_tensor_sd_nT_per_m", 1e-3, 1e6, request.until_tensor_sd_nT_per_m);
+  arguments.number("until_explained_min", 1, 10'000, request.until_explained_min);
   arguments.text("list", request.list);
   arguments.poses("poses", request.poses);
   if (auto objection = arguments.objection()) return tl::unexpected(std::move(*objection));
@@ -134,6 +135,7 @@ Json to_json(const RunRequest& request) {
   put("dwell_long_s", request.dwell_long_s);
   put("seed", request.seed);
   put("until_tensor_sd_nT_per_m", request.until_tensor_sd_nT_per_m);
+  put("until_explained_min", request.until_explained_min);
   if (!request.list.empty()) args["list"] = request.list;
   for (const RequestedPose& pose : request.poses) args["poses"].push_back(to_json(pose));
   return args;

@@ -19,8 +19,10 @@ struct RunRequest {
   std::optional<double> dwell_short_s, dwell_long_s;
   std::optional<std::uint64_t> seed;
   std::optional<double> until_tensor_sd_nT_per_m;  ///< end the run once the tensor is known so well
-  std::string list;                                ///< name of the file that the poses are from
-  std::vector<RequestedPose> poses;                ///< these, in this order, instead of a plan of sets
+  std::optional<double>
+      until_explained_min;           ///< go on after the plan until the residual is explained, so long
+  std::string list;                  ///< name of the file that the poses are from
+  std::vector<RequestedPose> poses;  ///< these, in this order, instead of a plan of sets
   bool operator==(const RunRequest&) const = default;
 };
 

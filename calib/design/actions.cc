@@ -91,22 +91,29 @@ double minutes_per_pose(const PoseTable& table) {
   return (*last - *first) / 60 / static_cast<double>(table.poses.size() - 1);
 }
 
-PoseTable extended(const PoseTable& table, const Action& action,
-                   const PerSensor<sensor::SensorModel>& sensors) {
-  PoseTable out = table;
+std::vector<Pose> same_again(const PoseTable& table, std::size_t count) {
   const Pose& last = table.poses.back();
-  const std::size_t n = table.poses.size();
-  for (std::size_t k = 0; k < kActionPoses; ++k) {
-    // Attitudes spread over the run, in an order that has none.
-    Pose pose = table.poses[(k * 37 + 11) % n];
+  std::vector<Pose> out;
+  for (std::size_t k = 0; k < count; ++k) {
+    Pose pose = table.poses[(k * 37 + 11) % table.poses.size()];
     pose.number = last.number + static_cast<int>(k) + 1;
     if (pose.set == "check") pose.set = "random";
     if (last.t_s) pose.t_s = *last.t_s + 60 * minutes_per_pose(table) * static_cast<double>(k + 1);
     pose.t_utc.reset();
     pose.T_degC = drifted(table, pose.t_s.value_or(0));
-    action.change(pose, k);
-    if (action.tilt_rad != 0) tilt(pose, k % 2 == 0 ? action.tilt_rad : -action.tilt_rad, sensors);
-    out.poses.push_back(std::move(pose));
+    out.push_back(std::move(pose));
+  }
+  return out;
+}
+
+PoseTable extended(const PoseTable& table, const Action& action,
+                   const PerSensor<sensor::SensorModel>& sensors) {
+  PoseTable out = table;
+  std::vector<Pose> more = same_again(table, kActionPoses);
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    action.change(more[k], k);
+    if (action.tilt_rad != 0) tilt(more[k], k % 2 == 0 ? action.tilt_rad : -action.tilt_rad, sensors);
+    out.poses.push_back(std::move(more[k]));
   }
   return out;
 }

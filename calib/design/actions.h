@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "calib/sensor/sensor_model.h"
 #include "proto/pose.h"
@@ -31,6 +32,10 @@ struct Action {
 /// as `sensors` would make them.
 [[nodiscard]] PoseTable extended(const PoseTable& table, const Action& action,
                                  const PerSensor<sensor::SensorModel>& sensors);
+
+/// Poses of the run once more, spread over it, in an order that has none; numbers follow its last, times at
+/// its pace.
+[[nodiscard]] std::vector<Pose> same_again(const PoseTable& table, std::size_t count);
 
 [[nodiscard]] double minutes_per_pose(const PoseTable& table);
 

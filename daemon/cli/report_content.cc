@@ -138,6 +138,14 @@ std::vector<InstrumentIdentity> instruments_of(const std::string& run, const sto
   return known ? acquire::instruments_among(*known) : std::vector<InstrumentIdentity>{};
 }
 
+std::vector<run::RunJudgement> judgements_of(const std::string& run, const store::PoseSource& source) {
+  if (!source.header) return {};
+  const auto file = store::RunFile::open(run, store::Access::read_only);
+  const auto text = file ? file->document(run::kJudgements) : Result<std::optional<std::string>>{};
+  auto judgements = run::judgements_from_json(text && *text ? **text : std::string());
+  return judgements ? *std::move(judgements) : std::vector<run::RunJudgement>{};
+}
+
 }  // namespace
 
 std::string report_command(const ReportWishes& w, const FitFlags& f) {
@@ -173,6 +181,7 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
   auto doubts = doubts_of(wishes.run, *source, *options);
   if (!doubts) return tl::unexpected(doubts.error());
   auto instruments = instruments_of(wishes.run, *source);
+  auto judgements = judgements_of(wishes.run, *source);
   // Fits point to the poses; moving a table moves none of them.
   ReportContent out{.run = std::filesystem::path(wishes.run).filename().string(),
                     .source = std::move(*source),
@@ -183,6 +192,7 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
                     .comparison = std::move(*comparison),
                     .explained = std::move(*explained),
                     .waterfall = {},
+                    .judgements = std::move(judgements),
                     .history = std::move(*history),
                     .doubts = std::move(*doubts),
                     .command = report_command(wishes, flags)};

@@ -11,6 +11,7 @@
 #include "calib/fit/method_choice/fit.h"
 #include "calib/report/figures/figure.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/run/run_judgement.h"
 #include "daemon/store/model_history.h"
 #include "daemon/store/pose_source.h"
 #include "proto/instrument_identity.h"
@@ -33,6 +34,7 @@ struct ReportContent {
   calib::criticism::tests::Comparison comparison;
   calib::criticism::search::ExplainReport explained;
   std::optional<calib::criticism::search::Waterfall> waterfall;  ///< of a model with effects
+  std::vector<run::RunJudgement> judgements;  ///< of a run that went on until it was explained
   std::vector<store::ModelStep> history;
   std::vector<calib::criticism::search::Choice> doubts;  ///< what is open about effects of the kept model
   std::string command;                                   ///< that makes this report again

@@ -219,7 +219,7 @@ std::string report_page(const ReportContent& c) {
       escaped(c.run), html_style(), escaped(c.fit.calibration.id), escaped(c.fit.calibration.software));
   for (const auto section : {verdict_section, measured_section, noise_section, limits_section, rounds_section,
                              waterfall_section, residual_section, candidates_section, errors_section,
-                             parameters_section, next_section, history_section})
+                             parameters_section, next_section, judgements_section, history_section})
     out += section(c);
   return out + fmt::format(
                    "</main><footer>Made by <code>{}</code>. This page loads nothing and runs "

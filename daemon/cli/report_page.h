@@ -23,6 +23,7 @@ namespace mgtd::daemon::cli {
 [[nodiscard]] std::string errors_section(const ReportContent& content);
 [[nodiscard]] std::string parameters_section(const ReportContent& content);
 [[nodiscard]] std::string next_section(const ReportContent& content);
+[[nodiscard]] std::string judgements_section(const ReportContent& content);
 [[nodiscard]] std::string history_section(const ReportContent& content);
 
 }  // namespace mgtd::daemon::cli

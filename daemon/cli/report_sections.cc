@@ -127,6 +127,19 @@ std::string parameters_section(const ReportContent& c) {
              "scales and offsets as the sensors' certificates say, standard errors far below what matters.");
 }
 
+std::string judgements_section(const ReportContent& c) {
+  if (c.judgements.empty()) return {};
+  Rows rows;
+  for (const run::RunJudgement& j : c.judgements)
+    rows.push_back({fmt::format("{}", j.poses), j.found, j.next,
+                    j.minutes > 0 ? fmt::format("{:.0f}", j.minutes) : std::string()});
+  return "<h2>How the run went on until it was explained</h2>" +
+         html_table({"poses", "what they said", "what was done", "minutes"}, rows, true) +
+         html_good(
+             "each step makes the right name more probable, and the last one is clear. All looks together "
+             "declare the true name impossible in one run of 200.");
+}
+
 std::string history_section(const ReportContent& c) {
   if (c.history.empty()) return "<h2>How the model came to be</h2><p>The file keeps no steps of a model.</p>";
   Rows rows;

@@ -26,7 +26,8 @@ namespace {
 struct RunArguments {
   RunRequest request;
   std::string poses_file;
-  bool detach{false};
+  bool detach{false}, until_explained{false};
+  double minutes{30};
   std::vector<double> scales_deg;
 };
 
@@ -106,6 +107,7 @@ int follow(const Session& session) {
 /// The request with the poses of the file, if one is named.
 Result<nlohmann::json> request_of(const RunArguments& args) {
   RunRequest request = args.request;
+  if (args.until_explained) request.until_explained_min = args.minutes;
   if (!args.poses_file.empty()) {
     const auto text = read_file(args.poses_file);
     if (!text) return tl::unexpected(text.error());
@@ -226,6 +228,13 @@ void add_run(CLI::App& app, Session& session) {
   add_plan_options(begin, *args);
   begin->add_option("--until-tensor-sd", args->request.until_tensor_sd_nT_per_m,
                     "end the run once the calibration leaves so little in the tensor, nT/m, worst component");
+  CLI::Option* const until = begin->add_flag(
+      "--until-explained", args->until_explained,
+      "judge the run when its plan is measured, and measure what would make the verdict clear, until it is");
+  begin->add_option("--minutes", args->minutes, "with --until-explained: that it may take, beside the plan")
+      ->check(CLI::Range(1.0, 10'000.0))
+      ->capture_default_str()
+      ->needs(until);
   begin->add_flag("--detach", args->detach, "do not wait for the end");
   CLI::App* const dry = add_command(*group, session, "dry-run",
                                     "what a run would do, and how long it would take; moves nothing",

@@ -26,6 +26,8 @@ class HandEntry {
   /// `scales`: the table is turned by hand. `earlier`: poses of an earlier life of the run.
   HandEntry(bool scales, const plan::RunPlan& plan, const std::vector<Pose>& earlier);
 
+  void extend(std::size_t poses) { poses_ = poses; }  ///< of the plan
+
   /// Anything in this run is set by hand.
   [[nodiscard]] bool used() const { return scales_ || mounts_first_; }
   /// The way between two poses is known, and so is the attitude of the array on the table.

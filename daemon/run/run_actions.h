@@ -4,6 +4,8 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/plan/run_plan.h"
+#include "daemon/run/run_judgement.h"
 #include "proto/pose.h"
 #include "proto/reading.h"
 #include "proto/run_status.h"
@@ -38,9 +40,17 @@ struct StoreChecks {
   std::vector<Check> checks;
 };
 
+/// Judge the poses of the run as far as it is measured. Answered by FurtherPoses.
+struct JudgeRun {};
+/// What was judged, and the plan that follows from it: on disk before the table moves.
+struct StoreJudgement {
+  RunJudgement judgement;
+  plan::RunPlan plan;
+};
+
 /// Fit all poses of the run. Answered by SolveDone.
 struct StartSolve {};
-struct CancelSolve {};  ///< a SolveDone that still comes is ignored
+struct CancelSolve {};  ///< or JudgeRun; an answer that still comes is ignored
 /// Answered by CalibrationProposed. The active calibration is never touched by a run.
 struct ProposeCalibration {
   std::string calibration_id;
@@ -60,8 +70,8 @@ struct Finish {
   std::string message;
 };
 
-using Action =
-    std::variant<HomeTable, MoveTable, SetTable, StopTable, StorePose, DropPoses, StorePath, StoreChecks,
-                 StartSolve, CancelSolve, ProposeCalibration, PublishStatus, Record, Finish>;
+using Action = std::variant<HomeTable, MoveTable, SetTable, StopTable, StorePose, DropPoses, StorePath,
+                            StoreChecks, JudgeRun, StoreJudgement, StartSolve, CancelSolve,
+                            ProposeCalibration, PublishStatus, Record, Finish>;
 
 }  // namespace mgtd::daemon::run

@@ -33,8 +33,9 @@ struct RunConfig {
 
   /// Measure no further pose once the tensor is known so well (nT/m, worst component); empty: the whole plan.
   std::optional<double> until_tensor_sd_nT_per_m;
-  std::size_t fewest_poses{1};               ///< that a calibration needs: none is finished before
-  int retries{3};                            ///< of one pose, before the run pauses and asks
+  bool until_explained{false};  ///< judge the run when its plan is measured, and go on from there
+  std::size_t fewest_poses{1};  ///< that a calibration needs: none is finished before
+  int retries{3};               ///< of one pose, before the run pauses and asks
   double approach_rad{plan::kApproach_rad};  ///< overshoot that gives the azimuth its planned sense; 0: none
   double reach_rad{to_rad(1)};               ///< a table at rest further from its target has not reached it
 
@@ -53,6 +54,7 @@ struct RunConfig {
   double lost_max_s{120};  ///< wait for a device to come back
   double stop_max_s{10};   ///< from abort to a table seen at rest
   double store_max_s{30};
+  double judge_max_s{900};
   double solve_max_s{900};
 };
 

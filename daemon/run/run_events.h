@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/plan/run_plan.h"
+#include "daemon/run/run_judgement.h"
 #include "proto/epoch.h"
 #include "proto/error.h"
 #include "proto/health.h"
@@ -64,6 +66,12 @@ struct AccuracyKnown {
   double tensor_sd_nT_per_m{0};  ///< worst component, by the calibration alone
 };
 
+/// The answer to JudgeRun. Numbers follow those of the plan.
+struct FurtherPoses {
+  RunJudgement judgement;
+  std::vector<plan::PlannedPose> poses;  ///< none: nothing more is measured
+};
+
 /// The answer to StartSolve: a calibration, whether it passed its checks, and which.
 struct Solution {
   bool accepted{false};
@@ -82,6 +90,6 @@ struct CalibrationProposed {
 
 using Event = std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, AuxiliaryReading,
                            TableReading, LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, ReadingsSay,
-                           PoseStored, AccuracyKnown, SolveDone, CalibrationProposed>;
+                           PoseStored, AccuracyKnown, FurtherPoses, SolveDone, CalibrationProposed>;
 
 }  // namespace mgtd::daemon::run

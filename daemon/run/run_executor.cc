@@ -48,7 +48,21 @@ store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
   if (c.declination_deg) out.declination_rad = to_rad(*c.declination_deg);
   out.table_sd_rad = to_rad(c.table_sd_deg);
   out.until_tensor_sd_nT_per_m = r.until_tensor_sd_nT_per_m;
+  out.until_explained_min = r.until_explained_min;
   return out;
+}
+
+/// With what was planned while it was measured.
+Result<plan::RunPlan> plan_of(const store::RunFile& file) {
+  const auto extended = file.document(kExtendedPlan);
+  if (!extended) return tl::unexpected(extended.error());
+  return plan::plan_from_json(*extended ? **extended : file.header().plan);
+}
+
+std::vector<RunJudgement> judgements_of(const store::RunFile& file) {
+  const auto text = file.document(kJudgements);
+  auto judgements = judgements_from_json(text && *text ? **text : std::string());
+  return judgements ? *std::move(judgements) : std::vector<RunJudgement>{};
 }
 
 }  // namespace
@@ -66,7 +80,7 @@ RunExecutor::RunExecutor(const config::Config& config, std::filesystem::path dir
 /// Nothing for a file whose plan cannot be read.
 std::optional<RunExecutor::Interrupted> RunExecutor::resumable(const std::filesystem::path& path,
                                                                const store::RunFile& file) const {
-  const auto plan = plan::plan_from_json(file.header().plan);
+  const auto plan = plan_of(file);
   if (!plan) return std::nullopt;
   return Interrupted{path, file.header().run_id, static_cast<int>(file.pose_count().value_or(0)),
                      static_cast<int>(plan->poses.size())};
@@ -161,6 +175,8 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   file_ = std::move(file);
   given_up_.reset();
   config.until_tensor_sd_nT_per_m = file_->header().options.until_tensor_sd_nT_per_m;
+  config.until_explained = file_->header().options.until_explained_min.has_value();
+  judgements_ = judgements_of(*file_);
   auto stored = file_->poses();
   poses_ = stored ? *std::move(stored) : PoseTable{};
   near_.reset();
@@ -194,7 +210,7 @@ Result<void> RunExecutor::resume_interrupted(Stamp now) {
   if (auto there = table_is_there(); !there) return there;
   auto file = store::RunFile::open(interrupted_->file, store::Access::resume);
   if (!file) return tl::unexpected(file.error());
-  auto plan = plan::plan_from_json(file->header().plan);
+  auto plan = plan_of(*file);
   if (!plan) return tl::unexpected(plan.error());
   const auto poses = file->poses();
   if (!poses) return tl::unexpected(poses.error());

@@ -7,11 +7,13 @@
 #include <stop_token>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/fit/joint/accuracy_so_far.h"
 #include "daemon/config/config.h"
 #include "daemon/plan/run_duration.h"
 #include "daemon/run/current_run.h"
+#include "daemon/run/judge_run.h"
 #include "daemon/store/calibration_store.h"
 #include "daemon/store/run_file.h"
 #include "daemon/store/worker.h"
@@ -86,6 +88,7 @@ class RunExecutor {
   void begin(store::RunFile file, RunConfig config, plan::RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
   void learn_accuracy();
+  [[nodiscard]] FurtherPoses further_poses(const Result<NextPoses>& next) const;
   void act(const HomeTable&, Stamp) {}  // the core's, as are the next three
   void act(const MoveTable&, Stamp) {}
   void act(const SetTable&, Stamp) {}
@@ -94,6 +97,8 @@ class RunExecutor {
   void act(const StorePose& action, Stamp now);
   void act(const StorePath& action, Stamp now);
   void act(const StoreChecks& action, Stamp now);
+  void act(const JudgeRun&, Stamp now);
+  void act(const StoreJudgement& action, Stamp now);
   void act(const StartSolve&, Stamp now);
   void act(const CancelSolve&, Stamp);
   void act(const ProposeCalibration& action, Stamp now);
@@ -112,6 +117,7 @@ class RunExecutor {
   std::shared_ptr<const calib::fit::joint::JointState> near_;  ///< of the last fit while measuring
   bool learning_{false};                                       ///< the worker is at such a fit
   std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};
+  std::vector<RunJudgement> judgements_;  ///< of the run, as its file has them
   std::optional<calib::calibration::Calibration> solved_;
   std::optional<Interrupted> interrupted_;
   std::optional<RunStatus> given_up_;  ///< the interrupted run, until another begins

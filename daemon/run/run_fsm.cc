@@ -136,6 +136,18 @@ void RunFsm::on(const AccuracyKnown& known) {
   finish_early();
 }
 
+void RunFsm::on(const FurtherPoses& further) {
+  if (!in<phase::Judging>()) return;
+  act(Record{further.judgement.found + "; " + further.judgement.next});
+  plan_.poses.insert(plan_.poses.end(), further.poses.begin(), further.poses.end());
+  act(StoreJudgement{further.judgement, plan_});
+  if (further.poses.empty()) return solve();
+  progress_.extend(plan_, config_.pace);
+  hands_.extend(plan_.poses.size());
+  if (lost_.empty()) return go_on();
+  enter(phase::Waiting{}, "waiting for " + lost_.begin()->first);
+}
+
 void RunFsm::on(const SolveDone& solved) {
   if (!in<phase::Solving>()) return;
   if (!solved.result) {

@@ -21,23 +21,23 @@
 /// A calibration run as a state machine: events and the time in, actions out. It reads no clock and touches
 /// nothing; the caller carries out the actions in their order and brings the answers back as events.
 ///
-///     preflight -> homing -> [ asking? -> moving -> settling -> dwelling -> stored ]* -> solving -> done |
-///                                                        |  A                                rejected
-///                                                        V  | calm
-///                                                     suspended
+///     preflight -> homing -> [ asking? -> moving -> settling -> dwelling -> stored ]* -> judging? -> solving
+///                                                        |  A           A                    |          |
+///                                                        V  | calm      +--- further poses --+          V
+///                                                     suspended                             done | rejected
 ///
 /// With everything that can interrupt it, as the status shows it; the tests of a run see all of these changes
 /// and no others (run_states_test.cc):
 ///
 ///     aborting   => aborted
-///     asking     => aborting moving paused
+///     asking     => aborting moving paused solving
 ///     dwelling   => aborting asking homing moving paused solving suspended
 ///     homing     => aborting asking moving paused
 ///     moving     => aborting asking homing paused settling solving
 ///     paused     => aborted aborting asking dwelling failed homing moving preflight solving
 ///     preflight  => aborted aborting failed homing paused solving
 ///     settling   => aborting dwelling homing moving paused
-///     solving    => aborted aborting done failed rejected
+///     solving    => aborted aborting asking done failed homing moving paused rejected
 ///     suspended  => aborting moving paused
 ///
 /// - What is set by hand (the mounting of the array, the scales of a table without motors) is asked for, and
@@ -62,6 +62,9 @@
 ///   stop_max_s. Nothing is proposed then.
 /// - The run ends early, with the fit of the poses so far, when the operator says so (finish), or when the
 ///   tensor is known as well as wanted. A dwell under way is then still used, a move is not.
+/// - A run that goes on until it is explained is judged when its plan is measured (judge_run.h). What the
+///   judgement asks for is planned behind the rest and on disk before the table moves; then it is judged
+///   again.
 /// - Every target lies within the limits, or the table is not moved.
 /// - Poses stored by an earlier life of the run are skipped. A new run whose preflight fails is `failed`; one
 ///   that has poses already pauses instead.
@@ -108,6 +111,7 @@ class RunFsm {
   void on(const ReadingsSay& say);
   void on(const PoseStored& stored);
   void on(const AccuracyKnown& known);
+  void on(const FurtherPoses& further);
   void on(const SolveDone& solved);
   void on(const CalibrationProposed& proposed);
   void on_sample(const EpochOrGap& item);
@@ -125,6 +129,7 @@ class RunFsm {
   void advance(phase::Storing&);
   void advance(phase::Paused&) {}
   void advance(phase::Waiting&);
+  void advance(phase::Judging&);
   void advance(phase::Solving&);
   void advance(phase::Proposing&);
   void advance(phase::Stopping&);
@@ -138,6 +143,7 @@ class RunFsm {
   void settle_at_scales();
   void begin_dwell(const phase::Moving& moving);
   void store(Pose pose);
+  void solve();
   void ask();  ///< what is set by hand
   void suspend(const std::string& why);
   void bad_pose(const Error& why);

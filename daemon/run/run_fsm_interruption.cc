@@ -99,7 +99,7 @@ void RunFsm::hold(const std::string& message) {
 
 void RunFsm::abort() {
   if (in<phase::Stopping>()) return;
-  if (in<phase::Solving>()) act(CancelSolve{});
+  if (in<phase::Judging>() || in<phase::Solving>()) act(CancelSolve{});
   act(StopTable{});
   enter(phase::Stopping{}, "aborting: stopping the table");
 }

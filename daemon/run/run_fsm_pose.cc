@@ -31,11 +31,19 @@ void RunFsm::go_on() {
     act(HomeTable{});
   } else if (next) {
     begin_pose(*next);
-  } else {
+  } else if (config_.until_explained && !progress_.cut()) {
     flush_path();
-    enter(phase::Solving{}, fmt::format("fitting {} poses", progress_.done()));
-    act(StartSolve{});
+    enter(phase::Judging{}, fmt::format("judging {} poses: is anything left to explain?", progress_.done()));
+    act(JudgeRun{});
+  } else {
+    solve();
   }
+}
+
+void RunFsm::solve() {
+  flush_path();
+  enter(phase::Solving{}, fmt::format("fitting {} poses", progress_.done()));
+  act(StartSolve{});
 }
 
 void RunFsm::begin_preflight() {
@@ -258,6 +266,13 @@ void RunFsm::advance(phase::Storing&) {
   if (timed_out(config_.store_max_s))
     hold(fmt::format("pose {} is not on disk after {:.0f} s; check the disk", planned().number,
                      config_.store_max_s));
+}
+
+void RunFsm::advance(phase::Judging&) {
+  if (!timed_out(config_.judge_max_s)) return;
+  act(CancelSolve{});
+  act(Record{fmt::format("no judgement after {:.0f} s: nothing more is measured", config_.judge_max_s)});
+  solve();
 }
 
 void RunFsm::advance(phase::Solving&) {

@@ -17,6 +17,7 @@ struct Shown {
   RunState operator()(const phase::Suspended&) const { return RunState::suspended; }
   RunState operator()(const phase::Paused&) const { return RunState::paused; }
   RunState operator()(const phase::Waiting&) const { return RunState::paused; }
+  RunState operator()(const phase::Judging&) const { return RunState::solving; }
   RunState operator()(const phase::Solving&) const { return RunState::solving; }
   RunState operator()(const phase::Proposing&) const { return RunState::solving; }
   RunState operator()(const phase::Stopping&) const { return RunState::aborting; }
@@ -28,8 +29,8 @@ struct Shown {
 RunState state_of(const Phase& phase) { return std::visit(Shown{}, phase); }
 
 bool is_measuring(const Phase& phase) {
-  return !std::holds_alternative<phase::Paused>(phase) && !std::holds_alternative<phase::Solving>(phase) &&
-         !std::holds_alternative<phase::Proposing>(phase) &&
+  return !std::holds_alternative<phase::Paused>(phase) && !std::holds_alternative<phase::Judging>(phase) &&
+         !std::holds_alternative<phase::Solving>(phase) && !std::holds_alternative<phase::Proposing>(phase) &&
          !std::holds_alternative<phase::Stopping>(phase) && !std::holds_alternative<phase::Ended>(phase);
 }
 

@@ -38,6 +38,7 @@ struct Suspended {};  ///< until the field is calm
 struct Storing {};
 struct Paused {};   ///< until the operator says
 struct Waiting {};  ///< for a lost device
+struct Judging {};  ///< what the poses say, and which further ones would make it clearer
 struct Solving {};
 struct Proposing {
   std::string calibration_id, left_over;
@@ -50,9 +51,10 @@ struct Ended {
 
 }  // namespace phase
 
-using Phase = std::variant<phase::Preflighting, phase::Homing, phase::Asking, phase::Approaching,
-                           phase::Moving, phase::Dwelling, phase::Suspended, phase::Storing, phase::Paused,
-                           phase::Waiting, phase::Solving, phase::Proposing, phase::Stopping, phase::Ended>;
+using Phase =
+    std::variant<phase::Preflighting, phase::Homing, phase::Asking, phase::Approaching, phase::Moving,
+                 phase::Dwelling, phase::Suspended, phase::Storing, phase::Paused, phase::Waiting,
+                 phase::Judging, phase::Solving, phase::Proposing, phase::Stopping, phase::Ended>;
 
 /// As the operator is shown it.
 [[nodiscard]] RunState state_of(const Phase& phase);

@@ -9,14 +9,19 @@ constexpr double kPriorPoses = 3;  // weight of what was foreseen
 }
 
 RunProgress::RunProgress(const plan::RunPlan& plan, plan::Pace pace)
-    : done_(plan.poses.size(), false), solve_s_(pace.solve_s), foreseen_s_(0), measured_s_(0) {
+    : solve_s_(pace.solve_s), foreseen_s_(0), measured_s_(0) {
+  extend(plan, pace);
   double sum_s = 0;
-  for (std::size_t i = 0; i < plan.poses.size(); ++i) {
+  for (const double overhead_s : overhead_s_) sum_s += overhead_s;
+  if (!done_.empty()) foreseen_s_ = measured_s_ = kPriorPoses * sum_s / static_cast<double>(done_.size());
+}
+
+void RunProgress::extend(const plan::RunPlan& plan, plan::Pace pace) {
+  for (std::size_t i = done_.size(); i < plan.poses.size(); ++i) {
     dwell_s_.push_back(plan.poses[i].dwell_s);
     overhead_s_.push_back(plan::pose_s(pace, plan, i) - plan.poses[i].dwell_s);
-    sum_s += overhead_s_.back();
+    done_.push_back(false);
   }
-  if (!done_.empty()) foreseen_s_ = measured_s_ = kPriorPoses * sum_s / static_cast<double>(done_.size());
 }
 
 void RunProgress::begin(std::size_t index, Instant now) {

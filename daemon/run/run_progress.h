@@ -17,6 +17,7 @@ class RunProgress {
  public:
   RunProgress(const plan::RunPlan& plan, plan::Pace pace);
 
+  void extend(const plan::RunPlan& plan, plan::Pace pace);      ///< by the poses behind those that it knows
   void set_done(std::size_t index) { done_.at(index) = true; }  ///< in an earlier life of the run
   void undo(std::size_t index) { done_.at(index) = false; }     ///< to be measured again
   [[nodiscard]] bool is_done(std::size_t index) const { return done_.at(index); }

@@ -89,6 +89,7 @@ Meta to_meta(const RunHeader& h) {
   put(meta, "declination_rad", h.options.declination_rad);
   put(meta, "table_sd_rad", h.options.table_sd_rad);
   put(meta, "until_tensor_sd_nT_per_m", h.options.until_tensor_sd_nT_per_m);
+  put(meta, "until_explained_min", h.options.until_explained_min);
   for (std::size_t i = 0; i < h.options.sensor_names.size(); ++i)
     meta[fmt::format("s{}_name", i + 1)] = h.options.sensor_names[i];
   return meta;
@@ -129,6 +130,7 @@ Result<RunHeader> from_meta(const Meta& meta, const std::string& file) {
   h.options.declination_rad = number_of(meta, "declination_rad");
   h.options.table_sd_rad = number_of(meta, "table_sd_rad");
   h.options.until_tensor_sd_nT_per_m = number_of(meta, "until_tensor_sd_nT_per_m");
+  h.options.until_explained_min = number_of(meta, "until_explained_min");
   for (std::size_t i = 0; i < h.options.sensor_names.size(); ++i) {
     const std::string name = text_of(meta, fmt::format("s{}_name", i + 1));
     if (!name.empty()) h.options.sensor_names[i] = name;

@@ -119,7 +119,7 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   const tests::ScoredFamily& best = search.criticism.families[f];
   Round round{.added = tests::candidate_of(best, search.criticism, search.fit.noise_inflation)};
   tests::weigh_poses(search.fit, search.criticism.evidence_by_pose(f), round.added);
-  round.added.alternatives = tests::alternatives_of(search.criticism.families, f, search.seed);
+  round.added.alternatives = tests::alternatives_of(search.criticism.families, f, search.seed, search.looks);
   for (const tests::Alternative& alternative : round.added.alternatives)
     if (alternative.possible) round.possible.push_back(alternative.effect);
   auto step = forward_step(search.joint.effects, best, search.criticism.residual);
@@ -141,7 +141,7 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   }
   refine_nonlinear_parameters(search.table, kept(search.given, wider.effects), wider, *refit);
   const auto again = second_look(search.table, search.joint, search.criticism, f, round.added.alternatives,
-                                 search.fit.noise_inflation, *refit, search.seed);
+                                 search.fit.noise_inflation, *refit, search.seed, search.looks);
   if (again && again->better && first_choice)
     return add(search, family_called(search.criticism, *again->better), report, false);
   if (again && !again->better) exclude(again->alternatives, round);

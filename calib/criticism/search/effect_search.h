@@ -20,6 +20,7 @@ struct EffectSearch {
   fit::joint::JointOptions joint;
   tests::CandidateEffects candidate_effects;
   std::uint64_t seed;
+  int looks{1};                             ///< ExplainOptions
   fit::joint::JointFit fit;                 ///< of `joint`, with the covariance of the noise in force
   tests::Criticism criticism;               ///< of `fit`
   std::vector<effects::EffectPtr> given{};  ///< the model that was asked about

@@ -121,6 +121,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
                       .joint = *joint,
                       .candidate_effects = std::move(candidate_effects),
                       .seed = options.fit.seed,
+                      .looks = options.looks,
                       .fit = std::move(judged.fit),
                       .criticism = std::move(judged.criticism),
                       .given = joint->effects};

@@ -12,6 +12,9 @@ namespace mgtd::calib::criticism::search {
 struct ExplainOptions {
   fit::FitOptions fit;  ///< method joint; its effects are the model that is asked about
   int rounds{4};
+  /// Judgements of one run, as it grows, of which this is one: together they lose the true name as seldom as
+  /// one alone (tests/alternatives.h).
+  int looks{1};
   /// Candidates instead of the library.
   std::optional<std::vector<tests::CandidateEffect>> candidate_effects{};
   /// Candidates beside the library: formulas of the user.

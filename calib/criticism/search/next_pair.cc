@@ -42,12 +42,11 @@ tests::Candidate sized(const tests::Candidate& found, bool& assumed) {
   return out;
 }
 
-/// Nothing but attitude, approach and dwell differs from more of the same.
+/// Nothing but attitude, approach, wait and dwell differs from more of the same.
 bool by_the_rig(const std::vector<Pose>& poses, const std::vector<Pose>& same) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Pose &a = poses[k], &b = same[k];
-    if (a.T_degC != b.T_degC || a.covariates != b.covariates || a.f_nT != b.f_nT ||
-        a.since_stop_s != b.since_stop_s || a.mount != b.mount ||
+    if (a.T_degC != b.T_degC || a.covariates != b.covariates || a.f_nT != b.f_nT || a.mount != b.mount ||
         (a.y_nT != b.y_nT && a.pitch_rad == b.pitch_rad))
       return false;
   }
@@ -59,7 +58,8 @@ bool alike(const std::vector<Pose>& a, const std::vector<Pose>& b) {
   return by_the_rig(a, b) &&
          std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Pose& x, const Pose& y) {
            return x.y_nT == y.y_nT && x.sense == y.sense && x.dwell_s == y.dwell_s &&
-                  x.azimuth_rad == y.azimuth_rad && x.pitch_rad == y.pitch_rad && x.roll_rad == y.roll_rad;
+                  x.since_stop_s == y.since_stop_s && x.azimuth_rad == y.azimuth_rad &&
+                  x.pitch_rad == y.pitch_rad && x.roll_rad == y.roll_rad;
          });
 }
 
@@ -81,6 +81,7 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<design:
     // What the run has no column for cannot be changed, and would be more of the same.
     if (action != design::actions().begin() && !action->moved && alike(step.poses, same)) continue;
     step.by_the_rig = !action->moved && by_the_rig(step.poses, same);
+    step.of_another_run = action->moved;
     out.push_back(std::move(step));
   }
   return out;

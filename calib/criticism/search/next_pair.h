@@ -13,8 +13,9 @@ namespace mgtd::calib::criticism::search {
 
 struct NextStep {
   design::NextMeasurement measurement;
-  bool by_the_rig{false};   ///< attitudes, approach and dwells are all it takes; no hand, heat or coil
-  std::vector<Pose> poses;  ///< to be measured: attitude, set, sense, waits; no readings
+  bool by_the_rig{false};  ///< attitudes, approach, waits and dwells are all it takes; no hand, heat or coil
+  bool of_another_run{false};  ///< elsewhere: it is judged on its own
+  std::vector<Pose> poses;     ///< to be measured: attitude, set, sense, waits; no readings
 };
 
 /// Why no further measurement is asked for.

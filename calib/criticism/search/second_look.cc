@@ -51,7 +51,7 @@ std::optional<SecondLook> second_look(const PoseTable& table, const fit::joint::
                                       const tests::Criticism& first, std::size_t winner,
                                       const std::vector<tests::Alternative>& alternatives,
                                       double noise_inflation, const fit::joint::JointFit& with,
-                                      std::uint64_t seed) {
+                                      std::uint64_t seed, int looks) {
   const double after = std::max(1.0, with.chi2 / std::max(with.dof, 1.0));
   if (first.noise.reference.scale2 * noise_inflation * noise_inflation < kMuchLess * after)
     return std::nullopt;
@@ -90,7 +90,7 @@ std::optional<SecondLook> second_look(const PoseTable& table, const fit::joint::
   if (best->candidate_effect->name != name)
     return SecondLook{.alternatives = {}, .better = best->candidate_effect->name};
   return SecondLook{.alternatives = tests::alternatives_of(
-                        families, static_cast<std::size_t>(best - families.begin()), seed),
+                        families, static_cast<std::size_t>(best - families.begin()), seed, looks),
                     .better = {}};
 }
 

@@ -27,6 +27,6 @@ struct SecondLook {
                                                     const tests::Criticism& first, std::size_t winner,
                                                     const std::vector<tests::Alternative>& alternatives,
                                                     double noise_inflation, const fit::joint::JointFit& with,
-                                                    std::uint64_t seed);
+                                                    std::uint64_t seed, int looks);
 
 }  // namespace mgtd::calib::criticism::search

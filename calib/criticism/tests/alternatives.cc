@@ -10,7 +10,7 @@
 namespace mgtd::calib::criticism::tests {
 namespace {
 
-constexpr int kRuns = 2000;        ///< drawn: ten of them are the limit
+constexpr int kRuns = 2000;        ///< drawn, times looks: ten of them are the limit
 constexpr int kBestQuestions = 3;  ///< the best questions of an alternative stand for all of its questions
 constexpr double kShown = 0.999;   ///< a pair that is told apart better than this is not listed
 constexpr double kNothing = 1e-3;  ///< of a chi-square
@@ -28,7 +28,7 @@ double share_inside(const Eigen::VectorXd& v, double outside) {
 
 /// `drawn`: the chance that it fell behind is asked for.
 Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredFamily>& families,
-                    const RankedAlternative& a, const RankedAlternative& b, bool drawn) {
+                    const RankedAlternative& a, const RankedAlternative& b, bool drawn, int looks) {
   const ScoredFamily& family = families[b.family];
   const Hypothesis& h = family.candidate_effect->hypotheses[b.score->hypothesis];
   const Eigen::VectorXd v_a = ranking.signature(a), v_b = ranking.signature(b);
@@ -46,7 +46,7 @@ Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredF
                   family.candidate_effect->reads == families[a.family].candidate_effect->reads;
   out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
   if (drawn && a.L - b.L < kGone) out.p_behind = ranking.behind(b);
-  out.possible = out.p_behind >= kLost || out.form_only;
+  out.possible = out.p_behind >= kLost / looks || out.form_only;
   return out;
 }
 
@@ -61,14 +61,14 @@ double probability_right(double lambda) { return 0.5 * std::erfc(-std::sqrt(lamb
 double beyond_form(double lambda, double length2) { return std::max(0.0, lambda - (1 - kAlike) * length2); }
 
 std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& families, std::size_t a,
-                                         std::uint64_t seed) {
+                                         std::uint64_t seed, int looks) {
   AlternativeRanking ranking(families, a);
   const auto& all = ranking.all();
   const auto winner = std::find_if(all.begin(), all.end(), [&](const RankedAlternative& c) {
     return c.family == a && c.score == &families[a].winner();
   });
   if (winner == all.end()) return {};
-  ranking.draw(seed, kRuns);
+  ranking.draw(seed, kRuns * looks);
   std::vector<Alternative> out;
   for (std::size_t b = 0; b < families.size(); ++b) {
     if (b == a) continue;
@@ -76,7 +76,7 @@ std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& famili
     int asked = 0;
     for (const RankedAlternative& c : all) {
       if (c.family != b) continue;
-      Alternative alternative = compare(ranking, families, *winner, c, asked++ < kBestQuestions);
+      Alternative alternative = compare(ranking, families, *winner, c, asked++ < kBestQuestions, looks);
       if (!nearest || nearer(alternative, *nearest)) nearest = std::move(alternative);
     }
     if (nearest && (nearest->possible || nearest->p_right < kShown)) out.push_back(*std::move(nearest));

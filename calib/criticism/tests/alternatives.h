@@ -31,7 +31,8 @@ namespace mgtd::calib::criticism::tests {
 
 /// Share of a signature, in squares, inside that of another effect from which the two count as one.
 inline constexpr double kAlike = 0.95;
-/// Share of true names that are declared impossible.
+/// Share of true names that are declared impossible: of all looks at a run together, each of which has an
+/// equal part of it.
 inline constexpr double kLost = 0.005;
 
 /// Probability that the right one of two effects wins.
@@ -51,8 +52,8 @@ struct Alternative {
 };
 
 /// Against the winner of `families[a]`; most dangerous first. Hypotheses of one family are not alternatives
-/// to each other.
+/// to each other. `looks`: at the run, of which this is one.
 [[nodiscard]] std::vector<Alternative> alternatives_of(const std::vector<ScoredFamily>& families,
-                                                       std::size_t a, std::uint64_t seed);
+                                                       std::size_t a, std::uint64_t seed, int looks = 1);
 
 }  // namespace mgtd::calib::criticism::tests

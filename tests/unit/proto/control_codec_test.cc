@@ -103,7 +103,7 @@ TEST(ControlCodec, WhatIsNoReplyIsSaid) {
 }
 
 TEST(RunRequest, SurvivesItsEncoding) {
-  const RunRequest request{10.0, 121, 24, 3, 4.0, 8.5, 42, 0.5, {}, {}};
+  const RunRequest request{10.0, 121, 24, 3, 4.0, 8.5, 42, 0.5, 20.0, {}, {}};
   EXPECT_EQ(*parse_run_request(to_json(request)), request);
   EXPECT_EQ(*parse_run_request(Json::object()), RunRequest{});
   EXPECT_EQ(to_json(RunRequest{}), Json::object());

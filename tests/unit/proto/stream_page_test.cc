@@ -38,6 +38,7 @@ TEST(StreamPage, NamesEveryArgumentOfARun) {
                        1,
                        1,
                        1,
+                       30.0,
                        "list",
                        {{.number = 1,
                          .set = "random",

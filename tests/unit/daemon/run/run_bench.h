@@ -101,6 +101,13 @@ class RunBench {
     return daemon::run::Solution{true, "cal-1", {}, {}};
   };
 
+  /// What the run is told when its plan is measured; the looks so far.
+  std::function<daemon::run::FurtherPoses(int)> judge = [](int) {
+    return daemon::run::FurtherPoses{{.found = "PASS", .next = "nothing is left to explain"}, {}};
+  };
+  bool judge_stalls{false};
+  std::vector<daemon::run::StoreJudgement> judgements;
+
   std::vector<daemon::run::Action> log;
   std::vector<Pose> stored;
   std::vector<TableAngles> moves;
@@ -230,6 +237,11 @@ class RunBench {
     EXPECT_FALSE(table.moving);
     solve_at_s_ = t_s + 0.5;
   }
+  void carry_out(const daemon::run::JudgeRun&) {
+    EXPECT_FALSE(table.moving);
+    judge_at_s_ = t_s + 0.5;
+  }
+  void carry_out(const daemon::run::StoreJudgement& store) { judgements.push_back(store); }
   void carry_out(const daemon::run::CancelSolve&) {}
   void carry_out(const daemon::run::ProposeCalibration&) {
     EXPECT_FALSE(aborted);
@@ -274,6 +286,10 @@ class RunBench {
     if (solve_at_s_ && !solve_stalls && t_s >= *solve_at_s_) {
       solve_at_s_.reset();
       send(daemon::run::SolveDone{solver()});
+    }
+    if (judge_at_s_ && !judge_stalls && t_s >= *judge_at_s_) {
+      judge_at_s_.reset();
+      send(judge(static_cast<int>(judgements.size())));
     }
     if (propose_at_s_ && t_s >= *propose_at_s_) {
       propose_at_s_.reset();
@@ -323,7 +339,7 @@ class RunBench {
   PerSensor<Eigen::Vector3d> last_nT_{};
   std::optional<Pose> storing_;
   double answer_at_s_{0};
-  std::optional<double> solve_at_s_, propose_at_s_;
+  std::optional<double> judge_at_s_, solve_at_s_, propose_at_s_;
 };
 
 }  // namespace mgtd::test

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "calib/criticism/search/explain_report.h"
+#include "calib/criticism/search/next_pair.h"
+#include "calib/discovery/discovery_report.h"
+#include "calib/poses/pose_table.h"
+#include "daemon/run/run_judgement.h"
+#include "proto/requested_pose.h"
+
+/// Judges a run as far as it is measured, and chooses what to measure next so that its verdict becomes clear.
+///
+/// Where several effects could have made the residual, the best action of `mgt next` is taken: one that the
+/// rig can do alone before one that needs hands. Where something is there that no effect explains, and
+/// several formulas remain (mgt discover), more poses of the same are taken, as many as would tell them
+/// apart: the size at which two formulas are told apart falls with the root of the number of poses.
+///
+/// Nothing more is measured when the verdict is clear, when nothing that is known would make it so within the
+/// minutes that are left, and after kMostJudgements looks. Each look declares the true name impossible in one
+/// of 1000 runs, all five together in one of 200, as a single look at a finished run does.
+namespace mgtd::daemon::run {
+
+struct NextPoses {
+  RunJudgement judgement;
+  std::vector<RequestedPose> poses{};  ///< numbered from 1; none: nothing more is measured
+};
+
+/// What the offline commands say of the run.
+struct RunEvidence {
+  const PoseTable& table;
+  const calib::criticism::search::ExplainReport& explained;
+  std::optional<calib::criticism::search::NextReport> next{};
+  std::optional<calib::discovery::DiscoveryReport> discovered{};
+};
+
+/// `looks_left`: after this one.
+[[nodiscard]] NextPoses next_poses(const RunEvidence& evidence, double minutes_left, int looks_left);
+
+/// All of it, of poses at hand.
+[[nodiscard]] Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options,
+                                      double minutes_left, int looks_left);
+
+/// Reads a run file and judges it. Takes what it needs from the file alone, so it may run on any thread.
+[[nodiscard]] Result<NextPoses> judge_run(const std::filesystem::path& run_file, double minutes_left,
+                                          int looks_left, std::stop_token stop = {});
+
+}  // namespace mgtd::daemon::run

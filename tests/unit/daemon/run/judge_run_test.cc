@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/judge_run.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+namespace mgtd::daemon::run {
+namespace {
+
+using calib::criticism::search::ExplainReport;
+using calib::criticism::search::Finding;
+using calib::criticism::search::NextReport;
+using calib::criticism::search::NextStep;
+using ::testing::HasSubstr;
+
+PoseTable ten_poses() {
+  PoseTable out;
+  for (int k = 0; k < 10; ++k) {
+    Pose pose;
+    pose.number = k + 1;
+    pose.set = "random";
+    pose.azimuth_rad = 0.1 * k;
+    pose.pitch_rad = pose.roll_rad = 0;
+    pose.t_s = 30.0 * k;
+    pose.y_nT = PerSensor<Eigen::Vector3d>(4);
+    for (auto& y : pose.y_nT) y.setZero();
+    out.poses.push_back(pose);
+  }
+  return out;
+}
+
+NextStep step(const char* action, double minutes, double p, bool by_the_rig) {
+  return {.measurement = {.action = action, .minutes = minutes, .p_right_before = 0.6, .p_right_after = p},
+          .by_the_rig = by_the_rig,
+          .of_another_run = false,
+          .poses = ten_poses().poses};
+}
+
+ExplainReport ambiguous() {
+  ExplainReport out;
+  out.finding = Finding::ambiguous;
+  out.named = {"a", "b"};
+  return out;
+}
+
+/// What follows where two effects are open and these steps are known.
+NextPoses choice(std::vector<NextStep> steps, double minutes_left = 30, int looks_left = 3) {
+  const PoseTable table = ten_poses();
+  const ExplainReport explained = ambiguous();
+  NextReport next;
+  next.effect = "a", next.alternative = "b", next.steps = std::move(steps);
+  return next_poses({.table = table, .explained = explained, .next = next, .discovered = {}}, minutes_left,
+                    looks_left);
+}
+
+TEST(JudgeRun, TheRigGoesBeforeAHand) {
+  const NextPoses out =
+      choice({step("a heat pulse", 10, 0.99, false), step("approached from both sides", 12, 0.9, true)});
+  EXPECT_EQ(out.judgement.found, "AMBIGUOUS: a or b");
+  EXPECT_THAT(out.judgement.next, HasSubstr("approached from both sides, 12 minutes"));
+  EXPECT_THAT(out.judgement.next, HasSubstr("0.900, now 0.600"));
+  EXPECT_EQ(out.judgement.minutes, 12);
+  ASSERT_EQ(out.poses.size(), 10U);
+  EXPECT_TRUE(out.poses.front().note.empty());
+}
+
+TEST(JudgeRun, WhatNeedsAHandIsAskedForOnceWithWhatItBrings) {
+  const NextPoses out = choice({step("a heat pulse", 10, 0.99, false)});
+  ASSERT_EQ(out.poses.size(), 10U);
+  EXPECT_THAT(out.poses.front().note, HasSubstr("a heat pulse"));
+  EXPECT_THAT(out.poses.front().note, HasSubstr("probability 0.990, now 0.600"));
+  EXPECT_TRUE(out.poses[1].note.empty());
+}
+
+TEST(JudgeRun, NothingIsMeasuredThatDoesNotPay) {
+  NextStep elsewhere = step("at another place", 20, 0.99, false);
+  elsewhere.of_another_run = true;
+  for (const NextStep& useless :
+       {step("too long", 31, 0.99, true), step("no gain", 5, 0.61, true), elsewhere}) {
+    const NextPoses out = choice({useless});
+    EXPECT_TRUE(out.poses.empty()) << useless.measurement.action;
+    EXPECT_EQ(out.judgement.minutes, 0);
+    EXPECT_THAT(out.judgement.next, HasSubstr("nothing that can be done within 30 minutes"));
+  }
+}
+
+TEST(JudgeRun, LooksComeToAnEnd) {
+  const NextPoses out = choice({step("more", 5, 0.99, true)}, 30, 0);
+  EXPECT_TRUE(out.poses.empty());
+  EXPECT_THAT(out.judgement.next, HasSubstr("no more looks"));
+}
+
+TEST(JudgeRun, AClearVerdictEndsIt) {
+  const PoseTable table = ten_poses();
+  ExplainReport explained;
+  for (const Finding finding : {Finding::pass, Finding::explained, Finding::bad_data, Finding::unknown}) {
+    explained.finding = finding;
+    const NextPoses out =
+        next_poses({.table = table, .explained = explained, .next = {}, .discovered = {}}, 30, 4);
+    EXPECT_TRUE(out.poses.empty());
+    EXPECT_THAT(out.judgement.found, HasSubstr(std::string(to_string(finding))));
+    EXPECT_FALSE(out.judgement.next.empty());
+  }
+}
+
+/// Two formulas, of which the other would be told apart at `needed_nT`.
+NextPoses of_formulas(double needed_nT, double minutes_left) {
+  const PoseTable table = ten_poses();
+  ExplainReport explained;
+  explained.finding = Finding::unknown;
+  calib::discovery::DiscoveryReport found;
+  found.verdict = calib::discovery::Verdict::law_set;
+  found.laws.emplace_back();
+  for (const int k : {1, 2}) {
+    calib::discovery::FoundFormula formula;
+    formula.formula = "f" + std::to_string(k), formula.where = "s1.x";
+    formula.size_nT = 1, formula.same_as = k, formula.needed_nT = k == 1 ? 0 : needed_nT;
+    found.laws.front().formulas.push_back(formula);
+  }
+  return next_poses({.table = table, .explained = explained, .next = {}, .discovered = found}, minutes_left,
+                    4);
+}
+
+/// The size that is needed falls with the root of the number of poses: twice the size takes four times as
+/// many.
+TEST(JudgeRun, FormulasTakeAsManyPosesAsWouldTellThemApart) {
+  const NextPoses out = of_formulas(2, 30);
+  EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LAW-SET: f1 at s1.x");
+  EXPECT_EQ(out.poses.size(), 30U);
+  EXPECT_NEAR(out.judgement.minutes, 15, 0.1);
+}
+
+TEST(JudgeRun, FormulasThatNoNumberOfPosesTellsApartAreLeft) {
+  EXPECT_TRUE(of_formulas(2, 5).poses.empty());
+  EXPECT_THAT(of_formulas(2, 5).judgement.next, HasSubstr("30 poses would, in 15"));
+  EXPECT_TRUE(of_formulas(std::numeric_limits<double>::infinity(), 30).poses.empty());
+}
+
+TEST(RunJudgement, ReadsBackAsItWasWritten) {
+  const std::vector<RunJudgement> written{{157, "AMBIGUOUS: a or b", "24 more", 12.5},
+                                          {181, "EXPLAINED: a", "clear", 0}};
+  const auto read = judgements_from_json(to_json(written).dump());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(*read, written);
+  EXPECT_TRUE(judgements_from_json("")->empty());
+  EXPECT_FALSE(judgements_from_json(R"([{"poses":1}])"));
+  EXPECT_FALSE(judgements_from_json("[1]"));
+}
+
+}  // namespace
+}  // namespace mgtd::daemon::run
