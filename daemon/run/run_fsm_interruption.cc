@@ -150,6 +150,7 @@ void RunFsm::on(const ScaleEntered& entered) {
 
 void RunFsm::carried_out() {
   hands_.carried_out(planned());
+  field_.paused();  // a coil or a supply may have been switched: the field is taken as it is
   go_on();
 }
 

@@ -240,4 +240,20 @@ bool BenchRig::mount(std::string_view line, double now_s) {
   return true;
 }
 
+bool BenchRig::surroundings(std::string_view line, double now_s) {
+  std::istringstream in{std::string(line)};
+  std::string word;
+  double a = 0, b = 0;
+  if (!(in >> word >> a)) return false;
+  const bool warm = word == "warm" && in >> b && b > 0;
+  if (!warm && (word != "coil" || !(a > 0))) return false;
+  advance_all(now_s);
+  if (warm) {
+    world_.warm(a, b, now_s);
+  } else {
+    world_.set_coil(a, now_s);
+  }
+  return true;
+}
+
 }  // namespace mgtd::rig

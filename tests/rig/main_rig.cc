@@ -96,6 +96,7 @@ struct Arguments {
   std::vector<std::string> words;
   std::vector<double> angles_deg;
   int arm{0};
+  double warm_degC{0}, warm_tau_s{0}, coil_share{1};
   OperatorOptions hands;
   double for_s{0};
   int code{0};
@@ -304,6 +305,20 @@ void add_hands(CLI::App& app, Arguments& args) {
   magnet->add_option("ARM", args.arm, "number of its sensor; 0 puts it away")
       ->required()
       ->check(CLI::Range(0, 16));
+  CLI::App* const warm =
+      add(app, "warm", "warm the heads, and let them cool again", args,
+          [](const Arguments& a) { return ask(a, fmt::format("warm {} {}", a.warm_degC, a.warm_tau_s)); });
+  warm->add_option("DIR", args.dir, "directory of the rig")->required();
+  warm->add_option("DEGC", args.warm_degC, "at the peak")->required();
+  warm->add_option("TAU", args.warm_tau_s, "simulated seconds to the peak")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  CLI::App* const coil = add(app, "coil", "change the site's field with a coil", args,
+                             [](const Arguments& a) { return ask(a, fmt::format("coil {}", a.coil_share)); });
+  coil->add_option("DIR", args.dir, "directory of the rig")->required();
+  coil->add_option("SHARE", args.coil_share, "of the field that is left; 1 switches it off")
+      ->required()
+      ->check(CLI::PositiveNumber);
   CLI::App* const operate_command =
       add(app, "operate", "do what a daemon asks its operator to do, until the run ends", args,
           [](const Arguments& a) { return operate(a.hands); });

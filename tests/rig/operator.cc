@@ -34,6 +34,7 @@ class Operator {
     return json::parse(*line, nullptr, false);
   }
   void serve(const json& prompt);
+  void do_deed(const std::string& text) const;
 
   OperatorOptions options_;
   std::mt19937_64 random_;
@@ -63,6 +64,22 @@ void Operator::serve(const json& prompt) {
   static_cast<void>(say("run.enter", entry));
 }
 
+/// What mgt next may ask of a hand, as the rig knows it.
+std::optional<std::string> deed(const std::string& text) {
+  if (text.find("a heat pulse: warm the heads by 5 degC") != std::string::npos) return "warm 5 200";
+  if (text.find("the field a fifth weaker (coil)") != std::string::npos) return "coil 0.8";
+  return std::nullopt;
+}
+
+/// Where the hands cannot do it the run ends with what it has.
+void Operator::do_deed(const std::string& text) const {
+  const auto line = deed(text);
+  const auto done = line ? ask_rig(options_.dir, *line) : std::nullopt;
+  fmt::print("{}\n{}\n", text, done ? *line : "cannot be done here");
+  std::fflush(stdout);
+  static_cast<void>(say(done ? "run.resume" : "run.finish", json::object()));
+}
+
 int Operator::work() {
   for (bool told = false;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
     const auto reply = say("run.status", json::object());
@@ -70,7 +87,9 @@ int Operator::work() {
     const json& run = reply->at("result");
     const std::string state = run.at("state");
     const bool paused = state == "paused";
-    if (run.at("prompt").is_object()) {
+    if (run.at("prompt").is_object() && run.at("prompt").at("what") == "note") {
+      do_deed(run.at("prompt").at("text"));
+    } else if (run.at("prompt").is_object()) {
       serve(run.at("prompt"));
     } else if (state == "done") {
       return 0;

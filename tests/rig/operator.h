@@ -4,7 +4,7 @@
 #include <string>
 
 /// The operator of a simulated rig waits for what a daemon asks, does it on the rig, and enters what the
-/// scales then say.
+/// scales then say. It warms the heads and switches a coil on where a run asks for that.
 namespace mgtd::rig {
 
 struct OperatorOptions {

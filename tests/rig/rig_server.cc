@@ -180,7 +180,7 @@ void Server::answer(const std::shared_ptr<local::socket>& socket) {
 std::string Server::reply_to(const std::string& line) {
   if (line == "status") return status();
   if (line == "field") return field();
-  if (rig_.mount(line, now_s()) || magnet(line)) return "ok";
+  if (rig_.mount(line, now_s()) || rig_.surroundings(line, now_s()) || magnet(line)) return "ok";
   if (line.starts_with("magnet "))
     return fmt::format("this array has the sensors 1 to {}, and 0 puts the magnet away",
                        rig_.world().sensors());

@@ -70,6 +70,23 @@ void World::set_cage(const Eigen::Vector3d& field_nT, double now_s) {
   moved();
 }
 
+void World::set_coil(double share, double now_s) {
+  follow_all(now_s);
+  coil_share_ = share;
+  moved();
+}
+
+void World::warm(double peak_degC, double tau_s, double now_s) {
+  follow_all(now_s);
+  warm_spells_.push_back({now_s, peak_degC, tau_s});
+  moved();
+}
+
+double World::WarmSpell::degC(double t_s) const {
+  const double since = (t_s - at_s) / tau_s;
+  return since > 0 ? peak_degC * since * std::exp(1 - since) : 0;
+}
+
 void World::move(TableAxis which, double target_deg, double now_s) {
   follow_all(now_s);
   axes_.at(which).move_to(target_deg, now_s, table_random_);
@@ -182,7 +199,7 @@ Eigen::Vector3d World::site_field(double t_s, const Eigen::Vector3d& x_m) const 
   const double hours = t_s / 3600;
   const double day = std::sin(2 * std::numbers::pi * hours / scenario_.diurnal_period_h);
   const double f_nT = scenario_.f_nT + scenario_.field_drift_nT_per_h * hours + scenario_.diurnal_nT * day;
-  Eigen::Vector3d B = cage_nT_.value_or(f_nT * direction_);
+  Eigen::Vector3d B = cage_nT_.value_or(coil_share_ * f_nT * direction_);
   for (const auto& effect : effects_) B += effect->site_nT(t_s, x_m);
   for (const DroppedMagnet& magnet : scenario_.magnets) B += magnet.field_nT(t_s, x_m);
   return B + vehicles_nT(t_s, x_m);
@@ -251,9 +268,9 @@ Eigen::Vector3d World::read_sensor(int i, double t_s) {
 double World::temperature(int sensor, double t_s) const {
   const TemperatureScript& s = scenario_.temperature;
   double out = s.start_degC + s.ramp_degC_per_h * t_s / 3600 + of_sensor(s.head_degC, at(sensor));
-  const double since = (t_s - s.pulse_at_s) / s.pulse_tau_s;
-  if (since > 0 && (s.pulse_head == 0 || s.pulse_head == at(sensor) + 1))
-    out += s.pulse_degC * since * std::exp(1 - since);
+  if (s.pulse_head == 0 || s.pulse_head == at(sensor) + 1)
+    out += WarmSpell{s.pulse_at_s, s.pulse_degC, s.pulse_tau_s}.degC(t_s);
+  for (const WarmSpell& spell : warm_spells_) out += spell.degC(t_s);
   return out;
 }
 

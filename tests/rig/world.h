@@ -54,6 +54,10 @@ class World {
   void carry(std::shared_ptr<const Motion> motion);
   /// A cage makes this field in the place of the site's own; effects of the site remain.
   void set_cage(const Eigen::Vector3d& field_nT, double now_s);
+  /// A coil leaves this share of the site's own field.
+  void set_coil(double share, double now_s);
+  /// A hand warms the heads: they rise by p s/tau exp(1 - s/tau) with s from now on.
+  void warm(double peak_degC, double tau_s, double now_s);
   /// Puts the array on the table in another way, the table standing.
   void remount(const Eigen::Matrix3d& table_to_platform, double now_s);
 
@@ -122,6 +126,12 @@ class World {
   std::normal_distribution<double> normal_, reference_normal_;
   std::shared_ptr<const Motion> motion_;
   std::optional<Eigen::Vector3d> cage_nT_;
+  double coil_share_{1};
+  struct WarmSpell {
+    double at_s, peak_degC, tau_s;
+    [[nodiscard]] double degC(double t_s) const;
+  };
+  std::vector<WarmSpell> warm_spells_;
   mutable Moment moment_;
   int magnet_at_{0};
 };

@@ -32,6 +32,10 @@ class VirtualDaemon : public VirtualCore {
   std::function<Result<daemon::run::Solution>(const PoseTable&)> solver = [](const PoseTable&) {
     return daemon::run::Solution{true, "cal", {}, {}};
   };
+  /// Of a run that goes on until it is explained.
+  std::function<daemon::run::FurtherPoses(const PoseTable&)> judge = [](const PoseTable&) {
+    return daemon::run::FurtherPoses{};
+  };
   std::function<void(const EpochOrGap&)> on_item = [](const EpochOrGap&) {};  ///< of the stream
   std::uint64_t gaps{0};
 
@@ -104,6 +108,7 @@ class VirtualDaemon : public VirtualCore {
     core().run().answer(daemon::run::PoseStored{store.pose.number, {}});
   }
   void act(const daemon::run::StartSolve&) { core().run().answer(daemon::run::SolveDone{solver(poses)}); }
+  void act(const daemon::run::JudgeRun&) { core().run().answer(judge(poses)); }
   void act(const daemon::run::ProposeCalibration&) {
     core().run().answer(daemon::run::CalibrationProposed{});
   }
