@@ -49,7 +49,8 @@ struct RunStatus {
   std::vector<Check> checks;  ///< of the preflight and of the calibration
   /// Of the tensor by the calibration, from the poses so far, worst component; empty until they tell.
   std::optional<double> tensor_sd_nT_per_m;
-  std::optional<OperatorPrompt> prompt;             ///< while asking
+  std::optional<OperatorPrompt> prompt;  ///< while asking
+  std::string judged{};  ///< what the poses said when the plan was measured, and what followed from it
   std::optional<double> wanted_tensor_sd_nT_per_m;  ///< at which the run ends early
 };
 

@@ -178,6 +178,7 @@ OrderedJson to_json(const RunStatus& run) {
           {"prompt", run.prompt ? to_json(*run.prompt) : OrderedJson(nullptr)},
           {"tensor_sd_nT_per_m", optional(run.tensor_sd_nT_per_m)},
           {"wanted_tensor_sd_nT_per_m", optional(run.wanted_tensor_sd_nT_per_m)},
+          {"judged", run.judged.empty() ? OrderedJson(nullptr) : OrderedJson(run.judged)},
           {"proposed", run.proposed.empty() ? OrderedJson(nullptr) : OrderedJson(run.proposed)},
           {"checks", std::move(checks)}};
 }
@@ -241,6 +242,7 @@ Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
   reader.read("wanted_tensor_sd_nT_per_m", run.wanted_tensor_sd_nT_per_m);
   reader.read("message", run.message);
   if (object.contains("goes_on")) reader.read("goes_on", run.goes_on);
+  if (object.contains("judged") && !object["judged"].is_null()) reader.read("judged", run.judged);
   if (object.contains("proposed") && !object["proposed"].is_null()) reader.read("proposed", run.proposed);
   if (object.contains("prompt") && !object["prompt"].is_null()) {
     auto prompt = prompt_from_json(object["prompt"]);

@@ -33,6 +33,7 @@ struct RunArguments {
 
 int print_end(const Session& session, const RunStatus& run) {
   if (session.json) print_json(nlohmann::json(to_json(run)));
+  if (!run.judged.empty()) fmt::print(stderr, "{}\n", run.judged);
   fmt::print(stderr, "{}: {}\n", name(run.state), run.message);
   if (run.state == RunState::paused && run.message.find("mgt run resume") == std::string::npos)
     fmt::print(stderr, "mgt run resume goes on with it, mgt run abort ends it\n");
@@ -74,13 +75,17 @@ int follow(const Session& session) {
   catch_interrupts({SIGINT});
   auto client = serve::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
-  std::string last;
+  std::string judged;
   int last_tenth = -1;
   while (!interrupted()) {
     const auto reply = client->request(ControlCommand::run_status);
     if (!reply) return report(session, reply.error());
     const auto run = run_status_from_json(*reply);
     if (!run) return report(session, run.error());
+    if (run->judged != judged && run->state != RunState::done) {
+      judged = run->judged;
+      fmt::print(stderr, "{}{}\n", terminal ? "\r\033[K" : "", judged);
+    }
     const std::string line = progress_line(*run, terminal_width(STDERR_FILENO) - 1);
     const int tenth = run->poses > 0 ? 10 * run->pose / run->poses : 0;
     if (terminal) {

@@ -127,7 +127,7 @@ void RunFsm::on(const PoseStored& stored) {
 }
 
 void RunFsm::on(const AccuracyKnown& known) {
-  tensor_sd_nT_per_m_ = known.tensor_sd_nT_per_m;
+  known_.tensor_sd_nT_per_m = known.tensor_sd_nT_per_m;
   published_.reset();
   const auto wanted = config_.until_tensor_sd_nT_per_m;
   if (!wanted || known.tensor_sd_nT_per_m > *wanted || progress_.cut()) return;
@@ -138,7 +138,8 @@ void RunFsm::on(const AccuracyKnown& known) {
 
 void RunFsm::on(const FurtherPoses& further) {
   if (!in<phase::Judging>()) return;
-  act(Record{further.judgement.found + "; " + further.judgement.next});
+  known_.judged = further.judgement.found + "; " + further.judgement.next;
+  act(Record{known_.judged});
   plan_.poses.insert(plan_.poses.end(), further.poses.begin(), further.poses.end());
   act(StoreJudgement{further.judgement, plan_});
   if (further.poses.empty()) return solve();
@@ -228,7 +229,8 @@ RunStatus RunFsm::status(Instant now) const {
   s.goes_on = in<phase::Waiting>() != nullptr;
   if (const auto* end = in<phase::Ended>()) s.proposed = end->proposed;
   s.checks = checks_;
-  s.tensor_sd_nT_per_m = tensor_sd_nT_per_m_;
+  s.tensor_sd_nT_per_m = known_.tensor_sd_nT_per_m;
+  s.judged = known_.judged;
   s.wanted_tensor_sd_nT_per_m = config_.until_tensor_sd_nT_per_m;
   return s;
 }

@@ -211,7 +211,11 @@ class RunFsm {
   std::vector<Check> checks_;
   std::map<std::string, std::string> lost_;  ///< devices and why, as their links know it
   std::optional<Pose> unanswered_;           ///< whose PoseStored is awaited
-  std::optional<double> tensor_sd_nT_per_m_;
+  struct Known {
+    std::optional<double> tensor_sd_nT_per_m;
+    std::string judged;
+  };
+  Known known_;  ///< of the poses so far
 };
 
 }  // namespace mgtd::daemon::run

@@ -18,7 +18,7 @@ function progress(run) {
   return [make("h2", {}, `Run ${run.run_id}: ${run.state}`), make("progress", { max: run.poses || 1, value: run.pose }),
           make("p", {}, `${run.pose} of ${run.poses} poses${run.set ? `, set ${run.set}` : ""}${run.remaining_s ? `, ${minutes(run.remaining_s)} left` : ""}` +
                `${run.retries ? `, ${run.retries} repeated` : ""}`),
-          make("p", {}, run.message), accuracy];
+          make("p", {}, run.message), run.judged ? make("p", { id: "run-judged" }, `The poses say: ${run.judged}`) : null, accuracy];
 }
 
 /** A hand-turned table: what to do now, and three numbers. */
@@ -33,7 +33,8 @@ function asking(run, act) {
     act("run.enter", { azimuth_deg: read("azimuth"), pitch_deg: read("pitch"), roll_deg: read("roll") });
   } }, ["azimuth", "pitch", "roll"].map(field), make("button", {}, "The scales say this"),
                     make("button", { type: "button", onclick: () => act("run.redo") }, "The last entry was wrong"));
-  if (prompt.what === "note") return [make("p", {}, prompt.text), make("button", { onclick: () => act("run.resume") }, "Done")];
+  if (prompt.what === "note") return [make("p", {}, prompt.text), make("button", { onclick: () => act("run.resume") }, "Done"),
+    run.judged ? make("button", { onclick: () => act("run.finish") }, "End the run as it is") : null];
   return [make("p", {}, prompt.text), prompt.again ? make("p", { class: "warn" }, `Asked again: ${prompt.again}`) : null, form];
 }
 
@@ -61,5 +62,5 @@ export function showRun(run, act) {
 export function wanted(form) {
   const read = (name) => Number(form.elements[name].value);
   return { step_deg: read("step_deg"), random: read("random"), revisits: read("revisits"), dwell_short_s: read("dwell_short_s"),
-           dwell_long_s: read("dwell_long_s") };
+           dwell_long_s: read("dwell_long_s"), ...(read("until_explained_min") > 0 ? { until_explained_min: read("until_explained_min") } : {}) };
 }

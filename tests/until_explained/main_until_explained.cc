@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes docs/until-explained-benchmark.md: something is hidden in simulated rigs, each is measured until it
+// is explained, by the real drivers in virtual time, and what the first and the last look say is counted.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "tests/blind/page.h"
+#include "tests/rig/effect_list.h"
+#include "tests/rig/seal.h"
+#include "tests/scenario/judged_run.h"
+
+namespace mgtd::test {
+namespace {
+
+constexpr double kMinutes = 40;  ///< beside the plan
+
+enum class Said { right, in_set, open, wrong };
+
+struct Game {
+  std::string hidden;
+  bool in_library{true};
+  std::vector<daemon::run::RunJudgement> judgements;
+  std::size_t deeds{0};
+  bool ended{false};
+};
+
+/// What a look says of a law of the library: its name alone, its name among others, no name, or another one.
+/// A law of no library is right where no effect is named for it.
+Said said(const Game& game, const std::string& found) {
+  const bool explained = found.starts_with("EXPLAINED"), named = found.find(game.hidden) != std::string::npos;
+  if (!game.in_library) return explained ? Said::wrong : Said::right;
+  if (explained) return found == "EXPLAINED: " + game.hidden ? Said::right : Said::wrong;
+  return named ? Said::in_set : Said::open;
+}
+
+Game play(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  rig::Scenario scenario = scenario_of(fmt::format("[rig]\nparameters = \"random\"\nseed = {}\n", seed));
+  scenario = rig::with_hidden(std::move(scenario), 1, random);
+  Game out;
+  out.hidden = scenario.effects.back()->truth().at("effect");
+  out.in_library = !out.hidden.starts_with("hidden.");
+  JudgedRun run(scenario, kMinutes);
+  out.ended = run.run();
+  out.judgements = run.judgements, out.deeds = run.deeds.size();
+  return out;
+}
+
+std::vector<Game> play_all(std::uint64_t first, int count) {
+  std::vector<Game> out(static_cast<std::size_t>(count));
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int i = next++; i < count; i = next++) {
+      Game& game = out[static_cast<std::size_t>(i)];
+      game = play(first + static_cast<std::uint64_t>(i));
+      for (const daemon::run::RunJudgement& j : game.judgements)
+        fmt::print(stderr, "{} {} ({} poses): {}; {}\n", first + static_cast<std::uint64_t>(i), game.hidden,
+                   j.poses, j.found, j.next);
+    }
+  };
+  std::thread other(work);
+  work();
+  other.join();
+  return out;
+}
+
+std::string counts(const std::vector<Game>& games, bool in_library) {
+  std::string out =
+      "| look | right | right among others | no name, or open | wrong |\n|---|---|---|---|---|\n";
+  for (const bool last : {false, true}) {
+    std::array<int, 4> sums{};
+    int n = 0;
+    for (const Game& game : games) {
+      if (game.in_library != in_library || game.judgements.empty()) continue;
+      const auto& look = last ? game.judgements.back() : game.judgements.front();
+      ++sums.at(static_cast<std::size_t>(said(game, look.found)));
+      ++n;
+    }
+    out += fmt::format("| {} |", last ? "last" : "first");
+    for (const int sum : sums) out += fmt::format(" {} |", calib::testing::percent(sum, n));
+    out += "\n";
+  }
+  return out;
+}
+
+std::string page(const std::vector<Game>& games) {
+  std::vector<double> minutes;
+  std::string rows;
+  for (const Game& game : games) {
+    double sum = 0;
+    std::string looks;
+    for (const daemon::run::RunJudgement& j : game.judgements) {
+      sum += j.minutes;
+      looks += (looks.empty() ? "" : " -> ") + j.found;
+    }
+    if (sum > 0) minutes.push_back(sum);
+    rows += fmt::format("| {} | {} | {:.0f} | {} |\n", game.hidden, looks, sum, game.deeds);
+  }
+  std::sort(minutes.begin(), minutes.end());
+  std::string out =
+      "## Effects of the library\n\n" + counts(games, true) + "\n## Laws of no library\n\n" +
+      "Right: no effect is named for it.\n\n" + counts(games, false) +
+      fmt::format("\n{} of {} runs measured more; of those the median took {:.0f} minutes beside the plan.\n",
+                  minutes.size(), games.size(), minutes.empty() ? 0 : minutes[minutes.size() / 2]);
+  return out + "\n## Every run\n\n| hidden | looks | minutes more | deeds of a hand |\n|---|---|---|---|\n" +
+         rows;
+}
+
+}  // namespace
+}  // namespace mgtd::test
+
+int main(int argc, char** argv) {
+  using namespace mgtd::test;
+  CLI::App app{"writes docs/until-explained-benchmark.md"};
+  int runs = 60;
+  std::uint64_t seed = 1;
+  std::string output = "docs/until-explained-benchmark.md";
+  app.add_option("-o,--output", output)->capture_default_str();
+  app.add_option("--runs", runs, "rigs")->capture_default_str();
+  app.add_option("--seed", seed, "of the first")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  spdlog::set_level(spdlog::level::off);
+  ::testing::InitGoogleTest();
+  const std::string text = fmt::format(
+      "# Runs that go on until they are explained\n\nWritten by this command:\n\n"
+      "    build/bin/until_explained --runs {} --seed {}\n\n"
+      "Each rig hides one effect, drawn from all that the simulated rig knows, 0.7 to 3 times a size that is "
+      "worth finding. The daemon measures its plan of 157 poses, judges it, and goes on for at most {:.0f} "
+      "minutes of the rig's time; a simulated hand warms the heads or switches a coil on where it is asked "
+      "to. "
+      "Shares in percent, with intervals of 95 % (Wilson).\n\n",
+      runs, seed, kMinutes);
+  const std::string result = page(play_all(seed, runs));
+  std::ofstream(output) << text << result;
+  return 0;
+}
