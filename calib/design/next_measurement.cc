@@ -5,6 +5,7 @@
 
 #include "calib/criticism/tests/residual.h"
 #include "calib/design/actions.h"
+#include "calib/design/model_on_poses.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/library.h"
 #include "calib/linear/qr.h"
@@ -14,28 +15,6 @@ namespace {
 
 constexpr double kWorthMeasuring = 0.01;  ///< gain of the probability that is worth telling
 constexpr double kBetter = 0.005;         ///< than more of the same, for what takes more than that
-
-/// The fit's model on other poses, ready to project signatures.
-struct Design {
-  fit::joint::JointProblem problem;
-  fit::joint::JointState state;
-};
-
-Result<Design> design_of(const PoseTable& table, const fit::joint::JointFit& fit,
-                         const fit::joint::JointOptions& options) {
-  auto problem = fit::joint::joint_problem(table, options);
-  if (!problem) return tl::unexpected(problem.error());
-  Design out{.problem = std::move(*problem), .state = {}};
-  fit::joint::fix_gauge(out.problem, options);
-  fit::joint::weight_by_pose(out.problem, fit.pose_noise_nT);
-  for (fit::joint::JointPose& pose : out.problem.poses)
-    if (pose.has_angles && fit.table_sd_rad > 0) pose.attitude_weight = 1 / fit.table_sd_rad;
-  out.state = fit::joint::joint_state(out.problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
-  if (out.state.coefficients.size() == fit.state.coefficients.size())
-    out.state.coefficients = fit.state.coefficients;
-  fit::joint::refit_nuisances(out.problem, out.state);
-  return out;
-}
 
 /// Further poses of an action, beside the run they follow.
 struct Longer {
@@ -59,7 +38,7 @@ Eigen::MatrixXd at_two_places(const Eigen::MatrixXd& rows, Eigen::Index here) {
 }
 
 /// Projected columns of an effect; empty when these poses cannot feed it.
-Eigen::MatrixXd columns_of(const Design& design, const criticism::tests::Residual& residual,
+Eigen::MatrixXd columns_of(const ModelOnPoses& design, const criticism::tests::Residual& residual,
                            const std::string& spec, const Longer& run, std::vector<std::string>* names) {
   const PoseTable& table = run.table;
   const auto parsed = effects::EffectSpec::parse(spec);
@@ -112,7 +91,7 @@ bool differ_in_form(const std::string& a, const std::string& b) {
 double p_right(const Longer& run, const fit::joint::JointFit& fit, const fit::joint::JointOptions& options,
                const criticism::tests::Candidate& winner,
                const std::vector<criticism::tests::Alternative>& alternatives) {
-  const auto design = design_of(run.table, fit, options);
+  const auto design = model_on_poses(run.table, fit, options);
   if (!design) return 0;
   const criticism::tests::Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;
@@ -151,7 +130,7 @@ void find_form_only(const PoseTable& table, const fit::joint::JointFit& fit,
                     const fit::joint::JointOptions& options, const criticism::tests::Candidate& winner,
                     std::vector<criticism::tests::Alternative>& alternatives) {
   const Longer run = as_it_is(table, fit.problem);
-  const auto design = design_of(table, fit, options);
+  const auto design = model_on_poses(table, fit, options);
   if (!design) return;
   const criticism::tests::Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct NextMeasurement {
   std::string action{};
   double minutes{0};
   double p_right_before{0}, p_right_after{0};  ///< against the alternative that is hardest to tell from it
+  std::optional<double> lambda_before{}, lambda_after{};  ///< where several formulas were asked about
 };
 
 struct NextMenu {

@@ -114,6 +114,7 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
   const auto explained = explain(table, options);
   if (!explained) return tl::unexpected(explained.error());
   NextReport out;
+  out.finding = explained->finding;
   std::optional<tests::Candidate> asked = open_question(*explained);
   if (pair) {
     auto a = candidate_of(*explained, pair->first);

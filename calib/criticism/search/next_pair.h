@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/criticism/search/explain.h"
+#include "calib/design/rival_menu.h"
 
 /// Finds which further measurement would tell two effects apart: a given pair, or the one that explain() left
 /// open.
@@ -26,12 +27,19 @@ struct NothingToSettle {
 
 struct NextReport {
   std::optional<NothingToSettle> nothing_to_settle{};
+  std::optional<Finding> finding{};     ///< of explain(), where it was asked
   std::string effect{}, alternative{};  ///< specs; empty when nothing is open
   double d{0};                          ///< size of the effect as found, in its standard deviations
   bool assumed{false};                  ///< it was too small to be seen: the smallest that is stands for it
   double p_right_before{0};
   bool none_helps{false};         ///< no measurement of the menu tells them apart better than this run does
-  std::vector<NextStep> steps{};  ///< best first
+  std::vector<NextStep> steps{};  ///< best first; of formulas: by what each adds a minute
+  // Where formulas were asked about (next_among.h):
+  std::vector<design::Rival> rivals{};
+  std::optional<double> lambda_before{};
+  bool told_apart{false};  ///< by the poses of the run
+  std::vector<design::LeftOut> left_out{};
+  std::vector<std::pair<std::string, std::string>> never{};  ///< specs that no measurement tells apart
 };
 
 /// `pair`: two effects, by name or spec; empty: the verdict's own. Refuses a pair of which one cannot be

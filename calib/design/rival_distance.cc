@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/design/rival_distance.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "calib/linear/ldlt.h"
+#include "calib/linear/qr.h"
+
+namespace mgtd::calib::design {
+namespace {
+
+/// (A'A)^-1, a little of the diagonal added: a direction that nothing determines stays where it is.
+Eigen::MatrixXd inverse_of_products(const Eigen::MatrixXd& A) {
+  constexpr double kRidge = 1e-9;
+  Eigen::MatrixXd products = A.transpose() * A;
+  const Eigen::VectorXd scale =
+      products.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? 1 / x : 1; });
+  products = scale.asDiagonal() * products * scale.asDiagonal();
+  products.diagonal().array() += kRidge;
+  const Eigen::MatrixXd inverse = linear::solve_by_ldlt(
+      products, Eigen::MatrixXd(Eigen::MatrixXd::Identity(products.rows(), products.cols())));
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+}  // namespace
+
+RivalDistance::RivalDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed,
+                             std::vector<Described> described, const std::vector<RivalPair>& pairs)
+    : fixed_(fixed), described_(std::move(described)) {
+  for (const RivalPair& pair : pairs) {
+    const Eigen::MatrixXd other = columns_of(pair.other, rows);
+    const Eigen::VectorXd v = signature_of(pair.truth, rows);
+    State state{.pair = pair, .x = linear::least_squares(other, v), .K = inverse_of_products(other)};
+    state.lambda = (v - other * state.x).squaredNorm();
+    pairs_.push_back(std::move(state));
+  }
+}
+
+Eigen::MatrixXd RivalDistance::columns_of(std::size_t other, const Eigen::MatrixXd& rows) const {
+  const Described& own = described_[other];
+  Eigen::MatrixXd out(rows.rows(), fixed_ + own.count);
+  out << rows.leftCols(fixed_), rows.middleCols(own.first, own.count);
+  return out;
+}
+
+Eigen::VectorXd RivalDistance::signature_of(std::size_t truth, const Eigen::MatrixXd& rows) const {
+  const Described& own = described_[truth];
+  return rows.middleCols(own.first, own.count) * own.size;
+}
+
+std::vector<std::size_t> RivalDistance::worst_first() const {
+  std::vector<std::size_t> out(pairs_.size());
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  std::stable_sort(out.begin(), out.end(),
+                   [this](std::size_t a, std::size_t b) { return pairs_[a].lambda < pairs_[b].lambda; });
+  return out;
+}
+
+RivalDistance::Innovation RivalDistance::innovation(const State& state, const Eigen::MatrixXd& rows) const {
+  Innovation out{.columns = columns_of(state.pair.other, rows), .e = {}, .S = {}};
+  out.e = signature_of(state.pair.truth, rows) - out.columns * state.x;
+  out.S = out.columns * state.K * out.columns.transpose();
+  out.S.diagonal().array() += 1;
+  return out;
+}
+
+double RivalDistance::gain(std::size_t pair, const Eigen::MatrixXd& rows) const {
+  const Innovation now = innovation(pairs_[pair], rows);
+  return now.e.dot(linear::solve_by_ldlt(now.S, now.e));
+}
+
+void RivalDistance::add(const Eigen::MatrixXd& rows) {
+  for (State& state : pairs_) {
+    const Innovation now = innovation(state, rows);
+    const Eigen::VectorXd whitened = linear::solve_by_ldlt(now.S, now.e);
+    const Eigen::MatrixXd turned = now.columns * state.K;
+    state.lambda += now.e.dot(whitened);
+    state.x += turned.transpose() * whitened;
+    state.K -= turned.transpose() * linear::solve_by_ldlt(now.S, turned);
+  }
+}
+
+std::size_t best_of(const RivalDistance& distance, const std::vector<PossiblePose>& group) {
+  constexpr double kNothing = 1e-6;
+  for (const std::size_t pair : distance.worst_first()) {
+    std::size_t best = 0;
+    double most = 0;
+    for (std::size_t m = 0; m < group.size(); ++m) {
+      const double a_minute = distance.gain(pair, group[m].rows) / group[m].minutes;
+      if (a_minute > most) most = a_minute, best = m;
+    }
+    if (most > kNothing) return best;
+  }
+  return 0;
+}
+
+std::vector<std::size_t> placed(RivalDistance distance,
+                                const std::vector<std::vector<PossiblePose>>& groups) {
+  std::vector<std::size_t> out;
+  for (const std::vector<PossiblePose>& group : groups) {
+    out.push_back(best_of(distance, group));
+    distance.add(group[out.back()].rows);
+  }
+  return out;
+}
+
+}  // namespace mgtd::calib::design

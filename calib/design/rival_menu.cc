@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/design/rival_menu.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "calib/criticism/tests/alternatives.h"
+#include "calib/design/candidate_poses.h"
+
+namespace mgtd::calib::design {
+namespace {
+
+constexpr std::size_t kCandidates = 48;  ///< attitudes that are tried for each pose
+constexpr double kGained = 1e-3;         ///< of lambda: less is nothing
+
+struct Work {
+  const PoseTable& run;
+  const fit::joint::JointFit& fit;
+  const fit::joint::JointOptions& options;
+  std::uint64_t seed;
+};
+
+struct Tried {
+  const LawAction* action;
+  std::vector<Pose> poses;
+  double minutes{0};
+  std::vector<double> lambda;  ///< by pair
+};
+
+using Groups = std::vector<std::vector<CandidatePose>>;
+
+/// The poses of an action and the run with them behind it, `which` of its candidates each pose is.
+struct Longer {
+  PoseTable table;
+  double minutes{0};
+};
+
+Longer longer(const PoseTable& run, const Groups& groups, const std::vector<std::size_t>& which) {
+  Longer out{.table = run};
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    out.table.poses.push_back(groups[k][which[k]].pose);
+    out.minutes += groups[k][which[k]].minutes;
+  }
+  return out;
+}
+
+bool remembers_poses(const RivalFit& rivals) {
+  return std::any_of(rivals.rivals.begin(), rivals.rivals.end(), [](const Rival& rival) {
+    return std::any_of(rival.specs.begin(), rival.specs.end(),
+                       [](const std::string& spec) { return spec.find("prev_") != std::string::npos; });
+  });
+}
+
+/// Where a law knows the pose before: each pose behind the one that was chosen before it.
+Result<std::vector<std::size_t>> chosen_in_order(const Groups& groups, const Work& work,
+                                                 const RivalFit& rivals) {
+  std::vector<std::size_t> which;
+  std::optional<RivalDistance> distance;
+  PoseTable measured = work.run;
+  for (const auto& group : groups) {
+    PoseTable table = measured;
+    int number = 0;
+    for (const Pose& pose : table.poses) number = std::max(number, pose.number);
+    for (const CandidatePose& candidate : group) {
+      for (const Pose& pose : {measured.poses.back(), candidate.pose}) {
+        table.poses.push_back(pose);
+        table.poses.back().t_s = candidate.pose.t_s;
+        table.poses.back().number = ++number;
+      }
+    }
+    const auto rows = rival_rows(table, measured.poses.size(), rivals, work.fit, work.options);
+    if (!rows) return tl::unexpected(rows.error());
+    if (!distance) distance.emplace(rows->run, rows->fixed, rows->described, rivals.pairs);
+    std::vector<PossiblePose> possible;
+    for (std::size_t m = 0; m < group.size(); ++m)
+      possible.push_back({.rows = rows->further[rows->further.size() - 2 * (group.size() - m) + 1],
+                          .minutes = group[m].minutes});
+    which.push_back(best_of(*distance, possible));
+    distance->add(possible[which.back()].rows);
+    measured.poses.push_back(group[which.back()].pose);
+  }
+  return which;
+}
+
+/// Which of its candidates each pose of an action is.
+Result<std::vector<std::size_t>> chosen(const Groups& groups, const Work& work, const RivalFit& rivals) {
+  if (groups.front().size() < 2) return std::vector<std::size_t>(groups.size(), 0);
+  if (remembers_poses(rivals)) return chosen_in_order(groups, work, rivals);
+  PoseTable table = work.run;
+  int number = 0;
+  for (const Pose& pose : work.run.poses) number = std::max(number, pose.number);
+  for (const auto& group : groups) {
+    for (const CandidatePose& candidate : group) {
+      table.poses.push_back(candidate.pose);
+      table.poses.back().number = ++number;
+    }
+  }
+  const auto rows = rival_rows(table, work.run.poses.size(), rivals, work.fit, work.options);
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<std::vector<PossiblePose>> possible;
+  std::size_t next = 0;
+  for (const auto& group : groups) {
+    possible.emplace_back();
+    for (const CandidatePose& candidate : group)
+      possible.back().push_back({.rows = rows->further[next++], .minutes = candidate.minutes});
+  }
+  return placed(RivalDistance(rows->run, rows->fixed, rows->described, rivals.pairs), possible);
+}
+
+Result<Tried> tried(const LawAction& action, const Work& work, const RivalFit& rivals) {
+  const Groups groups = candidate_poses(work.run, action, work.fit.state.sensors, kCandidates, work.seed);
+  const auto which = chosen(groups, work, rivals);
+  if (!which) return tl::unexpected(which.error());
+  const Longer run = longer(work.run, groups, *which);
+  auto lambda = distances_on(run.table, rivals, work.fit, work.options);
+  if (!lambda) return tl::unexpected(lambda.error());
+  return Tried{
+      .action = &action,
+      .poses = {run.table.poses.end() - static_cast<std::ptrdiff_t>(groups.size()), run.table.poses.end()},
+      .minutes = action.extra_min + run.minutes,
+      .lambda = *std::move(lambda)};
+}
+
+/// What an action adds to the worst lambda a minute, as far as it counts.
+double a_minute(const RivalStep& step) {
+  const auto counted = [](const std::optional<double>& lambda) {
+    return std::min(kSettled, lambda.value_or(0));
+  };
+  return (counted(step.measurement.lambda_after) - counted(step.measurement.lambda_before)) /
+         step.measurement.minutes;
+}
+
+/// The pairs that something tells apart.
+std::vector<std::size_t> pairs_told_apart(const std::vector<double>& before, const std::vector<Tried>& all) {
+  std::vector<std::size_t> out;
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    const bool helped = std::any_of(all.begin(), all.end(),
+                                    [&](const Tried& t) { return t.lambda[p] > before[p] + kGained; });
+    if (helped || before[p] >= kSettled) out.push_back(p);
+  }
+  return out;
+}
+
+std::size_t least(const std::vector<double>& lambda, const std::vector<std::size_t>& of) {
+  return *std::min_element(of.begin(), of.end(),
+                           [&](std::size_t a, std::size_t b) { return lambda[a] < lambda[b]; });
+}
+
+}  // namespace
+
+Result<RivalMenu> rival_menu(const PoseTable& run, const fit::joint::JointFit& fit,
+                             const fit::joint::JointOptions& options, const std::vector<Rival>& rivals,
+                             std::uint64_t seed, std::span<const LawAction> actions) {
+  if (rivals.size() < 2)
+    return fail(ErrorCode::usage, "one formula alone leaves nothing to settle", "name two");
+  const Work work{run, fit, options, seed};
+  auto fitted = rival_fit(run, fit, options, rivals);
+  if (!fitted) return tl::unexpected(fitted.error());
+  RivalMenu out;
+  out.rivals = *std::move(fitted);
+  const auto before = distances_on(run, out.rivals, fit, options);
+  if (!before) return tl::unexpected(before.error());
+  std::vector<Tried> all;
+  for (const LawAction& action : actions) {
+    auto why = action.lacks == nullptr ? std::nullopt : action.lacks(run);
+    if (why) {
+      out.left_out.push_back({std::string(action.text), *std::move(why)});
+      continue;
+    }
+    auto one = tried(action, work, out.rivals);
+    if (!one) return tl::unexpected(one.error());
+    all.push_back(*std::move(one));
+  }
+  std::vector<std::size_t> count = pairs_told_apart(*before, all);
+  for (std::size_t p = 0; p < before->size(); ++p)
+    if (std::find(count.begin(), count.end(), p) == count.end()) out.never.push_back(out.rivals.pairs[p]);
+  if (count.empty())
+    for (std::size_t p = 0; p < before->size(); ++p) count.push_back(p);
+  const std::size_t worst = least(*before, count);
+  out.worst = out.rivals.pairs[worst];
+  out.lambda_before = (*before)[worst];
+  out.p_right_before = criticism::tests::probability_right(out.lambda_before);
+  for (Tried& one : all) {
+    const double after = one.lambda[least(one.lambda, count)];
+    if (after < out.lambda_before + kGained) continue;
+    out.steps.push_back({.measurement = {.action = std::string(one.action->text),
+                                         .minutes = one.minutes,
+                                         .p_right_before = out.p_right_before,
+                                         .p_right_after = criticism::tests::probability_right(after),
+                                         .lambda_before = out.lambda_before,
+                                         .lambda_after = after},
+                         .poses = std::move(one.poses),
+                         .by_the_rig = one.action->by_the_rig});
+  }
+  std::stable_sort(out.steps.begin(), out.steps.end(),
+                   [](const RivalStep& a, const RivalStep& b) { return a_minute(a) > a_minute(b); });
+  return out;
+}
+
+}  // namespace mgtd::calib::design
