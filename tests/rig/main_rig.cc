@@ -91,7 +91,7 @@ struct Arguments {
   int hide{0};
   bool samples{false}, poses_given{false};
   std::uint64_t seed{1};
-  double speed_up{1};
+  double speed_up{1}, begin_s{0};
   bool print_config{false};
   std::vector<std::string> words;
   std::vector<double> angles_deg;
@@ -203,7 +203,21 @@ int table(const Arguments& args, Scenario s) {
     return 2;
   }
   if (grid) s.table_accuracy_deg = 0;
-  const Design design = grid ? grid_of_5832() : run_of_157(options_of(args.poses, s), s.seed);
+  const bool named = grid || args.poses == "run157" || args.poses == "octant157";
+  ListedDesign listed;
+  if (!named) {
+    const auto csv = text_of(args.poses);
+    if (!csv) return 2;
+    listed = listed_design(*csv);
+    if (!listed.error.empty()) {
+      fmt::print(stderr, "mgt-rig: {}: {}\n", args.poses, listed.error);
+      return 2;
+    }
+  }
+  Design design = !named ? std::move(listed.design)
+                  : grid ? grid_of_5832()
+                         : run_of_157(options_of(args.poses, s), s.seed);
+  design.begin_s = args.begin_s;
   const std::uint64_t seed = s.seed;
   return write(args.output,
                pose_table_csv(simulated_survey(std::move(s), design, seed,
@@ -348,11 +362,12 @@ void add_commands(CLI::App& app, Arguments& args) {
   poses->add_flag("--samples", args.samples, "every sample instead of the distribution of the means");
   poses
       ->add_option("--poses", args.poses,
-                   "run157 (36 standard and 121 random poses), octant157 (the field in one octant only) or "
-                   "grid5832")
-      ->check(CLI::IsMember({"run157", "octant157", "grid5832"}))
+                   "run157 (36 standard and 121 random poses), octant157 (the field in one octant only), "
+                   "grid5832, or a list of poses (CSV), as mgt next -o writes it")
       ->each([&args](const std::string&) { args.poses_given = true; })
       ->capture_default_str();
+  poses->add_option("--begin", args.begin_s, "time of the rig's world at which the run starts, s (0)")
+      ->check(CLI::Range(0.0, 1e7));
   poses->add_option("-o,--output", args.output, "file; standard output when absent");
   add_scenario(app, "truth", "print what the rig really is, as JSON", args,
                [](const Arguments&, const Scenario& s) { return write("", truth_json(s).dump(1) + "\n"); });

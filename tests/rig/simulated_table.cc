@@ -33,7 +33,7 @@ void round_means(Survey& survey, double step_nT) {
 class Surveyor {
  public:
   Surveyor(Scenario scenario, const Design& design, Sampling sampling)
-      : world_(std::move(scenario)), design_(design), sampling_(sampling) {}
+      : world_(std::move(scenario)), design_(design), sampling_(sampling), now_s_(design.begin_s) {}
   [[nodiscard]] Survey survey();
 
  private:
@@ -51,7 +51,7 @@ class Surveyor {
   World world_;
   const Design& design_;
   Sampling sampling_;
-  double now_s_{0};
+  double now_s_;
   std::size_t mount_{0};
   std::vector<PathPoint> path_;
 };
@@ -95,7 +95,7 @@ void Surveyor::go(const PlannedPose& pose) {
     move_to(beyond_deg);
   }
   move_to(pose.angles_deg);
-  now_s_ += design_.settle_s;
+  now_s_ += design_.settle_s + pose.wait_s;
 }
 
 void Surveyor::by_means(int i, const PlannedPose& planned, int n, SurveyRow& pose) {
@@ -188,7 +188,7 @@ void Surveyor::measure(const PlannedPose& planned, SurveyRow& pose) {
     pose.n_eff = std::max(1.0, n * (1 - rho) / (1 + rho));
   if (const int sense = world_.axis(azimuth).sense(); sense != 0) pose.sense = sense;
   if (planned.dwell_s > 0) pose.dwell_s = planned.dwell_s;
-  if (!planned.cage_nT) pose.since_stop_s = design_.settle_s + planned.dwell_s / 2;
+  if (!planned.cage_nT) pose.since_stop_s = design_.settle_s + planned.wait_s + planned.dwell_s / 2;
   for (const Covariate& c : scenario().covariates) {
     double mean = 0;
     for (const Node& node : kNodes) mean += node.weight * c.at(now_s_ + node.at * planned.dwell_s);
@@ -202,7 +202,7 @@ Survey Surveyor::survey() {
   out.angles = scenario().angles;
   out.scalar = scenario().scalar || !scenario().reference;
   const bool remounted = design_.mounts.size() > 1;
-  world_.remount(design_.mounts.at(0), 0);
+  world_.remount(design_.mounts.at(0), now_s_);
   for (const PlannedPose& planned : design_.poses) {
     go(planned);
     SurveyRow pose(world_.sensors());

@@ -26,6 +26,7 @@ struct PlannedPose {
   int sense{0};       ///< of the azimuth's approach: +1, -1; 0: the short way
   int mount{1};       ///< which of Design::mounts
   double pause_s{0};  ///< waited before the table sets off
+  double wait_s{0};   ///< from its stop to the dwell, beyond what it takes to settle
   /// The table stands still, and a cage makes this field, platform frame.
   std::optional<Eigen::Vector3d> cage_nT{};
 };
@@ -37,6 +38,7 @@ struct Design {
   std::vector<Eigen::Matrix3d> mounts{Eigen::Matrix3d::Identity()};
   double settle_s{1};      ///< from the stop to the dwell
   bool record_path{true};  ///< where the table was while it moved, as a run file keeps it
+  double begin_s{0};       ///< of the world's time, when the run starts; the table stands at zero then
 };
 
 struct DesignOptions {
@@ -62,6 +64,14 @@ struct DesignOptions {
 /// A table with one axis: `azimuths` equal steps in a random order for each of the mountings.
 [[nodiscard]] Design remounted_turns(const std::vector<Eigen::Matrix3d>& mounts, std::size_t azimuths,
                                      std::uint64_t seed);
+
+/// The poses of a list as `mgt next -o` writes it: azimuth_deg, pitch_deg and roll_deg, and where it has them
+/// set, sense, dwell_s and since_stop_s. Empty, with a reason, where it is no such list.
+struct ListedDesign {
+  Design design;
+  std::string error{};
+};
+[[nodiscard]] ListedDesign listed_design(const std::string& csv);
 
 /// One field after the other; the array stands still.
 [[nodiscard]] Design cage_fields(const Cage& cage, std::uint64_t seed);
