@@ -27,36 +27,82 @@ std::string reason_text(const criticism::search::NextReport& r) {
         "settle (two names ask about a pair)",
         winner, nearest);
   }
+  if (r.told_apart) return "the poses of this run tell them apart: there is nothing to settle";
   return r.none_helps
              ? "none of the measurements that are known here would tell them apart better than this run does"
              : "";
 }
 
+/// The description of that spec as a person reads it.
+std::string shown(const criticism::search::NextReport& r, const std::string& spec) {
+  for (const design::Rival& rival : r.rivals)
+    if (rival.name == spec || (rival.specs.size() == 1 && rival.specs.front() == spec)) return rival.name;
+  return spec;
+}
+
+std::string rivals_text(const std::vector<design::Rival>& rivals) {
+  std::string out = "what it could be:\n";
+  for (const design::Rival& rival : rivals)
+    out +=
+        rival.P ? fmt::format("  P {:.2f}  {}\n", *rival.P, rival.name) : fmt::format("  {}\n", rival.name);
+  return out;
+}
+
+std::string never_text(const criticism::search::NextReport& r) {
+  constexpr std::size_t kShown = 3;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kShown, r.never.size()); ++i)
+    out += fmt::format("nothing known here would tell {} from {}\n", shown(r, r.never[i].first),
+                       shown(r, r.never[i].second));
+  if (r.never.size() > kShown) out += fmt::format("nor {} other pairs\n", r.never.size() - kShown);
+  return out;
+}
+
 }  // namespace
 
 json to_json(const criticism::search::NextReport& r) {
+  const auto lambda = [](const std::optional<double>& x) { return x ? json(*x) : json(); };
+  json rivals = json::array(), left_out = json::array();
+  for (const design::Rival& rival : r.rivals)
+    rivals.push_back(
+        {{"formula", rival.name}, {"specs", rival.specs}, {"P", rival.P ? json(*rival.P) : json()}});
+  for (const design::LeftOut& one : r.left_out)
+    left_out.push_back({{"action", one.action}, {"why", one.why}});
   json steps = json::array();
   for (const criticism::search::NextStep& s : r.steps) {
     steps.push_back({{"action", s.measurement.action},
                      {"minutes", s.measurement.minutes},
                      {"p_right_before", s.measurement.p_right_before},
                      {"p_right_after", s.measurement.p_right_after},
+                     {"separation_before", lambda(s.measurement.lambda_before)},
+                     {"separation_after", lambda(s.measurement.lambda_after)},
                      {"by_the_rig", s.by_the_rig},
                      {"poses", s.poses.size()}});
   }
+  json never = json::array();
+  for (const auto& [a, b] : r.never) never.push_back({a, b});
   const auto name = [](const std::string& spec) { return spec.empty() ? json() : json(spec); };
-  return {
-      {"schema", "mgt.next/1"},       {"effect", name(r.effect)},
-      {"rival", name(r.alternative)}, {"d", r.d},
-      {"size_assumed", r.assumed},    {"p_right_before", r.effect.empty() ? json() : json(r.p_right_before)},
-      {"next", std::move(steps)},     {"text", reason_text(r)}};
+  return {{"schema", "mgt.next/1"},
+          {"effect", name(r.effect)},
+          {"rival", name(r.alternative)},
+          {"d", r.d},
+          {"size_assumed", r.assumed},
+          {"p_right_before", r.effect.empty() ? json() : json(r.p_right_before)},
+          {"separation_before", lambda(r.lambda_before)},
+          {"rivals", std::move(rivals)},
+          {"next", std::move(steps)},
+          {"left_out", std::move(left_out)},
+          {"never_told_apart", std::move(never)},
+          {"text", reason_text(r)}};
 }
 
 std::string to_text(const criticism::search::NextReport& r) {
   std::string out;
   const auto to = std::back_inserter(out);
+  if (r.rivals.size() > 2) out += rivals_text(r.rivals);
   if (!r.effect.empty()) {
-    fmt::format_to(to, "{} or {}?\n", r.effect, r.alternative);
+    fmt::format_to(to, "{}{} or {}?\n", r.rivals.size() > 2 ? "hardest to tell apart: " : "",
+                   shown(r, r.effect), shown(r, r.alternative));
     if (r.assumed)
       out += "neither is large enough to be seen on this run; at the smallest size that would be,\n";
     fmt::format_to(to, "these poses give the right name with probability {:.3f}\n", r.p_right_before);
@@ -67,6 +113,9 @@ std::string to_text(const criticism::search::NextReport& r) {
     fmt::format_to(to, "{:>8.0f} {:>8.3f}  {:<8} {}\n", s.measurement.minutes, s.measurement.p_right_after,
                    s.by_the_rig ? "the rig" : "hand", s.measurement.action);
   }
+  if (!r.none_helps) out += never_text(r);
+  for (const design::LeftOut& one : r.told_apart ? std::vector<design::LeftOut>{} : r.left_out)
+    fmt::format_to(to, "left out: {}: {}\n", one.action, one.why);
   if (const std::string why = reason_text(r); !why.empty()) out += why + "\n";
   return out;
 }

@@ -5,12 +5,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calib/criticism/search/next_pair.h"
+#include "calib/criticism/search/next_among.h"
+#include "calib/effects/where.h"
 #include "calib/poses/pose_list.h"
 #include "calib/report/next_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/next_rivals.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/plan/plan_from_list.h"
 #include "proto/run_request.h"
@@ -19,11 +21,16 @@ namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kNextHelp =
-    "Two effects that look alike on this run may differ under other conditions. Each action of the menu is "
-    "tried\n"
-    "in the model: 24 poses more, and with them the probability that the right one of the two is named.\n\n"
-    "  mgt next run.mgtrun                                               what the verdict left open\n"
+    "Two effects or formulas that look alike on this run may differ under other conditions. Each action of\n"
+    "the menu is tried in the model: 24 poses more, and with them the probability that the right one of the\n"
+    "two is named. Of several formulas the two that are hardest to tell apart decide, attitudes are chosen\n"
+    "for what they tell, and the actions stand in the order of what they gain a minute.\n\n"
+    "  mgt next run.mgtrun                                               what the verdict left open, or "
+    "what\n"
+    "                                                                    mgt discover did\n"
     "  mgt next run.mgtrun axis.offset.drift axis.offset.temperature     a pair\n"
+    "  mgt next run.mgtrun law1 'kink@s3.z,expr=max(0, T_degC - 24)'     formulas: kept ones, or new\n"
+    "  mgt next run.mgtrun s3.z                                          what mgt discover left open there\n"
     "  mgt next run.mgtrun -o poses.csv                                  the best one's poses, as a list\n\n"
     "Exit code 0: something would help, or there is nothing to settle. 1: nothing known here would.";
 
@@ -64,28 +71,61 @@ nlohmann::json run_of(const calib::criticism::search::NextStep& step) {
   return to_json(request);
 }
 
-int run_next(const Session& session, const NextArguments& args) {
-  if (args.pair.size() == 1)
-    return report(session,
-                  {ErrorCode::usage, "one effect alone leaves nothing to settle", "name two, or none"});
-  for (const std::string& name : args.pair) {
-    if (name.find_first_of("@,") == std::string::npos) continue;
-    return report(session,
-                  {ErrorCode::usage, fmt::format("'{}': two effects are compared wherever they act", name),
-                   "name them without place and numbers, like " + name.substr(0, name.find_first_of("@,"))});
+using Report = Result<calib::criticism::search::NextReport>;
+
+Report among(const Result<Question>& asked, const PoseTable& table) {
+  if (!asked) return tl::unexpected(asked.error());
+  return calib::criticism::search::next_among(table, asked->options, asked->rivals);
+}
+
+/// What the verdict and the model leave open; where a law is left that is in no library, its formulas.
+Report left_open(const store::PoseSource& source, const calib::fit::FitOptions& options,
+                 const std::vector<calib::criticism::search::Choice>& doubts) {
+  using calib::criticism::search::Finding;
+  const auto doubted = question_in_doubt(doubts, source, options);
+  if (!doubted || !doubted->rivals.empty()) return among(doubted, source.table);
+  auto next = calib::criticism::search::next_of(source.table, {.fit = options}, std::nullopt);
+  if (!next) return next;
+  if (next->effect.empty() && !doubts.empty())
+    return next_about(source.table, options, doubts, *std::move(next));
+  if (next->finding == Finding::bad_data) return next;
+  const bool unnamed =
+      next->effect.empty() || next->finding == Finding::unknown || next->finding == Finding::partial;
+  const auto formulas = question_by_discovery("", source, options);
+  if (formulas && !formulas->rivals.empty() && (formulas->believed || unnamed))
+    return among(formulas, source.table);
+  return next;
+}
+
+Report answer(const NextArguments& args, const store::PoseSource& source,
+              const calib::fit::FitOptions& options,
+              const std::vector<calib::criticism::search::Choice>& doubts) {
+  if (args.pair.empty()) return left_open(source, options, doubts);
+  if (args.pair.size() == 1) {
+    const auto formulas = question_by_discovery(args.pair.front(), source, options);
+    if (formulas && formulas->rivals.empty())
+      return fail(ErrorCode::refused, "mgt discover leaves no two formulas open at " + args.pair.front(),
+                  "mgt next without a name asks about the whole run");
+    return among(formulas, source.table);
   }
+  if (!names_of_the_library(args.pair, source))
+    return among(question_of(args.pair, source, options), source.table);
+  return calib::criticism::search::next_of(source.table, {.fit = options},
+                                           std::pair{args.pair[0], args.pair[1]});
+}
+
+int run_next(const Session& session, const NextArguments& args) {
+  const bool place = args.pair.size() == 1 && calib::effects::Where::parse(args.pair.front());
+  if (args.pair.size() == 1 && !place)
+    return report(session, {ErrorCode::usage, "one effect alone leaves nothing to settle",
+                            "name two, or none; a place (s3.z) asks about what mgt discover finds there"});
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  std::optional<std::pair<std::string, std::string>> pair;
-  if (args.pair.size() == 2) pair = {args.pair[0], args.pair[1]};
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
-  auto next = with_progress(
-      "next", [&] { return calib::criticism::search::next_of(source->table, {.fit = *options}, pair); });
-  if (next && !pair && next->effect.empty())
-    next = next_about(source->table, *options, *doubts, std::move(*next));
+  const auto next = with_progress("next", [&] { return answer(args, *source, *options, *doubts); });
   if (!next) return report(session, next.error());
   if (!args.output.empty() && !next->steps.empty()) {
     const calib::criticism::search::NextStep& best = next->steps.front();
@@ -115,7 +155,8 @@ void add_next(CLI::App& app, Session& session) {
                   [args, &session] { return run_next(session, *args); });
   command->footer(kNextHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
-  command->add_option("EFFECT", args->pair, "two effects, by name")->expected(0, 2);
+  command->add_option("EFFECT", args->pair, "two effects or formulas, by name or spec; or a place")
+      ->expected(0, 2);
   command->add_option("-o,--output", args->output, "write the poses of the best one here (CSV)");
   command->add_flag("--poses", args->poses, "with --json: each as the arguments of a run that measures it");
   args->flags = add_model_flags(command);

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/next_rivals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/discovery/discover.h"
+#include "calib/effects/library/library.h"
+#include "daemon/store/user_formulas.h"
+
+namespace mgtd::daemon::cli {
+namespace {
+
+using calib::design::Rival;
+using calib::effects::EffectSpec;
+
+constexpr std::size_t kMostRivals = 8;
+
+int sensors_of(const store::PoseSource& source) {
+  return calib::effects::EffectContext{.table = &source.table, .offset_nT = {}}.sensors();
+}
+
+bool is_formula(const std::string& spec) {
+  const auto parsed = EffectSpec::parse(spec);
+  return parsed && parsed->find("expr") != nullptr;
+}
+
+std::string shown(const EffectSpec& spec) {
+  const std::string* const expression = spec.find("expr");
+  if (expression == nullptr) return spec.text();
+  const std::string where = spec.where ? spec.where->text() : std::string();
+  return fmt::format("{}{}{}: {}", spec.name, where.empty() ? "" : "@", where, *expression);
+}
+
+/// The model without the effects of a rival.
+void leave_out(calib::fit::FitOptions& options, const std::vector<Rival>& rivals) {
+  for (const Rival& rival : rivals) {
+    for (const std::string& spec : rival.specs) {
+      const auto parsed = EffectSpec::parse(spec);
+      std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) {
+        return e->spec() == spec || (parsed && parsed->find("expr") != nullptr && e->name() == parsed->name);
+      });
+    }
+  }
+}
+
+/// The model without what `gone` is, and the descriptions of it.
+Result<Question> question(const std::vector<std::string>& specs, const store::PoseSource& source,
+                          const calib::fit::FitOptions& options) {
+  std::vector<EffectSpec> parsed;
+  std::optional<calib::effects::Where> place;
+  for (const std::string& text : specs) {
+    auto spec = EffectSpec::parse(store::whole_spec(text, source.definitions));
+    if (!spec) return tl::unexpected(spec.error());
+    spec->sensors = sensors_of(source);
+    if (spec->where && !place) place = spec->where;
+    parsed.push_back(*std::move(spec));
+  }
+  Question out{.options = options, .rivals = {}};
+  for (EffectSpec& spec : parsed) {
+    if (!spec.where && place) {
+      EffectSpec there = spec;
+      there.where = place;
+      if (calib::effects::library::make_effect(there)) spec = there;
+    }
+    if (const auto effect = calib::effects::library::make_effect(spec); !effect)
+      return tl::unexpected(effect.error());
+    out.rivals.push_back({.name = shown(spec), .specs = {spec.text()}, .P = {}});
+  }
+  leave_out(out.options, out.rivals);
+  return out;
+}
+
+}  // namespace
+
+bool names_of_the_library(const std::vector<std::string>& named, const store::PoseSource& source) {
+  return std::all_of(named.begin(), named.end(), [&](const std::string& text) {
+    return text.find_first_of("@,") == std::string::npos &&
+           !is_formula(store::whole_spec(text, source.definitions));
+  });
+}
+
+Result<Question> question_of(const std::vector<std::string>& named, const store::PoseSource& source,
+                             const calib::fit::FitOptions& options) {
+  return question(named, source, options);
+}
+
+Result<Question> question_in_doubt(const std::vector<calib::criticism::search::Choice>& doubts,
+                                   const store::PoseSource& source, const calib::fit::FitOptions& options) {
+  for (const calib::criticism::search::Choice& choice : doubts) {
+    if (choice.alternatives.empty()) continue;
+    std::vector<std::string> specs{choice.spec};
+    specs.insert(specs.end(), choice.alternatives.begin(), choice.alternatives.end());
+    const bool any = std::any_of(specs.begin(), specs.end(), [&](const std::string& spec) {
+      return is_formula(store::whole_spec(spec, source.definitions));
+    });
+    if (any) return question(specs, source, options);
+  }
+  return Question{.options = options, .rivals = {}};
+}
+
+Result<Question> question_by_discovery(const std::string& place, const store::PoseSource& source,
+                                       const calib::fit::FitOptions& options) {
+  using calib::discovery::FoundFormula;
+  Question out{.options = options, .rivals = {}};
+  const auto found = calib::discovery::discover(source.table, {.fit = options, .checks = false});
+  if (!found) return tl::unexpected(found.error());
+  using calib::discovery::Verdict;
+  if (found->verdict == Verdict::pass || found->verdict == Verdict::noise_like ||
+      found->verdict == Verdict::library)
+    return out;
+  out.believed = found->verdict != Verdict::shape_only;
+  const auto asked = [&](const calib::discovery::FoundLaw& law) {
+    return law.formulas.size() > 1 && (place.empty() || law.formulas.front().where == place);
+  };
+  const auto law = std::find_if(found->laws.begin(), found->laws.end(), asked);
+  if (law == found->laws.end()) return out;
+  for (const FoundFormula& formula : law->formulas) {
+    if (out.rivals.size() == kMostRivals) break;
+    std::vector<std::string> specs = formula.specs;
+    if (specs.empty() && !formula.library.empty() && formula.columns.empty())
+      specs = {formula.library + "@" + formula.where};
+    if (specs.empty() || !calib::effects::library::make_effect(specs.front(), sensors_of(source))) continue;
+    out.rivals.push_back(
+        {.name = formula.formula + " at " + formula.where, .specs = std::move(specs), .P = formula.P});
+  }
+  if (out.rivals.size() < 2) out.rivals.clear();
+  for (const calib::discovery::FoundLaw& other : found->laws) {
+    if (&other == &*law) continue;
+    if (other.d < law->d) continue;  // what is weaker stands in the residual as noise does
+    for (const std::string& spec : other.formulas.front().specs)
+      if (auto effect = calib::effects::library::make_effect(spec, sensors_of(source)))
+        out.options.effects.push_back(*std::move(effect));
+  }
+  return out;
+}
+
+}  // namespace mgtd::daemon::cli

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// A law of no library: discover leaves several formulas, next says what to measure, and both runs together
+// name the right one. With the real programs.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/child_process.h"
+
+namespace mgtd::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class NextLaw : public ::testing::Test {
+ protected:
+  Finished run(std::vector<std::string> words) {
+    words[0] = std::string(MGTD_BIN_DIR) + "/" + words[0];
+    return run_program(std::move(words), dir_.path());
+  }
+  json ask(std::vector<std::string> words) {
+    words.insert(words.begin(), "mgt");
+    words.emplace_back("--json");
+    const Finished answer = run(std::move(words));
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return json::parse(answer.out, nullptr, false);
+  }
+  /// A rig with a fourth power of its own reading on s3.z; noise by `seed`.
+  std::string scenario(int seed) {
+    const std::string path = file("s" + std::to_string(seed) + ".toml");
+    std::ofstream(path) << "[rig]\nname = \"quartic\"\nparameters = \"table6\"\nseed = " << seed
+                        << "\n[temperature]\nstart_degC = 20.0\nramp_degC_per_h = 3.0\n"
+                           "head_degC = [0.0, 0.3, -0.2, 0.1]\n"
+                           "[[effect]]\nname = \"hidden.quartic\"\nwhere = \"s3.z\"\nnT_at_F0 = 0.08\n";
+    return path;
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return dir_ / name; }
+
+ private:
+  TemporaryDirectory dir_;
+};
+
+TEST_F(NextLaw, WhatNextAsksForNamesTheRightFormula) {
+  const std::string first = file("first.csv"), list = file("list.csv"), second = file("second.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13), "-o", first}).exit_code, 0);
+  EXPECT_EQ(ask({"discover", first, "--quick"}).at("verdict"), "LAW-SET");
+
+  const json next = ask({"next", first, "-o", list});
+  EXPECT_EQ(next.at("schema"), "mgt.next/1");
+  ASSERT_GE(next.at("rivals").size(), 2U);
+  EXPECT_EQ(next.at("rivals").at(0).at("formula"), "z^4 at s3.z");
+  EXPECT_GT(next.at("rivals").at(0).at("P").get<double>(), next.at("rivals").at(1).at("P").get<double>());
+  const json& best = next.at("next").at(0);
+  EXPECT_TRUE(best.at("by_the_rig"));
+  EXPECT_GT(best.at("separation_after").get<double>(), best.at("separation_before").get<double>());
+  EXPECT_FALSE(next.at("left_out").empty());
+
+  const Finished measured = run(
+      {"mgt-rig", "table", "--scenario", scenario(113), "--poses", list, "--begin", "2400", "-o", second});
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  const json both = ask({"discover", first, "--and", second, "--quick"});
+  EXPECT_EQ(both.at("verdict"), "LAW");
+  EXPECT_EQ(both.at("laws").at(0).at("formulas").at(0).at("formula"), "z^4");
+}
+
+TEST_F(NextLaw, FormulasEffectsAndPlacesCanBeNamed) {
+  const std::string first = file("first.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13), "-o", first}).exit_code, 0);
+  const json pair = ask({"next", first, "four@s3.z,level=axis,expr=(u/50000)^4", "axis.quadratic"});
+  EXPECT_THAT(pair.at("effect").get<std::string>(), HasSubstr("four@s3.z"));
+  EXPECT_EQ(pair.at("rival"), "axis.quadratic@s3.z") << "where the formula acts";
+  EXPECT_GE(ask({"next", first, "s3.z"}).at("rivals").size(), 2U);
+  const Finished elsewhere = run({"mgt", "next", first, "s1.x"});
+  EXPECT_EQ(elsewhere.exit_code, 1);
+  EXPECT_THAT(elsewhere.err, HasSubstr("no two formulas open at s1.x"));
+
+  // A formula of the model that was chosen in doubt is asked about against what could stand in its place.
+  ASSERT_EQ(run({"mgt", "import", first, "-o", file("run.mgtrun")}).exit_code, 0);
+  const auto define = [&](const std::string& name, const std::string& expression) {
+    return run({"mgt", "define", file("run.mgtrun"), name, expression, "--scale", "s3.z"}).exit_code;
+  };
+  ASSERT_EQ(define("four", "(u/50000)^4"), 0);
+  ASSERT_EQ(define("six", "(u/50000)^6"), 0);
+  ASSERT_EQ(run({"mgt", "add", "four", file("run.mgtrun")}).exit_code, 0);
+  const json doubt = ask({"next", file("run.mgtrun")});
+  EXPECT_THAT(doubt.at("rivals").dump(), HasSubstr("(u/50000)^4"));
+  EXPECT_THAT(doubt.at("rivals").dump(), HasSubstr("(u/50000)^6"));
+  EXPECT_FALSE(doubt.at("next").empty());
+}
+
+}  // namespace
+}  // namespace mgtd::testing

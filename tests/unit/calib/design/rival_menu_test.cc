@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/design/rival_menu.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/fit/joint/joint_report.h"
+#include "tests/blind/hidden_run.h"
+
+namespace mgtd::calib::design {
+namespace {
+
+using calib::testing::Hidden;
+using ::testing::HasSubstr;
+
+/// Added to s3.z.
+PoseTable run_with(const std::function<double(const Pose&, double x)>& law, std::uint64_t seed) {
+  const Hidden hidden = [law](const Pose& p, int i, int a, const Eigen::Vector3d& v) {
+    return i == 2 && a == 2 ? law(p, v[2] / 5e4) : 0.0;
+  };
+  return calib::testing::hidden_run({.noise_nT = 0.05, .hidden = hidden}, seed);
+}
+
+Rival formula(const std::string& expression, const std::string& where = "s3.z") {
+  return {.name = expression, .specs = {"law@" + where + ",level=axis,unit=nT,expr=" + expression}, .P = {}};
+}
+
+Result<RivalMenu> asked(const PoseTable& run, const std::vector<Rival>& rivals,
+                        std::span<const LawAction> actions = law_actions()) {
+  const fit::joint::JointOptions options = fit::joint::joint_options({});
+  const auto fit = fit::joint::fit_joint(run, options);
+  if (!fit) return tl::unexpected(fit.error());
+  return rival_menu(run, *fit, options, rivals, 1, actions);
+}
+
+const RivalStep* step(const RivalMenu& menu, std::string_view words) {
+  const auto found = std::find_if(menu.steps.begin(), menu.steps.end(), [&](const RivalStep& s) {
+    return s.measurement.action.find(words) != std::string::npos;
+  });
+  return found == menu.steps.end() ? nullptr : &*found;
+}
+
+double after(const RivalMenu& menu, std::string_view words) {
+  const RivalStep* const found = step(menu, words);
+  return found == nullptr ? 0 : found->measurement.lambda_after.value_or(0);
+}
+
+PoseTable quartic() {
+  return run_with([](const Pose&, double x) { return 0.25 * std::pow(x, 4); }, 3);
+}
+const std::vector<Rival> kQuartic{formula("(u/50000)^4"), formula("max(0, abs(u/50000) - 0.6)")};
+
+TEST(RivalMenu, PlacedPosesTellMoreThanThoseOfTheRun) {
+  const auto menu = asked(quartic(), kQuartic);
+  ASSERT_TRUE(menu) << menu.error().text();
+  EXPECT_FALSE(menu->rivals.assumed);
+  const double gain = after(*menu, "differ most") - menu->lambda_before;
+  EXPECT_GT(gain, 1.5 * (after(*menu, "as before") - menu->lambda_before));
+  ASSERT_FALSE(menu->steps.empty());
+  EXPECT_THAT(menu->steps.front().measurement.action, HasSubstr("differ most"));
+  // The angles are those that the run had, and nothing but the seed decides.
+  const auto again = asked(quartic(), kQuartic);
+  ASSERT_TRUE(again);
+  const RivalStep *const a = step(*menu, "differ most"), *const b = step(*again, "differ most");
+  for (std::size_t k = 0; k < kLawPoses; ++k) {
+    EXPECT_EQ(a->poses[k].azimuth_rad, b->poses[k].azimuth_rad);
+    EXPECT_LE(std::abs(*a->poses[k].pitch_rad), to_rad(90));
+  }
+}
+
+TEST(RivalMenu, AnActionThatChangesNothingComesLast) {
+  std::vector<LawAction> actions;
+  for (const LawAction& action : law_actions())
+    if (action.by_the_rig || action.text.find("weaker") != std::string_view::npos) actions.push_back(action);
+  actions.insert(actions.begin(), {.text = "an hour's rest", .extra_min = 60, .placed = false});
+  const auto menu = asked(quartic(), kQuartic, actions);
+  ASSERT_TRUE(menu) << menu.error().text();
+  ASSERT_GE(menu->steps.size(), 3U);
+  EXPECT_EQ(menu->steps.back().measurement.action, "an hour's rest");
+}
+
+TEST(RivalMenu, HeatTellsTemperatureFromTimeAndOneHeadFromTheOther) {
+  // All heads go the same way in this run, up to a constant.
+  PoseTable run = run_with([](const Pose& p, double) { return 3 * *p.t_s / 3600; }, 4);
+  for (Pose& pose : run.poses)
+    for (std::size_t i = 0; i < 4; ++i)
+      pose.T_degC[i] = 20 + 2 * *pose.t_s / 3600 + 0.1 * static_cast<double>(i);
+  const auto time = asked(run, {formula("t_h"), formula("T_degC - 20")});
+  ASSERT_TRUE(time) << time.error().text();
+  EXPECT_LT(time->lambda_before, 1e-3);
+  EXPECT_LT(after(*time, "differ most"), 1e-3);
+  EXPECT_GT(after(*time, "heat step"), kSettled);
+  EXPECT_GT(after(*time, "another day, 3 degC colder"), kSettled);
+  const auto head = asked(run, {formula("T_degC - 20"), formula("s2_T_degC - 20")});
+  ASSERT_TRUE(head) << head.error().text();
+  EXPECT_GT(after(*head, "one head after another"), kSettled);
+  EXPECT_LT(after(*head, "heat step"), 1e-3);
+  ASSERT_EQ(head->steps.size(), 1U);
+  EXPECT_FALSE(head->steps.front().by_the_rig);
+}
+
+TEST(RivalMenu, PairsThatNothingTellsApartAreSetAside) {
+  const PoseTable run = run_with([](const Pose& p, double) { return std::pow(*p.t_s / 3600, 2); }, 4);
+  const auto menu = asked(run, {formula("t_h^2"), formula("t_h*t_h"), formula("(T_degC - 20)^2")});
+  ASSERT_TRUE(menu) << menu.error().text();
+  ASSERT_EQ(menu->never.size(), 1U);
+  EXPECT_EQ(menu->never.front().truth + menu->never.front().other, 1U);
+  EXPECT_NE(menu->worst.truth + menu->worst.other, 1U);
+  EXPECT_GT(menu->lambda_before, 0);
+}
+
+TEST(RivalMenu, OneThatHoldsAnotherIsNoQuestion) {
+  std::vector<Rival> rivals = kQuartic;
+  rivals.push_back(formula("(u/50000)^4", "each-axis"));
+  const auto menu = asked(quartic(), rivals);
+  ASSERT_TRUE(menu) << menu.error().text();
+  for (const RivalPair& pair : menu->rivals.pairs) EXPECT_TRUE(pair.truth != 2 && pair.other != 2);
+  const auto two = asked(quartic(), {rivals[0], rivals[2]});
+  ASSERT_TRUE(two) << two.error().text();
+  EXPECT_EQ(two->rivals.pairs.size(), 1U) << "unless nothing else is asked";
+}
+
+TEST(RivalMenu, WhatTheColumnsCannotExpressIsLeftOutWithTheReason) {
+  PoseTable run = quartic();
+  for (Pose& pose : run.poses) pose.T_degC.fill(std::nullopt);
+  const auto menu = asked(run, kQuartic);
+  ASSERT_TRUE(menu) << menu.error().text();
+  EXPECT_EQ(step(*menu, "heat step"), nullptr);
+  const auto why = [&](std::string_view words) {
+    for (const LeftOut& one : menu->left_out)
+      if (one.action.find(words) != std::string::npos) return one.why;
+    return std::string();
+  };
+  EXPECT_THAT(why("heat step"), HasSubstr("no temperature"));
+  EXPECT_THAT(why("load switched"), HasSubstr("no column"));
+  EXPECT_THAT(why("turned in their mounts"), HasSubstr("another array"));
+}
+
+TEST(RivalMenu, LawsThatKnowThePoseBeforeHaveThePosesInOrder) {
+  const auto menu = asked(quartic(), {formula("abs(prev_u/50000)"), formula("(prev_u/50000)^2")});
+  ASSERT_TRUE(menu) << menu.error().text();
+  EXPECT_TRUE(menu->rivals.assumed) << "there is nothing of the kind on this run";
+  EXPECT_GT(after(*menu, "differ most"), after(*menu, "as before"));
+}
+
+TEST(RivalMenu, ANumberThatIsLeftOpenIsFoundOnTheRun) {
+  const Rival open{.name = "hinge",
+                   .specs = {"law@s3.z,level=axis,unit=nT,c=0.1..0.9,expr=max(0, abs(u/50000) - c)"},
+                   .P = {}};
+  const auto menu = asked(quartic(), {kQuartic[0], open});
+  ASSERT_TRUE(menu) << menu.error().text();
+  EXPECT_THAT(menu->rivals.rivals[1].specs.front(), ::testing::Not(HasSubstr("..")));
+}
+
+TEST(RivalMenu, RefusesWhatTheCalibrationTakesUp) {
+  const auto menu = asked(quartic(), {kQuartic[0], formula("u")});
+  ASSERT_FALSE(menu);
+  EXPECT_THAT(menu.error().message, HasSubstr("takes it up whole"));
+  EXPECT_FALSE(asked(quartic(), {kQuartic[0]}));
+}
+
+}  // namespace
+}  // namespace mgtd::calib::design
