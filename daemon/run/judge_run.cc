@@ -70,15 +70,17 @@ void settle_effects(const NextReport& next, double minutes_left, NextPoses& out)
     return;
   }
   const calib::design::NextMeasurement& m = step->measurement;
-  out.judgement.next = fmt::format(
-      "to tell {} from {}: {}, {:.0f} minutes; the right name then with probability "
-      "{:.3f}, now {:.3f}",
-      next.effect, next.alternative, m.action, m.minutes, m.p_right_after, m.p_right_before);
-  out.judgement.minutes = m.minutes;
   out.poses = requested(*step);
-  if (!step->by_the_rig && !out.poses.empty())
-    out.poses.front().note =
-        fmt::format("{} ({}); mgt run finish ends the run as it is", m.action, out.judgement.next);
+  if (out.poses.empty()) {
+    out.judgement.next = fmt::format("{}: its poses cannot be listed", m.action);
+    return;
+  }
+  out.judgement.next = fmt::format(
+      "{}, {:.0f} minutes, to tell {} from {}: the right name then with probability {:.3f}, now {:.3f}",
+      m.action, m.minutes, next.effect, next.alternative, m.p_right_after, m.p_right_before);
+  out.judgement.minutes = m.minutes;
+  if (!step->by_the_rig)
+    out.poses.front().note = out.judgement.next + "; mgt run finish ends the run as it is";
 }
 
 /// How many times the poses would tell all formulas of the set apart; empty: no number would, or nothing is

@@ -35,6 +35,7 @@ class Operator {
   }
   void serve(const json& prompt);
   void do_deed(const std::string& text) const;
+  void wait(double simulated_s) const;
 
   OperatorOptions options_;
   std::mt19937_64 random_;
@@ -65,18 +66,39 @@ void Operator::serve(const json& prompt) {
 }
 
 /// What mgt next may ask of a hand, as the rig knows it.
-std::optional<std::string> deed(const std::string& text) {
-  if (text.find("a heat pulse: warm the heads by 5 degC") != std::string::npos) return "warm 5 200";
-  if (text.find("the field a fifth weaker (coil)") != std::string::npos) return "coil 0.8";
+struct Deed {
+  std::string line;
+  double wait_s{0};  ///< on the rig's clock, until it has worked
+};
+std::optional<Deed> deed(const std::string& text) {
+  // The poses are measured about the peak, where a dwell sees little of the change.
+  if (text.find("a heat pulse: warm the heads by 5 degC") != std::string::npos)
+    return Deed{"warm 5 300", 210};
+  if (text.find("the field a fifth weaker (coil)") != std::string::npos) return Deed{"coil 0.8"};
   return std::nullopt;
+}
+
+void Operator::wait(double simulated_s) const {
+  const auto now_s = [&]() -> std::optional<double> {
+    const auto status = ask_rig(options_.dir, "status");
+    if (!status) return std::nullopt;
+    return json::parse(*status, nullptr, false).value("t_s", 0.0);
+  };
+  const auto begun_s = now_s();
+  while (begun_s) {
+    const auto at_s = now_s();
+    if (!at_s || *at_s >= *begun_s + simulated_s) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
 }
 
 /// Where the hands cannot do it the run ends with what it has.
 void Operator::do_deed(const std::string& text) const {
-  const auto line = deed(text);
-  const auto done = line ? ask_rig(options_.dir, *line) : std::nullopt;
-  fmt::print("{}\n{}\n", text, done ? *line : "cannot be done here");
+  const auto asked = deed(text);
+  const auto done = asked ? ask_rig(options_.dir, asked->line) : std::nullopt;
+  fmt::print("{}\n{}\n", text, done ? asked->line : "cannot be done here");
   std::fflush(stdout);
+  if (done) wait(asked->wait_s);
   static_cast<void>(say(done ? "run.resume" : "run.finish", json::object()));
 }
 

@@ -48,7 +48,11 @@ class JudgedRun {
     for (const daemon::run::RunJudgement& j : judgements) minutes -= j.minutes;
     const int looks_left = daemon::run::kMostJudgements - static_cast<int>(judgements.size()) - 1;
     const auto next = daemon::run::judge(poses, {}, minutes, looks_left);
-    if (!next) return {.judgement = {.found = next.error().text(), .next = {}}, .poses = {}};
+    if (!next) {
+      judgements.push_back(
+          {.poses = static_cast<int>(poses.poses.size()), .found = next.error().text(), .next = {}});
+      return {.judgement = judgements.back(), .poses = {}};
+    }
     judgements.push_back(next->judgement);
     RunRequest request;
     request.poses = next->poses;
@@ -60,10 +64,14 @@ class JudgedRun {
 
   /// False: not on this rig.
   bool done(const std::string& deed) {
-    for (const auto& [text, line] : {std::pair{"warm the heads by 5 degC", "warm 5 200"},
-                                     std::pair{"the field a fifth weaker (coil)", "coil 0.8"}})
-      if (deed.find(text) != std::string::npos) return daemon.rig.surroundings(line, daemon.t_s);
-    return false;
+    if (deed.find("the field a fifth weaker (coil)") != std::string::npos)
+      return daemon.rig.surroundings("coil 0.8", daemon.t_s);
+    if (deed.find("warm the heads by 5 degC") == std::string::npos) return false;
+    // The poses are measured about the peak, where a dwell sees little of the change.
+    constexpr double kToThePeak_s = 210;
+    const bool warm = daemon.rig.surroundings("warm 5 300", daemon.t_s);
+    for (const double end_s = daemon.t_s + kToThePeak_s; daemon.t_s < end_s;) daemon.step();
+    return warm;
   }
 };
 

@@ -108,6 +108,10 @@ class VirtualDaemon : public VirtualCore {
     core().run().answer(daemon::run::PoseStored{store.pose.number, {}});
   }
   void act(const daemon::run::StartSolve&) { core().run().answer(daemon::run::SolveDone{solver(poses)}); }
+  void act(const daemon::run::StorePath& store) {
+    for (const TableReading& r : store.readings)
+      poses.path.push_back({static_cast<double>(r.arrival.wall.ns - started_utc_.ns) * 1e-9, r.angles});
+  }
   void act(const daemon::run::JudgeRun&) { core().run().answer(judge(poses)); }
   void act(const daemon::run::ProposeCalibration&) {
     core().run().answer(daemon::run::CalibrationProposed{});

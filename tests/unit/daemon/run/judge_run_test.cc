@@ -58,7 +58,7 @@ TEST(JudgeRun, TheRigGoesBeforeAHand) {
   const NextPoses out =
       choice({step("a heat pulse", 10, 0.99, false), step("approached from both sides", 12, 0.9, true)});
   EXPECT_EQ(out.judgement.found, "AMBIGUOUS: a or b");
-  EXPECT_THAT(out.judgement.next, HasSubstr("approached from both sides, 12 minutes"));
+  EXPECT_THAT(out.judgement.next, HasSubstr("approached from both sides, 12 minutes, to tell a from b"));
   EXPECT_THAT(out.judgement.next, HasSubstr("0.900, now 0.600"));
   EXPECT_EQ(out.judgement.minutes, 12);
   ASSERT_EQ(out.poses.size(), 10U);
