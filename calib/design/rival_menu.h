@@ -30,7 +30,7 @@ inline constexpr double kSettled = 4.65 * 4.65;
 struct RivalStep {
   NextMeasurement measurement;
   std::vector<Pose> poses;
-  bool by_the_rig{false};
+  bool by_the_rig{false}, other_day{false};
 };
 
 /// An action that the columns of a run cannot express.

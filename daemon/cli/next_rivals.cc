@@ -7,6 +7,7 @@
 
 #include "calib/discovery/discover.h"
 #include "calib/effects/library/library.h"
+#include "daemon/run/law_rivals.h"
 #include "daemon/store/user_formulas.h"
 
 namespace mgtd::daemon::cli {
@@ -14,8 +15,6 @@ namespace {
 
 using calib::design::Rival;
 using calib::effects::EffectSpec;
-
-constexpr std::size_t kMostRivals = 8;
 
 int sensors_of(const store::PoseSource& source) {
   return calib::effects::EffectContext{.table = &source.table, .offset_nT = {}}.sensors();
@@ -102,7 +101,6 @@ Result<Question> question_in_doubt(const std::vector<calib::criticism::search::C
 
 Result<Question> question_by_discovery(const std::string& place, const store::PoseSource& source,
                                        const calib::fit::FitOptions& options) {
-  using calib::discovery::FoundFormula;
   Question out{.options = options, .rivals = {}};
   const auto found = calib::discovery::discover(source.table, {.fit = options, .checks = false});
   if (!found) return tl::unexpected(found.error());
@@ -116,16 +114,7 @@ Result<Question> question_by_discovery(const std::string& place, const store::Po
   };
   const auto law = std::find_if(found->laws.begin(), found->laws.end(), asked);
   if (law == found->laws.end()) return out;
-  for (const FoundFormula& formula : law->formulas) {
-    if (out.rivals.size() == kMostRivals) break;
-    std::vector<std::string> specs = formula.specs;
-    if (specs.empty() && !formula.library.empty() && formula.columns.empty())
-      specs = {formula.library + "@" + formula.where};
-    if (specs.empty() || !calib::effects::library::make_effect(specs.front(), sensors_of(source))) continue;
-    out.rivals.push_back(
-        {.name = formula.formula + " at " + formula.where, .specs = std::move(specs), .P = formula.P});
-  }
-  if (out.rivals.size() < 2) out.rivals.clear();
+  out.rivals = run::rivals_of(*law, sensors_of(source));
   for (const calib::discovery::FoundLaw& other : found->laws) {
     if (&other == &*law) continue;
     if (other.d < law->d) continue;  // what is weaker stands in the residual as noise does

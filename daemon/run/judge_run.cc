@@ -5,14 +5,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "calib/criticism/search/explain.h"
-#include "calib/design/actions.h"
+#include "calib/criticism/search/next_among.h"
 #include "calib/discovery/discover.h"
+#include "calib/effects/effect_context.h"
 #include "calib/poses/pose_list.h"
 #include "calib/report/next_report.h"
 #include "daemon/plan/plan_from_list.h"
+#include "daemon/run/law_rivals.h"
 #include "daemon/run/solver.h"
 
 namespace mgtd::daemon::run {
@@ -23,7 +24,6 @@ using calib::criticism::search::Finding;
 using calib::criticism::search::NextReport;
 using calib::criticism::search::NextStep;
 using calib::discovery::DiscoveryReport;
-using calib::discovery::FoundFormula;
 
 /// Of the probability of the right name, below which a measurement is not worth its time.
 constexpr double kGain = 0.02;
@@ -61,7 +61,7 @@ const NextStep* worthwhile(const NextReport& next, double minutes_left) {
   return by_hand;
 }
 
-void settle_effects(const NextReport& next, double minutes_left, NextPoses& out) {
+void settle(const NextReport& next, double minutes_left, NextPoses& out) {
   const NextStep* const step = worthwhile(next, minutes_left);
   if (step == nullptr) {
     out.judgement.next = fmt::format(
@@ -83,50 +83,21 @@ void settle_effects(const NextReport& next, double minutes_left, NextPoses& out)
     out.poses.front().note = out.judgement.next + "; mgt run finish ends the run as it is";
 }
 
-/// How many times the poses would tell all formulas of the set apart; empty: no number would, or nothing is
-/// left to tell.
-std::optional<double> times_as_many(const std::vector<FoundFormula>& formulas) {
-  double most = 1;
-  for (const FoundFormula& f : formulas) {
-    if (f.same_as == formulas.front().same_as) continue;
-    if (!std::isfinite(f.needed_nT)) return std::nullopt;
-    most = std::max(most, std::pow(f.needed_nT / formulas.front().size_nT, 2));
-  }
-  return most > 1 ? std::optional(most) : std::nullopt;
-}
-
-void settle_formulas(const RunEvidence& e, double minutes_left, NextPoses& out) {
-  const std::vector<FoundFormula>& formulas = e.discovered->laws.front().formulas;
-  const auto times = times_as_many(formulas);
-  const auto n = static_cast<double>(e.table.poses.size());
-  const double more = times ? std::ceil((*times - 1) * n) : 0,
-               minutes = more * calib::design::minutes_per_pose(e.table);
-  if (!times || minutes > minutes_left) {
-    out.judgement.next = fmt::format(
-        "more poses of this kind would not tell the {} formulas apart{}", formulas.size(),
-        times ? fmt::format(" within {:.0f} minutes: {:.0f} poses would, in {:.0f}", minutes_left, more,
-                            minutes)
-              : std::string(": they read the same on them; other temperatures, or another order, may"));
-    return;
-  }
-  out.judgement.next = fmt::format("to tell {} formulas apart: {:.0f} more poses as before, {:.0f} minutes",
-                                   formulas.size(), more, minutes);
-  out.judgement.minutes = minutes;
-  const NextStep same{.measurement = {},
-                      .by_the_rig = true,
-                      .of_another_run = false,
-                      .poses = calib::design::same_again(e.table, static_cast<std::size_t>(more))};
-  out.poses = requested(same);
+int sensors_of(const PoseTable& table) {
+  return calib::effects::EffectContext{.table = &table, .offset_nT = {}}.sensors();
 }
 
 }  // namespace
+
+bool RunEvidence::leaves_formulas_open() const {
+  return discovered && discovered->verdict == calib::discovery::Verdict::law_set;
+}
 
 NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) {
   NextPoses out;
   out.judgement.poses = static_cast<int>(e.table.poses.size());
   out.judgement.found = found_text(e);
   const Finding finding = e.explained.finding;
-  const bool set = e.discovered && e.discovered->verdict == calib::discovery::Verdict::law_set;
   if (finding == Finding::pass || finding == Finding::explained) {
     out.judgement.next = finding == Finding::pass ? "nothing is left to explain"
                                                   : "the verdict is clear: mgt improve adds what it names";
@@ -134,10 +105,9 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
   } else if (looks_left <= 0) {
     out.judgement.next = fmt::format("no more looks: {} at one run are the most", kMostJudgements);
-  } else if (finding == Finding::ambiguous && e.next && !e.next->effect.empty()) {
-    settle_effects(*e.next, minutes_left, out);
-  } else if (set) {
-    settle_formulas(e, minutes_left, out);
+  } else if ((finding == Finding::ambiguous || e.leaves_formulas_open()) && e.next &&
+             !e.next->effect.empty()) {
+    settle(*e.next, minutes_left, out);
   } else {
     out.judgement.next =
         "no measurement is known that would make it clearer: mgt explain and mgt discover say "
@@ -162,6 +132,12 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     // What no search can say is no reason to end the run without its verdict.
     if (auto found = calib::discovery::discover(table, {.fit = options, .checks = false}))
       evidence.discovered = *std::move(found);
+    if (evidence.leaves_formulas_open()) {
+      const auto rivals = rivals_of(evidence.discovered->laws.front(), sensors_of(table));
+      if (rivals.empty()) return next_poses(evidence, minutes_left, looks_left);
+      if (auto next = calib::criticism::search::next_among(table, options, rivals))
+        evidence.next = *std::move(next);
+    }
   }
   return next_poses(evidence, minutes_left, looks_left);
 }

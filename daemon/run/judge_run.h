@@ -14,10 +14,9 @@
 
 /// Judges a run as far as it is measured, and chooses what to measure next so that its verdict becomes clear.
 ///
-/// Where several effects could have made the residual, the best action of `mgt next` is taken: one that the
-/// rig can do alone before one that needs hands. Where something is there that no effect explains, and
-/// several formulas remain (mgt discover), more poses of the same are taken, as many as would tell them
-/// apart: the size at which two formulas are told apart falls with the root of the number of poses.
+/// Where several effects could have made the residual, or several formulas (mgt discover) what no effect
+/// explains, the best action of `mgt next` is taken: one that the rig can do alone before one that needs
+/// hands.
 ///
 /// Nothing more is measured when the verdict is clear, when nothing that is known would make it so within the
 /// minutes that are left, and after kMostJudgements looks. Each look declares the true name impossible in one
@@ -35,6 +34,8 @@ struct RunEvidence {
   const calib::criticism::search::ExplainReport& explained;
   std::optional<calib::criticism::search::NextReport> next{};
   std::optional<calib::discovery::DiscoveryReport> discovered{};
+
+  [[nodiscard]] bool leaves_formulas_open() const;
 };
 
 /// `looks_left`: after this one.

@@ -36,6 +36,7 @@ Result<NextReport> next_among(const PoseTable& table, const fit::FitOptions& opt
   for (design::RivalStep& step : menu->steps)
     out.steps.push_back({.measurement = std::move(step.measurement),
                          .by_the_rig = step.by_the_rig,
+                         .of_another_run = step.other_day,
                          .poses = std::move(step.poses)});
   out.none_helps = out.steps.empty();
   return out;

@@ -15,7 +15,7 @@ namespace mgtd::calib::criticism::search {
 struct NextStep {
   design::NextMeasurement measurement;
   bool by_the_rig{false};  ///< attitudes, approach, waits and dwells are all it takes; no hand, heat or coil
-  bool of_another_run{false};  ///< elsewhere: it is judged on its own
+  bool of_another_run{false};  ///< at another place, where it is judged on its own, or on another day
   std::vector<Pose> poses;     ///< to be measured: attitude, set, sense, waits; no readings
 };
 

@@ -104,37 +104,25 @@ TEST(JudgeRun, AClearVerdictEndsIt) {
   }
 }
 
-/// Two formulas, of which the other would be told apart at `needed_nT`.
-NextPoses of_formulas(double needed_nT, double minutes_left) {
+/// What no effect explains, and two formulas that these poses do not tell apart.
+TEST(JudgeRun, FormulasAreToldApartLikeEffects) {
   const PoseTable table = ten_poses();
   ExplainReport explained;
   explained.finding = Finding::unknown;
   calib::discovery::DiscoveryReport found;
   found.verdict = calib::discovery::Verdict::law_set;
   found.laws.emplace_back();
-  for (const int k : {1, 2}) {
-    calib::discovery::FoundFormula formula;
-    formula.formula = "f" + std::to_string(k), formula.where = "s1.x";
-    formula.size_nT = 1, formula.same_as = k, formula.needed_nT = k == 1 ? 0 : needed_nT;
-    found.laws.front().formulas.push_back(formula);
-  }
-  return next_poses({.table = table, .explained = explained, .next = {}, .discovered = found}, minutes_left,
-                    4);
-}
-
-/// The size that is needed falls with the root of the number of poses: twice the size takes four times as
-/// many.
-TEST(JudgeRun, FormulasTakeAsManyPosesAsWouldTellThemApart) {
-  const NextPoses out = of_formulas(2, 30);
-  EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LAW-SET: f1 at s1.x");
-  EXPECT_EQ(out.poses.size(), 30U);
-  EXPECT_NEAR(out.judgement.minutes, 15, 0.1);
-}
-
-TEST(JudgeRun, FormulasThatNoNumberOfPosesTellsApartAreLeft) {
-  EXPECT_TRUE(of_formulas(2, 5).poses.empty());
-  EXPECT_THAT(of_formulas(2, 5).judgement.next, HasSubstr("30 poses would, in 15"));
-  EXPECT_TRUE(of_formulas(std::numeric_limits<double>::infinity(), 30).poses.empty());
+  found.laws.front().formulas.resize(2);
+  found.laws.front().formulas.front().formula = "z^4";
+  found.laws.front().formulas.front().where = "s3.z";
+  NextReport next;
+  next.effect = "z^4", next.alternative = "abs(z)";
+  next.steps = {step("where they differ most", 7, 0.97, true)};
+  const NextPoses out =
+      next_poses({.table = table, .explained = explained, .next = next, .discovered = found}, 30, 4);
+  EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LAW-SET: z^4 at s3.z");
+  EXPECT_THAT(out.judgement.next, HasSubstr("where they differ most, 7 minutes, to tell z^4 from abs(z)"));
+  EXPECT_EQ(out.poses.size(), 10U);
 }
 
 TEST(RunJudgement, ReadsBackAsItWasWritten) {

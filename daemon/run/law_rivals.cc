@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/law_rivals.h"
+
+#include <string>
+#include <utility>
+
+#include "calib/effects/library/library.h"
+
+namespace mgtd::daemon::run {
+
+std::vector<calib::design::Rival> rivals_of(const calib::discovery::FoundLaw& law, int sensors) {
+  std::vector<calib::design::Rival> out;
+  for (const calib::discovery::FoundFormula& formula : law.formulas) {
+    if (out.size() == kMostRivals) break;
+    std::vector<std::string> specs = formula.specs;
+    if (specs.empty() && !formula.library.empty() && formula.columns.empty())
+      specs = {formula.library + "@" + formula.where};
+    if (specs.empty() || !calib::effects::library::make_effect(specs.front(), sensors)) continue;
+    out.push_back(
+        {.name = formula.formula + " at " + formula.where, .specs = std::move(specs), .P = formula.P});
+  }
+  if (out.size() < 2) out.clear();
+  return out;
+}
+
+}  // namespace mgtd::daemon::run
