@@ -103,6 +103,8 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
                                                   : "the verdict is clear: mgt improve adds what it names";
   } else if (finding == Finding::bad_data) {
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
+  } else if (e.discovered && e.discovered->verdict == calib::discovery::Verdict::law) {
+    out.judgement.next = "a formula accounts for the rest: mgt discover says how to keep it";
   } else if (looks_left <= 0) {
     out.judgement.next = fmt::format("no more looks: {} at one run are the most", kMostJudgements);
   } else if ((finding == Finding::ambiguous || e.leaves_formulas_open()) && e.next &&

@@ -125,6 +125,20 @@ TEST(JudgeRun, FormulasAreToldApartLikeEffects) {
   EXPECT_EQ(out.poses.size(), 10U);
 }
 
+TEST(JudgeRun, ALawEndsIt) {
+  const PoseTable table = ten_poses();
+  ExplainReport explained;
+  explained.finding = Finding::unknown;
+  calib::discovery::DiscoveryReport found;
+  found.verdict = calib::discovery::Verdict::law;
+  found.laws.emplace_back();
+  found.laws.front().formulas.resize(1);
+  const NextPoses out =
+      next_poses({.table = table, .explained = explained, .next = {}, .discovered = found}, 30, 4);
+  EXPECT_TRUE(out.poses.empty());
+  EXPECT_THAT(out.judgement.next, HasSubstr("a formula accounts for the rest"));
+}
+
 TEST(RunJudgement, ReadsBackAsItWasWritten) {
   const std::vector<RunJudgement> written{{157, "AMBIGUOUS: a or b", "24 more", 12.5},
                                           {181, "EXPLAINED: a", "clear", 0}};
