@@ -40,19 +40,6 @@ void reverse(Pose& pose, std::size_t k) {
   if (pose.sense) pose.sense = k % 2 == 0 ? 1 : -1;
 }
 
-/// Temperatures at t_s, the room going on as it did over the run: a ramp that happened to end would tell time
-/// and temperature apart by luck.
-auto drifted(const PoseTable& table, double t_s) {
-  const Pose &first = table.poses.front(), &last = table.poses.back();
-  auto out = last.T_degC;
-  const double span_s = last.t_s && first.t_s ? *last.t_s - *first.t_s : 0;
-  for (std::size_t i = 0; i < out.size() && span_s > 0; ++i) {
-    if (out[i] && first.T_degC[i])
-      *out[i] += (*last.T_degC[i] - *first.T_degC[i]) * (t_s - *last.t_s) / span_s;
-  }
-  return out;
-}
-
 /// The same field at another pitch.
 void tilt(Pose& pose, double by_rad, const PerSensor<sensor::SensorModel>& sensors) {
   const auto before = pose.angles();
@@ -91,17 +78,13 @@ double minutes_per_pose(const PoseTable& table) {
   return (*last - *first) / 60 / static_cast<double>(table.poses.size() - 1);
 }
 
-std::vector<Pose> same_again(const PoseTable& table, std::size_t count) {
-  const Pose& last = table.poses.back();
-  std::vector<Pose> out;
-  for (std::size_t k = 0; k < count; ++k) {
-    Pose pose = table.poses[(k * 37 + 11) % table.poses.size()];
-    pose.number = last.number + static_cast<int>(k) + 1;
-    if (pose.set == "check") pose.set = "random";
-    if (last.t_s) pose.t_s = *last.t_s + 60 * minutes_per_pose(table) * static_cast<double>(k + 1);
-    pose.t_utc.reset();
-    pose.T_degC = drifted(table, pose.t_s.value_or(0));
-    out.push_back(std::move(pose));
+PerSensor<std::optional<double>> drifted_temperatures(const PoseTable& table, double t_s) {
+  const Pose &first = table.poses.front(), &last = table.poses.back();
+  auto out = last.T_degC;
+  const double span_s = last.t_s && first.t_s ? *last.t_s - *first.t_s : 0;
+  for (std::size_t i = 0; i < out.size() && span_s > 0; ++i) {
+    if (out[i] && first.T_degC[i])
+      *out[i] += (*last.T_degC[i] - *first.T_degC[i]) * (t_s - *last.t_s) / span_s;
   }
   return out;
 }
@@ -109,11 +92,19 @@ std::vector<Pose> same_again(const PoseTable& table, std::size_t count) {
 PoseTable extended(const PoseTable& table, const Action& action,
                    const PerSensor<sensor::SensorModel>& sensors) {
   PoseTable out = table;
-  std::vector<Pose> more = same_again(table, kActionPoses);
-  for (std::size_t k = 0; k < more.size(); ++k) {
-    action.change(more[k], k);
-    if (action.tilt_rad != 0) tilt(more[k], k % 2 == 0 ? action.tilt_rad : -action.tilt_rad, sensors);
-    out.poses.push_back(std::move(more[k]));
+  const Pose& last = table.poses.back();
+  const std::size_t n = table.poses.size();
+  for (std::size_t k = 0; k < kActionPoses; ++k) {
+    // Attitudes spread over the run, in an order that has none.
+    Pose pose = table.poses[(k * 37 + 11) % n];
+    pose.number = last.number + static_cast<int>(k) + 1;
+    if (pose.set == "check") pose.set = "random";
+    if (last.t_s) pose.t_s = *last.t_s + 60 * minutes_per_pose(table) * static_cast<double>(k + 1);
+    pose.t_utc.reset();
+    pose.T_degC = drifted_temperatures(table, pose.t_s.value_or(0));
+    action.change(pose, k);
+    if (action.tilt_rad != 0) tilt(pose, k % 2 == 0 ? action.tilt_rad : -action.tilt_rad, sensors);
+    out.poses.push_back(std::move(pose));
   }
   return out;
 }

@@ -2,9 +2,9 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "calib/sensor/sensor_model.h"
 #include "proto/pose.h"
@@ -33,9 +33,9 @@ struct Action {
 [[nodiscard]] PoseTable extended(const PoseTable& table, const Action& action,
                                  const PerSensor<sensor::SensorModel>& sensors);
 
-/// Poses of the run once more, spread over it, in an order that has none; numbers follow its last, times at
-/// its pace.
-[[nodiscard]] std::vector<Pose> same_again(const PoseTable& table, std::size_t count);
+/// Temperatures at t_s, the room going on as it did over the run: a ramp that happened to end would tell time
+/// and temperature apart by luck.
+[[nodiscard]] PerSensor<std::optional<double>> drifted_temperatures(const PoseTable& table, double t_s);
 
 [[nodiscard]] double minutes_per_pose(const PoseTable& table);
 

@@ -65,7 +65,7 @@ class Course {
     const double of_run_s = action_.other_day ? first_s_ + after_s : last_s_ + after_s;
     if (pose.t_s) pose.t_s = last_s_ + after_s + (action_.other_day ? kNight_s : 0);
     pose.t_utc.reset();
-    pose.T_degC = temperatures(of_run_s);
+    pose.T_degC = drifted_temperatures(run_, of_run_s);
     for (auto& [name, value] : pose.covariates) {
       const auto trend = trends_.find(name);
       const auto had = own.covariates.find(name);
@@ -78,18 +78,6 @@ class Course {
   }
 
  private:
-  /// Going on as they did over the run: a ramp that happened to end would tell time and temperature apart by
-  /// luck.
-  [[nodiscard]] PerSensor<std::optional<double>> temperatures(double t_s) const {
-    const Pose &first = run_.poses.front(), &last = run_.poses.back();
-    auto out = last.T_degC;
-    for (std::size_t i = 0; i < out.size() && last_s_ > first_s_; ++i) {
-      if (out[i] && first.T_degC[i])
-        *out[i] += (*last.T_degC[i] - *first.T_degC[i]) * (t_s - last_s_) / (last_s_ - first_s_);
-    }
-    return out;
-  }
-
   const PoseTable& run_;
   const LawAction& action_;
   double pose_s_{0}, first_s_{0}, last_s_{0};

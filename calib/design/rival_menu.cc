@@ -124,7 +124,7 @@ Result<Tried> tried(const LawAction& action, const Work& work, const RivalFit& r
 /// What an action adds to the worst lambda a minute, as far as it counts.
 double a_minute(const RivalStep& step) {
   const auto counted = [](const std::optional<double>& lambda) {
-    return std::min(kSettled, lambda.value_or(0));
+    return std::min(criticism::tests::kToldApart, lambda.value_or(0));
   };
   return (counted(step.measurement.lambda_after) - counted(step.measurement.lambda_before)) /
          step.measurement.minutes;
@@ -136,7 +136,7 @@ std::vector<std::size_t> pairs_told_apart(const std::vector<double>& before, con
   for (std::size_t p = 0; p < before.size(); ++p) {
     const bool helped = std::any_of(all.begin(), all.end(),
                                     [&](const Tried& t) { return t.lambda[p] > before[p] + kGained; });
-    if (helped || before[p] >= kSettled) out.push_back(p);
+    if (helped || before[p] >= criticism::tests::kToldApart) out.push_back(p);
   }
   return out;
 }

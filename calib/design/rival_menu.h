@@ -20,12 +20,9 @@
 /// smallest lambda decides; pairs that no action tells apart are told and set aside. Where an action leaves
 /// the attitudes open, those are taken that set the worst pair apart most a minute, one pose after the other.
 ///
-/// Actions are ranked by what they add to the worst lambda a minute, as far as kSettled: beyond that, less
-/// time is all that is better.
+/// Actions are ranked by what they add to the worst lambda a minute, as far as criticism::tests::kToldApart:
+/// beyond that, less time is all that is better.
 namespace mgtd::calib::design {
-
-/// Of lambda: the right one of two wins in 99 of 100 runs.
-inline constexpr double kSettled = 4.65 * 4.65;
 
 struct RivalStep {
   NextMeasurement measurement;

@@ -29,6 +29,7 @@ struct Game {
   bool in_library{true};
   std::vector<daemon::run::RunJudgement> judgements;
   std::size_t deeds{0};
+  std::string stuck;  ///< why it did not end
 };
 
 /// What a look says of a law of the library: its name alone, its name among others, no name, or another one.
@@ -51,8 +52,7 @@ Game play(std::uint64_t seed) {
   if (out.hidden == "site.gradient-step") out.hidden = "site.step";  // its name in the library
   out.in_library = !out.hidden.starts_with("hidden.");
   JudgedRun run(scenario, kMinutes);
-  if (!run.run() && run.daemon.status)
-    fmt::print(stderr, "{} {}: did not end: {}\n", seed, out.hidden, run.daemon.status->message);
+  if (!run.run() && run.daemon.status) out.stuck = run.daemon.status->message;
   out.judgements = run.judgements, out.deeds = run.deeds.size();
   return out;
 }
@@ -104,6 +104,8 @@ std::string page(const std::vector<Game>& games) {
       sum += j.minutes;
       looks += (looks.empty() ? "" : " -> ") + j.found;
     }
+    if (!game.stuck.empty())
+      looks += fmt::format("{}did not end: {}", looks.empty() ? "" : " -> ", game.stuck);
     if (sum > 0) minutes.push_back(sum);
     rows += fmt::format("| {} | {} | {:.0f} | {} |\n", game.hidden, looks, sum, game.deeds);
   }

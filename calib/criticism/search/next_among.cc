@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/next_among.h"
 
+#include "calib/criticism/tests/alternatives.h"
 #include "calib/design/rival_menu.h"
 #include "calib/fit/joint/joint_report.h"
 
@@ -31,7 +32,7 @@ Result<NextReport> next_among(const PoseTable& table, const fit::FitOptions& opt
     out.never.emplace_back(name_of(all[pair.truth]), name_of(all[pair.other]));
   out.rivals = std::move(menu->rivals.rivals);
   out.left_out = std::move(menu->left_out);
-  out.told_apart = menu->lambda_before >= design::kSettled;
+  out.told_apart = menu->lambda_before >= tests::kToldApart;
   if (out.told_apart) return out;
   for (design::RivalStep& step : menu->steps)
     out.steps.push_back({.measurement = std::move(step.measurement),

@@ -113,20 +113,26 @@ Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options
                            const std::optional<std::pair<std::string, std::string>>& pair) {
   const auto explained = explain(table, options);
   if (!explained) return tl::unexpected(explained.error());
+  return next_after(*explained, table, options, pair);
+}
+
+Result<NextReport> next_after(const ExplainReport& explained, const PoseTable& table,
+                              const ExplainOptions& options,
+                              const std::optional<std::pair<std::string, std::string>>& pair) {
   NextReport out;
-  out.finding = explained->finding;
-  std::optional<tests::Candidate> asked = open_question(*explained);
+  out.finding = explained.finding;
+  std::optional<tests::Candidate> asked = open_question(explained);
   if (pair) {
-    auto a = candidate_of(*explained, pair->first);
+    auto a = candidate_of(explained, pair->first);
     if (!a) return tl::unexpected(a.error());
-    auto b = candidate_of(*explained, pair->second);
+    auto b = candidate_of(explained, pair->second);
     if (!b) return tl::unexpected(b.error());
     if ((*b)->d > (*a)->d) std::swap(*a, *b);  // the one that the run rather speaks for is taken as true
     asked = sized(**a, out.assumed);
     asked->alternatives = {against(**b)};
   }
   if (!asked) {
-    out.nothing_to_settle = nothing_to_settle(*explained);
+    out.nothing_to_settle = nothing_to_settle(explained);
     return out;
   }
   const auto hardest =

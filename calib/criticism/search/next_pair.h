@@ -46,5 +46,9 @@ struct NextReport {
 /// tested on this run, with what would make it testable.
 [[nodiscard]] Result<NextReport> next_of(const PoseTable& table, const ExplainOptions& options,
                                          const std::optional<std::pair<std::string, std::string>>& pair);
+/// The same after explain() of that table with those options.
+[[nodiscard]] Result<NextReport> next_after(const ExplainReport& explained, const PoseTable& table,
+                                            const ExplainOptions& options,
+                                            const std::optional<std::pair<std::string, std::string>>& pair);
 
 }  // namespace mgtd::calib::criticism::search

@@ -37,6 +37,8 @@ inline constexpr double kLost = 0.005;
 
 /// Probability that the right one of two effects wins.
 [[nodiscard]] double probability_right(double lambda);
+/// Of lambda: the right one of two wins in 99 of 100 runs.
+inline constexpr double kToldApart = 4.65 * 4.65;
 
 /// lambda of two idealised laws less what their form alone may make, of a signature of `length2` in squares.
 [[nodiscard]] double beyond_form(double lambda, double length2);

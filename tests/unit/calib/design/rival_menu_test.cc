@@ -91,11 +91,11 @@ TEST(RivalMenu, HeatTellsTemperatureFromTimeAndOneHeadFromTheOther) {
   ASSERT_TRUE(time) << time.error().text();
   EXPECT_LT(time->lambda_before, 1e-3);
   EXPECT_LT(after(*time, "differ most"), 1e-3);
-  EXPECT_GT(after(*time, "heat step"), kSettled);
-  EXPECT_GT(after(*time, "another day, 3 degC colder"), kSettled);
+  EXPECT_GT(after(*time, "heat step"), criticism::tests::kToldApart);
+  EXPECT_GT(after(*time, "another day, 3 degC colder"), criticism::tests::kToldApart);
   const auto head = asked(run, {formula("T_degC - 20"), formula("s2_T_degC - 20")});
   ASSERT_TRUE(head) << head.error().text();
-  EXPECT_GT(after(*head, "one head after another"), kSettled);
+  EXPECT_GT(after(*head, "one head after another"), criticism::tests::kToldApart);
   EXPECT_LT(after(*head, "heat step"), 1e-3);
   ASSERT_EQ(head->steps.size(), 1U);
   EXPECT_FALSE(head->steps.front().by_the_rig);
