@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "calib/criticism/tests/alternatives.h"
 #include "calib/criticism/tests/multiplicity.h"
 #include "calib/discovery/formula_text.h"
 
@@ -85,13 +86,13 @@ void sort_into_classes(const std::vector<std::optional<FittedLaw>>& fitted, cons
   for (std::size_t i = 0; i < formulas.size(); ++i) {
     formulas[i].same_as = 0;
     for (std::size_t j = 0; j < i && fitted[i] && formulas[i].same_as == 0; ++j)
-      if (fitted[j] && beyond(*fitted[j], *fitted[i], sums) < kToldApart)
+      if (fitted[j] && beyond(*fitted[j], *fitted[i], sums) < criticism::tests::kToldApart)
         formulas[i].same_as = formulas[j].same_as;
     if (formulas[i].same_as == 0) formulas[i].same_as = ++classes;
     if (i > 0 && fitted[0] && fitted[i]) {
       const double left = beyond(*fitted[0], *fitted[i], sums);
       formulas[i].needed_nT = left > kAlike * fitted[0]->S
-                                  ? formulas[0].size_nT * std::sqrt(kToldApart / left)
+                                  ? formulas[0].size_nT * std::sqrt(criticism::tests::kToldApart / left)
                                   : std::numeric_limits<double>::infinity();
     }
   }

@@ -38,8 +38,8 @@ struct FittedLaw {
 void take_out(const FittedLaw& law, ChannelSums& sums);
 
 /// Square of the length of what law a, as it was fitted, has beyond everything that b can be, whatever its
-/// coefficients. Two laws are told apart with 99 % when this is above kToldApart.
+/// coefficients. Two laws are told apart with 99 % when this is above
+/// criticism::tests::kToldApart.
 [[nodiscard]] double beyond(const FittedLaw& a, const FittedLaw& b, const ChannelSums& sums);
-inline constexpr double kToldApart = 4.65 * 4.65;
 
 }  // namespace mgtd::calib::discovery

@@ -97,6 +97,7 @@ double together(const std::vector<RankedLaw>& ranked) {
 bool stands_out(double log10_p) { return log10_p < std::log10(kFalseDiscovery); }
 
 Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library) {
+  if (bench.problem.stop.stop_requested()) return fail(ErrorCode::state, "the search was stopped");
   const LawSearch search(bench.values, sums);
   const std::vector<Tried> tried = search.scores();
   LawRound out{.hypotheses = tried.size()};

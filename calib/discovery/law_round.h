@@ -37,6 +37,7 @@ struct LawRound {
   std::string random_where{};       ///< of the better one
 };
 
+/// Refuses inputs that no formula can be tried on, and ends soon after the fit's stop token says so.
 [[nodiscard]] Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library);
 /// log10 of the best question of draws of noise, by draw.
 [[nodiscard]] std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& sums,
