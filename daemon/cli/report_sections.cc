@@ -137,7 +137,7 @@ std::string judgements_section(const ReportContent& c) {
          html_table({"poses", "what they said", "what was done", "minutes"}, rows, true) +
          html_good(
              "each step makes the right name more probable, and the last one is clear. All looks together "
-             "declare the true name impossible in one run of 200.");
+             "declare the true name impossible in at most one run of 200.");
 }
 
 std::string history_section(const ReportContent& c) {

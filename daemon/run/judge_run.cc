@@ -106,7 +106,7 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
   } else if (e.discovered && e.discovered->verdict == calib::discovery::Verdict::law) {
     out.judgement.next = "a formula accounts for the rest: mgt discover says how to keep it";
   } else if (looks_left <= 0) {
-    out.judgement.next = fmt::format("no more looks: {} at one run are the most", kMostJudgements);
+    out.judgement.next = fmt::format("the run was judged {} times, and that is the most", kMostJudgements);
   } else if ((finding == Finding::ambiguous || e.leaves_formulas_open()) && e.next &&
              !e.next->effect.empty()) {
     settle(*e.next, minutes_left, out);
@@ -125,7 +125,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
   if (!explained) return tl::unexpected(explained.error());
   RunEvidence evidence{.table = table, .explained = *explained};
   if (explained->finding == Finding::ambiguous) {
-    auto next = calib::criticism::search::next_of(table, search, std::nullopt);
+    auto next = calib::criticism::search::next_after(*explained, table, search, std::nullopt);
     if (!next) return tl::unexpected(next.error());
     evidence.next = *std::move(next);
   }

@@ -20,7 +20,7 @@
 ///
 /// Nothing more is measured when the verdict is clear, when nothing that is known would make it so within the
 /// minutes that are left, and after kMostJudgements looks. Each look declares the true name impossible in one
-/// of 1000 runs, all five together in one of 200, as a single look at a finished run does.
+/// of 1000 runs, all five together in at most one of 200, as a single look at a finished run does.
 namespace mgtd::daemon::run {
 
 struct NextPoses {

@@ -13,7 +13,7 @@
 #include "daemon/config/config.h"
 #include "daemon/plan/run_duration.h"
 #include "daemon/run/current_run.h"
-#include "daemon/run/judge_run.h"
+#include "daemon/run/run_judgement.h"
 #include "daemon/store/calibration_store.h"
 #include "daemon/store/run_file.h"
 #include "daemon/store/worker.h"
@@ -88,7 +88,6 @@ class RunExecutor {
   void begin(store::RunFile file, RunConfig config, plan::RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
   void learn_accuracy();
-  [[nodiscard]] FurtherPoses further_poses(const Result<NextPoses>& next) const;
   void act(const HomeTable&, Stamp) {}  // the core's, as are the next three
   void act(const MoveTable&, Stamp) {}
   void act(const SetTable&, Stamp) {}

@@ -10,8 +10,8 @@
 #include "calib/fit/joint/accuracy_so_far.h"
 #include "calib/report/fit_reasons.h"
 #include "daemon/acquire/calibrated_with.h"
-#include "daemon/plan/plan_from_list.h"
 #include "daemon/plan/run_plan_json.h"
+#include "daemon/run/further_poses.h"
 #include "daemon/run/run_executor.h"
 #include "daemon/run/solver.h"
 
@@ -71,42 +71,15 @@ void RunExecutor::act(const StoreChecks& action, Stamp now) {
 
 void RunExecutor::act(const JudgeRun&, Stamp) {
   learning_job_.request_stop();
-  double minutes_left = file_->header().options.until_explained_min.value_or(0);
-  for (const RunJudgement& judgement : judgements_) minutes_left -= judgement.minutes;
-  const int looks_left = kMostJudgements - static_cast<int>(judgements_.size()) - 1;
+  const LooksLeft left = left_after(judgements_, file_->header().options.until_explained_min.value_or(0));
   solving_job_ = worker_.run(
-      [path = file_->path(), minutes_left, looks_left](std::stop_token stop) {
-        return judge_run(path, minutes_left, looks_left, std::move(stop));
+      [path = file_->path(), left](std::stop_token stop) {
+        return judge_run(path, left.minutes, left.looks, std::move(stop));
       },
       [this, generation = generation_](const Result<NextPoses>& next) {
-        if (generation == generation_ && active()) run_.answer(further_poses(next));
+        if (generation == generation_ && active())
+          run_.answer(further_poses(next, run_.fsm()->plan(), limits()));
       });
-}
-
-/// As this table can take them.
-FurtherPoses RunExecutor::further_poses(const Result<NextPoses>& next) const {
-  const plan::RunPlan& plan = run_.fsm()->plan();
-  if (!next)
-    return {.judgement = {.poses = static_cast<int>(plan.poses.size()),
-                          .found = "the run could not be judged",
-                          .next = next.error().text()},
-            .poses = {}};
-  FurtherPoses out{.judgement = next->judgement, .poses = {}};
-  if (next->poses.empty()) return out;
-  int last = 0;
-  for (const plan::PlannedPose& pose : plan.poses) last = std::max(last, pose.number);
-  RunRequest request;
-  request.list = "what would settle it";
-  request.poses = next->poses;
-  for (RequestedPose& pose : request.poses) pose.number = ++last;
-  const auto listed = plan::listed_plan(request, plan.options, hooks_.limits());
-  if (listed) {
-    out.poses = listed->poses;
-  } else {
-    out.judgement.next += "; not on this table: " + listed.error().text();
-    out.judgement.minutes = 0;
-  }
-  return out;
 }
 
 void RunExecutor::act(const StoreJudgement& action, Stamp now) {

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/rig/deed.h"
 #include "tests/rig/fault_client.h"
 
 namespace mgtd::rig {
@@ -65,19 +66,6 @@ void Operator::serve(const json& prompt) {
   static_cast<void>(say("run.enter", entry));
 }
 
-/// What mgt next may ask of a hand, as the rig knows it.
-struct Deed {
-  std::string line;
-  double wait_s{0};  ///< on the rig's clock, until it has worked
-};
-std::optional<Deed> deed(const std::string& text) {
-  // The poses are measured about the peak, where a dwell sees little of the change.
-  if (text.find("a heat pulse: warm the heads by 5 degC") != std::string::npos)
-    return Deed{"warm 5 300", 210};
-  if (text.find("the field a fifth weaker (coil)") != std::string::npos) return Deed{"coil 0.8"};
-  return std::nullopt;
-}
-
 void Operator::wait(double simulated_s) const {
   const auto now_s = [&]() -> std::optional<double> {
     const auto status = ask_rig(options_.dir, "status");
@@ -94,7 +82,7 @@ void Operator::wait(double simulated_s) const {
 
 /// Where the hands cannot do it the run ends with what it has.
 void Operator::do_deed(const std::string& text) const {
-  const auto asked = deed(text);
+  const auto asked = deed_of(text);
   const auto done = asked ? ask_rig(options_.dir, asked->line) : std::nullopt;
   fmt::print("{}\n{}\n", text, done ? asked->line : "cannot be done here");
   std::fflush(stdout);

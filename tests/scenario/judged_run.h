@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <functional>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "daemon/plan/plan_from_list.h"
-#include "daemon/run/judge_run.h"
+#include "daemon/run/further_poses.h"
+#include "tests/rig/deed.h"
 #include "tests/scenario/virtual_daemon.h"
 
 /// A run that goes on until its residual is explained, in virtual time: the real drivers, the real judgement,
@@ -43,35 +40,20 @@ class JudgedRun {
   }
 
  private:
-  /// As the executor does it.
   daemon::run::FurtherPoses judged(const PoseTable& poses, double minutes) {
-    for (const daemon::run::RunJudgement& j : judgements) minutes -= j.minutes;
-    const int looks_left = daemon::run::kMostJudgements - static_cast<int>(judgements.size()) - 1;
-    const auto next = daemon::run::judge(poses, {}, minutes, looks_left);
-    if (!next) {
-      judgements.push_back(
-          {.poses = static_cast<int>(poses.poses.size()), .found = next.error().text(), .next = {}});
-      return {.judgement = judgements.back(), .poses = {}};
-    }
-    judgements.push_back(next->judgement);
-    RunRequest request;
-    request.poses = next->poses;
-    for (RequestedPose& pose : request.poses) pose.number += static_cast<int>(poses.poses.size());
-    const auto plan = daemon::plan::listed_plan(request, {}, daemon.table().limits());
-    return {.judgement = next->judgement,
-            .poses = plan ? plan->poses : std::vector<daemon::plan::PlannedPose>{}};
+    const daemon::run::LooksLeft left = daemon::run::left_after(judgements, minutes);
+    const auto further = daemon::run::further_poses(daemon::run::judge(poses, {}, left.minutes, left.looks),
+                                                    daemon.plan(), daemon.table().limits());
+    judgements.push_back(further.judgement);
+    return further;
   }
 
   /// False: not on this rig.
-  bool done(const std::string& deed) {
-    if (deed.find("the field a fifth weaker (coil)") != std::string::npos)
-      return daemon.rig.surroundings("coil 0.8", daemon.t_s);
-    if (deed.find("warm the heads by 5 degC") == std::string::npos) return false;
-    // The poses are measured about the peak, where a dwell sees little of the change.
-    constexpr double kToThePeak_s = 210;
-    const bool warm = daemon.rig.surroundings("warm 5 300", daemon.t_s);
-    for (const double end_s = daemon.t_s + kToThePeak_s; daemon.t_s < end_s;) daemon.step();
-    return warm;
+  bool done(const std::string& text) {
+    const auto deed = rig::deed_of(text);
+    if (!deed || !daemon.rig.surroundings(deed->line, daemon.t_s)) return false;
+    for (const double end_s = daemon.t_s + deed->wait_s; daemon.t_s < end_s;) daemon.step();
+    return true;
   }
 };
 

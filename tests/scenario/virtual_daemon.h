@@ -51,6 +51,7 @@ class VirtualDaemon : public VirtualCore {
     finished.reset();
     core().run().begin(config ? *std::move(config) : run_config(), std::move(plan), now(), earlier);
   }
+  [[nodiscard]] const daemon::plan::RunPlan& plan() { return core().run().fsm()->plan(); }
   void tell(const daemon::run::Event& event) { core().run().feed(event, now()); }
   /// The program ends in good order: the instruments hear its last words, the run is left as it is.
   void terminate() {

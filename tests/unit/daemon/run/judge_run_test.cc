@@ -88,7 +88,7 @@ TEST(JudgeRun, NothingIsMeasuredThatDoesNotPay) {
 TEST(JudgeRun, LooksComeToAnEnd) {
   const NextPoses out = choice({step("more", 5, 0.99, true)}, 30, 0);
   EXPECT_TRUE(out.poses.empty());
-  EXPECT_THAT(out.judgement.next, HasSubstr("no more looks"));
+  EXPECT_THAT(out.judgement.next, HasSubstr("judged 5 times, and that is the most"));
 }
 
 TEST(JudgeRun, AClearVerdictEndsIt) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+namespace mgtd::rig {
+
+/// What a hand does to the surroundings of a rig (BenchRig::surroundings), and how long it then waits for it
+/// to have worked, on the rig's clock.
+struct Deed {
+  std::string line;
+  double wait_s{0};
+};
+/// The deed that a run asks for in these words; empty: not on this rig.
+[[nodiscard]] std::optional<Deed> deed_of(const std::string& text);
+
+}  // namespace mgtd::rig
