@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "proto/nearest_word.h"
 #include "proto/number.h"
 #include "proto/time.h"
 #include "proto/trimmed.h"
@@ -144,7 +145,10 @@ class Importer {
   [[nodiscard]] Result<std::size_t> place_of(const std::string& name) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
-    return complain(1, fmt::format("there is no column '{}'", name),
+    const auto near = map_.header ? nearest_word(name, names_) : std::nullopt;
+    return complain(1,
+                    fmt::format("there is no column '{}'{}", name,
+                                near ? fmt::format(", did you mean '{}'?", *near) : ""),
                     map_.header ? fmt::format("the header names {}", fmt::join(names_, ", "))
                                 : fmt::format("without a header columns are called 1 to {}", names_.size()));
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "calib/criticism/tests/candidate.h"
@@ -18,28 +19,45 @@
 namespace mgtd::calib::report {
 namespace {
 
-constexpr std::size_t kShown = 12, kMapsShown = 6;
+constexpr std::size_t kCandidatesShown = 12, kMapsShown = 6;
 constexpr double kBarStep = 2;  ///< d of one character
 
 std::string marks(double d) {
   return std::string(static_cast<std::size_t>(std::min(d / kBarStep, 20.0)), '#');
 }
 
-void candidates(const criticism::search::ExplainReport& r, std::string& out) {
-  if (r.candidates.empty()) return;
+std::string share_text(const criticism::tests::Candidate& c) {
+  return std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-";
+}
+
+void whole_table(std::span<const criticism::tests::Candidate> all, std::string& out) {
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "\n{:<32} {:<11} {:>2} {:>7} {:>9} {:>6}  {:<32}\n", "effect", "where", "k", "d", "p",
                  "share", "size");
-  const std::size_t n = std::min(kShown, r.candidates.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    const criticism::tests::Candidate& c = r.candidates[i];
+  for (const criticism::tests::Candidate& c : all)
     fmt::format_to(to, "{:<32} {:<11} {:>2} {:>7.1f} {:>9} {:>6}  {:<32} {}\n", c.effect, c.where, c.k, c.d,
-                   stats::p_text(c.log10_p), std::isfinite(c.share) ? fmt::format("{:.2f}", c.share) : "-",
-                   size_text(c), marks(c.d));
-  }
-  fmt::format_to(to,
-                 "k: coefficients; d: size in its own standard deviations; p: that chance alone makes it;\n"
-                 "share: of {}; size: of the coefficient that is best seen\n",
+                   stats::p_text(c.log10_p), share_text(c), size_text(c), marks(c.d));
+  out += "k: coefficients; d: size in its own standard deviations; p: that chance alone makes it;\n";
+}
+
+void short_table(std::span<const criticism::tests::Candidate> all, std::string& out) {
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "\n{:<32} {:>7} {:>8} {:>5}  {}\n", "effect and where", "d", "p", "share", "size");
+  for (const criticism::tests::Candidate& c : all)
+    fmt::format_to(to, "{:<32} {:>7.1f} {:>8} {:>5}  {}\n", fmt::format("{} {}", c.effect, c.where), c.d,
+                   stats::p_text(c.log10_p), share_text(c), size_text(c));
+  out += "d: size in its own standard deviations; p: that chance alone makes it;\n";
+}
+
+void candidates(const criticism::search::ExplainReport& r, std::size_t width, std::string& out) {
+  constexpr std::size_t kWholeTable = 108;
+  if (r.candidates.empty()) return;
+  const auto all = std::span(r.candidates).first(std::min(kCandidatesShown, r.candidates.size()));
+  if (width < kWholeTable)
+    short_table(all, out);
+  else
+    whole_table(all, out);
+  fmt::format_to(std::back_inserter(out), "share: of {}; size: of the coefficient that is best seen\n",
                  share_of(r));
 }
 
@@ -83,13 +101,13 @@ void confusions(const criticism::tests::ConfusionMatrix& c, std::string& out) {
 
 }  // namespace
 
-std::string to_text(const criticism::search::ExplainReport& r) {
+std::string to_text(const criticism::search::ExplainReport& r, std::size_t width) {
   std::string out;
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "{}{}{}\n{}\n", to_string(r.finding), r.named.empty() ? "" : ": ",
                  fmt::join(r.named, r.finding == criticism::search::Finding::ambiguous ? " or " : ", "),
                  sentence(r));
-  candidates(r, out);
+  candidates(r, width, out);
   impacts(r.candidates, out);
   maps(r.maps, out);
   if (r.confusion) confusions(*r.confusion, out);

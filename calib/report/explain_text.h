@@ -3,10 +3,13 @@
 #include <string>
 
 #include "calib/criticism/search/explain_report.h"
+#include "calib/report/wrapped.h"
 
 namespace mgtd::calib::report {
 
 /// For the terminal: verdict, table of candidates, what could have been seen, what these poses cannot tell.
-[[nodiscard]] std::string to_text(const criticism::search::ExplainReport& report);
+/// Where `width` has no room for the whole table of candidates, a short one has name and place in one column.
+[[nodiscard]] std::string to_text(const criticism::search::ExplainReport& report,
+                                  std::size_t width = kAnyWidth);
 
 }  // namespace mgtd::calib::report

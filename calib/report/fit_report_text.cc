@@ -5,124 +5,110 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
-#include "calib/calibration/field_expansion.h"
 #include "calib/calibration/tensor.h"
-#include "calib/report/array_text.h"
+#include "calib/report/calibration_text.h"
+#include "calib/report/column_blocks.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_summary_text.h"
 #include "calib/report/residual_words.h"
 #include "calib/report/shown_number.h"
-#include "calib/sensor/shown_parameters.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::report {
 namespace {
 
-std::string error_row(std::string_view stage, const fit::ErrorSummary& errors) {
-  std::string row = fmt::format("{:<12}", stage);
-  for (const double rmse : errors.total_field_rmse_nT) row += fmt::format(" {:>8.3f}", rmse);
-  row += "  ";
-  const Gradient& g = errors.tensor_rmse_nT_per_m;
-  const auto all = components(g);
-  if (std::all_of(all.begin(), all.end(), [](double rmse) { return std::isnan(rmse); })) return row + "\n";
-  for (const double rmse : all) row += " " + shown_number(rmse, 9, 3);
-  return row + "\n";
+/// One stage of the fit with the cells of its two tables.
+struct ErrorRow {
+  NamedRow field, tensor;
+};
+
+ErrorRow error_row(const std::string& stage, const fit::ErrorSummary& errors) {
+  ErrorRow row{{stage, {}}, {stage, {}}};
+  for (const double rmse : errors.total_field_rmse_nT) row.field.cells.push_back(fmt::format("{:.3f}", rmse));
+  const auto all = components(errors.tensor_rmse_nT_per_m);
+  const bool told = !std::all_of(all.begin(), all.end(), [](double rmse) { return std::isnan(rmse); });
+  for (const double rmse : all) row.tensor.cells.push_back(told ? shown_number(rmse, 9, 3) : "");
+  return row;
 }
 
-/// As many decimals as show two digits of the standard deviation.
-std::string with_sd(double value, double sd) {
-  if (!(sd > 0)) return fmt::format("{:.6g}", value);
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sd))), 0, 9);
-  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, sd, decimals);
-}
-
-/// Characters as they are seen: of UTF-8, all but the bytes that continue one.
-std::size_t seen_width(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-/// A number whose standard deviation is tiny is long: the columns are as wide as the longest of them.
-std::string parameter_table(const calibration::Calibration& c) {
-  constexpr std::size_t kUsual = 24, kSpace = 2;
-  std::vector<PerSensor<std::string>> cells;
-  std::size_t width = kUsual;
-  for (int k = 0; k < sensor::kSensorParameters; ++k) {
-    const sensor::ShownParameter& shown = sensor::shown_parameters()[static_cast<std::size_t>(k)];
-    PerSensor<std::string>& row = cells.emplace_back(c.sensors.size());
-    for (std::size_t i = 0; i < c.sensors.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i) * sensor::kSensorParameters + k;
-      const double sd = std::sqrt(std::max(0.0, c.covariance(at, at)));
-      row.at(i) = with_sd(c.sensors[i].parameters()[k] * shown.factor, sd * shown.factor);
-      width = std::max(width, seen_width(row.at(i)) + kSpace);
-    }
+std::vector<ErrorRow> error_rows(const fit::FitReport& report) {
+  std::vector<ErrorRow> rows{{{"", {}}, {"", {"xx", "yy", "zz", "xy", "xz", "yz"}}}};
+  for (std::size_t i = 1; i <= report.calibration.sensors.size(); ++i)
+    rows.front().field.cells.push_back(fmt::format("s{}", i));
+  rows.push_back(error_row("before", report.before));
+  if (report.simplified) rows.push_back(error_row("simplified", *report.simplified));
+  rows.push_back(error_row("step 1", report.after_step1));
+  if (report.two_step) rows.push_back(error_row("two-step", *report.two_step));
+  rows.push_back(error_row(report.calibration.method, report.after));
+  if (report.halves) {
+    rows.push_back(error_row("  odd half", report.halves->odd));
+    rows.push_back(error_row("  even half", report.halves->even));
   }
-  std::string out = fmt::format("{:<12}", "parameter");
-  for (std::size_t i = 0; i < c.sensors.size(); ++i)
-    out += fmt::format("{:>{}}", fmt::format("s{}", i + 1), width);
+  if (report.held_out) rows.push_back(error_row("held out", *report.held_out));
+  if (report.check_poses) rows.push_back(error_row("check poses", *report.check_poses));
+  return rows;
+}
+
+constexpr std::size_t kStage = 12, kFieldCell = 9, kTensorCell = 10;
+
+/// Field and tensor beside each other.
+std::string error_table_in_one(const std::vector<ErrorRow>& rows, bool tensor) {
+  const std::size_t sensors = rows.front().field.cells.size();
+  std::string out = fmt::format("{:<{}}{:^{}}", "rms error", kStage, "total field, nT",
+                                std::max<std::size_t>(16, kFieldCell * sensors));
+  if (tensor) out += fmt::format("  {:^60}", "tensor, nT/m");
   out += "\n";
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    const sensor::ShownParameter& shown = sensor::shown_parameters()[k];
-    out += fmt::format("{:<12}", fmt::format("{} {}", shown.name, shown.unit));
-    for (const std::string& cell : cells[k]) out += fmt::format("{:>{}}", cell, width);
+  for (const ErrorRow& row : rows) {
+    out += fmt::format("{:<{}}", row.field.name, kStage);
+    for (const std::string& cell : row.field.cells) out += fmt::format("{:>{}}", cell, kFieldCell);
+    if (tensor) {
+      out += "  ";
+      for (const std::string& cell : row.tensor.cells)
+        if (!cell.empty()) out += fmt::format("{:>{}}", cell, kTensorCell);
+    }
     out += "\n";
   }
   return out;
 }
 
-std::string effect_table(const std::vector<calibration::CalibratedEffect>& effects) {
-  std::string out;
-  for (const calibration::CalibratedEffect& e : effects) {
-    for (const calibration::EffectCoefficient& c : e.coefficients) {
-      out += fmt::format("{:<28}{:>24} {}\n", fmt::format("{} {}", e.effect, c.name), with_sd(c.value, c.sd),
-                         c.unit);
-    }
+/// The tensor below the field.
+std::string error_table_in_two(const std::vector<ErrorRow>& rows, bool tensor, std::size_t width) {
+  std::vector<NamedRow> field, gradient;
+  for (const ErrorRow& row : rows) {
+    field.push_back(row.field);
+    if (!row.tensor.cells.front().empty()) gradient.push_back(row.tensor);
   }
+  std::string out = "rms error of the total field, nT\n" + column_blocks(field, kStage, kFieldCell, width);
+  if (tensor)
+    out += "\nrms error of the tensor, nT/m\n" + column_blocks(gradient, kStage, kTensorCell, width);
   return out;
 }
 
-std::string halves_table(const fit::HalvesComparison& halves) {
-  std::string out = "step 2 from each half of the standard set (odd less even, deg)\n";
-  const auto row = [&](std::string_view name, double sensor::SensorModel::*angle) {
-    out += fmt::format("{:<12}", name);
-    for (std::size_t i = 0; i < halves.odd_sensors.size(); ++i) {
-      out += fmt::format("{:>24.5f}", to_deg(halves.odd_sensors[i].*angle - halves.even_sensors[i].*angle));
-    }
-    out += "\n";
+std::string halves_table(const fit::HalvesComparison& halves, std::size_t width) {
+  std::vector<NamedRow> rows{{"", {}}};
+  for (std::size_t i = 0; i < halves.odd_sensors.size(); ++i)
+    rows.front().cells.push_back(fmt::format("s{}", i + 1));
+  const auto add = [&](const std::string& name, double sensor::SensorModel::*angle) {
+    NamedRow& row = rows.emplace_back(NamedRow{name, {}});
+    for (std::size_t i = 0; i < halves.odd_sensors.size(); ++i)
+      row.cells.push_back(
+          fmt::format("{:.5f}", to_deg(halves.odd_sensors[i].*angle - halves.even_sensors[i].*angle)));
   };
-  row("alpha", &sensor::SensorModel::alpha_rad);
-  row("beta", &sensor::SensorModel::beta_rad);
-  row("gamma", &sensor::SensorModel::gamma_rad);
-  return out;
-}
-
-std::string check_list(const std::vector<Check>& checks) {
-  std::string out = "checks\n";
-  for (const Check& check : checks) {
-    out += fmt::format("  {:<5} {:<20} {} (limit {})\n", check.passed ? "ok" : "FAIL", check.name,
-                       check.measured, check.limit);
-    if (!check.passed && !check.remedy.empty()) out += fmt::format("        -> {}\n", check.remedy);
-  }
-  return out;
-}
-
-/// Nothing of the cross, which tells everything.
-std::string array_line(const sensor::Geometry& geometry) {
-  if (geometry.cross_baseline_m()) return {};
-  const auto& places_P_m = geometry.positions_P_m();
-  const auto expansion = calibration::FieldExpansion::of({places_P_m.data(), places_P_m.size()});
-  return expansion ? what_it_tells(*expansion) : std::string();
+  add("alpha", &sensor::SensorModel::alpha_rad);
+  add("beta", &sensor::SensorModel::beta_rad);
+  add("gamma", &sensor::SensorModel::gamma_rad);
+  constexpr std::size_t kName = 12, kWide = 24, kNarrow = 12;
+  const bool fits = width >= kName && (width - kName) / kWide >= halves.odd_sensors.size();
+  return "step 2 from each half of the standard set (odd less even, deg)\n" +
+         column_blocks(rows, kName, fits ? kWide : kNarrow, width);
 }
 
 std::string heading(const fit::FitReport& report) {
   const calibration::Calibration& c = report.calibration;
-  std::string out = fmt::format("{} calibration {} of {} poses: {}\n", c.method, c.id, c.poses,
-                                c.accepted_by_checks ? "accepted by its checks" : "NOT ACCEPTED");
+  std::string out = calibration_heading(c);
   out += fmt::format("fit:   {}\n", to_text(report.summary));
   out += fmt::format("gauge: {}\n", c.gauge);
   if (const std::string array = array_line(c.geometry); !array.empty())
@@ -176,36 +162,21 @@ std::string rows_text(const fit::FitReport& report) {
   return out;
 }
 
-std::string error_table(const fit::FitReport& report) {
+std::string error_table(const fit::FitReport& report, std::size_t width) {
   const std::size_t sensors = report.calibration.sensors.size();
   const bool tensor = !std::isnan(calibration::root_mean_square(report.after.tensor_rmse_nT_per_m));
-  std::string out =
-      fmt::format("{:<12}{:^{}}", "rms error", "total field, nT", std::max<std::size_t>(16, 9 * sensors));
-  if (tensor) out += fmt::format("  {:^60}", "tensor, nT/m");
-  out += fmt::format("\n{:<12}", "");
-  for (std::size_t i = 1; i <= sensors; ++i) out += fmt::format("{:>9}", fmt::format("s{}", i));
-  if (tensor)
-    out += fmt::format("  {:>10}{:>10}{:>10}{:>10}{:>10}{:>10}", "xx", "yy", "zz", "xy", "xz", "yz");
-  out += "\n";
-  out += error_row("before", report.before);
-  if (report.simplified) out += error_row("simplified", *report.simplified);
-  out += error_row("step 1", report.after_step1);
-  if (report.two_step) out += error_row("two-step", *report.two_step);
-  out += error_row(report.calibration.method, report.after);
-  if (report.halves) {
-    out += error_row("  odd half", report.halves->odd);
-    out += error_row("  even half", report.halves->even);
-  }
-  if (report.held_out) out += error_row("held out", *report.held_out);
-  if (report.check_poses) out += error_row("check poses", *report.check_poses);
-  return out + rows_text(report) + "\n";
+  const std::size_t needed = kStage + kFieldCell * sensors + (tensor ? 2 + 6 * kTensorCell : 0);
+  const auto rows = error_rows(report);
+  return (needed <= width ? error_table_in_one(rows, tensor) : error_table_in_two(rows, tensor, width)) +
+         rows_text(report) + "\n";
 }
 
-std::string to_text(const fit::FitReport& report) {
-  std::string out = heading(report) + "\n" + error_table(report) + "\n" + parameter_table(report.calibration);
-  if (!report.calibration.effects.empty()) out += "\n" + effect_table(report.calibration.effects);
-  if (report.halves) out += "\n" + halves_table(*report.halves);
-  if (!report.calibration.checks.empty()) out += "\n" + check_list(report.calibration.checks);
+std::string to_text(const fit::FitReport& report, std::size_t width) {
+  const calibration::Calibration& c = report.calibration;
+  std::string out = heading(report) + "\n" + error_table(report, width) + "\n" + parameter_table(c, width);
+  if (!c.effects.empty()) out += "\n" + effect_table(c.effects);
+  if (report.halves) out += "\n" + halves_table(*report.halves, width);
+  if (!c.checks.empty()) out += "\n" + check_list(c.checks);
   for (const std::string& reason : fit_reasons(report)) out += fmt::format("note: {}\n", reason);
   return out;
 }

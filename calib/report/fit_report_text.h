@@ -3,16 +3,17 @@
 #include <string>
 
 #include "calib/fit/fit_report.h"
+#include "calib/report/wrapped.h"
 
 namespace mgtd::calib::report {
 
 /// The report for a person: result and gauge, errors before and after each step, the twelve parameters of
 /// every sensor with their standard deviations, the odd and even halves, every check with its remedy when it
-/// failed. Fixed-width text, lines under 110 columns except for remedies.
-[[nodiscard]] std::string to_text(const fit::FitReport& report);
+/// failed. Fixed-width text; `width` is the number of columns that a table may have.
+[[nodiscard]] std::string to_text(const fit::FitReport& report, std::size_t width = kAnyWidth);
 
 /// The table of errors alone: a row per stage (before, simplified, step 1, after, held out, check poses).
-[[nodiscard]] std::string error_table(const fit::FitReport& report);
+[[nodiscard]] std::string error_table(const fit::FitReport& report, std::size_t width = kAnyWidth);
 /// What its rows are, and what none of them counts.
 [[nodiscard]] std::string rows_text(const fit::FitReport& report);
 

@@ -23,4 +23,9 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   return out;
 }
 
+std::size_t seen_width(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 }  // namespace mgtd::calib::report

@@ -5,8 +5,10 @@
 #include <memory>
 
 #include "calib/calibration/calibration_json.h"
+#include "calib/report/calibration_text.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/calibration_file.h"
+#include "daemon/cli/meant_calibration.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -27,20 +29,11 @@ int print_list(const Session& session) {
   return 0;
 }
 
-/// The id that the operator means; "latest" is the newest proposal.
-Result<std::string> resolve(const Session& session, const std::string& id) {
-  if (id != "latest") return id;
+/// The id that the operator means.
+Result<std::string> resolve(const Session& session, const std::string& word) {
   const auto reply = ask(session, ControlCommand::calibrations_list);
   if (!reply) return tl::unexpected(reply.error());
-  std::string found, since;
-  for (const auto& c : reply->at("calibrations")) {
-    if (c.at("state") != "proposed" || c.at("since").get<std::string>() < since) continue;
-    since = c.at("since");
-    found = c.at("id");
-  }
-  if (found.empty())
-    return fail(ErrorCode::state, "no calibration is proposed", "mgt run start proposes one");
-  return found;
+  return meant_calibration(word, reply->at("calibrations"));
 }
 
 int print_reply(const Session& session, const Result<nlohmann::json>& reply, std::string_view done) {
@@ -63,7 +56,16 @@ struct CalibrationsArguments {
 int show(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
   if (!id) return report(session, id.error());
-  return print_reply(session, ask(session, ControlCommand::calibrations_show, {{"id", *id}}), "");
+  const auto reply = ask(session, ControlCommand::calibrations_show, {{"id", *id}});
+  if (!reply) return report(session, reply.error());
+  if (session.json) {
+    print_json(*reply);
+    return 0;
+  }
+  const auto calibration = calib::calibration::calibration_from_json(*reply);
+  if (!calibration) return report(session, calibration.error());
+  print_text(session, calib::report::to_text(*calibration, table_width(session)));
+  return 0;
 }
 
 int accept(const Session& session, const CalibrationsArguments& args) {
@@ -98,7 +100,8 @@ void add_calibrations(CLI::App& app, Session& session) {
   const auto args = std::make_shared<CalibrationsArguments>();
   CLI::App* const shown = add_command(*group, session, "show", "one calibration, whole",
                                       [args, &session] { return show(session, *args); });
-  shown->add_option("ID", args->id, "its id, or 'latest' for the newest proposal")->required();
+  shown->add_option("ID", args->id, "its id or the beginning of it, or 'latest' for the newest proposal")
+      ->required();
   CLI::App* const imported =
       add_command(*group, session, "import", "propose a calibration that was made elsewhere",
                   [args, &session] { return import_file(session, *args); });
@@ -108,7 +111,8 @@ void add_calibrations(CLI::App& app, Session& session) {
   CLI::App* const accepted =
       add_command(*group, session, "accept", "make a proposed calibration the active one",
                   [args, &session] { return accept(session, *args); });
-  accepted->add_option("ID", args->id, "its id, or 'latest' for the newest proposal")->required();
+  accepted->add_option("ID", args->id, "its id or the beginning of it, or 'latest' for the newest proposal")
+      ->required();
   accepted->add_flag("--force", args->force, "even if it failed its checks; every sample then says so");
   add_command(*group, session, "rollback", "go back to the calibration that was active before", [&session] {
     return print_reply(session, ask(session, ControlCommand::calibrations_rollback), "active again");

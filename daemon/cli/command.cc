@@ -6,13 +6,36 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <utility>
 
+#include "calib/report/wrapped.h"
+#include "daemon/cli/progress.h"
+
 namespace mgtd::daemon::cli {
+
+TextLook stdout_look(const Session& session) {
+  const auto variable = [](const char* name) {
+    const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody sets it
+    return std::string(value != nullptr ? value : "");
+  };
+  return look_of(
+      {isatty(STDOUT_FILENO) != 0, terminal_width(STDOUT_FILENO), variable("NO_COLOR"), variable("TERM")},
+      session.color);
+}
+
+std::size_t table_width(const Session& session) {
+  return stdout_look(session).width.value_or(calib::report::kAnyWidth);
+}
+
+void print_text(const Session& session, const std::string& text) {
+  fmt::print("{}", shown(text, stdout_look(session)));
+}
+
 void print_json(const nlohmann::json& object) {
   fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/cli/terminal_text.h"
 #include "daemon/store/durable_file.h"
 #include "proto/error.h"
 
@@ -16,12 +17,20 @@ namespace mgtd::daemon::cli {
 struct Session {
   bool json{false};
   std::string control_socket;
+  std::string color{"auto"};  ///< of text on stdout: auto, always, never
   int exit_code{0};
 };
 
 /// Prints the error with its remedy on stderr (with --json also {"error":{...}} on stdout); returns the exit
 /// code of its kind.
 int report(const Session& session, const Error& error);
+
+/// Text on stdout, in the width and the colours that fit where it goes.
+void print_text(const Session& session, const std::string& text);
+/// How text on stdout is to look now.
+[[nodiscard]] TextLook stdout_look(const Session& session);
+/// Columns that a table on stdout may have: those of the terminal, elsewhere any.
+[[nodiscard]] std::size_t table_width(const Session& session);
 
 /// One JSON object on stdout.
 void print_json(const nlohmann::json& object);

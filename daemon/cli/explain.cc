@@ -69,8 +69,9 @@ int run_explain(const Session& session, const ExplainArguments& args) {
     if (args.confusion) out["figures"] = figures_json(*explained);
     print_json(out);
   } else {
-    fmt::print("{}", calib::report::to_text(*explained));
-    if (!doubts->empty()) fmt::print("\nopen since it was chosen:\n{}", doubts_text(*doubts));
+    std::string text = calib::report::to_text(*explained, table_width(session));
+    if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
+    print_text(session, text);
   }
   return explained->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }

@@ -35,7 +35,7 @@ int run_fit(const Session& session, const FitArguments& args) {
   if (session.json) {
     print_json(calib::report::to_json(*fitted));
   } else {
-    fmt::print("{}", calib::report::to_text(*fitted));
+    print_text(session, calib::report::to_text(*fitted, table_width(session)));
   }
   return fitted->calibration.accepted_by_checks ? 0 : 1;
 }

@@ -29,6 +29,26 @@ std::optional<mgtd::Error> unknown_command(const CLI::App& app) {
                      fmt::format("there are: {}", fmt::join(commands, ", "))};
 }
 
+/// The option that a word beginning with '-' was meant to be; of the command and of all it belongs to.
+std::optional<std::string> meant_option(const CLI::App* command, const std::string& wrong) {
+  std::vector<std::string> there;
+  for (const CLI::App* at = command; at != nullptr; at = at->get_parent())
+    for (const CLI::Option* option : at->get_options())
+      for (const std::string& name : option->get_lnames()) there.push_back("--" + name);
+  return mgtd::nearest_word(wrong.substr(0, wrong.find('=')), there);
+}
+
+/// "unknown option '--fild', did you mean '--field'?"; empty if no option is unknown.
+std::optional<std::string> unknown_option(const CLI::App& app, const CLI::App* command) {
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with("--")) continue;
+    const auto meant = meant_option(command, word);
+    return fmt::format("unknown option '{}'{}", word,
+                       meant ? fmt::format(", did you mean '{}'?", *meant) : "");
+  }
+  return std::nullopt;
+}
+
 /// The error when the arguments of a command are wrong; for a group without a command it lists the commands.
 mgtd::Error wrong_words(const CLI::App& app, const CLI::Error& error) {
   const CLI::App* at = &app;
@@ -39,7 +59,11 @@ mgtd::Error wrong_words(const CLI::App& app, const CLI::Error& error) {
   for (const CLI::App* x : at->get_subcommands([](const CLI::App*) { return true; }))
     commands.push_back(x->get_name());
   const bool lacks = !commands.empty() && error.get_name() == "RequiredError";
-  return {mgtd::ErrorCode::usage, lacks ? "which command?" : error.what(),
+  const auto option = unknown_option(app, at);
+  return {mgtd::ErrorCode::usage,
+          lacks    ? "which command?"
+          : option ? *option
+                   : error.what(),
           fmt::format("{}mgt{} --help tells more",
                       lacks ? fmt::format("one of {}; ", fmt::join(commands, ", ")) : "", path)};
 }
@@ -71,6 +95,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--json", session.json,
                "one JSON object on stdout, messages on stderr; also after the command");
+  app.add_option("--color", session.color,
+                 "judgements in colour: auto (on a terminal, unless NO_COLOR is set), always, never")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->capture_default_str();
   mgtd::daemon::cli::add_status(app, session);
   mgtd::daemon::cli::add_watch(app, session);
   mgtd::daemon::cli::add_run(app, session);

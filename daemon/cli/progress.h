@@ -14,7 +14,7 @@ namespace mgtd::daemon::cli {
 /// "4 min 10 s", "12 s", "1 h 03 min".
 [[nodiscard]] std::string duration_text(double seconds);
 
-/// Columns of the terminal behind a descriptor; 100 where it does not say.
+/// Columns of the terminal behind a descriptor; 80 where it does not say.
 [[nodiscard]] int terminal_width(int fd);
 
 }  // namespace mgtd::daemon::cli

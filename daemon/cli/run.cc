@@ -69,6 +69,24 @@ bool answer(const Session& session, serve::ControlClient& client, const Operator
   return true;
 }
 
+/// Says once why a run waits that goes on by itself, and when it does.
+class WaitNotice {
+ public:
+  /// Empty, or a line.
+  std::string of(const RunStatus& run) {
+    const std::string why = run.state == RunState::paused && run.goes_on ? run.message : std::string();
+    if (why == why_) return {};
+    why_ = why;
+    if (!why.empty()) return why + "\n";
+    const bool measures =
+        is_active(run.state) && run.state != RunState::paused && run.state != RunState::aborting;
+    return measures ? "the run goes on\n" : "";
+  }
+
+ private:
+  std::string why_;
+};
+
 /// Shows the run until it ends or waits for the operator. Ctrl-C leaves it running.
 int follow(const Session& session) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -76,6 +94,7 @@ int follow(const Session& session) {
   auto client = serve::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   std::string judged;
+  WaitNotice wait;
   int last_tenth = -1;
   while (!interrupted()) {
     const auto reply = client->request(ControlCommand::run_status);
@@ -86,6 +105,8 @@ int follow(const Session& session) {
       judged = run->judged;
       fmt::print(stderr, "{}{}\n", terminal ? "\r\033[K" : "", judged);
     }
+    if (const std::string notice = wait.of(*run); !notice.empty())
+      fmt::print(stderr, "{}{}", terminal ? "\r\033[K" : "", notice);
     const std::string line = progress_line(*run, terminal_width(STDERR_FILENO) - 1);
     const int tenth = run->poses > 0 ? 10 * run->pose / run->poses : 0;
     if (terminal) {

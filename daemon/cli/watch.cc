@@ -13,6 +13,7 @@
 #include "daemon/cli/gap_pace.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/cli/progress.h"
+#include "daemon/cli/watch_panel.h"
 #include "daemon/serve/stream_reader.h"
 
 namespace mgtd::daemon::cli {
@@ -22,7 +23,7 @@ struct WatchArguments {
   std::string stream;
   std::optional<double> rate_hz;
   std::uint64_t count{0};
-  bool raw{false};
+  bool raw{false}, lines{false};
 };
 
 /// Right-aligned; "--" where the stream has no number.
@@ -141,11 +142,38 @@ Result<serve::StreamReader> open_stream(const Session& session, const WatchArgum
   return serve::StreamReader::open(*where, request);
 }
 
+/// Draws the panel over the one before, on the terminal behind stdout.
+class PanelScreen {
+ public:
+  void take(const Session& session, const nlohmann::json& object) {
+    panel_.take(object);
+    const TextLook look = stdout_look(session);
+    const std::string text = shown(panel_.text(terminal_width(STDOUT_FILENO)), look);
+    fmt::print("{}{}", back_over(drawn_), text);
+    std::fflush(stdout);
+    drawn_ = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+
+ private:
+  WatchPanel panel_;
+  std::size_t drawn_{0};  ///< lines
+};
+
+/// How the objects are shown.
+enum class WatchForm { panel, lines, objects };
+
+WatchForm form_of(const Session& session, const WatchArguments& args) {
+  if (session.json || args.raw) return WatchForm::objects;
+  return args.lines || isatty(STDOUT_FILENO) == 0 ? WatchForm::lines : WatchForm::panel;
+}
+
 int run_watch(const Session& session, const WatchArguments& args) {
   auto reader = open_stream(session, args);
   if (!reader) return report(session, reader.error());
+  const WatchForm form = form_of(session, args);
   std::string criticism;
   Gaps gaps;
+  PanelScreen screen;
   for (std::uint64_t seen = 0; args.count == 0 || seen < args.count;) {
     const auto object = reader->next(std::chrono::seconds(30));
     if (!object || !*object) {
@@ -154,11 +182,13 @@ int run_watch(const Session& session, const WatchArguments& args) {
                                             "mgt status says why"}
                                     : object.error());
     }
-    if (session.json || args.raw) {
+    if (form == WatchForm::objects) {
       print_json(**object);
       std::fflush(stdout);
-    } else {
+    } else if (form == WatchForm::lines) {
       show(**object, criticism, gaps);
+    } else {
+      screen.take(session, **object);
     }
     if ((*object)->at("class") == "TENSOR") ++seen;
   }
@@ -179,6 +209,8 @@ void add_watch(CLI::App& app, Session& session) {
       ->check(in_range(0, 1e15, "samples"))
       ->capture_default_str();
   command->add_option("--stream", args->stream, "Unix socket or host:port; default: what the daemon says");
+  command->add_flag("--lines", args->lines,
+                    "a line for each sample instead of a panel that changes in place");
   command->add_flag("--raw", args->raw, "the objects as they come, one per line");
 }
 

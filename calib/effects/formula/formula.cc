@@ -12,6 +12,7 @@
 #include "calib/effects/formula/history_name.h"
 #include "calib/effects/laws/axis_effect.h"
 #include "calib/poses/pose_columns.h"
+#include "proto/nearest_word.h"
 #include "proto/number.h"
 
 namespace mgtd::calib::effects::formula {
@@ -151,6 +152,12 @@ std::string column_needed(const FormulaName& name, Level level) {
   return of.source == Source::column ? of.name : name.name;
 }
 
+/// ", did you mean 'T1_degC'?" where a column has nearly this name.
+std::string meant(const std::string& wrong, const std::vector<std::string>& columns) {
+  const auto near = nearest_word(wrong, columns);
+  return near ? fmt::format(", did you mean '{}'?", *near) : "";
+}
+
 }  // namespace
 
 std::optional<FormulaScan> open_scan(const EffectSpec& spec) {
@@ -221,7 +228,7 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
     }
     return tl::unexpected(expression_error(
         *spec.find("expr"), column_of(*spec.find("expr"), name.name),
-        fmt::format("no pose has a '{}'", name.name),
+        fmt::format("no pose has a '{}'{}", name.name, meant(name.name, there)),
         fmt::format("columns: {}; coefficients k or k1 to k3; t_h, pose, {}", fmt::join(there, ", "),
                     formula.level() == Level::axis       ? "T_degC, u, ux, uy, uz"
                     : formula.level() == Level::platform ? "T_degC, b, bx, by, bz, gx, gy, gz"
