@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/effects/effect.h"
+#include "calib/fit/fit_round.h"
 #include "calib/sensor/geometry.h"
 #include "proto/units.h"
 
@@ -32,6 +33,7 @@ struct FitOptions {
   std::vector<effects::EffectPtr> effects;  ///< beside the twelve parameters a sensor; joint only
   /// Asked before every step of a solver: a fit that is stopped is refused within that time.
   std::stop_token stop{};
+  RoundListener on_round{};  ///< joint only; may be empty
 };
 
 }  // namespace mgtd::calib::fit

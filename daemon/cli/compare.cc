@@ -35,8 +35,9 @@ int run_compare(const Session& session, const CompareArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto comparison =
-      with_progress("compare", [&] { return calib::criticism::tests::compare(source->table, *options); });
+  const auto comparison = with_progress("compare", *options, [&](const calib::fit::FitOptions& told) {
+    return calib::criticism::tests::compare(source->table, told);
+  });
   if (!comparison) return report(session, comparison.error());
   std::optional<calib::criticism::tests::PosePoints> points;
   if (args.poses || !args.output.empty()) {

@@ -42,9 +42,9 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto found = with_progress("discover", [&] {
+  const auto found = with_progress("discover", *options, [&](const calib::fit::FitOptions& told) {
     return calib::discovery::discover(source->table,
-                                      {.fit = *options, .draws = args.draws, .checks = !args.quick});
+                                      {.fit = told, .draws = args.draws, .checks = !args.quick});
   });
   if (!found) return report(session, found.error());
   if (session.json) {

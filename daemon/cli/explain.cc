@@ -54,12 +54,14 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const calib::criticism::search::ExplainOptions wanted{.fit = *options,
-                                                        .also = formulas_of(*source, *options),
-                                                        .confusion = args.confusion,
-                                                        .impact = args.impact};
-  const auto explained =
-      with_progress("explain", [&] { return calib::criticism::search::explain(source->table, wanted); });
+  calib::criticism::search::ExplainOptions wanted{.fit = *options,
+                                                  .also = formulas_of(*source, *options),
+                                                  .confusion = args.confusion,
+                                                  .impact = args.impact};
+  const auto explained = with_progress("explain", *options, [&](const calib::fit::FitOptions& told) {
+    wanted.fit = told;
+    return calib::criticism::search::explain(source->table, wanted);
+  });
   if (!explained) return report(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());

@@ -23,7 +23,9 @@ int run_fit(const Session& session, const FitArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  auto fitted = with_progress("fit", [&] { return calib::fit::method_choice::fit(source->table, *options); });
+  auto fitted = with_progress("fit", *options, [&](const calib::fit::FitOptions& told) {
+    return calib::fit::method_choice::fit(source->table, told);
+  });
   if (!fitted) return report(session, fitted.error());
   acquire::name_instruments(fitted->calibration, args.run);
   if (!args.output.empty()) {

@@ -46,8 +46,9 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  auto improved =
-      with_progress("improve", [&] { return calib::criticism::search::improve(source->table, *options); });
+  auto improved = with_progress("improve", *options, [&](const calib::fit::FitOptions& told) {
+    return calib::criticism::search::improve(source->table, told);
+  });
   if (!improved) return report(session, improved.error());
   acquire::name_instruments(improved->fit.calibration, args.run);
   if (!args.output.empty()) {
@@ -56,8 +57,9 @@ int run_improve(const Session& session, const ImproveArguments& args) {
       return report(session, written.error());
     fmt::print(stderr, "calibration {} written to {}\n", calibration.id, args.output);
   }
-  const auto steps = with_progress(
-      "waterfall", [&] { return waterfall_of(source->table, *options, improved->fit.calibration); });
+  const auto steps = with_progress("waterfall", *options, [&](const calib::fit::FitOptions& told) {
+    return waterfall_of(source->table, told, improved->fit.calibration);
+  });
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);
     out["waterfall"] = steps ? calib::report::to_json(*steps) : nlohmann::json();

@@ -56,8 +56,11 @@ std::set<int> masked_in(const store::PoseSource& source) {
 /// Keeps a step that leads to `table`, and prints it.
 int keep_mask(const Session& session, const MaskArguments& args, const std::string& action,
               const std::set<int>& numbers, const PoseTable& table, KeptRun& run) {
-  const auto before = with_progress(action, [&] { return residual_nT(run.source.table, run.options); });
-  const auto after = with_progress(action, [&] { return residual_nT(table, run.options); });
+  const auto before = with_progress(action, run.options, [&](const calib::fit::FitOptions& told) {
+    return residual_nT(run.source.table, told);
+  });
+  const auto after = with_progress(
+      action, run.options, [&](const calib::fit::FitOptions& told) { return residual_nT(table, told); });
   if (!after) return report(session, after.error());
   const std::string spec = store::pose_numbers_text(numbers);
   json result{{"because", args.why}, {"rms_after_nT", *after}};

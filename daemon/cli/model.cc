@@ -102,16 +102,19 @@ int run_add(const Session& session, const ModelArguments& args) {
   const auto effect =
       calib::effects::library::make_effect(store::whole_spec(args.effect, run->source.definitions), sensors);
   if (!effect) return report(session, effect.error());
-  const auto change = with_progress(
-      "add", [&] { return calib::criticism::search::add_effect(run->source.table, run->options, *effect); });
+  const auto change = with_progress("add", run->options, [&](const calib::fit::FitOptions& told) {
+    return calib::criticism::search::add_effect(run->source.table, told, *effect);
+  });
   if (!change) return report(session, change.error());
   const auto found = calib::effects::library::make_effect(change->spec, sensors);
   if (!found) return report(session, found.error());
   calib::criticism::search::Choice choice;
-  const calib::criticism::search::ExplainOptions without{.fit = run->options,
-                                                         .also = formulas_of(run->source, run->options)};
-  if (const auto before =
-          with_progress("add", [&] { return calib::criticism::search::explain(run->source.table, without); }))
+  calib::criticism::search::ExplainOptions without{.fit = run->options,
+                                                   .also = formulas_of(run->source, run->options)};
+  if (const auto before = with_progress("explain", run->options, [&](const calib::fit::FitOptions& told) {
+        without.fit = told;
+        return calib::criticism::search::explain(run->source.table, without);
+      }))
     choice = calib::criticism::search::choice_of(*before, run->source.table, *found);
   calib::fit::FitOptions options = run->options;
   options.effects.push_back(*found);
@@ -133,8 +136,9 @@ int run_drop(const Session& session, const ModelArguments& args) {
   if (!run) return report(session, run.error());
   const auto place = place_of(*run, args.effect);
   if (!place) return report(session, place.error());
-  const auto change = with_progress(
-      "drop", [&] { return calib::criticism::search::drop_effect(run->source.table, run->options, *place); });
+  const auto change = with_progress("drop", run->options, [&](const calib::fit::FitOptions& told) {
+    return calib::criticism::search::drop_effect(run->source.table, told, *place);
+  });
   if (!change) return report(session, change.error());
   calib::fit::FitOptions options = run->options;
   options.effects.erase(options.effects.begin() + static_cast<std::ptrdiff_t>(*place));

@@ -125,7 +125,9 @@ int run_next(const Session& session, const NextArguments& args) {
   if (!options) return report(session, options.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
-  const auto next = with_progress("next", [&] { return answer(args, *source, *options, *doubts); });
+  const auto next = with_progress("next", *options, [&](const calib::fit::FitOptions& told) {
+    return answer(args, *source, told, *doubts);
+  });
   if (!next) return report(session, next.error());
   if (!args.output.empty() && !next->steps.empty()) {
     const calib::criticism::search::NextStep& best = next->steps.front();

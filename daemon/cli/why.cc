@@ -36,9 +36,9 @@ int run_why(const Session& session, WhyArguments args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const calib::criticism::search::ExplainOptions wanted{.fit = *options,
-                                                        .also = formulas_of(*source, *options)};
-  const auto evidence = with_progress("why", [&] {
+  calib::criticism::search::ExplainOptions wanted{.fit = *options, .also = formulas_of(*source, *options)};
+  const auto evidence = with_progress("why", *options, [&](const calib::fit::FitOptions& told) {
+    wanted.fit = told;
     return calib::criticism::search::evidence_of(source->table, wanted, args.effect, args.at, args.poses);
   });
   if (!evidence) return report(session, evidence.error());

@@ -15,7 +15,7 @@
 namespace mgtd::daemon::cli {
 namespace {
 
-constexpr std::chrono::seconds kQuiet{2};  // nobody minds to wait so long
+constexpr std::chrono::seconds kQuiet{1};  // nobody minds to wait so long
 constexpr std::chrono::milliseconds kEvery{500};
 constexpr int kBarWidth = 24;
 constexpr double kLittleDone = 0.01;  // less says nothing of the time left
@@ -37,13 +37,17 @@ std::string work_line(const WorkState& work, int width) {
   } else {
     line = fmt::format("{}: working for {}", work.what, duration_text(work.elapsed_s));
   }
+  if (work.round)
+    line += fmt::format(", fit {}, round {}: residual {:.3g} nT", work.fits, work.round->round,
+                        work.round->residual_nT);
   const double got = work.elapsed_s > 0 ? work.processor_s / work.elapsed_s : 1.0;
   if (got < kStarved) line += fmt::format("; other programs leave it {:.0f} % of a processor", 100 * got);
   if (static_cast<int>(line.size()) > width) line.resize(static_cast<std::size_t>(std::max(width, 0)));
   return line;
 }
 
-WorkProgress::WorkProgress(std::string what) : work_{std::move(what), 0, 0, std::nullopt} {
+WorkProgress::WorkProgress(std::string what) : known_(std::make_shared<Known>()) {
+  known_->work.what = std::move(what);
   if (isatty(STDERR_FILENO) == 0) return;
   thread_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
 }
@@ -51,21 +55,30 @@ WorkProgress::WorkProgress(std::string what) : work_{std::move(what), 0, 0, std:
 WorkProgress::~WorkProgress() = default;
 
 void WorkProgress::done(double share) {
-  const std::lock_guard lock(mutex_);
-  work_.share = share;
+  const std::lock_guard lock(known_->mutex);
+  known_->work.share = share;
+}
+
+calib::fit::RoundListener WorkProgress::rounds() const {
+  return [known = known_](const calib::fit::FitRound& round) {
+    const std::lock_guard lock(known->mutex);
+    if (round.round == 1) ++known->work.fits;
+    known->work.round = round;
+  };
 }
 
 void WorkProgress::show(const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
   const double used_before_s = processor_s();
   const auto never = [] { return false; };
-  std::unique_lock lock(mutex_);
+  std::unique_lock lock(known_->mutex);
   ended_.wait_for(lock, stop, kQuiet, never);
   const bool shown = !stop.stop_requested();
+  WorkState& work = known_->work;
   while (!stop.stop_requested()) {
-    work_.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    work_.processor_s = processor_s() - used_before_s;
-    fmt::print(stderr, "\r{}\x1b[K", work_line(work_, terminal_width(STDERR_FILENO) - 1));
+    work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    work.processor_s = processor_s() - used_before_s;
+    fmt::print(stderr, "\r{}\x1b[K", work_line(work, terminal_width(STDERR_FILENO) - 1));
     std::fflush(stderr);
     ended_.wait_for(lock, stop, kEvery, never);
   }

@@ -8,6 +8,7 @@
 
 #include "calib/calibration/tensor.h"
 #include "calib/effects/library/library.h"
+#include "calib/fit/fit_round.h"
 #include "calib/sensor/geometry.h"
 #include "calib/sensor/sensor_model.h"
 #include "proto/pose.h"
@@ -82,7 +83,8 @@ struct JointProblem {
   /// Of the site's field, from the operator; and the weight of both, 1/rad.
   std::optional<double> known_inclination_rad, known_declination_rad;
   double direction_weight{0};
-  std::stop_token stop{};  ///< of FitOptions
+  std::stop_token stop{};    ///< of FitOptions
+  RoundListener on_round{};  ///< of FitOptions
 
   [[nodiscard]] int coefficients() const;
   [[nodiscard]] FixedSlots slots() const { return {static_cast<int>(geometry.sensors())}; }

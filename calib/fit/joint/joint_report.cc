@@ -157,6 +157,7 @@ JointOptions joint_options(const FitOptions& options) {
   out.declination_rad = options.declination_rad;
   out.table_sd_rad = options.table_sd_rad;
   out.stop = options.stop;
+  out.on_round = options.on_round;
   return out;
 }
 

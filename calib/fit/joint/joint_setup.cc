@@ -95,6 +95,7 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   JointProblem problem;
   problem.geometry = options.geometry;
   problem.stop = options.stop;
+  problem.on_round = options.on_round;
   auto effects = effects::library::bound_to_run(options.effects, {.table = &table, .offset_nT = {}});
   if (!effects) return tl::unexpected(effects.error());
   problem.effects = std::move(*effects);

@@ -31,7 +31,8 @@ struct JointOptions {
   /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
   /// is.
   double most_left_out{1.0 / 3};
-  std::stop_token stop{};  ///< of FitOptions
+  std::stop_token stop{};    ///< of FitOptions
+  RoundListener on_round{};  ///< of FitOptions
 };
 
 /// Spread of the true field from pose to pose that is allowed for when no scalar reference follows it.

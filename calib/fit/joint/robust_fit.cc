@@ -54,6 +54,7 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
     out.solution = *std::move(solution);
     JointState& found = out.solution.state;
     out.residuals = pose_residuals(problem, found);
+    if (problem.on_round) problem.on_round({round, out.residuals.residual_nT()});
     if (round > kMaxWeighingRounds) {
       if (!settled) out.termination = Termination::round_limit;
       return out;

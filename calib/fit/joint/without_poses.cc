@@ -23,7 +23,8 @@ JointProblem without_poses_and_priors(const JointProblem& problem) {
           .known_inclination_rad = std::nullopt,
           .known_declination_rad = std::nullopt,
           .direction_weight = problem.direction_weight,
-          .stop = problem.stop};
+          .stop = problem.stop,
+          .on_round = problem.on_round};
 }
 
 JointState without_poses(const JointState& state) {

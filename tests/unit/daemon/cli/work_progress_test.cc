@@ -24,6 +24,24 @@ TEST(WorkProgress, ABusyComputerIsNamed) {
             "explain: working for 1 min 40 s; other programs leave it 8 % of a processor");
 }
 
+TEST(WorkProgress, AFitSaysItsRoundAndTheResidualSoFar) {
+  WorkState work{"explain", 14, 14, std::nullopt};
+  work.fits = 23;
+  work.round = calib::fit::FitRound{2, 0.04123};
+  EXPECT_EQ(work_line(work, 200), "explain: working for 14 s, fit 23, round 2: residual 0.0412 nT");
+}
+
+TEST(WorkProgress, TheListenerMayOutliveWhatShowsIt) {
+  calib::fit::RoundListener kept;
+  EXPECT_EQ(with_progress("fit", {},
+                          [&](const calib::fit::FitOptions& told) {
+                            kept = told.on_round;
+                            return 1;
+                          }),
+            1);
+  kept({.round = 1, .residual_nT = 0.5});
+}
+
 TEST(WorkProgress, NeverWiderThanTheTerminal) {
   for (const int width : {0, 1, 20, 40})
     EXPECT_LE(work_line({"replay", 4, 1, 0.25}, width).size(), static_cast<std::size_t>(width));

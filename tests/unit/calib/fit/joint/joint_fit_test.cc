@@ -58,6 +58,17 @@ TEST(JointFit, ThatIsToldToStopIsRefused) {
   EXPECT_EQ(fit.error().code, ErrorCode::state) << fit.error().text();
 }
 
+TEST(JointFit, TellsEachRoundAndTheResidualItLeft) {
+  JointOptions options;
+  std::vector<FitRound> told;
+  options.on_round = [&](const FitRound& round) { told.push_back(round); };
+  const JointFit fit = must_fit(simulate(real_rig(), 36, 121, 1), options);
+  ASSERT_EQ(static_cast<int>(told.size()), fit.rounds);
+  EXPECT_EQ(told.front().round, 1);
+  EXPECT_EQ(told.back().round, fit.rounds);
+  EXPECT_NEAR(told.back().residual_nT, fit.noise_nT(), 0.05);
+}
+
 TEST(JointFit, ReportedCovarianceIsTheRealOne) {
   // Normalised estimation error squared: mean of 60 chi-squares with 48 degrees of freedom, 99.9 % band.
   constexpr int kRuns = 60;
