@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "proto/number.h"
+#include "tests/support/checkout.h"
 
 namespace mgtd::testing {
 
@@ -16,8 +17,7 @@ double PaperTable::number(std::size_t row, std::size_t column) const {
 }
 
 PaperTable paper_table(int number) {
-  const std::string path =
-      std::string(MGTD_SOURCE_DIR) + "/tests/data/paper/table" + std::to_string(number) + ".csv";
+  const std::string path = source_path("tests/data/paper/table") + std::to_string(number) + ".csv";
   std::ifstream in(path);
   if (!in) throw std::runtime_error(path + " cannot be read");
   PaperTable out;

@@ -10,6 +10,7 @@
 #include "calib/fit/joint/profile_search.h"
 #include "tests/blind/blind.h"
 #include "tests/rig/simulated_table.h"
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::calib::testing {
@@ -81,7 +82,7 @@ PoseTable rig_run(const rig::Scenario& scenario, std::size_t unseen, std::uint64
 }
 
 rig::Scenario paper_experiment() {
-  const std::string path = MGTD_SOURCE_DIR "/tests/scenarios/paper_experiment.toml";
+  const std::string path = mgtd::testing::source_path("tests/scenarios/paper_experiment.toml");
   auto scenario = rig::parse_scenario(mgtd::testing::slurp(path), path);
   if (!scenario) throw std::runtime_error(scenario.error().front());
   return *std::move(scenario);

@@ -10,11 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::testing {
-
-inline std::string program(const std::string& name) { return std::string(MGTD_BIN_DIR) + "/" + name; }
 
 /// A Bench runs a simulated rig and a daemon on it, in a directory of their own.
 class Bench {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::testing {
@@ -18,14 +19,14 @@ using ::testing::HasSubstr;
 class EvidenceOfPrograms : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string scenario = std::string(MGTD_SOURCE_DIR) + "/tests/scenarios/hidden_temperature.toml";
+    const std::string scenario = source_path("tests/scenarios/hidden_temperature.toml");
     ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario, "--poses", "run157", "-o", dir_ / "poses.csv"})
                   .exit_code,
               0);
     ASSERT_EQ(mgt({"import", dir_ / "poses.csv", "-o", file()}).exit_code, 0);
   }
   Finished run(std::vector<std::string> words) {
-    words[0] = std::string(MGTD_BIN_DIR) + "/" + words[0];
+    words[0] = program(words[0]);
     return run_program(std::move(words), dir_.path());
   }
   Finished mgt(std::vector<std::string> words) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::testing {
@@ -15,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::string kScenario = std::string(MGTD_SOURCE_DIR) + "/tests/scenarios/hidden_temperature.toml";
+const std::string kScenario = source_path("tests/scenarios/hidden_temperature.toml");
 
 /// A run file of a scenario, and mgt on it.
 class Loop : public ::testing::Test {
@@ -27,7 +28,7 @@ class Loop : public ::testing::Test {
     ASSERT_EQ(mgt({"import", file("poses.csv"), "-o", run_file()}).exit_code, 0);
   }
   Finished run(std::vector<std::string> words) {
-    words[0] = std::string(MGTD_BIN_DIR) + "/" + words[0];
+    words[0] = program(words[0]);
     return run_program(std::move(words), dir_.path());
   }
   Finished mgt(std::vector<std::string> words) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::testing {
@@ -17,7 +18,7 @@ using ::testing::HasSubstr;
 class NextLaw : public ::testing::Test {
  protected:
   Finished run(std::vector<std::string> words) {
-    words[0] = std::string(MGTD_BIN_DIR) + "/" + words[0];
+    words[0] = program(words[0]);
     return run_program(std::move(words), dir_.path());
   }
   json ask(std::vector<std::string> words) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 #include "tests/support/line_peer.h"
 
@@ -22,11 +23,10 @@ using ::testing::HasSubstr;
 class ServedRuns : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string scenario = std::string(MGTD_SOURCE_DIR) + "/tests/scenarios/hidden_temperature.toml";
+    const std::string scenario = source_path("tests/scenarios/hidden_temperature.toml");
     ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario, "-o", dir_ / "poses.csv"}).exit_code, 0);
     server_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{std::string(MGTD_BIN_DIR) + "/mgt", "serve", dir_.path(), "--json"},
-        dir_.path(), "serve");
+        std::vector<std::string>{program("mgt"), "serve", dir_.path(), "--json"}, dir_.path(), "serve");
     ASSERT_TRUE(eventually([&] { return server_->out().find('\n') != std::string::npos; }));
     const json said = json::parse(server_->out());
     const std::string address = said.at("address");
@@ -34,7 +34,7 @@ class ServedRuns : public ::testing::Test {
     token_ = said.at("token");
   }
   Finished run(std::vector<std::string> words) {
-    words[0] = std::string(MGTD_BIN_DIR) + "/" + words[0];
+    words[0] = program(words[0]);
     return run_program(std::move(words), dir_.path());
   }
   /// The body of the answer, which is one line.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::testing {
@@ -21,8 +22,7 @@ class Validity : public ::testing::Test {
     std::ofstream(dir_ / "rig.toml") << "[rig]\nname = \"r\"\nparameters = \"table6\"\nseed = " << seed
                                      << "\n";
     const Finished made = run_program(
-        {std::string(MGTD_BIN_DIR) + "/mgt-rig", "table", "--scenario", dir_ / "rig.toml", "-o", dir_ / file},
-        dir_.path());
+        {program("mgt-rig"), "table", "--scenario", dir_ / "rig.toml", "-o", dir_ / file}, dir_.path());
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   /// Header and twelve of the random poses; `shift_nT` is added to s3_z_nT.
@@ -45,7 +45,7 @@ class Validity : public ::testing::Test {
     }
   }
   Finished mgt(std::vector<std::string> words) {
-    words.insert(words.begin(), std::string(MGTD_BIN_DIR) + "/mgt");
+    words.insert(words.begin(), program("mgt"));
     return run_program(std::move(words), dir_.path());
   }
   TemporaryDirectory dir_;
@@ -93,7 +93,7 @@ TEST_F(Validity, APlanBeforeAnythingIsMeasured) {
     square = square || (pair.at("effect") == "axis.quadratic" && pair.at("rival") == "axis.transverse" &&
                         pair.at("correlation") > 0.999 && pair.at("remedy").at("p_right") > 0.95);
   EXPECT_TRUE(square);
-  EXPECT_EQ(mgt({"plan", "--config", std::string(MGTD_SOURCE_DIR) + "/systemd/mgtd.toml"}).exit_code, 0);
+  EXPECT_EQ(mgt({"plan", "--config", source_path("systemd/mgtd.toml")}).exit_code, 0);
   std::ofstream level(dir_ / "level.csv");
   level << "pose,azimuth_deg,pitch_deg,roll_deg\n";
   for (int k = 1; k <= 36; ++k) level << k << "," << 10 * k << ",0,0\n";

@@ -14,8 +14,8 @@ namespace {
 using namespace mgtd::daemon;
 using test::scenario_of;
 using test::VirtualDaemon;
-using testing::Contains;
-using testing::HasSubstr;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 constexpr const char* kRig = "[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n";
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/scenario/fault_story.h"
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd {
@@ -14,7 +15,7 @@ namespace {
 
 using mgtd::RunState;
 
-const std::string kPage = std::string(MGTD_SOURCE_DIR) + "/docs/faults.md";
+const std::string kPage = mgtd::testing::source_path("docs/faults.md");
 constexpr std::string_view kBegin = "<!-- seen by scenario_test -->\n", kEnd = "<!-- so far -->\n";
 
 struct Fault {

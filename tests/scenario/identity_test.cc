@@ -21,9 +21,9 @@ using nlohmann::json;
 using test::scenario_of;
 using test::VirtualDaemon;
 using test::VirtualStream;
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 constexpr const char* kRig = "[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n";
 
@@ -35,7 +35,7 @@ std::vector<InstrumentIdentity> calibrated_ones() {
 }
 
 /// A stream with a perfect calibration that knows the instruments of this rig.
-class Calibrated : public testing::Test {
+class Calibrated : public ::testing::Test {
  protected:
   void begin(const std::string& more = "") {
     stream.emplace(scenario_of(kRig + more));
@@ -118,7 +118,7 @@ TEST_F(Calibrated, ATurnedSensorIsNamedBeforeASourceNearby) {
   EXPECT_THAT(stream->pipeline().finding().measured, HasSubstr("s3 is turned by 90 deg about Z"));
 }
 
-class ARun : public testing::Test {
+class ARun : public ::testing::Test {
  protected:
   explicit ARun(const std::string& more = "") : daemon(scenario_of(kRig + more)) {
     EXPECT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));

@@ -162,7 +162,7 @@ TEST(Replay, AJournalThatWasTouchedIsNoticed) {
   const Replayed again = replay(touched);
   EXPECT_NE(again.lines, live.lines);
   ASSERT_TRUE(again.counts.parted);
-  EXPECT_THAT(*again.counts.parted, testing::HasSubstr("s2"));
+  EXPECT_THAT(*again.counts.parted, ::testing::HasSubstr("s2"));
 }
 
 TEST(Replay, RefusesWhatHasNoBeginning) {

@@ -13,7 +13,7 @@ using namespace mgtd::daemon;
 using test::expect_clean;
 using test::scenario_of;
 using test::VirtualDaemon;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr int kPoses = 30;
 
@@ -59,7 +59,7 @@ TEST_P(TroubleThatPasses, CostsTimeButNeitherThePlanNorTheData) {
     }
     const std::string fault = GetParam();
     if (fault.starts_with("unplug")) {
-      EXPECT_THAT(daemon.notes, testing::Not(testing::IsEmpty()));
+      EXPECT_THAT(daemon.notes, ::testing::Not(::testing::IsEmpty()));
     }
     // One that repeats itself before the dwell begins is waited for.
     if (fault.find("fluxgate") != std::string::npos && !fault.starts_with("freeze")) {
@@ -122,7 +122,7 @@ TEST(RunFaults, ATableWhoseCableIsPulledMayStillMove) {
     daemon.fault(fault);
     ASSERT_TRUE(run_to(daemon, RunState::paused));
     EXPECT_THAT(daemon.status->message, HasSubstr("the table cannot be reached and may still move"));
-    EXPECT_THAT(daemon.status->message, testing::Not(HasSubstr("stopped")));
+    EXPECT_THAT(daemon.status->message, ::testing::Not(HasSubstr("stopped")));
     ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
     EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
   }

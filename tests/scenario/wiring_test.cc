@@ -13,9 +13,9 @@ namespace {
 using namespace mgtd::daemon;
 using test::scenario_of;
 using test::VirtualDaemon;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 TEST(WiringInARun, MirroredAndTurnedSensorsAreNamedAfterTheFirstTurns) {
   VirtualDaemon daemon(
@@ -30,7 +30,7 @@ TEST(WiringInARun, MirroredAndTurnedSensorsAreNamedAfterTheFirstTurns) {
   EXPECT_THAT(daemon.records,
               Contains(HasSubstr(
                   "wiring: s2: turned by 90 deg about z; s3: mirrored (left-handed axes: y reversed)")));
-  EXPECT_THAT(daemon.status->checks, Contains(testing::Field(&Check::name, "wiring")));
+  EXPECT_THAT(daemon.status->checks, Contains(::testing::Field(&Check::name, "wiring")));
 }
 
 TEST(MagnetOnTheRig, SwappedCablesAreNamed) {

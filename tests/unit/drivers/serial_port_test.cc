@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 #include "tests/support/pty.h"
 
@@ -74,8 +75,9 @@ TEST_F(SerialPortTest, ThePathOfARealPortIsSetUpToo) {
     return;
   }
   const auto result = mgtd::testing::run_program(
-      {"env", "MGTD_UNDER_SHIM=1", "LD_PRELOAD=" MGTD_PTY_SHIM, "ASAN_OPTIONS=verify_asan_link_order=0",
-       MGTD_BIN_DIR "/drivers_test", "--gtest_filter=SerialPortTest.ThePathOfARealPortIsSetUpToo"},
+      {"env", "MGTD_UNDER_SHIM=1", "LD_PRELOAD=" + mgtd::testing::pty_shim(),
+       "ASAN_OPTIONS=verify_asan_link_order=0", mgtd::testing::program("drivers_test"),
+       "--gtest_filter=SerialPortTest.ThePathOfARealPortIsSetUpToo"},
       directory_.path());
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_THAT(result.out, HasSubstr("[  PASSED  ] 1 test"));

@@ -82,7 +82,7 @@ TEST(ControlCodec, BracketsWithoutEndAreRefusedAndNotFollowed) {
   const std::string open(400'000, '['), close(400'000, ']');
   const auto deep = parse_control(R"({"cmd":"run.dry-run","id":7,"args":{"step_deg":)" + open + close + "}}");
   ASSERT_FALSE(deep);
-  EXPECT_THAT(deep.error().error.message, testing::HasSubstr("nests more than 64 brackets"));
+  EXPECT_THAT(deep.error().error.message, ::testing::HasSubstr("nests more than 64 brackets"));
   EXPECT_FALSE(parse_control(open));
   EXPECT_FALSE(parse_reply(R"({"ok":true,"result":)" + open + close + "}"));
   // Brackets in text are text.

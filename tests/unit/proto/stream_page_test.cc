@@ -6,12 +6,13 @@
 #include "proto/control_codec.h"
 #include "proto/run_request.h"
 #include "proto/status_codec.h"
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd {
 namespace {
 
-std::string page() { return testing::slurp(MGTD_SOURCE_DIR "/docs/stream.md"); }
+std::string page() { return testing::slurp(mgtd::testing::source_path("docs/stream.md")); }
 
 TEST(StreamPage, NamesEveryCommand) {
   const std::string text = page();

@@ -7,7 +7,7 @@
 namespace mgtd {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 StreamClasses only(StreamClass c) {
   StreamClasses set;
@@ -53,7 +53,7 @@ struct Bad {
   const char* message;
 };
 
-class BadWatch : public testing::TestWithParam<Bad> {};
+class BadWatch : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadWatch, IsRefusedWithWhatWasFoundAndARemedy) {
   const auto request = parse_watch(GetParam().line);
@@ -64,22 +64,22 @@ TEST_P(BadWatch, IsRefusedWithWhatWasFoundAndARemedy) {
 
 INSTANTIATE_TEST_SUITE_P(
     Lines, BadWatch,
-    testing::Values(Bad{R"({"watch":{"class":["TENSOR")", "not JSON from character 28"},
-                    Bad{"hello", "'hello' is not JSON from character 1"},
-                    Bad{"\xff\xfe\x01", "'...' is not JSON"}, Bad{"[1,2]", "not a JSON object"},
-                    Bad{"{}", "is no watch"}, Bad{R"({"watch":7})", "watch is not an object"},
-                    Bad{R"({"watch":{},"x":1})", "is no watch"},
-                    Bad{R"({"watch":{"class":["TENSER"]}})", R"(class "TENSER" does not exist)"},
-                    Bad{R"({"watch":{"class":[7]}})", "class 7 does not exist"},
-                    Bad{R"({"watch":{"class":"TENSOR"}})", "not a list"},
-                    Bad{R"({"watch":{"rate_hz":0}})", "rate_hz is 0"},
-                    Bad{R"({"watch":{"rate_hz":-1}})", "rate_hz is -1"},
-                    Bad{R"({"watch":{"rate_hz":1e9}})", "from 0.001 to 10000"},
-                    Bad{R"({"watch":{"rate_hz":"fast"}})", "rate_hz is \"fast\""},
-                    Bad{R"({"watch":{"from_seq":-3}})", "from_seq is -3"},
-                    Bad{R"({"watch":{"from_seq":1.5}})", "from_seq is 1.5"},
-                    Bad{R"({"watch":{"rate":10}})", "watch has no key 'rate'"},
-                    Bad{R"({"cmd":"run.start"})", "read-only"}));
+    ::testing::Values(Bad{R"({"watch":{"class":["TENSOR")", "not JSON from character 28"},
+                      Bad{"hello", "'hello' is not JSON from character 1"},
+                      Bad{"\xff\xfe\x01", "'...' is not JSON"}, Bad{"[1,2]", "not a JSON object"},
+                      Bad{"{}", "is no watch"}, Bad{R"({"watch":7})", "watch is not an object"},
+                      Bad{R"({"watch":{},"x":1})", "is no watch"},
+                      Bad{R"({"watch":{"class":["TENSER"]}})", R"(class "TENSER" does not exist)"},
+                      Bad{R"({"watch":{"class":[7]}})", "class 7 does not exist"},
+                      Bad{R"({"watch":{"class":"TENSOR"}})", "not a list"},
+                      Bad{R"({"watch":{"rate_hz":0}})", "rate_hz is 0"},
+                      Bad{R"({"watch":{"rate_hz":-1}})", "rate_hz is -1"},
+                      Bad{R"({"watch":{"rate_hz":1e9}})", "from 0.001 to 10000"},
+                      Bad{R"({"watch":{"rate_hz":"fast"}})", "rate_hz is \"fast\""},
+                      Bad{R"({"watch":{"from_seq":-3}})", "from_seq is -3"},
+                      Bad{R"({"watch":{"from_seq":1.5}})", "from_seq is 1.5"},
+                      Bad{R"({"watch":{"rate":10}})", "watch has no key 'rate'"},
+                      Bad{R"({"cmd":"run.start"})", "read-only"}));
 
 TEST(WatchRequest, RemediesNameWhatExists) {
   EXPECT_THAT(parse_watch(R"({"watch":{"class":["X"]}})").error().remedy,

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::rig {
@@ -15,7 +16,8 @@ using ::testing::HasSubstr;
 
 TEST(Scenario, EveryFileOfTheRepositoryIsOne) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(MGTD_SOURCE_DIR "/tests/scenarios")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(mgtd::testing::source_path("tests/scenarios"))) {
     const auto scenario =
         parse_scenario(mgtd::testing::slurp(entry.path()), entry.path().filename().string());
     EXPECT_TRUE(scenario.has_value()) << (scenario ? "" : scenario.error().front());

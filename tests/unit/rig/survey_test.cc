@@ -9,6 +9,7 @@
 #include "tests/rig/effect_list.h"
 #include "tests/rig/pose_writer.h"
 #include "tests/rig/simulated_table.h"
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
 namespace mgtd::rig {
@@ -102,7 +103,7 @@ TEST(Survey, EverySensorHasNoiseOfItsOwn) {
 
 /// What the program wrote for the cross before it knew of any other array.
 TEST(Survey, TheCrossIsWhatItWas) {
-  const std::string path = MGTD_SOURCE_DIR "/tests/scenarios/paper_experiment.toml";
+  const std::string path = mgtd::testing::source_path("tests/scenarios/paper_experiment.toml");
   const Scenario scenario = parse_scenario(mgtd::testing::slurp(path), path).value();
   EXPECT_EQ(sha256_hex(truth_json(scenario).dump(1) + "\n"),
             "f5b3dabfdd35a51be0fe96d466039d753878e4562b725c2d154445f789cafe41");

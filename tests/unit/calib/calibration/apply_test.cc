@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-Calibration true_calibration(const testing::RigTruth& rig) {
+Calibration true_calibration(const mgtd::testing::RigTruth& rig) {
   Calibration c;
   for (std::size_t i = 0; i < rig.size(); ++i) {
     sensor::ParameterVector p;
@@ -29,11 +29,12 @@ Calibration true_calibration(const testing::RigTruth& rig) {
 }
 
 PoseTable clean_run() {
-  return testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(20, 1), 36, {}, 1);
+  return mgtd::testing::measure(mgtd::testing::table3_rig(), {50'000, 60, -5},
+                                mgtd::testing::standard_run(20, 1), 36, {}, 1);
 }
 
 TEST(Apply, TrueParametersLeaveTheFieldAndNoGradient) {
-  const auto rows = *apply(true_calibration(testing::table3_rig()), clean_run());
+  const auto rows = *apply(true_calibration(mgtd::testing::table3_rig()), clean_run());
   ASSERT_EQ(rows.size(), 56U);
   constexpr double kRounding_nT = 1e-8;  // a few bits of 50 000 nT
   for (const AppliedPose& row : rows) {
@@ -44,7 +45,7 @@ TEST(Apply, TrueParametersLeaveTheFieldAndNoGradient) {
 }
 
 TEST(Apply, ColumnsAreTheDocumentedOnes) {
-  const std::string csv = format_applied(*apply(true_calibration(testing::table3_rig()), clean_run()));
+  const std::string csv = format_applied(*apply(true_calibration(mgtd::testing::table3_rig()), clean_run()));
   EXPECT_THAT(csv, StartsWith("pose,t_s,s1_bx_nT,s1_by_nT,s1_bz_nT,s2_bx_nT"));
   EXPECT_THAT(csv, HasSubstr(",s4_bz_nT,Bx_nT,By_nT,Bz_nT,F_nT,Gxx_nT_per_m,Gyy_nT_per_m,Gzz_nT_per_m,"
                              "Gxy_nT_per_m,Gxz_nT_per_m,Gyz_nT_per_m,curl_nT_per_m,center_x_nT,center_y_nT,"
@@ -53,7 +54,7 @@ TEST(Apply, ColumnsAreTheDocumentedOnes) {
 }
 
 TEST(Apply, UncertaintyStandsBesideItWhereTheNoiseIsKnown) {
-  Calibration c = true_calibration(testing::table3_rig());
+  Calibration c = true_calibration(mgtd::testing::table3_rig());
   c.sample_noise_nT.setConstant(2);
   PoseTable table = clean_run();
   for (Pose& pose : table.poses) pose.n_eff = 100;

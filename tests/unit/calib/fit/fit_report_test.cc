@@ -15,9 +15,9 @@ using ::testing::Not;
 
 const FitReport& report() {
   static const FitReport kReport = [] {
-    PoseTable table =
-        testing::measure(testing::table6_rig(), {53'907.7, 60, -5}, testing::standard_run(121, 5), 36,
-                         {testing::Noise::Kind::gaussian, 0.3, 0.1}, 17);
+    PoseTable table = mgtd::testing::measure(mgtd::testing::table6_rig(), {53'907.7, 60, -5},
+                                             mgtd::testing::standard_run(121, 5), 36,
+                                             {mgtd::testing::Noise::Kind::gaussian, 0.3, 0.1}, 17);
     for (std::size_t k = 150; k < table.poses.size(); ++k) table.poses[k].set = "check";
     FitOptions options;
     options.method = Method::two_step;

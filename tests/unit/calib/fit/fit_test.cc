@@ -11,10 +11,10 @@
 namespace mgtd::calib::fit {
 namespace {
 
+using mgtd::testing::Noise;
+using mgtd::testing::RigTruth;
+using mgtd::testing::Site;
 using ::testing::HasSubstr;
-using testing::Noise;
-using testing::RigTruth;
-using testing::Site;
 
 FitOptions two_step_options() {
   FitOptions options;
@@ -52,20 +52,20 @@ std::array<double, 4> floor_of(const PoseTable& table, const RigTruth& rig, doub
 
 TEST(TwoStepFit, ReachesTheNoiseFloorOnThePapersSimulation) {
   const Site site{50'000, 60, -5};
-  const PoseTable table = testing::measure(testing::table3_rig(), site, testing::grid_5832(), 18,
-                                           {Noise::Kind::uniform, 1.0, 0.0}, 3);
+  const PoseTable table = mgtd::testing::measure(
+      mgtd::testing::table3_rig(), site, mgtd::testing::grid_5832(), 18, {Noise::Kind::uniform, 1.0, 0.0}, 3);
   FitOptions options = two_step_options();
   options.declination_rad = to_rad(-5.0);
   const auto report = method_choice::fit(table, options);
   ASSERT_TRUE(report) << report.error().text();
-  const auto floor = floor_of(table, testing::table3_rig(), site.f_nT);
+  const auto floor = floor_of(table, mgtd::testing::table3_rig(), site.f_nT);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_LT(report->after.total_field_rmse_nT.at(i), 1.005 * floor.at(i));
     EXPECT_GT(report->simplified->total_field_rmse_nT.at(i), 100);  // the paper: 317 to 500 nT
     const auto got = in_table_units(report->calibration.sensors.at(i));
     for (std::size_t k = 0; k < 12; ++k) {
       const double limit = k >= 3 && k <= 5 ? 1e-5 : k >= 6 && k <= 8 ? 0.1 : 0.002;
-      EXPECT_NEAR(got.at(k), testing::table3_rig().at(i).at(k), limit)
+      EXPECT_NEAR(got.at(k), mgtd::testing::table3_rig().at(i).at(k), limit)
           << "s" << i + 1 << ' ' << sensor::kParameterNames.at(k);
     }
   }
@@ -73,9 +73,9 @@ TEST(TwoStepFit, ReachesTheNoiseFloorOnThePapersSimulation) {
 }
 
 TEST(TwoStepFit, FindsTheTableFrameFromTiltedPosesWithinItsUncertainty) {
-  const RigTruth rig = testing::table6_rig();
-  const PoseTable table = testing::measure(rig, {53'907.7, 60, -5}, testing::standard_run(121, 5), 36,
-                                           {Noise::Kind::gaussian, 0.3, 0.1}, 17);
+  const RigTruth rig = mgtd::testing::table6_rig();
+  const PoseTable table = mgtd::testing::measure(rig, {53'907.7, 60, -5}, mgtd::testing::standard_run(121, 5),
+                                                 36, {Noise::Kind::gaussian, 0.3, 0.1}, 17);
   const auto report = method_choice::fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_TRUE(report->calibration.accepted_by_checks)
@@ -98,8 +98,8 @@ TEST(TwoStepFit, FindsTheTableFrameFromTiltedPosesWithinItsUncertainty) {
 
 TEST(TwoStepFit, PosesAboutOneAxisAreRefused) {
   const PoseTable table =
-      testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
-                       {Noise::Kind::gaussian, 0.3, 0.1}, 1);
+      mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5}, mgtd::testing::standard_run(0, 1),
+                             36, {Noise::Kind::gaussian, 0.3, 0.1}, 1);
   const auto report = method_choice::fit(table, two_step_options());
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::refused);
@@ -110,8 +110,8 @@ TEST(TwoStepFit, PosesAboutOneAxisAreRefused) {
 TEST(TwoStepFit, AFieldAlongZOrHorizontalIsRefusedWithTheConditionNumber) {
   for (const double inclination_deg : {89.5, -89.5, 0.3}) {
     const PoseTable table =
-        testing::measure(testing::table6_rig(), {50'000, inclination_deg, -5}, testing::standard_run(121, 1),
-                         36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
+        mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, inclination_deg, -5},
+                               mgtd::testing::standard_run(121, 1), 36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
     const auto report = method_choice::fit(table, two_step_options());
     ASSERT_FALSE(report) << inclination_deg;
     EXPECT_THAT(report.error().message, HasSubstr("condition number"));
@@ -119,16 +119,18 @@ TEST(TwoStepFit, AFieldAlongZOrHorizontalIsRefusedWithTheConditionNumber) {
 }
 
 TEST(TwoStepFit, WithoutStandardPosesOrFieldItSaysWhatIsMissing) {
-  PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 1),
-                                     0, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
+  PoseTable table =
+      mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5},
+                             mgtd::testing::standard_run(121, 1), 0, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
   EXPECT_THAT(method_choice::fit(table, two_step_options()).error().message, HasSubstr("standard"));
   for (Pose& pose : table.poses) pose.f_nT.reset();
   EXPECT_THAT(method_choice::fit(table, two_step_options()).error().remedy, HasSubstr("--field"));
 }
 
 TEST(TwoStepFit, FewerThanNinePosesAreRefused) {
-  PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 1),
-                                     36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
+  PoseTable table =
+      mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5},
+                             mgtd::testing::standard_run(121, 1), 36, {Noise::Kind::gaussian, 0.3, 0.0}, 1);
   table.poses.resize(8);
   EXPECT_THAT(method_choice::fit(table, two_step_options()).error().message, HasSubstr("8 poses"));
 }
@@ -136,8 +138,8 @@ TEST(TwoStepFit, FewerThanNinePosesAreRefused) {
 /// A southern site: the field points up.
 TEST(TwoStepFit, TheSignOfBzIsFound) {
   const PoseTable table =
-      testing::measure(testing::table6_rig(), {50'000, -55, 20}, testing::standard_run(121, 3), 36,
-                       {Noise::Kind::gaussian, 0.3, 0.05}, 2);
+      mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, -55, 20},
+                             mgtd::testing::standard_run(121, 3), 36, {Noise::Kind::gaussian, 0.3, 0.05}, 2);
   const auto report = method_choice::fit(table, two_step_options());
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_NEAR(to_deg(report->site.inclination_rad), -55, 0.2);
@@ -147,8 +149,9 @@ TEST(TwoStepFit, TheSignOfBzIsFound) {
 
 /// The declared inclination contradicts the turn: reversed table angles.
 TEST(TwoStepFit, ReversedAzimuthIsNoticed) {
-  PoseTable table = testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 3),
-                                     36, {Noise::Kind::gaussian, 0.3, 0.05}, 2);
+  PoseTable table =
+      mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5},
+                             mgtd::testing::standard_run(121, 3), 36, {Noise::Kind::gaussian, 0.3, 0.05}, 2);
   for (Pose& pose : table.poses) pose.azimuth_rad = -*pose.azimuth_rad;
   FitOptions options = two_step_options();
   options.inclination_rad = to_rad(60.0);
@@ -159,8 +162,8 @@ TEST(TwoStepFit, ReversedAzimuthIsNoticed) {
 
 TEST(TwoStepFit, EveryTurnedAndMirroredSensorIsRecognised) {
   const PoseTable upright =
-      testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 4), 36,
-                       {Noise::Kind::gaussian, 0.3, 0.05}, 9);
+      mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5},
+                             mgtd::testing::standard_run(121, 4), 36, {Noise::Kind::gaussian, 0.3, 0.05}, 9);
   constexpr std::array<std::array<int, 3>, 6> kOrders{
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   for (const auto& order : kOrders) {

@@ -7,13 +7,14 @@
 
 #include "calib/sensor/step1.h"
 #include "proto/number.h"
+#include "tests/support/checkout.h"
 
 namespace mgtd::calib::fit {
 namespace {
 
 /// Counts, one column a window of two seconds, in their order.
 Eigen::Matrix3Xd static_means() {
-  std::ifstream in(MGTD_SOURCE_DIR "/tests/data/constant_norm_static/static_means.csv");
+  std::ifstream in(mgtd::testing::source_path("tests/data/constant_norm_static/static_means.csv"));
   std::string line;
   std::getline(in, line);
   std::vector<Eigen::Vector3d> rows;

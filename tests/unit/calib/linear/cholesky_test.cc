@@ -8,7 +8,7 @@
 namespace mgtd::calib::linear {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Covariance of quantities whose units differ by 1e12, and its exact determinant.
 Eigen::MatrixXd badly_scaled() { return Eigen::MatrixXd{{4, 2e-6, 0}, {2e-6, 5e-12, 1e-6}, {0, 1e-6, 9e12}}; }

@@ -217,8 +217,8 @@ TEST(PoseTable, WritingAndReadingGivesTheSameBits) {
 }
 
 TEST(PoseTable, AnglesSurviveToAMillionthOfADegreeAndTheTextIsStable) {
-  const PoseTable table =
-      testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(121, 3), 36, {}, 1);
+  const PoseTable table = mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5},
+                                                 mgtd::testing::standard_run(121, 3), 36, {}, 1);
   const auto again = parse_pose_table(format_pose_table(table), "memory");
   ASSERT_TRUE(again);
   for (std::size_t k = 0; k < table.poses.size(); ++k)
@@ -250,8 +250,8 @@ TEST(PoseList, NeedsAnglesAndNoReadings) {
 }
 
 TEST(PoseTable, TheHashIsOfTheContent) {
-  PoseTable table =
-      testing::measure(testing::table6_rig(), {50'000, 60, -5}, testing::standard_run(2, 3), 36, {}, 1);
+  PoseTable table = mgtd::testing::measure(mgtd::testing::table6_rig(), {50'000, 60, -5},
+                                           mgtd::testing::standard_run(2, 3), 36, {}, 1);
   const std::string before = data_hash(table);
   table.source = "elsewhere.csv";
   EXPECT_EQ(data_hash(table), before);

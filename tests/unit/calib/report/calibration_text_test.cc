@@ -8,7 +8,7 @@
 namespace mgtd::calib::report {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 calibration::Calibration four_sensors() {
   calibration::Calibration c;

@@ -13,8 +13,8 @@
 namespace mgtd::calib::sensor {
 namespace {
 
+using mgtd::testing::Noise;
 using ::testing::HasSubstr;
-using testing::Noise;
 
 struct Data {
   Eigen::Matrix3Xd y_nT;
@@ -32,7 +32,8 @@ Data data_of(const PoseTable& table, std::size_t sensor) {
 }
 
 PoseTable clean() {
-  return testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(121, 1), 36, {}, 1);
+  return mgtd::testing::measure(testing::table3_rig(), {50'000, 60, -5}, mgtd::testing::standard_run(121, 1),
+                                36, {}, 1);
 }
 
 void expect_truth(const ScalarCalibration& got, const testing::SensorTruth& truth, double relative,
@@ -115,8 +116,8 @@ TEST(Step1, AFieldThatChangesFromPoseToPoseIsFollowed) {
 /// Many poses are summed in another order: the same poses twice must give what they give once.
 TEST(Step1, ManyPosesGiveWhatFewGive) {
   const PoseTable table =
-      testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(1464, 1), 36,
-                       {Noise::Kind::gaussian, 1, 0}, 3);
+      mgtd::testing::measure(testing::table3_rig(), {50'000, 60, -5}, mgtd::testing::standard_run(1464, 1),
+                             36, {Noise::Kind::gaussian, 1, 0}, 3);
   const Data once = data_of(table, 1);
   const Eigen::Index n = once.y_nT.cols();
   ASSERT_EQ(n, 1500);
@@ -133,8 +134,8 @@ TEST(Step1, ManyPosesGiveWhatFewGive) {
 
 TEST(Step1, ManyPosesAboutOneAxisAreRefusedToo) {
   const PoseTable table =
-      testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
-                       {Noise::Kind::gaussian, 1, 0.1}, 1);
+      mgtd::testing::measure(testing::table3_rig(), {50'000, 60, -5}, mgtd::testing::standard_run(0, 1), 36,
+                             {Noise::Kind::gaussian, 1, 0.1}, 1);
   const Data level = data_of(table, 0);
   const Data many{level.y_nT.replicate(1, 60), level.f_nT.replicate(60, 1)};
   const auto got = scalar_calibration(many.y_nT, many.f_nT);
@@ -143,8 +144,9 @@ TEST(Step1, ManyPosesAboutOneAxisAreRefusedToo) {
 }
 
 TEST(Step1, PosesAboutOneAxisAreRefusedWithTheSpread) {
-  PoseTable table = testing::measure(testing::table3_rig(), {50'000, 60, -5}, testing::standard_run(0, 1), 36,
-                                     {Noise::Kind::gaussian, 1, 0.1}, 1);
+  PoseTable table =
+      mgtd::testing::measure(testing::table3_rig(), {50'000, 60, -5}, mgtd::testing::standard_run(0, 1), 36,
+                             {Noise::Kind::gaussian, 1, 0.1}, 1);
   const Data d = data_of(table, 0);
   const auto got = scalar_calibration(d.y_nT, d.f_nT);
   ASSERT_FALSE(got);
@@ -158,8 +160,8 @@ TEST(Step1, AttitudesOnTwoCirclesAreRefusedWithTheCondition) {
   std::vector<testing::AttitudeDeg> attitudes;
   for (int k = 0; k < 18; ++k) attitudes.push_back({20.0 * k, 0, 0});
   for (int k = 0; k < 18; ++k) attitudes.push_back({20.0 * k, 180, 0});
-  const PoseTable table = testing::measure(testing::table3_rig(), {50'000, 60, -5}, attitudes, 18,
-                                           {Noise::Kind::gaussian, 0.1, 0}, 1);
+  const PoseTable table = mgtd::testing::measure(testing::table3_rig(), {50'000, 60, -5}, attitudes, 18,
+                                                 {Noise::Kind::gaussian, 0.1, 0}, 1);
   const Data d = data_of(table, 0);
   const auto got = scalar_calibration(d.y_nT, d.f_nT);
   ASSERT_FALSE(got);

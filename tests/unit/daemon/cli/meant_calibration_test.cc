@@ -6,7 +6,7 @@
 namespace mgtd::daemon::cli {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const nlohmann::json& three() {
   static const auto kThree = nlohmann::json::parse(R"([

@@ -12,9 +12,9 @@ namespace {
 constexpr const char* kReplaced = "run-\xEF\xBF\xBD.csv";  // U+FFFD
 
 TEST(PrintJson, ReplacesWhatIsNotUtf8InValuesAndKeys) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   print_json({{"file", "run-\xFF.csv"}, {"run-\xFF.csv", 1}});
-  const auto printed = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+  const auto printed = nlohmann::json::parse(::testing::internal::GetCapturedStdout());
   EXPECT_EQ(printed.at("file"), kReplaced);
   EXPECT_EQ(printed.at(kReplaced), 1);
 }
@@ -22,9 +22,9 @@ TEST(PrintJson, ReplacesWhatIsNotUtf8InValuesAndKeys) {
 TEST(PrintJson, AnErrorThatNamesAPathWhichIsNotUtf8IsPrinted) {
   Session session;
   session.json = true;
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   EXPECT_NE(report(session, Error{ErrorCode::io, "run-\xFF.csv: no such file", "name another"}), 0);
-  const auto printed = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+  const auto printed = nlohmann::json::parse(::testing::internal::GetCapturedStdout());
   EXPECT_EQ(printed.at("error").at("message"), std::string(kReplaced) + ": no such file");
 }
 

@@ -6,9 +6,9 @@
 namespace mgtd::daemon::cli {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 RunStatus halfway() {
   RunStatus status;

@@ -12,7 +12,7 @@
 namespace mgtd::daemon::cli {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(TerminalText, ALineThatFitsStays) {
   EXPECT_EQ(fitted("device   state\ns1       live\n", 20), "device   state\ns1       live\n");

@@ -7,8 +7,8 @@ namespace mgtd::daemon::cli {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 json sample() {
   return json::parse(R"({"class":"TENSOR","seq":5210,"t":"2026-11-21T10:00:00.123456Z","cal":"c0123456789ab",

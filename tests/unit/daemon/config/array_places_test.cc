@@ -11,10 +11,10 @@
 namespace mgtd::daemon::config {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 std::string error_of(const std::string& text) {
   const auto geometry = array_from_text(text, "array.toml");

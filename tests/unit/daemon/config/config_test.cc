@@ -6,14 +6,15 @@
 #include <algorithm>
 #include <fstream>
 
+#include "tests/support/checkout.h"
 #include "tests/unit/daemon/temp_dir.h"
 
 namespace mgtd::daemon::config {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(Config, EveryMistakeIsReportedAtOnceWithItsLine) {
   const auto config = parse_config(
@@ -67,7 +68,7 @@ TEST(Config, AnAddressWithoutAPossiblePortIsRefused) {
     EXPECT_THAT(config.error().lines, Contains(StartsWith("rig.toml:2:1: [stream]: 'tcp'"))) << tcp;
   }
   const auto good = parse_config("[stream]\ntcp = \"127.0.0.1:0\"\n", "rig.toml");
-  EXPECT_THAT(good.error().lines, testing::Not(Contains(HasSubstr("'tcp'"))));
+  EXPECT_THAT(good.error().lines, ::testing::Not(Contains(HasSubstr("'tcp'"))));
 }
 
 TEST(Config, AnInputIsNoColumnThatIsThereAlready) {
@@ -97,7 +98,7 @@ TEST(Config, AnInputIsNoColumnThatIsThereAlready) {
   EXPECT_THAT(lines, Contains(HasSubstr("rig.toml:18:1: [[auxiliary]] aux2: 'channels': 'motor_A' is already "
                                         "measured (aux1, input 3, in line 14)")));
   EXPECT_THAT(lines, Contains(HasSubstr("'azimuth_deg' is a column")));
-  EXPECT_THAT(lines, testing::Not(Contains(HasSubstr("'s2_T_degC'"))));
+  EXPECT_THAT(lines, ::testing::Not(Contains(HasSubstr("'s2_T_degC'"))));
 }
 
 TEST(Config, AWrongTypeIsToldOnceAndACalmTooShortAtItsOwnLine) {
@@ -111,7 +112,7 @@ TEST(Config, AWrongTypeIsToldOnceAndACalmTooShortAtItsOwnLine) {
                           [](const std::string& l) { return l.find("'serial'") != std::string::npos; }),
             1);
   EXPECT_THAT(lines, Contains(StartsWith("rig.toml:7:1: [run]: 'calm_s'")));
-  EXPECT_THAT(lines, testing::Not(Contains(HasSubstr("'calm_max_s'"))));
+  EXPECT_THAT(lines, ::testing::Not(Contains(HasSubstr("'calm_max_s'"))));
 }
 
 TEST(Config, AnUnknownDriverIsRefused) {
@@ -122,7 +123,7 @@ TEST(Config, AnUnknownDriverIsRefused) {
 }
 
 TEST(Config, TheCommentedExampleIsAcceptedAndItsDefaultsAreTheDefaults) {
-  const auto config = load_config(MGTD_SOURCE_DIR "/systemd/mgtd.toml");
+  const auto config = load_config(mgtd::testing::source_path("systemd/mgtd.toml"));
   ASSERT_TRUE(config) << config.error().lines.front();
   const Config untouched;
   EXPECT_EQ(config->baseline_m, untouched.baseline_m);

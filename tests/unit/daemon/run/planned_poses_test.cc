@@ -5,6 +5,7 @@
 
 #include "daemon/plan/run_plan.h"
 #include "proto/units.h"
+#include "tests/support/checkout.h"
 
 namespace mgtd::daemon::run {
 namespace {
@@ -35,7 +36,7 @@ TEST(PlannedPoses, ARunThatCannotBePlannedIsRefused) {
 }
 
 TEST(PlannedPoses, OnlyAttitudesWithinTheLimitsAreProposed) {
-  auto config = config::load_config(MGTD_SOURCE_DIR "/systemd/mgtd.toml");
+  auto config = config::load_config(mgtd::testing::source_path("systemd/mgtd.toml"));
   ASSERT_TRUE(config);
   const auto left =
       reachable(*config, {{to_rad(270), 0, 0}, {0, 0, to_rad(180)}, {to_rad(45), to_rad(-90), to_rad(90)}});

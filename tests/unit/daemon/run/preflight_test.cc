@@ -11,7 +11,7 @@
 namespace mgtd::daemon::run {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kRate_hz = 50;
 
@@ -136,9 +136,9 @@ TEST(Preflight, ABusyComputerIsBlamedBeforeTheCables) {
   const auto checks = preflight.checks({}, at(5.1).mono);
   for (const char* name : {"rate", "gaps", "link.s2"})
     EXPECT_THAT(remedy_of(checks, name),
-                testing::StartsWith("this computer is too busy: the daemon stood still for 2.5 s"))
+                ::testing::StartsWith("this computer is too busy: the daemon stood still for 2.5 s"))
         << name;
-  EXPECT_THAT(remedy_of(checks, "gaps"), testing::EndsWith(cable));
+  EXPECT_THAT(remedy_of(checks, "gaps"), ::testing::EndsWith(cable));
 }
 
 TEST(Preflight, TableThatIsNotReferencedYetMayReportAnything) {
@@ -150,8 +150,8 @@ TEST(Preflight, TableOutsideItsLimitsIsToldHowItGetsBack) {
   const auto table =
       std::find_if(checks.begin(), checks.end(), [](const Check& c) { return c.name == "table"; });
   ASSERT_NE(table, checks.end());
-  EXPECT_THAT(table->remedy, testing::StartsWith("azimuth 229.18 is outside -183.346 to 183.346 deg: "));
-  EXPECT_THAT(table->remedy, testing::HasSubstr("switch the controller off and on"));
+  EXPECT_THAT(table->remedy, ::testing::StartsWith("azimuth 229.18 is outside -183.346 to 183.346 deg: "));
+  EXPECT_THAT(table->remedy, ::testing::HasSubstr("switch the controller off and on"));
 }
 
 TEST(Preflight, WithoutScalarTheStatedFieldOrTheEarthsCounts) {
@@ -173,7 +173,7 @@ TEST(Preflight, NothingAtAllFailsWithoutInventingNumbers) {
   EXPECT_EQ(preflight.noise_nT(), 0);
   const auto checks = preflight.checks({{-1, 1}, {}, {}}, at(20).mono);
   EXPECT_THAT(failed(checks), HasSubstr("rate"));
-  for (const Check& c : checks) EXPECT_THAT(c.measured, testing::Not(HasSubstr("nan"))) << c.name;
+  for (const Check& c : checks) EXPECT_THAT(c.measured, ::testing::Not(HasSubstr("nan"))) << c.name;
 }
 
 TEST(Preflight, LooksForItsLengthFromTheFirstEpoch) {

@@ -13,7 +13,7 @@ namespace {
 using test::bench_config;
 using test::bench_plan;
 using test::RunBench;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Three poses, one of them approached by way of another point.
 plan::RunPlan short_plan() {
@@ -51,7 +51,7 @@ void at_every_step(Interrupt interrupt) {
     for (int i = 0; i < n; ++i) bench.tick();
     if (bench.status) seen.insert(bench.status->state);
     interrupt(bench);
-    if (testing::Test::HasFailure()) return;
+    if (::testing::Test::HasFailure()) return;
   }
   for (const RunState state : {RunState::preflight, RunState::homing, RunState::moving, RunState::settling,
                                RunState::dwelling, RunState::solving}) {
@@ -159,7 +159,7 @@ TEST(RunFsmInterruption, ATableThatIsLostIsNotSaidToBeStopped) {
   EXPECT_THAT(bench.status->message, HasSubstr(unreachable));
   EXPECT_EQ(bench.fsm.possible(Request::resume).error().code, ErrorCode::state);
   bench.give_back(Slot::table());
-  EXPECT_THAT(bench.status->message, testing::Not(HasSubstr(unreachable)));
+  EXPECT_THAT(bench.status->message, ::testing::Not(HasSubstr(unreachable)));
 }
 
 TEST(RunFsmInterruption, ATableThatStaysAwayMayStillMoveWhenTheRunHasFailed) {
@@ -279,7 +279,7 @@ TEST(RunFsmInterruption, EveryEventIsHandledInEveryState) {
   const auto count = events(first).size();
   for (std::size_t e = 0; e < count; ++e) {
     for (int n = 0; n < life(); n += 3) {
-      SCOPED_TRACE(testing::Message() << "event " << e << " at step " << n);
+      SCOPED_TRACE(::testing::Message() << "event " << e << " at step " << n);
       RunBench bench(short_plan(), quick_config());
       for (int i = 0; i < n; ++i) bench.tick();
       bench.send(events(bench)[e]);

@@ -12,8 +12,8 @@ namespace {
 using test::bench_config;
 using test::bench_plan;
 using test::RunBench;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 bool ends(RunBench& bench, RunState state, double limit_s = 3000) {
   const bool ended = bench.run(limit_s);
@@ -325,7 +325,7 @@ TEST(RunFsm, InterruptedRunHomesAndGoesOnAtTheNextPose) {
   ASSERT_EQ(second.stored.size(), 2u);
   EXPECT_EQ(second.stored[0].number, 3);
   EXPECT_GT(*second.stored[0].t_s, *first.stored[1].t_s);
-  EXPECT_THAT(second.states, testing::Contains(RunState::homing));
+  EXPECT_THAT(second.states, ::testing::Contains(RunState::homing));
 }
 
 TEST(RunFsm, ResumedWithAllPosesOnlyFits) {

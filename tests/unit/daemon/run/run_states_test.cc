@@ -15,6 +15,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/checkout.h"
 #include "tests/unit/daemon/run/run_bench.h"
 
 namespace mgtd::test {
@@ -24,7 +25,7 @@ using Diagram = std::map<std::string, std::set<std::string>>;
 
 /// Lines "///     homing     => moving paused".
 Diagram written() {
-  std::ifstream in(MGTD_SOURCE_DIR "/daemon/run/run_fsm.h");
+  std::ifstream in(mgtd::testing::source_path("daemon/run/run_fsm.h"));
   Diagram out;
   std::string line;
   while (std::getline(in, line)) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "daemon/serve/stream_server.h"
+#include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 #include "tests/support/event_loop.h"
 
@@ -32,7 +33,7 @@ TEST(StreamDocument, ItsPythonReadsTheStream) {
   StreamServer server(io, config, {"rig 7", "mgtd test"});
   ASSERT_TRUE(server.start());
 
-  std::string code = python_of(std::string(MGTD_SOURCE_DIR) + "/docs/stream.md");
+  std::string code = python_of(mgtd::testing::source_path("docs/stream.md"));
   const std::size_t port = code.find("7450");
   ASSERT_NE(port, std::string::npos);
   code.replace(port, 4, std::to_string(server.tcp_port()));

@@ -14,8 +14,8 @@
 namespace mgtd::calib::fit::two_step {
 namespace {
 
-using testing::Noise;
-using testing::RigTruth;
+using mgtd::testing::Noise;
+using mgtd::testing::RigTruth;
 constexpr int kRuns = 250;
 
 using Vector = Eigen::Matrix<double, calibration::kArrayParameters, 1>;
@@ -52,13 +52,13 @@ struct Honesty {
   double declination{0}, inclination{0};
 };
 
-Honesty honesty(const Noise& noise, const FitOptions& options, const testing::Site& site) {
-  const RigTruth rig = testing::table6_rig();
+Honesty honesty(const Noise& noise, const FitOptions& options, const mgtd::testing::Site& site) {
+  const RigTruth rig = mgtd::testing::table6_rig();
   const Vector truth = truth_of(rig);
   Honesty out;
   for (int run = 0; run < kRuns; ++run) {
-    const PoseTable table = testing::measure(rig, site, testing::standard_run(121, 5), 36, noise,
-                                             1000 + static_cast<std::uint64_t>(run));
+    const PoseTable table = mgtd::testing::measure(rig, site, mgtd::testing::standard_run(121, 5), 36, noise,
+                                                   1000 + static_cast<std::uint64_t>(run));
     const auto report = method_choice::fit(table, options);
     if (!report) throw std::runtime_error(report.error().text());
     const Eigen::MatrixXd& C = report->calibration.covariance;
@@ -87,7 +87,7 @@ void expect_honest(const Honesty& h) {
   EXPECT_GT(h.ratio.minCoeff(), 1 - kVarianceBand);
 }
 
-constexpr testing::Site kSite{53'907.7, 60, -5};
+constexpr mgtd::testing::Site kSite{53'907.7, 60, -5};
 
 TEST(Influence, IsTheScatterOfManyRunsWithAPoorTable) {
   const Honesty h = honesty({Noise::Kind::gaussian, 0.5, 0.1, 0.1}, two_step_options(), kSite);
@@ -122,8 +122,9 @@ TEST(Influence, LeavingTheTableOutIsNoticed) {
 
 /// One field for all poses, wrong by its stated uncertainty: every scale factor is wrong alike.
 TEST(Influence, AGivenFieldIsOneErrorCommonToAllPoses) {
-  PoseTable table = testing::measure(testing::table6_rig(), kSite, testing::standard_run(121, 5), 36,
-                                     {Noise::Kind::gaussian, 0.01, 0}, 1);
+  PoseTable table =
+      mgtd::testing::measure(mgtd::testing::table6_rig(), kSite, mgtd::testing::standard_run(121, 5), 36,
+                             {Noise::Kind::gaussian, 0.01, 0}, 1);
   for (Pose& pose : table.poses) pose.f_nT.reset();
   FitOptions options = two_step_options();
   options.field_nT = kSite.f_nT;
@@ -138,8 +139,9 @@ TEST(Influence, AGivenFieldIsOneErrorCommonToAllPoses) {
 
 /// Without tilted poses and without a declination the mean of gamma is zero by convention: it has no error.
 TEST(Influence, TheConventionOfMeanGammaHasNoError) {
-  PoseTable table = testing::measure(testing::table6_rig(), kSite, testing::standard_run(121, 5), 36,
-                                     {Noise::Kind::gaussian, 0.5, 0.1}, 1);
+  PoseTable table =
+      mgtd::testing::measure(mgtd::testing::table6_rig(), kSite, mgtd::testing::standard_run(121, 5), 36,
+                             {Noise::Kind::gaussian, 0.5, 0.1}, 1);
   for (Pose& pose : table.poses) {
     if (pose.set != "standard") pose.azimuth_rad.reset(), pose.pitch_rad.reset(), pose.roll_rad.reset();
   }

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "calib/report/figures/text_width.h"
+#include "tests/support/checkout.h"
 #include "tests/unit/calib/report/figures/examples.h"
 
 namespace mgtd::calib::report::figures {
@@ -119,7 +120,7 @@ TEST_P(Figures, AreWholeAndSayWhatTheyShow) {
 INSTANTIATE_TEST_SUITE_P(Poses, Figures, ::testing::Values(1, 2, 24, 157, 6000));
 
 TEST(Figures, AreThoseThatWereLookedAt) {
-  const std::filesystem::path folder = MGTD_SOURCE_DIR "/tests/unit/calib/report/figures/golden";
+  const std::filesystem::path folder = mgtd::testing::source_path("tests/unit/calib/report/figures/golden");
   const bool anew = std::getenv("MGTD_NEW_GOLDEN") != nullptr;
   for (const Figure& f : testing::examples(24)) {
     const std::filesystem::path path = folder / (f.name + ".svg");
