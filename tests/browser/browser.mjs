@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drives Debian's Chromium over its DevTools protocol: a page, what it shows, clicks and pictures. Needs node >= 20 with
-// --experimental-websocket (or 22) and chromium; no package from elsewhere.
-import { spawn } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+// Drives Debian's Chromium over its DevTools protocol: a page, what it shows, clicks and pictures. The messages go over two
+// pipes of the child, JSON with a zero byte behind each; so Debian 12's node (18) is enough, and no package from elsewhere.
+import { spawn, spawnSync } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -17,24 +17,41 @@ export async function until(ask, what, limit_ms = 30000) {
   throw new Error(`not within ${limit_ms / 1000} s: ${what}`);
 }
 
+/** Ends the script as not run (exit code 77) where there is no chromium. */
+export function needBrowser() {
+  if (!spawnSync("chromium", ["--version"]).error) return;
+  console.log("not run: chromium is not installed (apt-get install chromium)");
+  process.exit(77);
+}
+
+const kFlags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+                "--disable-component-update", "--disable-sync", "--remote-debugging-pipe"];
+
 export class Browser {
-  #child; #folder; #socket; #next = 1; #waiting = new Map(); #session = null;
+  #child; #folder; #rest = ""; #next = 1; #waiting = new Map(); #session = null;
   log = [];  ///< errors of the console and refusals of the content policy
 
   static async start() {
     const browser = new Browser();
     browser.#folder = mkdtempSync(join(tmpdir(), "mgtd-browser-"));
-    browser.#child = spawn("chromium", ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0",
-                                        `--user-data-dir=${browser.#folder}`, "about:blank"], { stdio: "ignore" });
-    const portFile = join(browser.#folder, "DevToolsActivePort");
-    const [port, path] = (await until(() => { try { return readFileSync(portFile, "utf8").split("\n"); } catch { return null; } }, "chromium"));
-    browser.#socket = new WebSocket(`ws://127.0.0.1:${port}${path}`);
-    await new Promise((resolve) => { browser.#socket.onopen = resolve; });
-    browser.#socket.onmessage = (event) => browser.#heard(JSON.parse(event.data));
+    // Chromium reads requests from descriptor 3 and writes answers to descriptor 4.
+    browser.#child = spawn("chromium", [...kFlags, `--user-data-dir=${browser.#folder}`, "about:blank"], { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+    browser.#child.stdio[4].setEncoding("utf8").on("data", (text) => browser.#received(text));
+    browser.#child.stdio[3].on("error", () => {});  // what was lost is told by the exit
+    browser.#child.once("exit", (code) => browser.#ended(`chromium ended with exit code ${code}`));
     const { targetId } = await browser.#call("Target.createTarget", { url: "about:blank" });
     browser.#session = (await browser.#call("Target.attachToTarget", { targetId, flatten: true })).sessionId;
     for (const domain of ["Page", "Runtime", "Log"]) await browser.#call(`${domain}.enable`);
     return browser;
+  }
+  #received(text) {
+    const messages = (this.#rest + text).split("\0");
+    this.#rest = messages.pop();
+    for (const message of messages) this.#heard(JSON.parse(message));
+  }
+  #ended(why) {
+    for (const { reject } of this.#waiting.values()) reject(new Error(why));
+    this.#waiting.clear();
   }
   #heard(message) {
     if (message.method === "Log.entryAdded") this.log.push(message.params.entry.text);
@@ -47,7 +64,7 @@ export class Browser {
   }
   #call(method, params = {}) {
     const id = this.#next++;
-    this.#socket.send(JSON.stringify({ id, method, params, ...(this.#session ? { sessionId: this.#session } : {}) }));
+    this.#child.stdio[3].write(`${JSON.stringify({ id, method, params, ...(this.#session ? { sessionId: this.#session } : {}) })}\0`);
     return new Promise((resolve, reject) => this.#waiting.set(id, { resolve, reject }));
   }
   async open(url, width = 1280, height = 800) {

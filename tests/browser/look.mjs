@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of every screen of a running console, in three sizes and three themes, to be looked at:
 //
-//   node --experimental-websocket tests/browser/look.mjs "$(mgt console)" docs/console
-//   node --experimental-websocket tests/browser/look.mjs ADDRESS-OF-MGT-SERVE FOLDER RUN.mgtrun [add]
+//   node tests/browser/look.mjs "$(mgt console)" docs/console
+//   node tests/browser/look.mjs ADDRESS-OF-MGT-SERVE FOLDER RUN.mgtrun [add]
 //
 // Of a run also what stands behind each button of the workbench; nothing is changed in it, unless the word add has the first
 // suspect added, and taken out again. Says where an element leaves the
@@ -12,7 +12,7 @@ import { Browser, until } from "./browser.mjs";
 
 const [url, folder, run, add] = process.argv.slice(2);
 if (!url || !folder) {
-  console.error("usage: node --experimental-websocket tests/browser/look.mjs URL FOLDER [RUN]");
+  console.error("usage: node tests/browser/look.mjs URL FOLDER [RUN]");
   process.exit(2);
 }
 mkdirSync(folder, { recursive: true });

@@ -3,7 +3,7 @@
 // found, looked at and added, the error on held-out poses falls; undo, a mask, a formula, a veto. Every number of the page is
 // held against mgt --json to the digit that is printed.
 //
-//   node --experimental-websocket tests/browser/story.mjs build/bin
+//   node tests/browser/story.mjs build/bin
 //
 // Exit code 0: told. 1: something else happened. 77: not told, because chromium is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
@@ -11,17 +11,14 @@ import { copyFileSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { Browser, until } from "./browser.mjs";
+import { Browser, needBrowser, until } from "./browser.mjs";
 
 const bin = process.argv[2];
 if (!bin) {
-  console.error("usage: node --experimental-websocket tests/browser/story.mjs BIN");
+  console.error("usage: node tests/browser/story.mjs BIN");
   process.exit(2);
 }
-if (spawnSync("chromium", ["--version"]).error) {
-  console.log("not run: chromium is not installed (apt-get install chromium)");
-  process.exit(77);
-}
+needBrowser();
 const here = dirname(fileURLToPath(import.meta.url)), folder = mkdtempSync(join(tmpdir(), "mgtd-story-"));
 const kHostile = "<img src=x onerror=document.title=1>.csv";
 const run = join(folder, "hidden.mgtrun");
