@@ -11,6 +11,7 @@
 
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/work_progress.h"
 #include "daemon/store/pose_source.h"
 
 namespace mgtd::daemon::cli {
@@ -47,13 +48,14 @@ void doubt_closure(const std::vector<calib::calibration::AppliedPose>& rows) {
 }
 
 int run_apply(const Session& session, const ApplyArguments& args) {
-  const auto calibration = calibration_of(args.calibration, {});
+  const auto calibration = with_progress("apply", [&] { return calibration_of(args.calibration, {}); });
   if (!calibration) return report(session, calibration.error());
   const auto table = store::read_poses(args.run);
   if (!table) return report(session, table.error());
   if (auto same = same_sensors(*calibration, args.calibration, *table); !same)
     return report(session, same.error());
-  const auto rows = calib::calibration::apply(*calibration, *table, args.options);
+  const auto rows =
+      with_progress("apply", [&] { return calib::calibration::apply(*calibration, *table, args.options); });
   if (!rows) return report(session, rows.error());
   const std::string csv = calib::calibration::format_applied(*rows);
   std::set<std::string> left_out;

@@ -8,6 +8,7 @@
 #include "calib/report/validity_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -39,7 +40,9 @@ int run_check(const Session& session, const CheckArguments& args) {
     return report(session, same.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
-  const auto checked = calib::validity::check(*calibration, source->table, *options);
+  const auto checked = with_progress("check", *options, [&](const calib::fit::FitOptions& told) {
+    return calib::validity::check(*calibration, source->table, told);
+  });
   if (!checked) return report(session, checked.error());
   if (session.json) {
     print_json(calib::report::to_json(*checked));

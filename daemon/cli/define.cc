@@ -15,6 +15,7 @@
 #include "calib/report/formula_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/kept_run.h"
+#include "daemon/cli/work_progress.h"
 #include "daemon/store/user_formulas.h"
 
 namespace mgtd::daemon::cli {
@@ -229,7 +230,9 @@ int run_define(const Session& session, const DefineArguments& args) {
     return report(session, ok.error());
   calib::fit::FitOptions options = run->options;
   std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) { return e->name() == args.name; });
-  const auto x = calib::criticism::tests::examine_formula(run->source.table, options, *spec);
+  const auto x = with_progress("define", options, [&](const calib::fit::FitOptions& told) {
+    return calib::criticism::tests::examine_formula(run->source.table, told, *spec);
+  });
   if (!x) return report(session, x.error());
   Confirmation confirmation{.asked = definition.found_on != here};
   if (confirmation.asked) {

@@ -6,6 +6,7 @@
 #include "calib/report/diff_report.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -27,9 +28,12 @@ struct DiffArguments {
 };
 
 int run_diff(const Session& session, const DiffArguments& args) {
-  const auto a = calibration_of(args.a, *args.flags);
+  const auto taken = [&](const std::string& path) {
+    return with_progress("diff", [&] { return calibration_of(path, *args.flags); });
+  };
+  const auto a = taken(args.a);
   if (!a) return report(session, a.error());
-  const auto b = calibration_of(args.b, *args.flags);
+  const auto b = taken(args.b);
   if (!b) return report(session, b.error());
   if (a->sensors.size() != b->sensors.size())
     return report(session, {ErrorCode::bad_input,

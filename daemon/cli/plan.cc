@@ -148,7 +148,8 @@ int run_plan(const Session& session, const PlanArguments& args) {
   if (!planned) return report(session, planned.error());
   std::optional<run::LimitsCost> limits;
   if (wanted->run) {
-    auto cost = run::limits_cost(wanted->run->options, wanted->run->limits, wanted->request);
+    auto cost = with_progress(
+        "plan", [&] { return run::limits_cost(wanted->run->options, wanted->run->limits, wanted->request); });
     if (!cost) return report(session, cost.error());
     limits = *std::move(cost);
   }

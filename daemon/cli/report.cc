@@ -28,7 +28,10 @@ struct ReportArguments {
 };
 
 int run_report(const Session& session, const ReportArguments& args) {
-  const auto content = with_progress("report", [&] { return report_content(args.wishes, *args.flags); });
+  const auto content = [&] {
+    const WorkProgress shown("report");
+    return report_content(args.wishes, *args.flags, shown.rounds());
+  }();
   if (!content) return report(session, content.error());
   const std::string page = report_page(*content);
   if (auto written = write_file(args.wishes.output, page); !written) return report(session, written.error());

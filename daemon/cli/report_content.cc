@@ -163,11 +163,13 @@ std::string report_command(const ReportWishes& w, const FitFlags& f) {
   return out;
 }
 
-Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags& flags) {
+Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags& flags,
+                                     calib::fit::RoundListener on_round) {
   auto source = read_source(wishes.run, flags);
   if (!source) return tl::unexpected(source.error());
   auto options = fit_options(flags, *source);
   if (!options) return tl::unexpected(options.error());
+  options->on_round = std::move(on_round);
   auto fitted = calib::fit::method_choice::fit(source->table, *options);
   if (!fitted) return tl::unexpected(fitted.error());
   auto comparison = calib::criticism::tests::compare(source->table, *options);

@@ -44,7 +44,9 @@ struct ReportContent {
       earlier{};
 };
 
-[[nodiscard]] Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags& flags);
+/// `on_round` hears of every round of its fits.
+[[nodiscard]] Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags& flags,
+                                                   calib::fit::RoundListener on_round = {});
 
 /// The command line that says the same again: every option that was given, quoted for a shell where that is
 /// needed.

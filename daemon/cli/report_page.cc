@@ -69,6 +69,15 @@ std::string banner_class(calib::criticism::search::Finding finding) {
   return finding == calib::criticism::search::Finding::bad_data ? "banner bad" : "banner";
 }
 
+/// Poses that an operator left out, which no figure of the page shows.
+std::string masked_poses(const std::vector<store::MaskedPose>& masked) {
+  if (masked.empty()) return "";
+  Rows rows;
+  for (const store::MaskedPose& m : masked)
+    rows.push_back({fmt::format("{}", m.number), m.because, fmt::format("{:.19}Z", format_utc(m.at)), m.who});
+  return "<h3>Left out by the operator</h3>" + html_table({"pose", "because", "when", "who"}, rows, true);
+}
+
 }  // namespace
 
 std::string measured_section(const ReportContent& c) {
@@ -80,11 +89,14 @@ std::string measured_section(const ReportContent& c) {
   }
   std::vector<std::string> counted;
   for (const auto& [name, count] : sets) counted.push_back(fmt::format("{} {}", count, name));
-  Rows rows{{"poses", fmt::format("{} ({})", c.source.table.poses.size(), fmt::join(counted, ", "))},
-            {"time", duration(c.source.table)},
-            {"temperature of the heads", temperatures(c.source.table)},
-            {"extra columns", columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, ", "))},
-            {"data", c.fit.calibration.data_hash}};
+  const std::size_t masked = c.source.masked.size();
+  Rows rows{
+      {"poses", fmt::format("{} ({}){}", c.source.table.poses.size(), fmt::join(counted, ", "),
+                            masked == 0 ? "" : fmt::format("; {} more masked by the operator", masked))},
+      {"time", duration(c.source.table)},
+      {"temperature of the heads", temperatures(c.source.table)},
+      {"extra columns", columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, ", "))},
+      {"data", c.fit.calibration.data_hash}};
   if (c.source.header) {
     const store::RunHeader& h = *c.source.header;
     const std::string started = h.started_utc.ns == 0
@@ -104,7 +116,7 @@ std::string measured_section(const ReportContent& c) {
              ? "<p class=\"quiet\">The file names no instruments.</p>"
              : "<h3>Instruments</h3>" +
                    html_table({"place", "as it names itself", "serial number"}, instruments, true);
-  out += figures_html(c.measured);
+  out += masked_poses(c.source.masked) + figures_html(c.measured);
   const std::vector<std::string> left_out = calib::report::outlier_texts(c.comparison.outliers);
   if (left_out.empty()) return out + "<p>No reading was left out.</p>";
   out += "<h3>Left out by the fit</h3><ul>";

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
+#include <string_view>
 #include <utility>
 
 #include "daemon/cli/progress.h"
@@ -20,6 +22,12 @@ constexpr std::chrono::milliseconds kEvery{500};
 constexpr int kBarWidth = 24;
 constexpr double kLittleDone = 0.01;  // less says nothing of the time left
 constexpr double kStarved = 0.5;      // of a processor: less is worth a word
+
+/// Whether somebody reads stderr line by line who is no terminal.
+bool asked_for_lines() {
+  const char* const asked = std::getenv("MGTD_PROGRESS");
+  return asked != nullptr && std::string_view(asked) == "lines";
+}
 
 double processor_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -48,8 +56,9 @@ std::string work_line(const WorkState& work, int width) {
 
 WorkProgress::WorkProgress(std::string what) : known_(std::make_shared<Known>()) {
   known_->work.what = std::move(what);
-  if (isatty(STDERR_FILENO) == 0) return;
-  thread_ = std::jthread([this](const std::stop_token& stop) { show(stop); });
+  const bool lines = asked_for_lines();
+  if (!lines && isatty(STDERR_FILENO) == 0) return;
+  thread_ = std::jthread([this, lines](const std::stop_token& stop) { show(stop, lines); });
 }
 
 WorkProgress::~WorkProgress() = default;
@@ -67,7 +76,7 @@ calib::fit::RoundListener WorkProgress::rounds() const {
   };
 }
 
-void WorkProgress::show(const std::stop_token& stop) {
+void WorkProgress::show(const std::stop_token& stop, bool lines) {
   const auto begin = std::chrono::steady_clock::now();
   const double used_before_s = processor_s();
   const auto never = [] { return false; };
@@ -78,11 +87,12 @@ void WorkProgress::show(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     work.processor_s = processor_s() - used_before_s;
-    fmt::print(stderr, "\r{}\x1b[K", work_line(work, terminal_width(STDERR_FILENO) - 1));
+    const std::string line = work_line(work, terminal_width(STDERR_FILENO) - 1);
+    lines ? fmt::print(stderr, "{}\n", line) : fmt::print(stderr, "\r{}\x1b[K", line);
     std::fflush(stderr);
     ended_.wait_for(lock, stop, kEvery, never);
   }
-  if (shown) fmt::print(stderr, "\r\x1b[K");
+  if (shown && !lines) fmt::print(stderr, "\r\x1b[K");
 }
 
 }  // namespace mgtd::daemon::cli

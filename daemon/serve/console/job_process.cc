@@ -118,8 +118,8 @@ Result<std::shared_ptr<JobProcess>> JobProcess::start(boost::asio::io_context& i
   std::vector<char*> argv;
   for (std::string& word : held) argv.push_back(word.data());
   argv.push_back(nullptr);
-  std::string language = "LC_ALL=C.UTF-8", colour = "NO_COLOR=1";
-  char* environment[]{language.data(), colour.data(), nullptr};
+  std::string language = "LC_ALL=C.UTF-8", colour = "NO_COLOR=1", progress = "MGTD_PROGRESS=lines";
+  char* environment[]{language.data(), colour.data(), progress.data(), nullptr};
   std::shared_ptr<JobProcess> out(new JobProcess(io, bounds, std::move(ended)));
   const pid_t parent = ::getpid();
   out->pid_ = ::fork();
@@ -144,9 +144,10 @@ void JobProcess::read(Pipe& pipe, std::size_t limit) {
       pipe.open = false;
       return self->finish();
     }
+    if (&pipe == &self->err_ && pipe.text.size() + n > limit) pipe.text.erase(0, pipe.text.size() / 2);
     if (pipe.text.size() + n <= limit) {
       pipe.text.append(pipe.bytes.data(), n);
-    } else if (&pipe == &self->out_) {
+    } else {
       self->why_ = fmt::format("it printed more than {} MB, which is the limit", limit / 1'000'000);
       self->kill();
     }

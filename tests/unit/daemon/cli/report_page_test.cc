@@ -63,6 +63,20 @@ TEST(ReportPage, SaysWhoWhereAndHowToMakeItAgain) {
     EXPECT_THAT(page, HasSubstr(part));
 }
 
+TEST(ReportPage, TellsWhichPosesAreMaskedAndWhy) {
+  const test::TempDir folder;
+  ReportContent c = content(folder.path());
+  EXPECT_THAT(measured_section(c), Not(HasSubstr("masked")));
+  c.source.masked = {{.number = 12, .because = "a car <stood> there", .who = "ao", .at = {}},
+                     {.number = 40, .because = "door open", .who = "ao", .at = {}}};
+  c.history = {{.at = {}, .who = "ao", .action = "mask", .spec = "12", .result = R"({"because":"a car"})"}};
+  const std::string measured = measured_section(c);
+  EXPECT_THAT(measured, HasSubstr("; 2 more masked by the operator"));
+  EXPECT_THAT(measured, HasSubstr("a car &lt;stood&gt; there"));
+  EXPECT_THAT(measured, HasSubstr("door open"));
+  EXPECT_THAT(history_section(c), HasSubstr("<td>a car</td>"));
+}
+
 TEST(ReportCommand, HoldsEveryOptionThatChangesTheResult) {
   FitFlags flags;
   flags.with = {"none"};

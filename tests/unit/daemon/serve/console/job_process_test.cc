@@ -46,6 +46,12 @@ TEST_F(JobProcessTest, GivesWhatItPrintedAndItsExitCode) {
   EXPECT_EQ(process_->said(), "round 2");
 }
 
+/// However much a long computation says, it is the last line that counts.
+TEST_F(JobProcessTest, SaysTheLastLineOfMany) {
+  shell("i=0; while [ $i -lt 20000 ]; do i=$((i + 1)); echo round $i >&2; done");
+  EXPECT_EQ(process_->said(), "round 20000");
+}
+
 /// Neither a port, nor a socket, nor a word of our environment.
 TEST_F(JobProcessTest, InheritsNothing) {
   const int held = ::open("/dev/null", O_RDONLY);
