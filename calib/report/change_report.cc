@@ -90,9 +90,10 @@ std::string seen_text(const validity::Change& change) {
                              {"angle between axes", " theta phi psi ", "deg"},
                              {"turn of a sensor", " alpha beta gamma ", "deg"}}};
   for (const validity::ParameterChange& p : change.parameters) {
-    if (p.name.size() < 4 || p.name[0] != 's' || p.name[2] != ' ') continue;
+    const std::size_t space = p.name.find(' ');  // "s10 ix"
+    if (p.name[0] != 's' || space == std::string::npos) continue;
     for (Kind& kind : kinds) {
-      if (std::string_view(kind.keys).find(p.name.substr(2) + " ") != std::string_view::npos)
+      if (std::string_view(kind.keys).find(p.name.substr(space) + " ") != std::string_view::npos)
         kind.worst = std::max(kind.worst, p.seen);
     }
   }
