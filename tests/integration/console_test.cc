@@ -37,6 +37,7 @@ TEST(ConsoleOnTheBench, IsAtTheAddressThatMgtPrints) {
   const std::string host = address.substr(7, address.size() - 8);
   EXPECT_TRUE(answers(host, "/metrics", "mgtd_device_live{device=\"s1\"} 1"));
   EXPECT_TRUE(answers(host, "/", "lanes"));
+  EXPECT_TRUE(answers(host, "/api/hello", "\"closure_limit\":18.46")) << "that of four numbers";
   EXPECT_TRUE(eventually([&] { return bench.ask({"status"}).at("sampler").at("epochs") > 50; }));
 }
 

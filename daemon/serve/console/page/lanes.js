@@ -95,6 +95,19 @@ export class Lanes {
     return { t, band: lane, gaps: lane.gaps };
   }
 
+  /** What each lane shows, as numbers: [{label, unit, now, mean, least, greatest, gaps}] of the window. */
+  summary() {
+    const from_s = this.#now_s - this.#window_s;
+    return this.#channels.map(({ name, label, unit, least_span }) => {
+      const { t, band, gaps } = this.#points(name), values = t.filter(([t_s, v]) => v !== null && t_s >= from_s).map(([, v]) => v);
+      const of = (list, choose) => list.filter((v) => v !== null).reduce((a, b) => (a === null ? b : choose(a, b)), null);
+      const least = of(band?.least ?? values, Math.min), greatest = of(band?.greatest ?? values, Math.max), span = Math.max(greatest - least, least_span ?? 1e-3);
+      const mean = values.length ? values.reduce((a, b) => a + b, 0) / values.length : null;
+      return { label, unit, now: shown(values.at(-1), span), mean: shown(mean, span), least: shown(least, span), greatest: shown(greatest, span),
+               gaps: gaps.filter((gap) => (gap.to_s ?? this.#now_s) > from_s).length };
+    });
+  }
+
   #draw() {
     this.#dirty = false;
     const canvas = this.#canvas, scale = devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;

@@ -9,7 +9,7 @@ import { active, chip, showRun, wanted } from "./run.js";
 
 const token = takeToken(), control = new Control(token);
 const lanes = new Lanes(by("canvas"), (text) => { by("cursor").textContent = text; });
-let status = null, run = null, sample = null, sampled_ms = 0, screen = "live", alarms = 0, judged = 0;
+let status = null, run = null, sample = null, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, closureLimit = null, numbers_ms = 0;
 
 function banner(text, note = false) {
   by("banner").textContent = text;
@@ -90,11 +90,20 @@ function takeSample(message) {
   const values = { f: message.f_nT, bx: message.b_nT[0], by: message.b_nT[1], bz: message.b_nT[2], chi2: message.closure.chi2,
                    ...message.g_nT_per_m, ...(message.inputs ?? {}) };
   lanes.add(t_s, values);
-  if (message.closure.chi2 !== null) { judged += 1; alarms += message.closure.chi2 > 18.5 ? 1 : 0; }
+  if (message.closure.chi2 !== null && closureLimit) { judged += 1; alarms += message.closure.chi2 > closureLimit ? 1 : 0; }
   const now = performance.now();
   if (now - sampled_ms < 250 || screen !== "live" || !status) return;
   sampled_ms = now;
   fill(by("cards"), cards(status, sample));
+  showNumbers(now);
+}
+
+/** The table behind the lanes, while it is open. */
+function showNumbers(now) {
+  if (!by("lane-numbers").open || now - numbers_ms < 1000) return;
+  numbers_ms = now;
+  fill(by("lane-table"), rows(["lane", "now", "mean", "least", "greatest", "unit", "gaps"],
+       lanes.summary().map((l) => [l.label, l.now, l.mean, l.least, l.greatest, l.unit, l.gaps])));
 }
 
 function takeStatus(message) {
@@ -107,8 +116,8 @@ function takeStatus(message) {
   by("who").textContent = `${message.software}. ${message.array.sensors} sensor${message.array.sensors > 1 ? "s" : ""}: ${message.array.tells}. ` +
     (holder ? `Control is with ${holder.via || `pid ${holder.pid}`}${holder.why ? `: ${holder.why}` : ""}.` : "Nobody has control.") +
     (control.possible ? "" : " This page may look; mgt console prints the address with which it may control.");
-  by("caption").textContent = judged > 0 && message.array.closure === 4
-    ? `A good stream has no hatching, and a closure χ² above 18.5 (of four numbers) in one sample of a thousand; since this page was opened ${(1000 * alarms / judged).toFixed(1)} of a thousand.`
+  by("caption").textContent = judged > 0
+    ? `A good stream has no hatching, and a closure χ² above ${closureLimit.toFixed(1)} (${message.array.closure === 1 ? "of one number" : `of ${message.array.closure} numbers`}) in one sample of a thousand; since this page was opened ${(1000 * alarms / judged).toFixed(1)} of a thousand.`
     : "A good stream has no hatching: what was not measured is hatched, with its reason.";
   if (!sample) fill(by("cards"), cards(status, null));
   takeRun(message.run);
@@ -127,7 +136,8 @@ function takeRun(message) {
 }
 
 /** The rig behind the page. */
-function followRig() {
+function followRig(hello) {
+  closureLimit = hello.array.closure_limit;
   openStream({
     message: (message) => {
       if (message.class === "TENSOR") takeSample(message);
@@ -187,6 +197,6 @@ by("theme").addEventListener("click", () => {
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lanes.redraw(); bench.recolour(); });
 const hello = await (await fetch("/api/hello")).json();
 if (hello.mode === "files") serveFiles(hello);
-else { rigged = true; show("live"); followRig(); }
+else { rigged = true; show("live"); followRig(hello); }
 by("plan-instead").addEventListener("click", () => measure(null));
 document.body.dataset.ready = "";
