@@ -168,6 +168,21 @@ TEST(KnownVector, ALawIsNamedInACage) {
   EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
 }
 
+/// One field strength does not tell the square of the own axis from those of the other two: together they are
+/// constant. Fields from zero to full scale do.
+TEST(KnownVector, SquaresOfTheOwnAndOfTheOtherAxesAreToldApartInACage) {
+  for (const auto& [law, size] : {std::pair{"axis.quadratic", "5"}, {"axis.transverse", "[5, 0]"}}) {
+    const auto found = explained(
+        in_a_cage(fmt::format("[[effect]]\nname = \"{}\"\nwhere = \"s1.y\"\nnT_at_F0 = {}\n", law, size), 3),
+        testing::one_sensor());
+    EXPECT_EQ(found.finding, criticism::search::Finding::explained) << law;
+    ASSERT_EQ(found.rounds.size(), 1U) << law;
+    EXPECT_EQ(found.rounds.front().added.effect, law);
+    EXPECT_TRUE(found.rounds.front().possible.empty()) << law;
+    EXPECT_EQ(found.left, criticism::search::Finding::pass) << law;
+  }
+}
+
 /// As of a magnetometer on a chip.
 constexpr const char* kLargeNoise = "[sensors]\nnoise_nT = 20\n";
 
@@ -182,6 +197,22 @@ TEST(Recording, CorrelatedSamplesCountForLess) {
            kRuns;
   }
   // A hand turns faster than white noise would need: the correlation is a bound, three times at the most.
+  EXPECT_LT(sum, 9 + band(kRuns));
+  EXPECT_GT(sum, 2);
+}
+
+/// Two thirds of the samples stand still and repeat two attitudes: they are no two thirds of what is known.
+TEST(Recording, LongRestsMakeNothingSurer) {
+  double sum = 0;
+  constexpr int kRuns = 12;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const auto scenario = testing::scenario_of(
+        testing::one_sensor(), seed,
+        "[recording]\nmotion = \"hand\"\nrate_hz = 20\nduration_s = 150\nrest_s = 50\nar = 0.9\n");
+    const fit::FitReport report =
+        fitted(rig::pose_table_of(rig::simulated_recording(scenario)), testing::one_sensor());
+    sum += squared_error(report.calibration, 0, scenario.truth[0]) / kRuns;
+  }
   EXPECT_LT(sum, 9 + band(kRuns));
   EXPECT_GT(sum, 2);
 }
