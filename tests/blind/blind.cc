@@ -52,18 +52,6 @@ std::vector<criticism::tests::CandidateEffect> library_without(const PoseTable& 
   return out;
 }
 
-void ask(const PoseTable& table, const std::string& truth, Answers& out, bool taken_out = false) {
-  criticism::search::ExplainOptions options;
-  if (taken_out) options.candidate_effects = library_without(table, truth);
-  const auto report = criticism::search::explain(table, options);
-  if (!report) {
-    ++out.runs, ++out.refused;
-    return;
-  }
-  count(*report, truth, out);
-  if (changes_the_field(*report)) ++out.advised;
-}
-
 struct Pick {
   const HiddenLaw* law;
   int sensor, axis;
@@ -104,6 +92,17 @@ void count(const criticism::search::ImproveReport& r, const std::array<Pick, 2>&
 
 }  // namespace
 
+void ask(const PoseTable& table, const std::string& truth, const criticism::search::ExplainOptions& options,
+         Answers& out) {
+  const auto report = criticism::search::explain(table, options);
+  if (!report) {
+    ++out.runs, ++out.refused;
+    return;
+  }
+  count(*report, truth, out);
+  if (changes_the_field(*report)) ++out.advised;
+}
+
 int Answers::of(criticism::search::Finding finding) const {
   const auto found = findings.find(finding);
   return found == findings.end() ? 0 : found->second;
@@ -121,7 +120,7 @@ Answers& Answers::operator+=(const Answers& other) {
 
 Answers clean(const HiddenRun& run, int runs, std::uint64_t seed) {
   Answers out;
-  for (int i = 0; i < runs; ++i) ask(hidden_run(run, seed + static_cast<std::uint64_t>(i)), "", out);
+  for (int i = 0; i < runs; ++i) ask(hidden_run(run, seed + static_cast<std::uint64_t>(i)), "", {}, out);
   return out;
 }
 
@@ -147,7 +146,10 @@ Answers hidden(const HiddenLaw& law, double d, int runs, std::uint64_t seed, boo
     const std::uint64_t s = seed + static_cast<std::uint64_t>(i);
     const int c = i % sensor::kChannels;
     const double size = (i % 2 == 0 ? d : -d) * crb_of(law, c / 3, c % 3, s);
-    ask(hidden_run({.hidden = hide(law, c / 3, c % 3, size)}, s), std::string(law.name), out, taken_out);
+    const PoseTable table = hidden_run({.hidden = hide(law, c / 3, c % 3, size)}, s);
+    criticism::search::ExplainOptions options;
+    if (taken_out) options.candidate_effects = library_without(table, law.name);
+    ask(table, std::string(law.name), options, out);
   }
   return out;
 }

@@ -29,6 +29,10 @@ struct Answers {
   Answers& operator+=(const Answers& other);
 };
 
+/// Asks explain about one run and counts the answer; `truth` is the name of what is hidden, "" of nothing.
+void ask(const PoseTable& table, const std::string& truth, const criticism::search::ExplainOptions& options,
+         Answers& out);
+
 [[nodiscard]] Answers clean(const HiddenRun& run, int runs, std::uint64_t seed);
 /// A law hidden on axes in turn, as large as `d` of its own uncertainties in this design.
 /// `taken_out`: the library does not hold it.

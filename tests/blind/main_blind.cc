@@ -23,6 +23,7 @@ struct Section {
 constexpr std::array kSections{Section{"clean", &clean_page},
                                Section{"naming", &naming_page},
                                Section{"one-field", &one_field_page},
+                               Section{"one-sensor", &one_sensor_page},
                                Section{"two", &two_page},
                                Section{"open", &open_page},
                                Section{"oracle", &oracle_page},
@@ -59,7 +60,8 @@ int main(int argc, char** argv) {
   app.add_option("--clean", sizes.clean, "clean runs of each kind of noise")->capture_default_str();
   std::optional<int> runs;
   app.add_option("--runs", runs, "runs of each cell [60; 200 of real-noise and site]");
-  app.add_option("--only", only, "sections: clean naming one-field two open oracle paper real-noise site")
+  app.add_option("--only", only,
+                 "sections: clean naming one-field one-sensor two open oracle paper real-noise site")
       ->delimiter(',');
   app.add_option("--kind", sizes.kinds, "kinds of real-noise and site; 'walk' also stands for walk-1")
       ->delimiter(',');

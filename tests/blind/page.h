@@ -20,6 +20,7 @@ struct Sizes {
 
 [[nodiscard]] std::string clean_page(const Sizes& n);
 [[nodiscard]] std::string naming_page(const Sizes& n);
+[[nodiscard]] std::string one_sensor_page(const Sizes& n);
 [[nodiscard]] std::string two_page(const Sizes& n);
 [[nodiscard]] std::string open_page(const Sizes& n);
 [[nodiscard]] std::string oracle_page(const Sizes& n);

@@ -37,6 +37,15 @@ rig::Scenario scenario() {
   return out;
 }
 
+rig::Scenario one_sensor_scenario(std::uint64_t seed) {
+  auto out = rig::parse_scenario("[rig]\nparameters = \"random\"\nseed = " + std::to_string(seed) +
+                                     "\n[array]\npositions_m = [[0, 0, 0]]\n",
+                                 "one-sensor.toml");
+  if (!out) throw std::runtime_error(out.error().front());
+  out->temperature = scenario().temperature;
+  return *std::move(out);
+}
+
 /// By pose, what the effect adds to the readings and to the scalar reference, in standard deviations.
 Eigen::MatrixXd signature(const fit::joint::JointFit& fit, const PoseTable& with, const PoseTable& without) {
   const auto n = static_cast<Eigen::Index>(fit.problem.poses.size());
@@ -44,13 +53,14 @@ Eigen::MatrixXd signature(const fit::joint::JointFit& fit, const PoseTable& with
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto p = static_cast<std::size_t>(k);
     const fit::joint::JointPose& pose = fit.problem.poses[p];
-    for (int c = 0; c < sensor::kChannels; ++c) {
+    const int channels = fit.problem.channels();
+    for (int c = 0; c < channels; ++c) {
       const auto s = static_cast<std::size_t>(c / 3);
       rows(k * fit.problem.pose_rows() + c, 0) =
           pose.weight[c] * (with.poses[p].y_nT[s] - without.poses[p].y_nT[s])[c % 3];
     }
     if (without.poses[p].f_nT)
-      rows(k * fit.problem.pose_rows() + sensor::kChannels, 0) =
+      rows(k * fit.problem.pose_rows() + channels, 0) =
           (*with.poses[p].f_nT - *without.poses[p].f_nT) * pose.f_weight;
   }
   return rows;
@@ -65,6 +75,26 @@ Stage remounted_stage(std::uint64_t seed) {
   const std::vector<Eigen::Matrix3d> mounts{Eigen::Matrix3d::Identity(), about_x(90), about_y(90),
                                             about_x(35) * about_z(50), about_y(-40) * about_x(20)};
   return {scenario(), rig::remounted_turns(mounts, 18, seed)};
+}
+
+Stage one_turned_stage(std::uint64_t seed) {
+  return {one_sensor_scenario(seed), rig::run_of_157({.senses = true}, seed)};
+}
+
+Stage one_caged_stage(std::uint64_t seed) {
+  rig::Scenario s = one_sensor_scenario(seed);
+  s.reference = rig::VectorReference{.sd_nT = 0.2, .misalignment_deg = {1, -2, 3}, .on_platform = true};
+  s.cage = rig::Cage{.sphere = false, .max_nT = 60'000, .poses = 120};
+  s.angles = s.scalar = false;
+  rig::Design design = rig::cage_fields(*s.cage, seed);
+  return {std::move(s), std::move(design)};
+}
+
+sensor::Geometry geometry_of(const Stage& stage) {
+  const std::vector<Eigen::Vector3d> places_m = stage.scenario.places_m();
+  PerSensor<Eigen::Vector3d> places_P_m(0);
+  places_P_m.assign(places_m.begin(), places_m.end());
+  return sensor::Geometry(places_P_m);
 }
 
 std::shared_ptr<const rig::Effect> make_planted(const Planted& effect) {
@@ -97,7 +127,8 @@ double sigmas_of(const Stage& stage, const Planted& effect, std::uint64_t seed) 
   const PoseTable without = planted_run(stage, {}, seed);
   const PoseTable with = planted_run(stage, {scaled(effect, kLittle)}, seed);
   fit::joint::JointOptions options;
-  if (!stage.scenario.scalar) options.field_nT = stage.scenario.f_nT;
+  options.geometry = geometry_of(stage);
+  if (!stage.scenario.scalar && !stage.scenario.reference) options.field_nT = stage.scenario.f_nT;
   const auto fit = fit::joint::fit_joint(without, options);
   if (!fit) throw std::runtime_error(fit.error().text());
   const criticism::tests::Residual residual(fit->problem, fit->state, 0);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/sensor/geometry.h"
 #include "proto/pose.h"
 #include "tests/rig/effect_kind.h"
 #include "tests/rig/simulated_table.h"
@@ -32,6 +33,13 @@ struct Stage {
 [[nodiscard]] Stage full_stage(std::uint64_t seed);
 /// A table with one axis: an array mounted in five ways, eighteen azimuths each.
 [[nodiscard]] Stage remounted_stage(std::uint64_t seed);
+
+/// One sensor: turned by a table in the field of the site, with a scalar reference.
+[[nodiscard]] Stage one_turned_stage(std::uint64_t seed);
+/// One sensor at rest in a coil cage: 120 fields from zero to full scale, known as vectors.
+[[nodiscard]] Stage one_caged_stage(std::uint64_t seed);
+/// Where the sensors of a stage stand.
+[[nodiscard]] sensor::Geometry geometry_of(const Stage& stage);
 
 /// As a scenario holds it. Throws where the rig knows no such effect.
 [[nodiscard]] std::shared_ptr<const rig::Effect> make_planted(const Planted& effect);
