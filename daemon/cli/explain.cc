@@ -13,6 +13,7 @@
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
+#include "daemon/cli/remaining_law.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -27,13 +28,15 @@ constexpr const char* kExplainHelp =
     "Columns: k, number of coefficients; d and p, how far beyond chance; share, the part of the excess of\n"
     "chi-square that the effect would take away (1: all of it; -: the noise is not known from these poses,\n"
     "and nothing was found).\n\n"
+    "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula beside what was\n"
+    "named; --no-law leaves that out.\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";
 
 struct ExplainArguments {
   std::string run;
-  bool confusion{false}, impact{false};
+  bool confusion{false}, impact{false}, no_law{false};
   std::shared_ptr<FitFlags> flags;
 };
 
@@ -65,14 +68,20 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   if (!explained) return report(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
+  calib::fit::FitOptions whole = *options;
+  whole.effects = explained->model;
+  const RemainingLaw law =
+      args.no_law ? std::nullopt : remaining_law(source->table, whole, explained->finding);
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*explained);
+    if (!args.no_law) out["law"] = law_json(law, args.run);
     out["chosen_in_doubt"] = doubts_json(*doubts);
     if (args.confusion) out["figures"] = figures_json(*explained);
     print_json(out);
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
     if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
+    text += law_text(law, whole, args.run);
     print_text(session, text);
   }
   return explained->finding == calib::criticism::search::Finding::pass ? 0 : 1;
@@ -89,6 +98,7 @@ void add_explain(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_flag("--confusion", args->confusion, "also: which effects look alike on this run");
   command->add_flag("--impact", args->impact, "also: what ignoring each effect would do to the tensor, nT/m");
+  command->add_flag("--no-law", args->no_law, "without a search for the formula of what remains");
   args->flags = add_model_flags(command);
 }
 

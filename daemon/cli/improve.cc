@@ -8,6 +8,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/remaining_law.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -17,18 +18,21 @@ constexpr const char* kImproveHelp =
     "Each round adds the effect that explain names, fits everything again and judges what is left. An "
     "effect\n"
     "that makes held-out poses worse is not added.\n\n"
+    "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula; --no-law "
+    "leaves\n"
+    "that out.\n\n"
     "  mgt improve run.mgtrun -o cal.json\n\n"
     "Exit code 0: nothing stands out any more. 1: something is left.";
 
 struct ImproveArguments {
   std::string run, output;
+  bool no_law{false};
   std::shared_ptr<FitFlags> flags;
 };
 
-/// What each effect of the final model removes from the error.
-std::optional<calib::criticism::search::Waterfall> waterfall_of(
-    const PoseTable& table, calib::fit::FitOptions options,
-    const calib::calibration::Calibration& calibration) {
+/// The options with the effects of the final model; empty if one of them is not known.
+std::optional<calib::fit::FitOptions> with_final_model(calib::fit::FitOptions options,
+                                                       const calib::calibration::Calibration& calibration) {
   options.effects.clear();
   for (const calib::calibration::CalibratedEffect& e : calibration.effects) {
     auto effect =
@@ -36,8 +40,16 @@ std::optional<calib::criticism::search::Waterfall> waterfall_of(
     if (!effect) return std::nullopt;
     options.effects.push_back(std::move(*effect));
   }
+  return options;
+}
+
+/// What each effect of the final model removes from the error.
+std::optional<calib::criticism::search::Waterfall> waterfall_of(const PoseTable& table,
+                                                                const calib::fit::FitOptions& options) {
   if (options.effects.empty()) return std::nullopt;
-  auto steps = calib::criticism::search::waterfall(table, options);
+  auto steps = with_progress("waterfall", options, [&](const calib::fit::FitOptions& told) {
+    return calib::criticism::search::waterfall(table, told);
+  });
   return steps ? std::optional(std::move(*steps)) : std::nullopt;
 }
 
@@ -57,16 +69,19 @@ int run_improve(const Session& session, const ImproveArguments& args) {
       return report(session, written.error());
     fmt::print(stderr, "calibration {} written to {}\n", calibration.id, args.output);
   }
-  const auto steps = with_progress("waterfall", *options, [&](const calib::fit::FitOptions& told) {
-    return waterfall_of(source->table, told, improved->fit.calibration);
-  });
+  const auto whole = with_final_model(*options, improved->fit.calibration);
+  const auto steps = whole ? waterfall_of(source->table, *whole) : std::nullopt;
+  const RemainingLaw law =
+      whole && !args.no_law ? remaining_law(source->table, *whole, improved->finding) : std::nullopt;
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);
     out["waterfall"] = steps ? calib::report::to_json(*steps) : nlohmann::json();
+    if (!args.no_law) out["law"] = law_json(law, args.run);
     print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*improved));
     if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
+    if (law) fmt::print("{}", law_text(law, *whole, args.run));
   }
   return improved->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }
@@ -81,6 +96,7 @@ void add_improve(CLI::App& app, Session& session) {
   command->footer(kImproveHelp);
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "write the calibration here (CAL.json)");
+  command->add_flag("--no-law", args->no_law, "without a search for the formula of what remains");
   args->flags = add_model_flags(command);
 }
 

@@ -14,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class NextLaw : public ::testing::Test {
  protected:
@@ -29,12 +30,13 @@ class NextLaw : public ::testing::Test {
     return json::parse(answer.out, nullptr, false);
   }
   /// A rig with a fourth power of its own reading on s3.z; noise by `seed`.
-  std::string scenario(int seed) {
+  std::string scenario(int seed, double size_nT = 0.08) {
     const std::string path = file("s" + std::to_string(seed) + ".toml");
     std::ofstream(path) << "[rig]\nname = \"quartic\"\nparameters = \"table6\"\nseed = " << seed
                         << "\n[temperature]\nstart_degC = 20.0\nramp_degC_per_h = 3.0\n"
                            "head_degC = [0.0, 0.3, -0.2, 0.1]\n"
-                           "[[effect]]\nname = \"hidden.quartic\"\nwhere = \"s3.z\"\nnT_at_F0 = 0.08\n";
+                           "[[effect]]\nname = \"hidden.quartic\"\nwhere = \"s3.z\"\nnT_at_F0 = "
+                        << size_nT << "\n";
     return path;
   }
   [[nodiscard]] std::string file(const std::string& name) const { return dir_ / name; }
@@ -89,6 +91,36 @@ TEST_F(NextLaw, FormulasEffectsAndPlacesCanBeNamed) {
   EXPECT_THAT(doubt.at("rivals").dump(), HasSubstr("(u/50000)^4"));
   EXPECT_THAT(doubt.at("rivals").dump(), HasSubstr("(u/50000)^6"));
   EXPECT_FALSE(doubt.at("next").empty());
+}
+
+/// A law that the library has only a surrogate for: both commands go on to its formula by themselves.
+TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
+  const std::string table = file("strong.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13, 0.3), "-o", table}).exit_code, 0);
+  for (const std::string command : {"explain", "improve"}) {
+    const json whole = json::parse(run({"mgt", command, table, "--json"}).out, nullptr, false);
+    ASSERT_TRUE(whole.contains("law")) << command;
+    EXPECT_EQ(whole.at("law").at("schema"), "mgt.discover/1");
+    EXPECT_EQ(whole.at("law").at("verdict"), "LAW") << command;
+    EXPECT_EQ(whole.at("law").at("laws").at(0).at("formulas").at(0).at("formula"), "z^4");
+    const json bare = json::parse(run({"mgt", command, table, "--no-law", "--json"}).out, nullptr, false);
+    EXPECT_EQ(bare.at("verdict"), whole.at("verdict"));
+    EXPECT_FALSE(bare.contains("law")) << command;
+    const Finished text = run({"mgt", command, table});
+    EXPECT_EQ(text.exit_code, 1);
+    EXPECT_THAT(text.out, HasSubstr("A formula for what remains beside axis.quadratic@s3.z"));
+    EXPECT_THAT(text.out, HasSubstr("LAW: z^4 at s3.z."));
+    EXPECT_THAT(run({"mgt", command, table, "--no-law"}).out, Not(HasSubstr("A formula for")));
+  }
+}
+
+TEST_F(NextLaw, NoFormulaIsLookedForWhereNothingRemains) {
+  const std::string table = file("clean.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13, 0), "-o", table}).exit_code, 0);
+  const json explained = ask({"explain", table});
+  EXPECT_EQ(explained.at("verdict"), "PASS");
+  EXPECT_TRUE(explained.at("law").is_null());
+  EXPECT_TRUE(ask({"improve", table}).at("law").is_null());
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ constexpr std::array kReport{kRun, kWith};
 
 constexpr std::array kVerbs{
     JobVerb{"compare", kJudged, "--poses --json"},
-    JobVerb{"explain", kJudged, "--confusion --impact --json"},
+    JobVerb{"explain", kJudged, "--confusion --impact --no-law --json"},
     JobVerb{"fit", kJudged, "--json"},
     JobVerb{"why", kOfOne, "--poses --json"},
     JobVerb{"discover", kJudged, "--json"},
