@@ -9,6 +9,8 @@
 #include "calib/criticism/search/choice.h"
 #include "calib/criticism/search/explain.h"
 #include "calib/criticism/search/model_change.h"
+#include "calib/effects/laws/live_memory.h"
+#include "calib/effects/laws/run_memory.h"
 #include "calib/effects/library/library.h"
 #include "calib/report/choice_text.h"
 #include "calib/report/explain_figures.h"
@@ -95,6 +97,11 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
   return good ? 0 : 1;
 }
 
+/// An effect that looks back over the run, and that nothing follows sample by sample.
+bool is_left_out_of_stream(const calib::effects::Effect& effect) {
+  return effect.missing({}) == calib::effects::laws::kNoMemory && effect.live().memory == nullptr;
+}
+
 int run_add(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags, args.keeping());
   if (!run) return report(session, run.error());
@@ -108,6 +115,11 @@ int run_add(const Session& session, const ModelArguments& args) {
   if (!change) return report(session, change.error());
   const auto found = calib::effects::library::make_effect(change->spec, sensors);
   if (!found) return report(session, found.error());
+  if (is_left_out_of_stream(**found))
+    fmt::print(stderr,
+               "mgt: {0} looks back over the poses of a run, and samples of a stream have none before them: "
+               "mgtd leaves\n     {0} out of the stream and counts its size as uncertainty there\n",
+               (*found)->name());
   calib::criticism::search::Choice choice;
   calib::criticism::search::ExplainOptions without{.fit = run->options,
                                                    .also = formulas_of(run->source, run->options)};

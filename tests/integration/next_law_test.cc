@@ -123,5 +123,17 @@ TEST_F(NextLaw, NoFormulaIsLookedForWhereNothingRemains) {
   EXPECT_TRUE(ask({"improve", table}).at("law").is_null());
 }
 
+/// A fit knows what a sensor read at the pose before; a stream does not.
+TEST_F(NextLaw, AddSaysWhichFormulasTheStreamLeavesOut) {
+  const std::string table = file("first.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13), "-o", table}).exit_code, 0);
+  const auto said = [&](const std::string& effect) {
+    return run({"mgt", "add", effect, table, "--try"}).err;
+  };
+  EXPECT_THAT(said("before@s3.z,level=axis,expr=prev_u/50000"), HasSubstr("before out of the stream"));
+  EXPECT_THAT(said("now@s3.z,level=axis,expr=(u/50000)^4"), Not(HasSubstr("stream")));
+  EXPECT_THAT(said("axis.hysteresis@s3.z"), Not(HasSubstr("stream"))) << "followed sample by sample";
+}
+
 }  // namespace
 }  // namespace mgtd::testing
