@@ -16,7 +16,7 @@ struct OutlierNode {
   std::string unit;      ///< "nT", or "deg" for angles
   double sigmas{0};      ///< of the shift, when it was found
   std::size_t place{0};  ///< of the pose among those fitted
-  std::string cause{};   ///< "saturated", "stuck", or empty
+  std::string cause{};   ///< "saturated", "stuck", "a source that came and went", or empty
 };
 
 /// Whether the node speaks of this reading.

@@ -237,6 +237,7 @@ std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const Join
       if (rows[static_cast<std::size_t>(row)] && !covered) out.push_back(node(problem, state, k, row));
     }
   }
+  tell_passing_sources(out, problem.poses.size());
   return out;
 }
 

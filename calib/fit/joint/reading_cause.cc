@@ -34,4 +34,20 @@ std::string cause_of(const JointProblem& problem, std::size_t pose, int channel)
   return same(pose + 1) || (pose > 0 && same(pose - 1)) ? "stuck" : "";
 }
 
+void tell_passing_sources(std::vector<OutlierNode>& nodes, std::size_t poses) {
+  constexpr std::size_t kShortest = 3;
+  std::vector<OutlierNode*> stretch;
+  const auto end_stretch = [&] {
+    if (stretch.size() >= kShortest && stretch.front()->place > 0 && stretch.back()->place + 1 < poses)
+      for (OutlierNode* node : stretch) node->cause = "a source that came and went";
+    stretch.clear();
+  };
+  for (OutlierNode& node : nodes) {
+    if (node.where != "pose" || !node.cause.empty()) continue;
+    if (!stretch.empty() && stretch.back()->place + 1 != node.place) end_stretch();
+    stretch.push_back(&node);
+  }
+  end_stretch();
+}
+
 }  // namespace mgtd::calib::fit::joint

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "calib/fit/joint/joint_problem.h"
+#include "calib/fit/outlier_node.h"
 
-/// Finds from the digits alone why a reading contradicts the others (saturated, stuck): a mean over a dwell
-/// never repeats by chance.
+/// Finds why readings contradict the others: from the digits alone (saturated, stuck), since a mean over a
+/// dwell never repeats by chance, and from where in the run they stand (a source that came and went).
 namespace mgtd::calib::fit::joint {
 
 /// Poses in which this channel reads its largest, or its smallest, value, where three or more share it to the
@@ -16,5 +17,10 @@ namespace mgtd::calib::fit::joint {
 
 /// "saturated", "stuck" (the same value as in the pose before or after), or empty.
 [[nodiscard]] std::string cause_of(const JointProblem& problem, std::size_t pose, int channel);
+
+/// "a source that came and went", for whole poses without another cause, three or more in a row, where the
+/// run of that many `poses` goes on undisturbed before and after them. A stretch at either end of the run may
+/// as well be a step of the site, and gets no cause.
+void tell_passing_sources(std::vector<OutlierNode>& nodes, std::size_t poses);
 
 }  // namespace mgtd::calib::fit::joint

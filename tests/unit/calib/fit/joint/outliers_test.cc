@@ -54,7 +54,19 @@ TEST(Outliers, AreAStretchWhereConsecutivePosesContradictInAllSensors) {
   }
   const std::vector<std::string> texts = left_out(table);
   ASSERT_EQ(texts.size(), 1U);
-  EXPECT_THAT(texts.front(), HasSubstr("poses 41-45 disturbed: all sensors contradict the rest by"));
+  EXPECT_THAT(texts.front(), HasSubstr("poses 41-45 disturbed: a source that came and went, all sensors "
+                                       "contradict the rest by"));
+}
+
+TEST(Outliers, AreNoPassingSourceWhereTheRunEndsWithThem) {
+  PoseTable table = clean_table();
+  for (std::size_t k = table.poses.size() - 5; k < table.poses.size(); ++k) {
+    for (std::size_t i = 0; i < kSensors; ++i)
+      table.poses[k].y_nT[i] += Eigen::Vector3d{30, -50, 80} * (1 + static_cast<double>(i));
+  }
+  const std::vector<std::string> texts = left_out(table);
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_THAT(texts.front(), HasSubstr("poses 153-157 disturbed: all sensors contradict the rest by"));
 }
 
 TEST(Outliers, NameAnAxisThatIsSaturatedAndOneThatIsStuck) {
