@@ -14,9 +14,25 @@ namespace {
 
 using nlohmann::json;
 
+/// What to do where no two names are open and yet the verdict is no explanation; else empty.
+std::string not_explained_text(const criticism::search::NextReport& r) {
+  using criticism::search::Finding;
+  if (r.finding == Finding::bad_data)
+    return "the readings contradict each other (BAD-DATA): mgt explain says where, and what to do before "
+           "anything can be told from them";
+  if (r.finding != Finding::unknown && r.finding != Finding::partial) return {};
+  return fmt::format(
+      "no two effects are left open, but {} ({}): mgt explain says where it shows, mgt report draws it, mgt "
+      "discover looks for its formula, and mgt define takes one of your own",
+      r.finding == Finding::unknown ? "what stands out on this run has no name"
+                                    : "what was named leaves a part unexplained",
+      criticism::search::to_string(*r.finding));
+}
+
 /// Why there is nothing to settle, or nothing that helps; else empty.
 std::string reason_text(const criticism::search::NextReport& r) {
   if (r.nothing_to_settle) {
+    if (std::string text = not_explained_text(r); !text.empty()) return text;
     const auto& [winner, nearest] = *r.nothing_to_settle;
     if (winner.empty())
       return "nothing stands out on this run: there is nothing to settle (two names ask about a pair)";
