@@ -21,13 +21,17 @@ double& reading_of(Pose& pose, int channel) {
   return pose.y_nT.at(static_cast<std::size_t>(channel / 3))[channel % 3];
 }
 
+bool scattered(Gross kind) {
+  return kind == Gross::axis || kind == Gross::pose || kind == Gross::scattered_sensor;
+}
+
 /// The poses that are hit: scattered, or one stretch.
 std::vector<std::size_t> poses_hit(std::size_t poses, const Contamination& what, std::mt19937_64& random) {
   const auto count = static_cast<std::size_t>(
       what.share > 0 ? std::max(1.0, std::round(what.share * static_cast<double>(poses))) : 0);
   std::vector<std::size_t> all(poses);
   std::iota(all.begin(), all.end(), 0U);
-  if (what.kind == Gross::axis || what.kind == Gross::pose) {
+  if (scattered(what.kind)) {
     for (std::size_t k = 0; k < count; ++k) std::swap(all[k], all[k + random() % (poses - k)]);
     all.resize(count);
     return all;
@@ -40,7 +44,8 @@ std::vector<std::size_t> poses_hit(std::size_t poses, const Contamination& what,
 std::bitset<12> channels_hit(Gross kind, std::mt19937_64& random) {
   std::bitset<12> out;
   if (kind == Gross::axis) out.set(random() % 12);
-  if (kind == Gross::sensor) out = std::bitset<12>(0b111U << (3 * (random() % 4)));
+  if (kind == Gross::sensor || kind == Gross::scattered_sensor)
+    out = std::bitset<12>(0b111U << (3 * (random() % 4)));
   if (kind == Gross::pose || kind == Gross::stretch) out.set();
   return out;
 }
@@ -98,6 +103,8 @@ std::string name(Gross kind) {
       return "all readings, scattered poses";
     case Gross::stretch:
       return "all readings, one stretch";
+    case Gross::scattered_sensor:
+      return "one sensor, scattered poses";
   }
   return "";
 }
@@ -114,7 +121,7 @@ Spoilt spoilt(PoseTable table, const Contamination& what, std::uint64_t seed) {
   };
   draw();
   for (std::size_t j = 0; j < hit.size(); ++j) {
-    if (what.kind == Gross::axis || what.kind == Gross::pose) draw();
+    if (scattered(what.kind)) draw();
     const double passed = (static_cast<double>(j) + 0.5) / static_cast<double>(hit.size());
     const double size =
         what.size_nT * (what.kind == Gross::stretch ? std::sin(std::numbers::pi * passed) : 1.0);

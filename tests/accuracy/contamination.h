@@ -16,7 +16,8 @@ namespace mgtd::testing {
 ///   sensor   the three axes of one sensor over one stretch of poses, by a constant
 ///   pose     all twelve readings, in poses scattered over the run, each up or down
 ///   stretch  all twelve over one stretch of poses, rising and falling like a source that passes
-enum class Gross { axis, sensor, pose, stretch };
+///   scattered_sensor  the three axes of one sensor, in scattered poses, each reading up or down
+enum class Gross { axis, sensor, pose, stretch, scattered_sensor };
 [[nodiscard]] std::string name(Gross kind);
 
 struct Contamination {

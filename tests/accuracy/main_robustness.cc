@@ -79,10 +79,11 @@ int main(int argc, char** argv) {
   int runs = 20;
   std::string output;
   std::vector<double> shares{0.01, 0.05, 0.1, 0.2, 0.3};
-  std::vector<int> kinds{0, 1, 2, 3};
+  std::vector<int> kinds{0, 1, 4, 2, 3};
   app.add_option("--runs", runs, "per cell")->capture_default_str();
   app.add_option("--shares", shares, "of the poses")->capture_default_str();
-  app.add_option("--kinds", kinds, "0 axis, 1 sensor, 2 pose, 3 stretch")->capture_default_str();
+  app.add_option("--kinds", kinds, "0 axis, 1 sensor, 2 pose, 3 stretch, 4 sensor in scattered poses")
+      ->capture_default_str();
   app.add_option("-o,--output", output, "file; standard output when absent");
   CLI11_PARSE(app, argc, argv);
   try {

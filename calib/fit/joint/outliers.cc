@@ -71,6 +71,15 @@ void Outliers::leave_out(JointProblem& problem) {
   }
 }
 
+void Outliers::keep_out(JointProblem& problem, const ShiftedStretch& stretch) {
+  restore(problem);
+  for (std::size_t k = stretch.first; k <= stretch.last; ++k) {
+    left_out_[k] |= stretch.rows;
+    changed_[k] = kChanges;
+  }
+  leave_out(problem);
+}
+
 /// Where most poses of a stretch are disturbed in all sensors, or in one, the others of it are not trusted
 /// either.
 void Outliers::fill_stretches(int channels) {

@@ -4,6 +4,7 @@
 
 #include "calib/fit/joint/pose_blame.h"
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/fit/joint/stretch_scan.h"
 #include "calib/fit/outlier_node.h"
 
 /// Finds observations that the other data contradict. Each stays in the table, is left out of the sums, and
@@ -26,6 +27,10 @@ class Outliers {
   /// Gives every observation its weight back, for a while: between this and leave_out() weights may be set.
   void restore(JointProblem& problem) const;
   void leave_out(JointProblem& problem);
+
+  /// Leaves these readings of a stretch out whatever each of its poses shows by itself: no pose of it is
+  /// judged again.
+  void keep_out(JointProblem& problem, const ShiftedStretch& stretch);
 
   [[nodiscard]] bool any() const { return share() > 0; }
   /// Poses of which something is left out, of all poses.

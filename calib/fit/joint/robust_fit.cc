@@ -151,19 +151,42 @@ double cost(const JointProblem& problem, const RobustFit& fit) {
   return sum;
 }
 
-}  // namespace
-
-Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start, const FitNoise& noise,
-                                  double most_left_out, bool& unsettled) {
-  Outliers outliers(most_left_out);
-  noise.apply(problem);
-  refit_nuisances(problem, warm_start);
-  outliers.judge(problem, warm_start, pose_residuals(problem, warm_start));
-  return weighed(problem, std::move(warm_start), noise, std::move(outliers), unsettled);
+/// By how many of its standard deviations the mean square of the whitened residuals is too large.
+double excess(const PoseResiduals& residuals) {
+  const double dof = std::max(residuals.freedom - residuals.fitted, 1.0);
+  return (residuals.noise_ratio.array().square().mean() - 1) * std::sqrt(dof / 2);
 }
 
-Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, double f_nT,
-                             const FitNoise& noise, double most_left_out, bool& unsettled) {
+/// The fit without the stretches that are shifted against the rest (stretch_scan.h); as it was where none is,
+/// or where the rest does not then agree down to the noise of the dwells: that is a law which the model
+/// misses.
+RobustFit without_stretches(JointProblem& problem, RobustFit fit, double most_left_out) {
+  constexpr double kAgrees = 5;
+  constexpr int kMostStretches = 3;
+  if (!fit.noise.sample_nT || fit.noise.noise_inflation > 1 || most_left_out <= 0) return fit;
+  JointProblem other = problem;
+  RobustFit without = fit;
+  for (int i = 0; i < kMostStretches && excess(without.residuals) > kAgrees; ++i) {
+    const auto stretch = shifted_stretch(other, without.solution);
+    if (!stretch) return fit;
+    Outliers outliers = without.outliers;
+    outliers.keep_out(other, *stretch);
+    bool unsettled = false;
+    auto next = weighed(other, without.solution.state, without.noise, std::move(outliers), unsettled);
+    if (!next || next->outliers.too_many() > 0) return fit;
+    next->rounds += without.rounds;
+    next->iterations += without.iterations;
+    next->start = fit.start;
+    without = *std::move(next);
+  }
+  if (excess(without.residuals) > kAgrees) return fit;
+  problem = std::move(other);
+  return without;
+}
+
+/// The better of the fits from all poses and from those that agree.
+Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, double f_nT,
+                              const FitNoise& noise, double most_left_out, bool& unsettled) {
   const AllReadings all = all_readings(problem, f_nT);
   JointProblem other = problem;
   Result<RobustFit> plain = tl::unexpected(start ? Error{} : start.error());
@@ -176,6 +199,26 @@ Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, do
   problem = std::move(other);
   unsettled = false;
   return *std::move(agreed);
+}
+
+}  // namespace
+
+Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start, const FitNoise& noise,
+                                  double most_left_out, bool& unsettled) {
+  Outliers outliers(most_left_out);
+  noise.apply(problem);
+  refit_nuisances(problem, warm_start);
+  outliers.judge(problem, warm_start, pose_residuals(problem, warm_start));
+  auto fit = weighed(problem, std::move(warm_start), noise, std::move(outliers), unsettled);
+  if (!fit) return fit;
+  return without_stretches(problem, *std::move(fit), most_left_out);
+}
+
+Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, double f_nT,
+                             const FitNoise& noise, double most_left_out, bool& unsettled) {
+  auto fit = from_either(problem, std::move(start), f_nT, noise, most_left_out, unsettled);
+  if (!fit) return fit;
+  return without_stretches(problem, *std::move(fit), most_left_out);
 }
 
 }  // namespace mgtd::calib::fit::joint

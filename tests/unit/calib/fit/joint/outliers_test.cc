@@ -126,7 +126,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Cell{{Gross::axis, 0.01, 1000}, true}, Cell{{Gross::axis, 0.2, 1000}, true},
                       Cell{{Gross::sensor, 0.2, 50}, true}, Cell{{Gross::pose, 0.2, 10'000}, true},
                       Cell{{Gross::stretch, 0.2, 200}, true}, Cell{{Gross::sensor, 0.3, 1000}, false},
-                      Cell{{Gross::pose, 0.3, 1000}, false}));
+                      Cell{{Gross::pose, 0.3, 1000}, false}, Cell{{Gross::sensor, 0.1, 0.25}, true},
+                      Cell{{Gross::sensor, 0.2, 0.25}, true}, Cell{{Gross::sensor, 0.3, 0.25}, false},
+                      Cell{{Gross::scattered_sensor, 0.2, 50}, true}));
 
 TEST(Contaminated, TwoStepFitLeavesOutPoses) {
   using namespace mgtd::testing;
