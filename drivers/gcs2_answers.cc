@@ -56,7 +56,7 @@ bool Gcs2Driver::take_error(const Question& question, std::string_view line) {
   queue_.answered();
   if (*error == 0) {
     // The table has its time from when it was told, however long the telling took.
-    if (job_ == Job::moving && question.concerning.starts_with("MOV")) limit_job(move_s_);
+    if (job_ == Job::moving && question.concerning.starts_with("MOV")) limit_job(move_.longest_s);
     return true;
   }
   const ErrorText text = explain(*error);
@@ -101,7 +101,7 @@ bool Gcs2Driver::take_state(const Question& question, std::string_view line) {
   Axis& axis = axes_[question.axis];
   if (question.ask == Ask::moving) {
     const auto mask = parse_moving(line);
-    if (mask) moving_mask_ = *mask;
+    if (mask) move_.axes_moving = *mask;
     if (mask) queue_.answered();
     return mask.has_value();
   }
@@ -119,7 +119,7 @@ bool Gcs2Driver::take_state(const Question& question, std::string_view line) {
   if (question.ask == Ask::on_target) axis.on_target = *flag;
   if (question.ask == Ask::referenced) on_referenced(axis, *flag);
   if (question.ask == Ask::ready && *flag) ask_value(Ask::referenced, "FRF?", homing_axis_);
-  if (question.ask == Ask::ready && !*flag && asked_overdue_) took_too_long();
+  if (question.ask == Ask::ready && !*flag && move_.asked_overdue) took_too_long();
   return true;
 }
 
@@ -198,7 +198,7 @@ void Gcs2Driver::give_up(const std::string& asked) {
 }
 
 void Gcs2Driver::report(bool moving) {
-  emit(TableReading{now_, angles(), all_referenced(), moving, arrived_ && !moving});
+  emit(TableReading{now_, angles(), all_referenced(), moving, move_.arrived && !moving});
 }
 
 bool Gcs2Driver::all_referenced() const {

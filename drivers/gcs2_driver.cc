@@ -64,8 +64,8 @@ void Gcs2Driver::on_close(Stamp now) {
   queue_.clear();
   wants_home_ = false;
   wanted_.reset();
-  arrived_ = false;
-  moving_mask_ = 0;
+  move_.arrived = false;
+  move_.axes_moving = 0;
   if (std::exchange(job_, Job::none) != Job::none)
     emit(DeviceFault{
         now, "the port was lost while the table moved: the table cannot be reached and may still move",
@@ -85,7 +85,7 @@ void Gcs2Driver::on_tick(Stamp now) {
     give_up(*given_up);
     return;
   }
-  overdue_ = overdue_ || job_deadline_.passed(now.mono);
+  move_.overdue = move_.overdue || job_deadline_.passed(now.mono);
   pump();
 }
 
@@ -146,8 +146,8 @@ void Gcs2Driver::servo(bool on) {
 }
 
 void Gcs2Driver::ask_cycle() {
-  cycle_is_of_this_move_ = true;
-  asked_overdue_ = overdue_;
+  move_.cycle_is_of_it = true;
+  move_.asked_overdue = move_.overdue;
   ask(Ask::moving, std::string(kAskMoving), kPlainForm);
   for (std::size_t i = 0; job_ == Job::moving && i < axes_.size(); ++i) ask_value(Ask::on_target, "ONT?", i);
   for (std::size_t i = 0; i < axes_.size(); ++i) ask_value(Ask::position, "POS?", i);
@@ -157,7 +157,7 @@ void Gcs2Driver::poll() {
   if (!queue_.idle() || now_.mono < next_poll_) return;
   next_poll_ = now_.mono + from_seconds(busy() ? kBusyPoll_s : kIdlePoll_s);
   if (job_ == Job::homing) {
-    asked_overdue_ = overdue_;
+    move_.asked_overdue = move_.overdue;
     ask(Ask::ready, std::string(kAskReady), kReadyForm);
   } else {
     ask_cycle();
@@ -191,7 +191,7 @@ void Gcs2Driver::stop() {
 
 void Gcs2Driver::halt() {
   job_ = Job::none;
-  arrived_ = false;
+  move_.arrived = false;
   queue_.interrupt(kStop, now_.mono);
   ask(Ask::stop_error, query("ERR?"), kPlainForm);
   if (settings_.servo_off_in_dwell) servo(false);
@@ -212,7 +212,7 @@ void Gcs2Driver::begin_wanted() {
 
 void Gcs2Driver::begin_home() {
   homing_axis_ = 0;
-  arrived_ = false;
+  move_.arrived = false;
   job_ = Job::homing;
   reference_next();
   report(true);
@@ -265,21 +265,21 @@ void Gcs2Driver::begin_move(const TableAngles& target) {
     set(move(axis.settings.axis, axis.target_deg));
   }
   job_ = Job::moving;
-  cycle_is_of_this_move_ = false;
-  arrived_ = false;
-  move_s_ = longest_deg / settings_.velocity_deg_per_s * 2 + kMoveMargin_s;
-  limit_job(move_s_);
+  move_.cycle_is_of_it = false;
+  move_.arrived = false;
+  move_.longest_s = longest_deg / settings_.velocity_deg_per_s * 2 + kMoveMargin_s;
+  limit_job(move_.longest_s);
   next_poll_ = now_.mono;
   report(true);
 }
 
 void Gcs2Driver::limit_job(double seconds) {
   job_deadline_.set(now_.mono, seconds);
-  overdue_ = asked_overdue_ = false;
+  move_.overdue = move_.asked_overdue = false;
 }
 
 void Gcs2Driver::arrive() {
-  arrived_ = job_ == Job::moving;
+  move_.arrived = job_ == Job::moving;
   job_ = Job::arriving;
   if (settings_.servo_off_in_dwell) servo(false);
   ask_cycle();
@@ -293,14 +293,14 @@ void Gcs2Driver::end_of_cycle() {
     next_poll_ = now_.mono + from_seconds(kIdlePoll_s);
   } else if (job_ == Job::moving) {
     const bool there = std::all_of(axes_.begin(), axes_.end(), [](const Axis& a) { return a.on_target; });
-    if (moving_mask_ == 0 && there && cycle_is_of_this_move_) {
+    if (move_.axes_moving == 0 && there && move_.cycle_is_of_it) {
       arrive();
       return;
     }
-    if (asked_overdue_) return took_too_long();
+    if (move_.asked_overdue) return took_too_long();
   } else if (job_ == Job::arriving) {
     job_ = Job::none;
-  } else if (arrived_) {
+  } else if (move_.arrived) {
     check_dwell();
   }
   report(busy());

@@ -70,6 +70,15 @@ class Gcs2Driver final : public LineBased<Turntable> {
     double position_deg{0}, target_deg{0};
     bool referenced{false}, on_target{false};
   };
+  /// The move, or the way home, that the table is on or was last.
+  struct Move {
+    double longest_s{0};           ///< that it may take
+    bool overdue{false};           ///< it took longer ...
+    bool asked_overdue{false};     ///< ... and the poll under way was begun after that
+    bool cycle_is_of_it{false};    ///< a poll begun before the move says nothing about it
+    std::uint32_t axes_moving{0};  ///< a bit each, as byte 05 answers
+    bool arrived{false};
+  };
   using Question = Query<Ask>;
 
   void start();
@@ -106,7 +115,7 @@ class Gcs2Driver final : public LineBased<Turntable> {
   void report(bool moving);
   [[nodiscard]] bool all_referenced() const;
   [[nodiscard]] TableAngles angles() const;
-  [[nodiscard]] bool busy() const { return job_ != Job::none || moving_mask_ != 0; }
+  [[nodiscard]] bool busy() const { return job_ != Job::none || move_.axes_moving != 0; }
 
   Gcs2Settings settings_;
   std::vector<Axis> axes_;
@@ -117,15 +126,10 @@ class Gcs2Driver final : public LineBased<Turntable> {
   Stamp now_;
   Instant next_poll_{};
   Deadline job_deadline_, retry_;
-  double move_s_{0};           ///< longest that the move may take
-  bool overdue_{false};        ///< it took longer ...
-  bool asked_overdue_{false};  ///< ... and the poll under way was begun after that
   bool wants_home_{false};
   std::optional<TableAngles> wanted_;
   std::size_t homing_axis_{0};
-  std::uint32_t moving_mask_{0};
-  bool arrived_{false};
-  bool cycle_is_of_this_move_{false};  ///< a poll begun before the move says nothing about it
+  Move move_;
   std::string last_start_fault_;
   std::string strange_;  ///< the last line that answered nothing, since an answer came
 };
