@@ -16,7 +16,7 @@
 #include <optional>
 #include <utility>
 
-#include "drivers/patient_timer.h"
+#include "drivers/grace_timer.h"
 #include "drivers/serial_port.h"
 
 namespace mgtd::drivers {
@@ -69,7 +69,7 @@ class PortLink::Impl : public std::enable_shared_from_this<Impl> {
 
   std::optional<SerialPort> port_;  ///< owns the descriptor that stream_ borrows
   asio::posix::stream_descriptor stream_;
-  PatientTimer tick_timer_;
+  GraceTimer tick_timer_;
   asio::steady_timer open_timer_;
   std::array<std::byte, 4096> in_{};
   std::string out_, in_flight_;

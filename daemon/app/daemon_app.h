@@ -24,7 +24,7 @@
 #include "daemon/store/calibration_store.h"
 #include "daemon/store/worker.h"
 #include "drivers/clock.h"
-#include "drivers/patient_timer.h"
+#include "drivers/grace_timer.h"
 
 /// DaemonApp is the service: it tells the core what happens at ports, sockets and clock, and does what the
 /// core decides.
@@ -79,7 +79,7 @@ class DaemonApp : private core::CoreActions {
   serve::console::ConsoleServer console_;
   run::RunExecutor run_;
   Ports ports_;
-  drivers::PatientTimer timer_;
+  drivers::GraceTimer timer_;
 
   Stamp started_;
   EpochRate rate_;

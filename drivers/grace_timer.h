@@ -8,15 +8,15 @@
 
 #include "proto/time.h"
 
-/// This timer fires late rather than blame a device whose bytes are still waiting to be read. A program that
-/// slept (a busy host, a stopped virtual machine, a slow disk) finds bytes waiting that came meanwhile; it
-/// must read them before it calls a device silent. So when this timer fires late, it waits once more for a
+/// A GraceTimer fires late rather than blame a device whose bytes are still waiting to be read. A program
+/// that slept (a busy host, a stopped virtual machine, a slow disk) finds bytes waiting that came meanwhile;
+/// it must read them before it calls a device silent. So when this timer fires late, it waits once more for a
 /// moment, and the readings go first.
 namespace mgtd::drivers {
 
-class PatientTimer {
+class GraceTimer {
  public:
-  explicit PatientTimer(boost::asio::io_context& io) : timer_(io) {}
+  explicit GraceTimer(boost::asio::io_context& io) : timer_(io) {}
 
   /// Calls `then()` after `period` of host time, on the io_context; not at all when cancelled.
   template <class Then>
