@@ -52,13 +52,15 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION, array_}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
-      console_(io,
-               {.listen = config_.console_listen,
-                .hosts = config_.console_hosts,
-                .control_from_network = config_.console_control_from_network,
-                .workbench = serve::console::WorkbenchConfig{.runs = runs_directory(config_),
-                                                             .mgt = serve::console::mgt_beside_us()}},
-               console_source()),
+      console_{{},
+               serve::console::ConsoleServer(
+                   io,
+                   {.listen = config_.console_listen,
+                    .hosts = config_.console_hosts,
+                    .control_from_network = config_.console_control_from_network,
+                    .workbench = serve::console::WorkbenchConfig{.runs = runs_directory(config_),
+                                                                 .mgt = serve::console::mgt_beside_us()}},
+                   console_source())},
       run_(
           config_, runs_directory(config_), store_, worker_, core_.run(),
           {.limits = [this]() -> const drivers::TableLimits& { return core_.instruments().table().limits(); },
@@ -69,7 +71,7 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       ports_(io, clock_, config_, core_.instruments()),
       timer_(io),
       started_(clock_.now()),
-      rate_(config_.speed_up) {}
+      published_{.rate = EpochRate(config_.speed_up)} {}
 
 DaemonApp::~DaemonApp() { stop(); }
 
@@ -86,7 +88,7 @@ Result<void> DaemonApp::start() {
   if (auto bound = stream_.start(); !bound) return bound;
   if (auto bound = control_.start(); !bound) return bound;
   // What can be done without: the rig is measured and operated all the same.
-  if (auto bound = console_.start(); !bound) spdlog::warn("no web console: {}", bound.error().text());
+  if (auto bound = console_.server.start(); !bound) spdlog::warn("no web console: {}", bound.error().text());
   if (config_.console_control_from_network)
     spdlog::warn("the console takes control from the network: its token travels unencrypted");
   core_.start_instruments(clock_.now());
@@ -114,7 +116,7 @@ serve::console::ConsoleSource DaemonApp::console_source() {
           .lane = [this](std::string_view query) -> Result<std::string> {
             const auto request = serve::console::parse_lane_request(query);
             if (!request) return tl::unexpected(request.error());
-            return serve::console::answer(*request, lanes_);
+            return serve::console::answer(*request, console_.lanes);
           },
           .stream = [this](const std::shared_ptr<serve::Peer>& peer) { stream_.admit(peer); },
           .control = [this](const std::shared_ptr<serve::Peer>& peer,
@@ -127,7 +129,7 @@ void DaemonApp::stop() {
   run_.abandon();
   core_.abandon_run(clock_.now());
   ports_.shutdown();
-  console_.stop();
+  console_.server.stop();
   stream_.stop();
   control_.stop();
 }
@@ -153,15 +155,15 @@ void DaemonApp::use_active_calibration() {
 
 void DaemonApp::publish(const Epoch& epoch, const TensorSample& sample, std::span<const InputValue> inputs) {
   stream_.publish(sample, inputs);
-  lanes_.add(sample, epoch.T_degC, inputs);
-  last_skew_s_ = epoch.skew_bound_s;
-  ++published_;
+  console_.lanes.add(sample, epoch.T_degC, inputs);
+  published_.last_skew_s = epoch.skew_bound_s;
+  ++published_.count;
 }
 
 void DaemonApp::publish(const Gap& gap) {
   stream_.publish(gap);
-  lanes_.add(gap);
-  ++published_;
+  console_.lanes.add(gap);
+  ++published_.count;
 }
 
 void DaemonApp::say(const core::Remark& remark, Instant now) {
@@ -176,7 +178,7 @@ void DaemonApp::tick() {
   const Stamp now = clock_.now();
   core_.tick(now);
   if (const auto lost = recording_.tick(now)) core_.note(*lost, clock_.now());
-  if (rate_.is_due(std::chrono::steady_clock::now())) every_second(now);
+  if (published_.rate.is_due(std::chrono::steady_clock::now())) every_second(now);
   if (stopping_) return;
   timer_.wait(kTick, [this] {
     if (!stopping_) tick();
@@ -185,7 +187,7 @@ void DaemonApp::tick() {
 
 void DaemonApp::tell_drops(const StatusReport& status, Instant at) {
   const std::uint64_t drops = status.stream.dropped() + status.control.dropped();
-  if (drops == std::exchange(told_drops_, drops)) return;
+  if (drops == std::exchange(logged_.drops, drops)) return;
   if (!status.stream.last_drop.empty()) quiet_.warn("stream client", status.stream.last_drop, at);
   if (!status.control.last_drop.empty()) quiet_.warn("control client", status.control.last_drop, at);
 }
@@ -196,16 +198,16 @@ void DaemonApp::tell_clocks(const StatusReport& status, Instant at) {
   for (const DeviceStatus& device : status.devices) {
     const bool wrong = device.clock && !device.clock->trouble.empty() &&
                        device.clock->rate_error_pm < std::abs(device.clock->rate_error) / 10;
-    bool& told = told_clocks_[device.name];
-    if (wrong && !told) quiet_.warn(device.name + " clock", device.clock->trouble, at);
-    if (device.clock) told = wrong || (told && !device.clock->settled);
+    bool& logged = logged_.wrong_clocks[device.name];
+    if (wrong && !logged) quiet_.warn(device.name + " clock", device.clock->trouble, at);
+    if (device.clock) logged = wrong || (logged && !device.clock->settled);
   }
 }
 
 void DaemonApp::every_second(Stamp now) {
   const Instant host = std::chrono::steady_clock::now();
   const std::uint64_t epochs = core_.pipeline().sampler().health().epochs;
-  rate_.add(epochs, host);
+  published_.rate.add(epochs, host);
   recording_.guard_reserve();
   core_.every_second(now);
   const StatusReport status = report();
@@ -215,7 +217,7 @@ void DaemonApp::every_second(Stamp now) {
   stream_.publish(status);
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),
                             name(run_.status(now.mono).state)));
-  if (watchdog_ && watchdog_->is_due(published_, epochs, host)) notify_watchdog();
+  if (watchdog_ && watchdog_->is_due(published_.count, epochs, host)) notify_watchdog();
 }
 
 }  // namespace mgtd::daemon::app

@@ -42,6 +42,21 @@ class DaemonApp : private core::CoreActions {
   void stop();
 
  private:
+  struct Console {
+    serve::console::LaneHistory lanes;
+    serve::console::ConsoleServer server;
+  };
+  struct Published {
+    EpochRate rate;
+    std::optional<double> last_skew_s{};
+    std::uint64_t count{0};  ///< epochs and gaps
+  };
+  /// What the log says already, so that it is said once.
+  struct Logged {
+    std::map<std::string, bool> wrong_clocks;  ///< of devices, by name
+    std::uint64_t drops{0};                    ///< clients that were disconnected
+  };
+
   void send(Slot slot, std::string_view bytes) override { ports_.send(slot, bytes); }
   void record(const RawRecord& record) override { recording_.append(record); }
   void publish(const Epoch& epoch, const TensorSample& sample, std::span<const InputValue> inputs) override;
@@ -75,18 +90,14 @@ class DaemonApp : private core::CoreActions {
   Recording recording_;
   serve::StreamServer stream_;
   serve::ControlServer control_;
-  serve::console::LaneHistory lanes_;
-  serve::console::ConsoleServer console_;
+  Console console_;
   run::RunExecutor run_;
   Ports ports_;
   drivers::GraceTimer timer_;
 
   Stamp started_;
-  EpochRate rate_;
-  std::optional<double> last_skew_s_;
-  std::uint64_t published_{0};               ///< epochs and gaps
-  std::map<std::string, bool> told_clocks_;  ///< wrong rates, as far as the log knows
-  std::uint64_t told_drops_{0};              ///< clients that were disconnected, as far as the log knows
+  Published published_;
+  Logged logged_;
   std::optional<WatchdogFeed> watchdog_;
   bool stopping_{false};
 };

@@ -29,9 +29,9 @@ Reply DaemonApp::answer(const ControlRequest& request) {
       return to_json(report());
     case ControlCommand::console:
       return nlohmann::ordered_json{
-          {"address", console_.address().empty() ? nlohmann::ordered_json()
-                                                 : nlohmann::ordered_json(console_.address())},
-          {"token", console_.token().text()}};
+          {"address", console_.server.address().empty() ? nlohmann::ordered_json()
+                                                        : nlohmann::ordered_json(console_.server.address())},
+          {"token", console_.server.token().text()}};
     case ControlCommand::run_start:
     case ControlCommand::run_dry_run:
     case ControlCommand::run_pause:

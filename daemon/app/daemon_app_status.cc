@@ -62,12 +62,12 @@ StatusReport DaemonApp::report() const {
   }
   out.sampler = {.epochs = sampler.epochs,
                  .gaps = sampler.gaps,
-                 .rate_hz = rate_.rate_hz(),
-                 .skew_bound_s = last_skew_s_};
+                 .rate_hz = published_.rate.rate_hz(),
+                 .skew_bound_s = published_.last_skew_s};
   out.stream = stream_.stats();
   out.control = control_.stats();
   recording_.report(out);
-  if (!console_.address().empty()) out.console = console_.address();
+  if (!console_.server.address().empty()) out.console = console_.server.address();
   std::error_code ec;
   if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
     out.disk_free_bytes = space.available;
