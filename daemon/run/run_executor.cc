@@ -179,7 +179,7 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   judgements_ = judgements_of(*file_);
   auto stored = file_->poses();
   poses_ = stored ? *std::move(stored) : PoseTable{};
-  near_.reset();
+  warm_start_.reset();
   learning_ = false;
   learning_job_.request_stop();
   solving_job_.request_stop();

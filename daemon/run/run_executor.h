@@ -112,9 +112,9 @@ class RunExecutor {
   CurrentRun& run_;
   RunHooks hooks_;
   std::optional<store::RunFile> file_;
-  PoseTable poses_;                                            ///< stored so far; the worker gets copies
-  std::shared_ptr<const calib::fit::joint::JointState> near_;  ///< of the last fit while measuring
-  bool learning_{false};                                       ///< the worker is at such a fit
+  PoseTable poses_;  ///< stored so far; the worker gets copies
+  std::shared_ptr<const calib::fit::joint::JointState> warm_start_;  ///< of the last fit while measuring
+  bool learning_{false};                                             ///< the worker is at such a fit
   std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};
   std::vector<RunJudgement> judgements_;  ///< of the run, as its file has them
   std::optional<calib::calibration::Calibration> solved_;

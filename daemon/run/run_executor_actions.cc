@@ -41,7 +41,7 @@ void RunExecutor::learn_accuracy() {
   if (learning_) return;
   learning_ = true;
   learning_job_ = worker_.run(
-      [poses = poses_, near = near_,
+      [poses = poses_, near = warm_start_,
        options = fit_options(file_->header().options)](std::stop_token stop) mutable {
         options.stop = std::move(stop);
         return calib::fit::joint::accuracy_so_far(poses, options, near.get());
@@ -53,7 +53,7 @@ void RunExecutor::learn_accuracy() {
         if (known) {
           if (std::isfinite(known->worst_nT_per_m()))
             run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
-          near_ = std::make_shared<const calib::fit::joint::JointState>(std::move(known->state));
+          warm_start_ = std::make_shared<const calib::fit::joint::JointState>(std::move(known->state));
         }
         if (poses_.poses.size() != count) learn_accuracy();
       });
