@@ -27,7 +27,7 @@ Journal::Journal(JournalConfig config, Instant now)
 
 Journal::~Journal() {
   if (recording() && !buffer_.empty()) flush();
-  if (recording()) sync_and_close(fd_);
+  if (recording()) sync_and_close(file_.fd);
   for (const int fd : syncs_) sync_and_close(fd);
 }
 
@@ -39,24 +39,24 @@ void Journal::start_file() {
   removed_ += remove_oldest(rotated_files(config_.directory, config_.family, config_.suffix), config_.keep,
                             config_.rotate_bytes);
   do {
-    file_ = rotated_name(config_.directory, config_.name, number++, config_.suffix);
-    fd_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0640);
-  } while (fd_ < 0 && errno == EEXIST);
-  if (fd_ < 0) return stop(refused(errno, "create"));
+    file_.path = rotated_name(config_.directory, config_.name, number++, config_.suffix);
+    file_.fd = ::open(file_.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0640);
+  } while (file_.fd < 0 && errno == EEXIST);
+  if (file_.fd < 0) return stop(refused(errno, "create"));
   RawLogHeader names = config_.header;
-  if (names.run_id.empty()) names.run_id = file_.stem().string();
+  if (names.run_id.empty()) names.run_id = file_.path.stem().string();
   const std::string header = encode_header(names);
-  if (const ssize_t n = ::write(fd_, header.data(), header.size());
+  if (const ssize_t n = ::write(file_.fd, header.data(), header.size());
       n != static_cast<ssize_t>(header.size())) {
     const int os_error = n < 0 ? errno : ENOSPC;
-    ::unlink(file_.c_str());
+    ::unlink(file_.path.c_str());
     return stop(refused(os_error, "write"));
   }
-  in_file_ = header.size();
+  file_.bytes = header.size();
   written_ += header.size();
-  unsynced_ = true;
-  file_since_ = now_;
-  header_ = in_file_;
+  file_.unsynced = true;
+  file_.since = now_;
+  file_.header = file_.bytes;
   encoder_ = {};
 }
 
@@ -84,7 +84,7 @@ void Journal::tick(Instant now) {
 void Journal::flush() {
   std::size_t done = 0;
   while (recording() && done < buffer_.size()) {
-    const ssize_t n = ::write(fd_, buffer_.data() + done, buffer_.size() - done);
+    const ssize_t n = ::write(file_.fd, buffer_.data() + done, buffer_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       const int os_error = n == 0 ? ENOSPC : errno;
@@ -92,31 +92,31 @@ void Journal::flush() {
       return stop(refused(os_error, "write"));
     }
     done += static_cast<std::size_t>(n);
-    in_file_ += static_cast<std::uint64_t>(n);
+    file_.bytes += static_cast<std::uint64_t>(n);
     written_ += static_cast<std::uint64_t>(n);
-    unsynced_ = true;
+    file_.unsynced = true;
   }
-  if (recording() && in_file_ > header_ && trouble_) {  // a disk that takes a header may take no more
+  if (recording() && file_.bytes > file_.header && trouble_) {  // a disk that takes a header may take no more
     resumed_ = true;
     trouble_.reset();
   }
   buffer_.clear();
-  if (in_file_ >= config_.rotate_bytes || now_ - file_since_ >= config_.rotate_after) rotate();
+  if (file_.bytes >= config_.rotate_bytes || now_ - file_.since >= config_.rotate_after) rotate();
 }
 
 void Journal::rotate() {
   if (!recording()) return;
-  syncs_.push_back(std::exchange(fd_, -1));
-  unsynced_ = false;
+  syncs_.push_back(std::exchange(file_.fd, -1));
+  file_.unsynced = false;
   start_file();
 }
 
 std::vector<int> Journal::take_syncs() {
   std::vector<int> out = std::exchange(syncs_, {});
-  if (recording() && unsynced_ && now_ - last_sync_ >= config_.sync_every) {
+  if (recording() && file_.unsynced && now_ - last_sync_ >= config_.sync_every) {
     last_sync_ = now_;
-    unsynced_ = false;
-    if (const int copy = ::fcntl(fd_, F_DUPFD_CLOEXEC, 0); copy >= 0) out.push_back(copy);
+    file_.unsynced = false;
+    if (const int copy = ::fcntl(file_.fd, F_DUPFD_CLOEXEC, 0); copy >= 0) out.push_back(copy);
   }
   return out;
 }
@@ -143,7 +143,7 @@ void Journal::release() {
 Error Journal::refused(int os_error, const char* doing) const {
   return {ErrorCode::io,
           fmt::format("cannot {} {}: {}; {} are no longer recorded, everything else goes on", doing,
-                      file_.string(), std::strerror(os_error), config_.what),
+                      file_.path.string(), std::strerror(os_error), config_.what),
           os_error == ENOSPC || os_error == EDQUOT || os_error == EFBIG
               ? "free space on its disk; recording goes on by itself"
               : "check the disk and the directory's owner; recording goes on by itself"};
@@ -152,10 +152,10 @@ Error Journal::refused(int os_error, const char* doing) const {
 void Journal::stop(Error why) {
   lost_ += std::exchange(buffer_, {}).size();
   if (recording() && trouble_) {  // it is tried every retry_every: a try leaves nothing behind
-    lost_ += in_file_ - header_;
-    ::unlink(file_.c_str());
+    lost_ += file_.bytes - file_.header;
+    ::unlink(file_.path.c_str());
   }
-  if (recording()) ::close(std::exchange(fd_, -1));
+  if (recording()) ::close(std::exchange(file_.fd, -1));
   if (!trouble_) {
     ++stops_;
     untold_ = why;

@@ -60,7 +60,7 @@ class Journal {
   [[nodiscard]] std::vector<int> take_syncs();
   void synced(int os_error);
 
-  [[nodiscard]] bool recording() const { return fd_ >= 0; }
+  [[nodiscard]] bool recording() const { return file_.fd >= 0; }
   /// Why it does not record; nothing once it does.
   [[nodiscard]] const std::optional<Error>& trouble() const { return trouble_; }
   /// Trouble that was not told yet; given once.
@@ -71,9 +71,18 @@ class Journal {
   [[nodiscard]] std::uint64_t bytes_lost() const { return lost_; }
   [[nodiscard]] std::uint64_t stops() const { return stops_; }
   [[nodiscard]] std::uint64_t files_removed() const { return removed_; }
-  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] const std::filesystem::path& file() const { return file_.path; }
 
  private:
+  /// The file that is written, or was last.
+  struct File {
+    std::filesystem::path path;
+    int fd{-1};
+    std::uint64_t header{0}, bytes{0};  ///< bytes: with those of the header
+    Instant since{};
+    bool unsynced{false};
+  };
+
   void start_file();
   void flush();
   void rotate();
@@ -81,13 +90,12 @@ class Journal {
   [[nodiscard]] Error refused(int os_error, const char* doing) const;
 
   JournalConfig config_;
-  std::filesystem::path file_;
-  int fd_{-1};
+  File file_;
   RawLogEncoder encoder_;
   std::string buffer_;
-  std::uint64_t header_{0}, in_file_{0}, written_{0}, lost_{0}, lost_told_{0}, stops_{0}, removed_{0};
-  Instant now_, last_write_, last_sync_, last_try_, file_since_;
-  bool unsynced_{false}, held_{false}, resumed_{false};
+  std::uint64_t written_{0}, lost_{0}, lost_told_{0}, stops_{0}, removed_{0};
+  Instant now_, last_write_, last_sync_, last_try_;
+  bool held_{false}, resumed_{false};
   std::vector<int> syncs_;  ///< of files that are full
   std::optional<Error> trouble_, untold_;
 };
