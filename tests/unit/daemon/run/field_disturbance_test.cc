@@ -124,7 +124,7 @@ TEST(FieldDisturbance, WithoutNoiseToJudgeByTheArrayIsSilent) {
   EXPECT_FALSE(disturbance_in(site.watch(8), FieldNoise(0.05), {}, kLooks));
 }
 
-TEST(StillFieldTest, ABlockThatIsMostlyMissingCountsAsNone) {
+TEST(FieldBlocks, ABlockThatIsMostlyMissingCountsAsNone) {
   FieldBlocks field(10, Instant{});
   std::uint64_t seq = 0;
   for (int i = 0; i < 40; ++i) {

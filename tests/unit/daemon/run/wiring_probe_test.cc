@@ -54,7 +54,7 @@ class Hands {
   std::uint64_t seq_{0};
 };
 
-TEST(MagnetTestTest, RightCablesAreRight) {
+TEST(WiringProbe, RightCablesAreRight) {
   Hands hands;
   hands.through({0, 1, 2, 3});
   ASSERT_TRUE(hands.test.ended());
@@ -64,7 +64,7 @@ TEST(MagnetTestTest, RightCablesAreRight) {
   EXPECT_EQ(status.text, "every cable is on its arm; put the magnet away");
 }
 
-TEST(MagnetTestTest, SwappedCablesAreNamed) {
+TEST(WiringProbe, SwappedCablesAreNamed) {
   Hands hands({0, 3, 2, 1});
   hands.through({0, 1, 2, 3});
   const MagnetStatus status = hands.test.status();
@@ -74,7 +74,7 @@ TEST(MagnetTestTest, SwappedCablesAreNamed) {
   EXPECT_EQ(to_json(status)["right"], false);
 }
 
-TEST(MagnetTestTest, TheOperatorIsToldWhatToDoNext) {
+TEST(WiringProbe, TheOperatorIsToldWhatToDoNext) {
   Hands hands;
   EXPECT_THAT(hands.test.status().text, HasSubstr("keep the magnet away"));
   hands.hold(std::nullopt, 3);
@@ -87,7 +87,7 @@ TEST(MagnetTestTest, TheOperatorIsToldWhatToDoNext) {
   EXPECT_THAT(hands.test.status().text, HasSubstr("arm 2 (+Y)"));
 }
 
-TEST(MagnetTestTest, AMagnetBetweenTwoArmsIsNoAnswer) {
+TEST(WiringProbe, AMagnetBetweenTwoArmsIsNoAnswer) {
   Hands hands;
   hands.beside = 0.5;
   hands.through({0});
@@ -95,7 +95,7 @@ TEST(MagnetTestTest, AMagnetBetweenTwoArmsIsNoAnswer) {
   EXPECT_THAT(hands.test.status().text, HasSubstr("more than one sensor moves"));
 }
 
-TEST(MagnetTestTest, ATouchIsNoAnswer) {
+TEST(WiringProbe, ATouchIsNoAnswer) {
   Hands hands;
   hands.hold(std::nullopt, 3);
   for (int i = 0; i < 5; ++i) {
@@ -105,7 +105,7 @@ TEST(MagnetTestTest, ATouchIsNoAnswer) {
   EXPECT_FALSE(hands.test.status().sensor_on_arm[0]);
 }
 
-TEST(MagnetTestTest, WithoutAnAnswerItEndsAndGuessesNothing) {
+TEST(WiringProbe, WithoutAnAnswerItEndsAndGuessesNothing) {
   Hands hands;
   hands.through({0, 1});
   hands.hold(std::nullopt, WiringProbe::kAnswer_s + 5);
@@ -117,7 +117,7 @@ TEST(MagnetTestTest, WithoutAnAnswerItEndsAndGuessesNothing) {
               ElementsAre(HasSubstr("arm 3 was not answered for"), HasSubstr("arm 4 was not asked for")));
 }
 
-TEST(MagnetTestTest, TheLimitIsToldInRealTime) {
+TEST(WiringProbe, TheLimitIsToldInRealTime) {
   WiringProbe test(Instant{}, 30);
   test.advance(Instant{} + from_seconds(29 * WiringProbe::kAnswer_s));
   EXPECT_FALSE(test.ended());
@@ -125,7 +125,7 @@ TEST(MagnetTestTest, TheLimitIsToldInRealTime) {
   EXPECT_THAT(test.status().text, HasSubstr("within 120 s"));
 }
 
-TEST(MagnetTestTest, StoppedItNamesTheArmsThatWereNotAskedForAndTheMagnet) {
+TEST(WiringProbe, StoppedItNamesTheArmsThatWereNotAskedForAndTheMagnet) {
   Hands hands;
   hands.hold(std::nullopt, 3);
   hands.test.stop();
@@ -136,7 +136,7 @@ TEST(MagnetTestTest, StoppedItNamesTheArmsThatWereNotAskedForAndTheMagnet) {
                           HasSubstr("arm 3 was not asked for"), HasSubstr("arm 4 was not asked for")));
 }
 
-TEST(MagnetTestTest, ASensorThatIsNotLiveIsNamedWithItsState) {
+TEST(WiringProbe, ASensorThatIsNotLiveIsNamedWithItsState) {
   std::vector<std::pair<Slot, LinkHealth>> links;
   for (int i = 0; i < kSensors; ++i) links.emplace_back(Slot::sensor(i), LinkHealth{});
   for (auto& [slot, health] : links) health.state = LinkState::live;
@@ -149,7 +149,7 @@ TEST(MagnetTestTest, ASensorThatIsNotLiveIsNamedWithItsState) {
   EXPECT_THAT(refused.error().message, HasSubstr("s3 is silent (no frame for 3 s)"));
 }
 
-TEST(MagnetTestTest, OneSensorForTwoArmsIsOpen) {
+TEST(WiringProbe, OneSensorForTwoArmsIsOpen) {
   Hands hands;
   hands.through({0, 0, 2, 3});
   const MagnetStatus status = hands.test.status();
@@ -157,7 +157,7 @@ TEST(MagnetTestTest, OneSensorForTwoArmsIsOpen) {
   EXPECT_THAT(findings(status)[0], HasSubstr("s1 answered for arm 1 and for another one"));
 }
 
-TEST(MagnetTestTest, AnArrayThatIsNoCrossHasPlaces) {
+TEST(WiringProbe, AnArrayThatIsNoCrossHasPlaces) {
   const PerSensor<Eigen::Vector3d> places{{0, 0, 0.25}, {0, 0, -0.25}, {0.1, 0.2, 0}};
   WiringProbe test(Instant{}, 1, calib::sensor::Geometry(places));
   double t_s = 0;
@@ -185,7 +185,7 @@ TEST(MagnetTestTest, AnArrayThatIsNoCrossHasPlaces) {
   EXPECT_EQ(test.status().text, "cables are at other places than their labels say; put the magnet away");
 }
 
-TEST(MagnetTestTest, OneSensorHasNothingToBeExchangedWith) {
+TEST(WiringProbe, OneSensorHasNothingToBeExchangedWith) {
   std::vector<std::pair<Slot, LinkHealth>> links{{Slot::sensor(0), LinkHealth{}},
                                                  {Slot::table(), LinkHealth{}}};
   links[0].second.state = LinkState::live;
@@ -194,7 +194,7 @@ TEST(MagnetTestTest, OneSensorHasNothingToBeExchangedWith) {
   EXPECT_THAT(refused.error().message, HasSubstr("this rig has one sensor"));
 }
 
-TEST(MagnetTestTest, SilentSensorsEndItToo) {
+TEST(WiringProbe, SilentSensorsEndItToo) {
   WiringProbe test(Instant{});
   test.advance(Instant{} + from_seconds(WiringProbe::kAnswer_s + 1));
   EXPECT_EQ(test.status().end, MagnetEnd::timed_out);
