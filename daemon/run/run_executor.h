@@ -14,6 +14,7 @@
 #include "daemon/plan/run_duration.h"
 #include "daemon/run/current_run.h"
 #include "daemon/run/run_judgement.h"
+#include "daemon/run/solver.h"
 #include "daemon/store/calibration_store.h"
 #include "daemon/store/run_file.h"
 #include "daemon/store/worker.h"
@@ -32,6 +33,11 @@ struct RunHooks {
   std::function<void(const RunStatus&)> publish;
   /// What repeats is for the owner's QuietLog: topic, message.
   std::function<void(std::string_view, const std::string&, Instant)> warn;
+  /// Fits a run file, on the worker, until it is told to stop.
+  std::function<Result<calib::fit::FitReport>(const std::filesystem::path&, std::stop_token)> solve{
+      [](const std::filesystem::path& path, std::stop_token stop) {
+        return solve_run(path, std::move(stop));
+      }};
 };
 
 class RunExecutor {

@@ -93,7 +93,8 @@ void RunExecutor::act(const StoreJudgement& action, Stamp now) {
 void RunExecutor::act(const StartSolve&, Stamp) {
   learning_job_.request_stop();  // what it would say is part of what follows
   solving_job_ =
-      worker_.run([path = file_->path()](std::stop_token stop) { return solve_run(path, std::move(stop)); },
+      worker_.run([path = file_->path(),
+                   solve = hooks_.solve](std::stop_token stop) { return solve(path, std::move(stop)); },
                   [this, generation = generation_](Result<calib::fit::FitReport> report) {
                     if (generation != generation_ || !active()) return;
                     SolveDone done{tl::unexpected(Error{})};

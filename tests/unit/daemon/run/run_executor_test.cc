@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/run/run_executor.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "tests/unit/daemon/temp_dir.h"
+
+namespace mgtd::daemon::run {
+namespace {
+
+/// An executor whose fits wait for their turn on the worker, and then only note whether they were told to
+/// stop.
+struct HeldFit {
+  HeldFit() {
+    worker.run(
+        [open = gate.get_future()](std::stop_token) mutable {
+          open.wait();
+          return 0;
+        },
+        [](int) {});
+    EXPECT_TRUE(executor.start({}, now));
+  }
+  ~HeldFit() { let_it_begin(); }
+  void let_it_begin() {
+    if (!std::exchange(opened, true)) gate.set_value();
+    io.run();
+  }
+  RunHooks hooks() {
+    return {.limits = [this]() -> const drivers::TableLimits& { return limits; },
+            .table =
+                [] {
+                  LinkHealth health;
+                  health.state = LinkState::live;
+                  return health;
+                },
+            .publish = [](const RunStatus&) {},
+            .warn = [](std::string_view, const std::string&, Instant) {},
+            .solve = [this](const std::filesystem::path&,
+                            const std::stop_token& stop) -> Result<calib::fit::FitReport> {
+              ++fits;
+              stopped = stop.stop_requested();
+              return fail(ErrorCode::refused, "not fitted here", "");
+            }};
+  }
+
+  test::TempDir dir;
+  Stamp now{Instant{}, WallTime{1'795'255'200'000'000'000}};
+  drivers::TableLimits limits{.azimuth = {-7, 7}, .pitch = {-4, 4}, .roll = {-4, 4}};
+  config::Config config;
+  store::CalibrationStore store = store::CalibrationStore::open(dir / "calibrations").value();
+  boost::asio::io_context io{1};
+  std::promise<void> gate;
+  bool opened{false}, stopped{false};  ///< read here when io.run() has returned
+  int fits{0};
+  store::Worker worker{io};
+  CurrentRun run{[](const Action&, Stamp) {}};
+  RunExecutor executor{config, dir / "", store, worker, run, hooks()};
+};
+
+TEST(RunExecutor, AFitThatNobodyCancelsIsNotStopped) {
+  HeldFit held;
+  held.executor.carry_out(StartSolve{}, held.now);
+  held.let_it_begin();
+  EXPECT_EQ(held.fits, 1);
+  EXPECT_FALSE(held.stopped);
+}
+
+TEST(RunExecutor, ACancelledFitIsToldToStop) {
+  HeldFit held;
+  held.executor.carry_out(StartSolve{}, held.now);
+  held.executor.carry_out(CancelSolve{}, held.now);
+  held.let_it_begin();
+  EXPECT_EQ(held.fits, 1);
+  EXPECT_TRUE(held.stopped);
+}
+
+}  // namespace
+}  // namespace mgtd::daemon::run
