@@ -50,6 +50,33 @@ assert.ok(Math.abs(inner / all - 0.25) < 0.01, `${inner / all} of the directions
 assert.deepEqual(mollweide([1, 0, 0]).map((v) => Math.abs(v)), [0, 0]);
 assert.ok(Math.abs(mollweide([0, 0, 1])[1] - 0.5) < 1e-9);
 
+// The lanes, on a canvas that is not drawn: what their table says of a minute, and of what was not measured.
+globalThis.requestAnimationFrame = () => {};
+const { Lanes } = await load("lanes.js");
+const canvas = { addEventListener() {}, style: {}, clientWidth: 0 }, lanes = new Lanes(canvas, () => {});
+lanes.channels = [{ name: "xx", label: "Gxx", unit: "nT/m", least_span: 0.5 }, { name: "f", label: "F", unit: "nT", least_span: 0.5 }];
+assert.equal(lanes.summary()[0].mean, "--", "nothing came yet");
+const of = (label) => lanes.summary().find((lane) => lane.label === label);
+for (let i = 0; i <= 100; ++i) {
+  lanes.endGap(1000 + i);
+  lanes.add(1000 + i, { xx: i, f: null });
+}
+assert.deepEqual(of("Gxx"), { label: "Gxx", unit: "nT/m", now: "100.0", mean: "70.0", least: "40.0", greatest: "100.0", gaps: 0 }, "the last minute of the hundred seconds");
+assert.deepEqual([of("F").now, of("F").mean], ["--", "--"], "a channel without a value");
+lanes.pass(1150);
+assert.equal(of("Gxx").least, "40.0", "time passes for the lanes only while nothing is measured");
+lanes.gap("s2: silent");
+lanes.pass(1110);
+lanes.gap("s2: not measuring yet");
+lanes.pass(1120);
+assert.deepEqual([of("Gxx").gaps, of("Gxx").least, of("Gxx").greatest], [2, "60.0", "100.0"], "the lanes go on while nothing is measured");
+lanes.endGap(1121);
+lanes.add(1121, { xx: 5, f: 1 });
+for (let i = 1122; i <= 1175; ++i) lanes.add(i, { xx: 5, f: 1 });
+assert.equal(of("Gxx").gaps, 1, "a gap with another reason ended the one before: only the second lies in the minute");
+for (let i = 1176; i <= 1182; ++i) lanes.add(i, { xx: 5, f: 1 });
+assert.equal(of("Gxx").gaps, 0, "a gap that is over is none");
+
 let gzipped = 0;
 for (const name of readdirSync(page)) {
   const bytes = readFileSync(join(page, name)), found = /innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function|style=|setAttribute\("style|DOMParser/.exec(bytes.toString());

@@ -7,13 +7,15 @@ const kComponents = ["xx", "yy", "zz", "xy", "xz", "yz"];
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
 const card = (...children) => make("div", { class: "card" }, children);
 
-function tensor(sample) {
+/** `old`: no sample came since. */
+function tensor(sample, old) {
+  const since = old ? `, last measured ${sample.t.slice(11, 19)}Z` : "";
   const told = kComponents.filter((c) => sample.g_nT_per_m[c] !== null);
   const value = (v, sd) => (v === null ? "--" : sd === null ? v.toFixed(2) : `${v.toFixed(2)} ± ${sd.toFixed(2)}`);
-  const field = table("Field at the centre", ["", "nT"], [["x", "y", "z"].map((axis, i) => [axis, shown(sample.b_nT[i], 1)]),
+  const field = table(`Field at the centre${since}`, ["", "nT"], [["x", "y", "z"].map((axis, i) => [axis, shown(sample.b_nT[i], 1)]),
                                                            [["F", shown(sample.f_nT, 1)]]].flat());
   if (told.length === 0) return [card(field)];
-  return [card(table(`Gradient${sample.cal === null ? ", raw" : ""}`, ["", "nT/m"],
+  return [card(table(`Gradient${sample.cal === null ? ", raw" : ""}${since}`, ["", "nT/m"],
                      told.map((c) => [c, value(sample.g_nT_per_m[c], sample.g_sd_nT_per_m[c])])), field)];
 }
 
@@ -22,9 +24,10 @@ function instruments(status) {
     const good = d.state === "live";
     const rejected = Object.values(d.rejected).reduce((a, b) => a + b, 0);
     const trouble = d.clock?.trouble || (good ? "" : d.detail);
-    return [d.name, make("span", { class: good ? "good" : "bad" }, good ? "live" : d.state), d.frames, rejected, trouble];
+    const row = [d.name, make("span", { class: good ? "good" : "bad" }, good ? "live" : d.state), d.frames, rejected];
+    return trouble ? [row, [{ wide: trouble, columns: row.length }]] : [row];
   });
-  return card(table("Instruments", ["", "state", "frames", "rejected", ""], body));
+  return card(table("Instruments", ["", "state", "frames", "rejected"], body.flat()));
 }
 
 function judged(status) {
@@ -47,6 +50,6 @@ function recording(status) {
   return card(table(`Recording${free}`, ["", "state", "since the start", ""], body));
 }
 
-export function cards(status, sample) {
-  return [sample ? tensor(sample) : [], judged(status), instruments(status), inputs(status), recording(status)].flat();
+export function cards(status, sample, old) {
+  return [sample ? tensor(sample, old) : [], judged(status), instruments(status), inputs(status), recording(status)].flat();
 }

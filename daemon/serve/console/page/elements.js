@@ -16,9 +16,10 @@ export function make(tag, options = {}, ...children) {
 
 export function fill(element, ...children) { element.replaceChildren(...children.flat().filter((c) => c !== null && c !== undefined)); }
 
-/** Rows of a table: the first one its head; numbers to the right. */
+/** Rows of a table: the first one its head; numbers to the right; {wide, columns} is a text over several columns. */
 export function rows(head, body) {
   const cell = (tag) => (value) => {
+    if (value?.wide) return make(tag, { class: "wide", colspan: value.columns }, value.wide);
     const node = value instanceof Node;
     const isNumber = typeof value === "number" || (typeof value === "string" && /^[+-]?\d+(\.\d+)?(e[+-]?\d+)?( ± \S+)?$/.test(value));
     return make(tag, { class: isNumber ? "number" : "", scope: tag === "th" ? "col" : null }, node ? value : String(value ?? ""));

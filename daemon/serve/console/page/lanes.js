@@ -63,15 +63,25 @@ export class Lanes {
     this.#dirty = true;
     if (this.#window_s > 60) this.#ask();
   }
+  /** Not measured from the last sample on, or from the end of the gap before, which had another reason. */
   gap(why) {
     const last = this.#gaps.at(-1);
     if (last && last.open && last.why === why) return;
+    this.endGap(this.#now_s);
     this.#gaps.push({ from_s: this.#now_s, to_s: null, why, open: true });
     if (this.#gaps.length > 200) this.#gaps.shift();
+    this.#dirty = true;
   }
   endGap(t_s) {
     const last = this.#gaps.at(-1);
     if (last && last.open) { last.open = false; last.to_s = t_s; }
+  }
+  /** It is `t_s` now; the lanes go on while nothing is measured. */
+  pass(t_s) {
+    if (!this.#gaps.at(-1)?.open || t_s <= this.#now_s) return;
+    this.#now_s = t_s;
+    this.#dirty = true;
+    if (this.#window_s > 60) this.#ask();
   }
 
   /** Longer windows: a column's worth of time at most between two questions. */

@@ -9,7 +9,7 @@ import { active, chip, showRun, wanted } from "./run.js";
 
 const token = takeToken(), control = new Control(token);
 const lanes = new Lanes(by("canvas"), (text) => { by("cursor").textContent = text; });
-let status = null, run = null, sample = null, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, closureLimit = null, numbers_ms = 0;
+let status = null, run = null, sample = null, heard_ms = 0, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, closureLimit = null, numbers_ms = 0;
 
 function banner(text, note = false) {
   by("banner").textContent = text;
@@ -70,9 +70,10 @@ async function listCalibrations() {
   if (!list) return;
   const button = (c) => (c.state === "active" ? "" : make("button", { onclick: () => act("calibrations.accept", { id: c.id }) }, "Accept"));
   fill(by("calibration-list"), make("caption", {}, list.calibrations.length ? "Calibrations, newest first" : "No calibration yet: a run proposes one"),
-       rows(["id", "state", "since", "from", ""], list.calibrations.map((c) => [c.id, c.state + (c.forced ? ", forced" : ""), c.since, c.origin, button(c)])));
+       rows(["id", "state", "since", "from", ""], list.calibrations.reverse().map((c) => [c.id, c.state + (c.forced ? ", forced" : ""), c.since, c.origin, button(c)])));
 }
 
+const kQuiet_ms = 900;  // STATUS comes once a second
 const kGradient = ["xx", "yy", "zz", "xy", "xz", "yz"];
 /** What this array can tell, and no more. */
 function channelsOf(array, inputs) {
@@ -85,6 +86,7 @@ function channelsOf(array, inputs) {
 
 function takeSample(message) {
   sample = message;
+  heard_ms = performance.now();
   const t_s = message.t_ns / 1e9;
   lanes.endGap(t_s);
   const values = { f: message.f_nT, bx: message.b_nT[0], by: message.b_nT[1], bz: message.b_nT[2], chi2: message.closure.chi2,
@@ -94,7 +96,7 @@ function takeSample(message) {
   const now = performance.now();
   if (now - sampled_ms < 250 || screen !== "live" || !status) return;
   sampled_ms = now;
-  fill(by("cards"), cards(status, sample));
+  fill(by("cards"), cards(status, sample, false));
   showNumbers(now);
 }
 
@@ -112,6 +114,7 @@ function takeStatus(message) {
   by("calibration").textContent = message.cal === null ? "no calibration: the stream is raw" : `calibration ${message.cal}${message.calibration.forced ? ", forced" : ""}`;
   by("calibration").className = message.cal === null || message.calibration.forced ? "warn" : "";
   lanes.channels = channelsOf(message.array, message.inputs);
+  lanes.pass(Date.parse(message.t) / 1000);
   const holder = message.control.holder;
   by("who").textContent = `${message.software}. ${message.array.sensors} sensor${message.array.sensors > 1 ? "s" : ""}: ${message.array.tells}. ` +
     (holder ? `Control is with ${holder.via || `pid ${holder.pid}`}${holder.why ? `: ${holder.why}` : ""}.` : "Nobody has control.") +
@@ -119,7 +122,11 @@ function takeStatus(message) {
   by("caption").textContent = judged > 0
     ? `A good stream has no hatching, and a closure χ² above ${closureLimit.toFixed(1)} (${message.array.closure === 1 ? "of one number" : `of ${message.array.closure} numbers`}) in one sample of a thousand; since this page was opened ${(1000 * alarms / judged).toFixed(1)} of a thousand.`
     : "A good stream has no hatching: what was not measured is hatched, with its reason.";
-  if (!sample) fill(by("cards"), cards(status, null));
+  const now = performance.now();  // without samples, as after a pulled cable, the instruments are told all the same
+  if (screen === "live" && now - sampled_ms > kQuiet_ms) {
+    fill(by("cards"), cards(status, sample, now - heard_ms > kQuiet_ms));
+    showNumbers(now);
+  }
   takeRun(message.run);
 }
 

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// The story of a run in two browsers, one that controls and one that looks: a cable is pulled and plugged again, a run is
+// started, watched and its calibration accepted, the daemon is killed and comes back. The rig is simulated, on serial ports.
+//
+//   node tests/browser/run.mjs build/bin [FOLDER]     FOLDER gets pictures of the screens on the way
+//
+// Exit code 0: told. 1: something else happened. 77: not told, because chromium is missing.
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { Browser, needBrowser, until } from "./browser.mjs";
+import { Rig } from "./rig.mjs";
+
+const [bin, pictures] = process.argv.slice(2);
+if (!bin) {
+  console.error("usage: node tests/browser/run.mjs BIN [FOLDER]");
+  process.exit(2);
+}
+needBrowser();
+if (pictures) mkdirSync(pictures, { recursive: true });
+const kSpeed = 30, kLong_ms = 240000;
+let told = 0;
+function holds(what, good, found = "") {
+  if (!good) throw new Error(`${what}${found === "" ? "" : `: ${JSON.stringify(found)}`}`);
+  console.log(`  ${what}`);
+  ++told;
+}
+
+let rig = null, controls = null, looks = null, failed = false;
+const picture = async (browser, name) => { if (pictures) await browser.picture(join(pictures, `${name}.png`)); };
+const both = (ask) => Promise.all([controls, looks].map(ask));
+/** Until a condition holds in both browsers. */
+const agreed = (expression, what) => both((browser) => until(() => browser.run(expression), what, kLong_ms));
+const of = (id) => `document.getElementById("${id}")`;
+const device = (name) => `[...document.querySelectorAll("#cards tr")].find((r) => r.firstChild.textContent === "${name}")?.children[1].textContent`;
+const set = (name, value) => controls.run(`{ const e = ${of("run-form")}.elements["${name}"]; e.value = "${value}"; e.dispatchEvent(new Event("input", { bubbles: true })); }`);
+try {
+  rig = await Rig.start(bin, kSpeed);
+  await rig.startDaemon();
+  const { url, address } = rig.ask("console");
+  controls = await Browser.start();
+  looks = await Browser.start();
+  await controls.open(url);
+  await looks.open(address);
+  await agreed(`${of("link")}.innerText === "live"`, "a live stream");
+  await agreed(`${device("s2")} === "live"`, "sensor 2 among the instruments");
+  holds("two browsers show the rig", (await looks.text("rig")) === (await controls.text("rig")) && (await looks.text("rig")) === "table6");
+  holds("the token is gone from the address bar", !(await controls.run("location.href")).includes("token"));
+  holds("without the token a page says that it may look", (await looks.text("who")).includes("may look") && (await looks.run(`${of("start")}.disabled`)));
+
+  // What the page hears while it shows the loss: one STATUS a second.
+  await both((browser) => browser.run(`{ window.counted = 0; const socket = new WebSocket("ws://" + location.host + "/stream");
+    socket.onmessage = (event) => { for (const line of event.data.split("\\n")) {
+      if (line.includes('"HELLO"')) socket.send('{"watch":{"class":["STATUS"],"rate_hz":null,"from_seq":null}}');
+      if (line.includes('"STATUS"') && ${device("s2")} === "live") ++window.counted; } }; }`));
+  await agreed("window.counted >= 2", "the status, heard twice");
+  await both((browser) => browser.run("window.counted = 0"));
+  rig.fault("unplug", "fluxgate2", "for", "900");
+  await agreed(`${device("s2")} !== "live"`, "the page says that sensor 2 is gone");
+  const counted = await both((browser) => browser.run("window.counted"));
+  holds("both say that a cable was pulled, at most three seconds of the daemon later", counted.every((n) => n <= 3), counted);
+  holds("the other sensors are live", (await controls.run(device("s3"))) === "live");
+  holds("the last numbers say when they were measured", (await controls.text("cards")).includes("last measured"));
+  await both((browser) => browser.run(`${of("lane-numbers")}.open = true`));
+  const lanes = `[...document.querySelectorAll("#lane-table tbody tr")].map((r) => [...r.children].map((c) => c.textContent))`;
+  await agreed(`${lanes}.length === 12 && ${lanes}.every((r) => Number(r[6]) >= 1)`, "the gap in each of twelve lanes");
+  await picture(controls, "unplugged");
+  rig.fault("restore", "fluxgate2");
+  await agreed(`${device("s2")} === "live" && !${of("cards")}.innerText.includes("last measured")`, "the page says that sensor 2 is back");
+  // The gaps are over: when a minute of samples has come, nothing is hatched.
+  await agreed(`${lanes}.every((r) => r[6] === "0")`, "lanes without a gap");
+  holds("the lanes as numbers show the gap, and that it is over", true);
+  const [, now, mean, least, greatest] = (await controls.run(lanes)).find((r) => r[0] === "F").map(Number);
+  holds("the lane of the field lies about the field of the rig", least <= mean && mean <= greatest && least <= now && now <= greatest && Math.abs(mean - 53908) < 500, [now, mean, least, greatest]);
+
+  await controls.click("tab-run");
+  await looks.click("tab-run");
+  for (const [name, value] of Object.entries({ step_deg: 20, random: 16, revisits: 4, dwell_short_s: 1, dwell_long_s: 2 })) await set(name, value);
+  await controls.click("look");
+  const plan = await until(() => controls.text("plan"), "what the run would do");
+  holds("the dry run says how many poses, as the terminal does",
+        plan.startsWith(`${rig.ask("run", "dry-run", "--step", "20", "--random", "16", "--revisits", "4", "--dwell-short", "1", "--dwell-long", "2").poses} poses`), plan);
+  await picture(controls, "form");
+  await controls.click("start");
+  await agreed(`/^\\d+\\/\\d+ /.test(document.title) && !${of("stops")}.hidden && ${of("run-form")}.hidden`, "a run that goes on");
+  await agreed(`document.querySelector("#run-now progress")?.value >= 3`, "three poses");
+  holds("who looks cannot stop the run", (await looks.run(`${of("abort")}.disabled && ${of("pause")}.disabled`)) && !(await controls.run(`${of("abort")}.disabled`)));
+  holds("who looks reads who has control", (await looks.text("who")).includes("Control is with the console"), await looks.text("who"));
+  await controls.click("pause");
+  await agreed(`${of("run-now")}.innerText.includes("paused")`, "the run paused");
+  await picture(controls, "paused");
+  await controls.run(`[...document.querySelectorAll("#run-now button")].find((b) => b.textContent === "Resume").click()`);
+  await agreed(`document.querySelector("#run-now progress")?.value >= 8`, "more poses after the pause");
+  await picture(controls, "running");
+  await agreed(`${of("run-now")}.innerText.includes(": done") && ${of("chip")}.hidden`, "the end of the run");
+  const run = rig.ask("run", "status");
+  holds("the run ends with a proposal and its checks", run.state === "done" && run.proposed !== null && run.checks.length > 0, run);
+  const rows = await both((browser) => browser.run(`[...document.querySelectorAll("#checks tbody tr")].map((r) => [...r.children].map((c) => c.textContent))`));
+  holds("both show the checks of the terminal", rows.every((of_one) => of_one.length === run.checks.length &&
+        run.checks.every((c) => of_one.some((r) => r[1] === c.name && r[2] === c.measured && r[3] === c.limit))), rows);
+  await picture(controls, "proposed");
+
+  await controls.run(`[...document.querySelectorAll("#run-now button")].find((b) => b.textContent.startsWith("Accept")).click()`);
+  await agreed(`${of("calibration")}.innerText.includes("${run.proposed}")`, "the accepted calibration");
+  holds("the accepted calibration is in use", rig.ask("status").cal === run.proposed);
+  await controls.click("tab-calibrations");
+  await until(() => controls.run(`${of("calibration-list")}.innerText.includes("active")`), "the list of calibrations");
+  await picture(controls, "accepted");
+
+  await both((browser) => browser.click("tab-live"));
+  await rig.killDaemon();
+  await agreed(`${of("link")}.innerText.startsWith("no connection since") && document.body.classList.contains("stale") && ${of("banner")}.innerText.includes("does not answer")`,
+               "the page says that the daemon is gone");
+  holds("a killed daemon: both say that they are not connected, and that what they show is old", true);
+  await picture(controls, "killed");
+  await rig.startDaemon();
+  await agreed(`${of("link")}.innerText === "live" && !document.body.classList.contains("stale") && ${of("banner")}.hidden`, "the stream again");
+  await agreed(`${of("calibration")}.innerText.includes("${run.proposed}")`, "the calibration of before");
+  holds("both come back by themselves, with the calibration of before", true);
+  await controls.click("tab-calibrations");
+  await controls.click("rollback");
+  await until(async () => (await controls.text("banner")).includes("mgt console"), "the old token refused");
+  holds("the token is new at every start, and the page says where to get it", true);
+  await picture(controls, "back");
+
+  const complaints = [...controls.log, ...looks.log].filter((line) => !line.includes("ERR_CONNECTION_REFUSED"));
+  holds("the browsers have nothing to complain of but the killed daemon", complaints.length === 0, complaints);
+  console.log(`told: ${told} things`);
+} catch (error) {
+  failed = true;
+  console.error(error.message);
+  if (rig) console.error(rig.said.slice(-3000));
+  for (const browser of [controls, looks]) {
+    if (!browser) continue;
+    console.error(browser.log.join("\n"), (await browser.run("document.body.innerText")).slice(0, 3000));
+  }
+  if (controls) await picture(controls, "failed");
+} finally {
+  for (const browser of [controls, looks]) if (browser) await browser.close();
+  if (rig) await rig.stop();
+}
+process.exit(failed ? 1 : 0);
