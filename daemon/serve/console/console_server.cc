@@ -18,6 +18,7 @@
 #include "daemon/serve/console/host_rule.h"
 #include "daemon/serve/console/http_message.h"
 #include "daemon/serve/console/page_files.h"
+#include "daemon/serve/console/refusals.h"
 #include "daemon/serve/console/web_peer.h"
 #include "daemon/serve/listener.h"
 #include "drivers/clock.h"
@@ -34,8 +35,6 @@ using Stream = beast::basic_stream<asio::generic::stream_protocol>;
 
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(10);
-constexpr auto kWrongTokenWait = std::chrono::seconds(1);
 constexpr std::uint32_t kHeadLimit = 8'192;
 constexpr std::size_t kTokenLine = 256;
 constexpr std::uint64_t kBodyLimit = 65'536, kLongAnswer = 1'000'000;
@@ -68,6 +67,7 @@ class ConsoleServer::State : public std::enable_shared_from_this<State> {
   void stop();
   [[nodiscard]] std::string address() const { return address_; }
   [[nodiscard]] const ConsoleToken& token() const { return token_; }
+  [[nodiscard]] std::uint64_t refused() const { return refusals_.total(); }
 
  private:
   class Session;
@@ -83,6 +83,7 @@ class ConsoleServer::State : public std::enable_shared_from_this<State> {
   drivers::Clock clock_;
   RequestRate rate_;
   ConsoleToken token_{ConsoleToken::random()};
+  Refusals refusals_;
   std::optional<HostRule> rule_;
   std::optional<Listener> listener_;
   std::optional<JobDesk> desk_;
@@ -100,7 +101,7 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     parser_.emplace();
     parser_->header_limit(kHeadLimit);
     parser_->body_limit(kBodyLimit);
-    stream_.expires_after(kPatience);
+    stream_.expires_after(server_->config_.patience);  // of the whole request, however its bytes dribble
     http::async_read_header(stream_, buffer_, *parser_,
                             [self = shared_from_this()](error_code ec, std::size_t) {
                               if (ec) return self->read_failed(ec);
@@ -143,7 +144,10 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     if (beast::websocket::is_upgrade(request)) {
       const std::string target(request.target().data(), request.target().size());
       auto allowed = server_->may_come(request);
-      if (allowed && target == "/control") allowed = may_control();
+      if (allowed && target == "/control") {
+        allowed = may_control();
+        if (!allowed) note_refusal(allowed.error());
+      }
       if (!allowed) return answer(refusal(request, allowed.error()), host, false);
       if ((target == "/stream" && server_->source_.stream) ||
           (target == "/control" && server_->source_.control))
@@ -168,12 +172,17 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
 
   /// Late, so that guessing takes long.
   void refuse_job(const Request& request, const Error& why) {
-    spdlog::warn("console: a job was refused to {}: {}", from_ ? from_->to_string() : "an unknown place",
-                 why.message);
+    note_refusal(why);
     response_ = refusal(request, why);
-    timer_.emplace(stream_.get_executor(), kWrongTokenWait);
+    timer_.emplace(stream_.get_executor(), server_->config_.wrong_token_wait);
     timer_->async_wait(
         [self = shared_from_this()](error_code) { self->answer(std::move(self->response_), "", false); });
+  }
+
+  void note_refusal(const Error& why) {
+    const auto line = server_->refusals_.add(from_ ? from_->to_string() : "an unknown place", why.message,
+                                             server_->clock_.now().mono);
+    if (line) spdlog::warn("{}", *line);
   }
 
   [[nodiscard]] Result<void> may_control() const {
@@ -187,7 +196,7 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     forbid_all_else(response, host);
     response.keep_alive(keep_alive);
     response.prepare_payload();
-    if (response.body().size() > kLongAnswer) stream_.expires_after(6 * kPatience);
+    if (response.body().size() > kLongAnswer) stream_.expires_after(6 * server_->config_.patience);
     response_ = std::move(response);
     http::async_write(stream_, response_,
                       [self = shared_from_this(), keep_alive](error_code ec, std::size_t) {
@@ -200,7 +209,7 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     web_.emplace(std::move(stream_));
     web_->set_option(beast::websocket::stream_base::timeout::suggested(beast::role_type::server));
     request_ = std::move(request);
-    beast::get_lowest_layer(*web_).expires_after(kPatience);
+    beast::get_lowest_layer(*web_).expires_after(server_->config_.patience);
     web_->async_accept(request_, [self = shared_from_this(), control](error_code ec) {
       if (ec) return self->gone();
       if (control) return self->read_token();
@@ -225,13 +234,12 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
 
   /// Late, so that guessing takes long.
   void refuse_token() {
-    spdlog::warn("console: a wrong token from {}", from_ ? from_->to_string() : "an unknown place");
-    timer_.emplace(web_->get_executor(), kWrongTokenWait);
+    const Error why{ErrorCode::refused, "the token is wrong: it is new at every start",
+                    "open the address that mgt console prints"};
+    note_refusal(why);
+    text_ = encode_reply(nullptr, tl::unexpected(why)) + '\n';
+    timer_.emplace(web_->get_executor(), server_->config_.wrong_token_wait);
     timer_->async_wait([self = shared_from_this()](error_code) {
-      self->text_ =
-          encode_reply(nullptr, fail(ErrorCode::refused, "the token is wrong: it is new at every start",
-                                     "open the address that mgt console prints")) +
-          '\n';
       self->web_->text(true);
       self->web_->async_write(asio::buffer(self->text_), [self](error_code, std::size_t) { self->gone(); });
     });
@@ -354,5 +362,6 @@ Result<void> ConsoleServer::start() { return state_->start(); }
 void ConsoleServer::stop() { state_->stop(); }
 std::string ConsoleServer::address() const { return state_->address(); }
 const ConsoleToken& ConsoleServer::token() const { return state_->token(); }
+std::uint64_t ConsoleServer::refused() const { return state_->refused(); }
 
 }  // namespace mgtd::daemon::serve::console

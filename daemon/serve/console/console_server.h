@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -32,9 +33,10 @@
 /// configuration allows the network, a browser on this computer. Answers forbid the page everything but
 /// itself (Content Security Policy, trusted types). There is no cookie, so no page of others can ride on one.
 ///
-/// Requests have 8 kB and ten seconds, a job's body 64 kB after its token was seen to be right; connections
-/// and their rate are limited; a peer that does not read is dropped by the server that feeds it. Everything
-/// runs on the io_context's thread; the server must not outlive the io_context.
+/// Requests have 8 kB and ten seconds for all of their bytes, a job's body 64 kB after its token was seen to
+/// be right; connections and their rate are limited; a wrong token is answered late and counted (refusals.h);
+/// a peer that does not read is dropped by the server that feeds it. Everything runs on the io_context's
+/// thread; the server must not outlive the io_context.
 namespace mgtd::daemon::serve::console {
 
 struct ConsoleConfig {
@@ -42,8 +44,10 @@ struct ConsoleConfig {
   std::vector<std::string> hosts{};      ///< further names under which it is reached
   bool control_from_network{false};      ///< else from this computer alone
   std::size_t max_connections{48};
-  RateLimit rate{.per_s = 20, .burst = 200};   ///< of requests, all clients together
-  std::optional<WorkbenchConfig> workbench{};  ///< runs to work on
+  std::chrono::milliseconds patience{10'000};  ///< for a request, an answer, or the first line of control
+  std::chrono::milliseconds wrong_token_wait{1'000};  ///< so that guessing takes long
+  RateLimit rate{.per_s = 20, .burst = 200};          ///< of requests, all clients together
+  std::optional<WorkbenchConfig> workbench{};         ///< runs to work on
 };
 
 /// What the owner answers; what is empty is not there.
@@ -68,6 +72,8 @@ class ConsoleServer {
   /// "http://127.0.0.1:7451/"; empty while it does not listen.
   [[nodiscard]] std::string address() const;
   [[nodiscard]] const ConsoleToken& token() const;
+  /// How often control or a computation was refused since the start.
+  [[nodiscard]] std::uint64_t refused() const;
 
  private:
   class State;

@@ -76,7 +76,7 @@ void inputs(const StatusReport& report, Page& page) {
 
 }  // namespace
 
-std::string metrics(const StatusReport& report) {
+std::string metrics(const StatusReport& report, std::uint64_t console_refused) {
   Page page;
   page.metric("mgtd_info", "gauge", "Rig and version.");
   page.value(1, {{"rig", report.rig}, {"software", report.software}});
@@ -105,6 +105,9 @@ std::string metrics(const StatusReport& report) {
   page.whole("mgtd_stream_clients", "gauge", "Clients of the stream.", report.stream.clients);
   page.whole("mgtd_stream_dropped_total", "counter", "Clients that were disconnected.",
              report.stream.dropped());
+  page.whole("mgtd_console_refused_total", "counter",
+             "Control and computations that the console refused: wrong token, or from elsewhere.",
+             console_refused);
   page.whole("mgtd_journal_bytes_total", "counter", "Written to the raw journal.", report.journal.bytes);
   page.whole("mgtd_journal_lost_bytes_total", "counter", "Not written because the disk refused.",
              report.journal.bytes_lost);

@@ -28,9 +28,10 @@ StatusReport report() {
 }
 
 TEST(Metrics, SayWhatIsKnownAndNothingElse) {
-  const std::string text = metrics(report());
+  const std::string text = metrics(report(), 7);
   EXPECT_THAT(text, HasSubstr("mgtd_epochs_total 100\n"));
   EXPECT_THAT(text, HasSubstr("mgtd_gap_epochs_total 3\n"));
+  EXPECT_THAT(text, HasSubstr("mgtd_console_refused_total 7\n"));
   EXPECT_THAT(text, HasSubstr("mgtd_device_live{device=\"s1\"} 1\n"));
   EXPECT_THAT(text, HasSubstr("mgtd_input{name=\"motor_A\",unit=\"A\"} 0.25\n"));
   EXPECT_THAT(text, HasSubstr(R"(mgtd_info{rig="rig \"7\" ",software="mgtd test"} 1)"));
@@ -42,7 +43,7 @@ TEST(Metrics, SayWhatIsKnownAndNothingElse) {
 TEST(Metrics, EveryLineIsACommentOrAValue) {
   const std::regex comment("# (HELP|TYPE) mgtd_[a-z_]+ .+");
   const std::regex value(R"re(mgtd_[a-z_]+(\{([a-z]+="([^"\\]|\\.)*",?)+\})? -?[0-9][0-9.e+-]*)re");
-  std::istringstream lines(metrics(report()));
+  std::istringstream lines(metrics(report(), 7));
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count)
     EXPECT_TRUE(std::regex_match(line, comment) || std::regex_match(line, value)) << line;
