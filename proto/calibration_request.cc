@@ -17,6 +17,19 @@ Result<bool> flag(const Json& args, const char* key) {
   return entry->get<bool>();
 }
 
+/// A reason as it is kept: of a length that a line of a list can show.
+Result<std::string> reason(const Json& args) {
+  constexpr std::size_t kLongest = 500;
+  const auto why = args.find("why");
+  if (why == args.end()) return std::string();
+  if (!why->is_string()) return fail(ErrorCode::usage, "why is not a text");
+  if (const std::size_t length = why->get_ref<const std::string&>().size(); length > kLongest)
+    return fail(ErrorCode::usage,
+                fmt::format("the reason has {} bytes, at most {} are kept", length, kLongest),
+                "say it in fewer words");
+  return why->get<std::string>();
+}
+
 }  // namespace
 
 Result<std::string> parse_calibration_id(const Json& args) {
@@ -32,7 +45,20 @@ Result<AcceptRequest> parse_accept_request(const Json& args) {
   if (!id) return tl::unexpected(id.error());
   const auto force = flag(args, "force");
   if (!force) return tl::unexpected(force.error());
-  return AcceptRequest{*std::move(id), *force};
+  auto why = reason(args);
+  if (!why) return tl::unexpected(why.error());
+  return AcceptRequest{*std::move(id), *force, *std::move(why)};
+}
+
+Result<RejectRequest> parse_reject_request(const Json& args) {
+  auto id = parse_calibration_id(args);
+  if (!id) return tl::unexpected(id.error());
+  auto why = reason(args);
+  if (!why) return tl::unexpected(why.error());
+  if (why->find_first_not_of(" \t\r\n") == std::string::npos)
+    return fail(ErrorCode::usage, "no reason is given",
+                "it is kept, for who looks for this calibration later");
+  return RejectRequest{*std::move(id), *std::move(why)};
 }
 
 Result<ImportRequest> parse_import_request(const Json& args) {

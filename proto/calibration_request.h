@@ -5,18 +5,26 @@
 
 #include "proto/error.h"
 
-/// These are the arguments of calibrations.show, calibrations.accept and calibrations.import.
+/// These are the arguments of calibrations.show, calibrations.accept, calibrations.reject and
+/// calibrations.import.
 namespace mgtd {
 
 /// {"id":".."}; refuses an empty one.
 [[nodiscard]] Result<std::string> parse_calibration_id(const nlohmann::json& args);
 
-/// {"id":"..","force":true}
+/// {"id":"..","force":true,"why":".."}
 struct AcceptRequest {
   std::string id;
-  bool force{false};  ///< also a calibration that failed its checks
+  bool force{false};  ///< also a calibration that failed its checks or was rejected
+  std::string why{};  ///< the operator's reason, kept with it
 };
 [[nodiscard]] Result<AcceptRequest> parse_accept_request(const nlohmann::json& args);
+
+/// {"id":"..","why":".."}; refuses an empty reason.
+struct RejectRequest {
+  std::string id, why;
+};
+[[nodiscard]] Result<RejectRequest> parse_reject_request(const nlohmann::json& args);
 
 /// {"calibration":{CAL.json},"origin":"cal.json","accept":true,"force":false}
 struct ImportRequest {

@@ -24,21 +24,22 @@
 ///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
 ///   run.redo             what was entered last is asked for again                            -> RUN
 ///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
-///   calibrations.list                    -> {"calibrations":[{"id","state","since","origin","forced"}]}
-///   calibrations.show    args: calibration_request.h  -> CAL.json
-///   calibrations.accept  args: calibration_request.h  -> {"active"}
+///   calibrations.list                    ->
+///   {"calibrations":[{"id","state","since","origin","forced","why"}]} calibrations.show    args:
+///   calibration_request.h  -> CAL.json calibrations.accept  args: calibration_request.h  -> {"active"}
 ///   calibrations.import  args: calibration_request.h  -> {"id","forced"}, and "active" when accepted
+///   calibrations.reject  args: calibration_request.h  -> {"rejected"}
 ///   calibrations.rollback                             -> {"active"}
 ///   control.take         args: control_hold.h         -> the holder
 ///   control.release                                   -> {}
-///   console              {"address","token"}: of the web console; address null where there is none
+///   console              {"address","token","refused"}: of the web console; address null where there is none
 ///   control.break        takes control from whoever has it        -> {"was": holder or null}
 ///
 /// What changes something needs control, which one connection has at a time (the daemon's control_lease.h).
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 3;
+inline constexpr int kControlProtocolMinor = 4;
 /// A calibration with a hundred coefficients takes 0.4 MB.
 inline constexpr std::size_t kControlLineLimit = 1 << 20;
 
@@ -58,6 +59,7 @@ enum class ControlCommand : std::uint8_t {
   calibrations_show,
   calibrations_accept,
   calibrations_import,
+  calibrations_reject,
   calibrations_rollback,
   magnet_start,
   magnet_status,
@@ -67,7 +69,7 @@ enum class ControlCommand : std::uint8_t {
   control_break,
   console,
 };
-inline constexpr std::array<std::string_view, 23> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 24> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -82,6 +84,7 @@ inline constexpr std::array<std::string_view, 23> kControlCommandNames{"version"
                                                                        "calibrations.show",
                                                                        "calibrations.accept",
                                                                        "calibrations.import",
+                                                                       "calibrations.reject",
                                                                        "calibrations.rollback",
                                                                        "magnet-test.start",
                                                                        "magnet-test.status",

@@ -31,7 +31,8 @@ Reply DaemonApp::answer(const ControlRequest& request) {
       return nlohmann::ordered_json{
           {"address", console_.server.address().empty() ? nlohmann::ordered_json()
                                                         : nlohmann::ordered_json(console_.server.address())},
-          {"token", console_.server.token().text()}};
+          {"token", console_.server.token().text()},
+          {"refused", console_.server.refused()}};
     case ControlCommand::run_start:
     case ControlCommand::run_dry_run:
     case ControlCommand::run_pause:
@@ -46,6 +47,7 @@ Reply DaemonApp::answer(const ControlRequest& request) {
     case ControlCommand::calibrations_show:
     case ControlCommand::calibrations_accept:
     case ControlCommand::calibrations_import:
+    case ControlCommand::calibrations_reject:
     case ControlCommand::calibrations_rollback:
       return answer_calibrations(request);
     case ControlCommand::magnet_start:
@@ -134,7 +136,8 @@ Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
                       {"state", name(e.state)},
                       {"since", format_utc(e.since)},
                       {"origin", e.origin},
-                      {"forced", e.forced}});
+                      {"forced", e.forced},
+                      {"why", e.why}});
     }
     return nlohmann::ordered_json{{"calibrations", std::move(list)}};
   }
@@ -152,10 +155,19 @@ Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
     if (!calibration) return tl::unexpected(calibration.error());
     return nlohmann::ordered_json(calib::calibration::to_json(*calibration));
   }
+  if (request.command == ControlCommand::calibrations_reject) {
+    const auto wanted = parse_reject_request(request.args);
+    if (!wanted) return tl::unexpected(wanted.error());
+    if (auto rejected = store_.reject(wanted->id, wanted->why, now); !rejected)
+      return tl::unexpected(rejected.error());
+    spdlog::info("calibration {} is rejected: {}", wanted->id, wanted->why);
+    return nlohmann::ordered_json{{"rejected", wanted->id}};
+  }
   const auto wanted = parse_accept_request(request.args);
   if (!wanted) return tl::unexpected(wanted.error());
-  if (auto accepted = store_.accept(wanted->id, now, wanted->force); !accepted)
+  if (auto accepted = store_.accept(wanted->id, now, wanted->force, wanted->why); !accepted)
     return tl::unexpected(accepted.error());
+  if (wanted->force) spdlog::info("calibration {} is accepted by force: {}", wanted->id, wanted->why);
   use_active_calibration();
   return nlohmann::ordered_json{{"active", wanted->id}};
 }

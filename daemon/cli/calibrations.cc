@@ -22,9 +22,11 @@ int print_list(const Session& session) {
   }
   if (reply->at("calibrations").empty()) fmt::print("no calibrations yet: mgt run start proposes one\n");
   for (const auto& c : reply->at("calibrations")) {
-    fmt::print("{:<14} {:<9} since {}  from {}{}\n", c.at("id").get<std::string>(),
+    const std::string why = c.value("why", "");
+    fmt::print("{:<14} {:<9} since {}  from {}{}{}\n", c.at("id").get<std::string>(),
                c.at("state").get<std::string>(), c.at("since").get<std::string>().substr(0, 19),
-               c.at("origin").get<std::string>(), c.at("forced") == true ? "  (failed its checks)" : "");
+               c.at("origin").get<std::string>(), c.at("forced") == true ? "  (failed its checks)" : "",
+               why.empty() ? "" : "  because: " + why);
   }
   return 0;
 }
@@ -42,6 +44,8 @@ int print_reply(const Session& session, const Result<nlohmann::json>& reply, std
     print_json(*reply);
   } else if (reply->contains("active")) {
     fmt::print("calibration {} is {}\n", reply->at("active").get<std::string>(), done);
+  } else if (reply->contains("rejected")) {
+    fmt::print("calibration {} is {}\n", reply->at("rejected").get<std::string>(), done);
   } else {
     fmt::print("{}\n", reply->dump(1));
   }
@@ -49,7 +53,7 @@ int print_reply(const Session& session, const Result<nlohmann::json>& reply, std
 }
 
 struct CalibrationsArguments {
-  std::string id, file;
+  std::string id, file, why;
   bool force{false}, accept{false};
 };
 
@@ -71,8 +75,16 @@ int show(const Session& session, const CalibrationsArguments& args) {
 int accept(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
   if (!id) return report(session, id.error());
-  const nlohmann::json wanted{{"id", *id}, {"force", args.force}};
+  const nlohmann::json wanted{{"id", *id}, {"force", args.force}, {"why", args.why}};
   return print_reply(session, ask(session, ControlCommand::calibrations_accept, wanted), "active");
+}
+
+int reject(const Session& session, const CalibrationsArguments& args) {
+  const auto id = resolve(session, args.id);
+  if (!id) return report(session, id.error());
+  return print_reply(session,
+                     ask(session, ControlCommand::calibrations_reject, {{"id", *id}, {"why", args.why}}),
+                     "rejected");
 }
 
 int import_file(const Session& session, const CalibrationsArguments& args) {
@@ -92,8 +104,8 @@ int import_file(const Session& session, const CalibrationsArguments& args) {
 }  // namespace
 
 void add_calibrations(CLI::App& app, Session& session) {
-  CLI::App* const group =
-      app.add_subcommand("calibrations", "calibrations of the daemon: list, show, import, accept, rollback");
+  CLI::App* const group = app.add_subcommand(
+      "calibrations", "calibrations of the daemon: list, show, import, accept, reject, rollback");
   group->require_subcommand(1);
   add_command(*group, session, "list", "every calibration and its state",
               [&session] { return print_list(session); });
@@ -114,6 +126,13 @@ void add_calibrations(CLI::App& app, Session& session) {
   accepted->add_option("ID", args->id, "its id or the beginning of it, or 'latest' for the newest proposal")
       ->required();
   accepted->add_flag("--force", args->force, "even if it failed its checks; every sample then says so");
+  accepted->add_option("--why", args->why, "the reason, kept with it and shown in the list");
+  CLI::App* const rejected =
+      add_command(*group, session, "reject", "take a proposed calibration off the proposals; its file stays",
+                  [args, &session] { return reject(session, *args); });
+  rejected->add_option("ID", args->id, "its id or the beginning of it, or 'latest' for the newest proposal")
+      ->required();
+  rejected->add_option("--why", args->why, "the reason, kept with it and shown in the list")->required();
   add_command(*group, session, "rollback", "go back to the calibration that was active before", [&session] {
     return print_reply(session, ask(session, ControlCommand::calibrations_rollback), "active again");
   });

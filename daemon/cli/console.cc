@@ -18,7 +18,8 @@ int run_console(const Session& session) {
   const std::string address = console->at("address"), token = console->at("token");
   const std::string url = address + "#token=" + token;
   if (session.json)
-    print_json({{"address", address}, {"token", token}, {"url", url}});
+    print_json(
+        {{"address", address}, {"token", token}, {"url", url}, {"refused", console->value("refused", 0)}});
   else
     fmt::print("{}\n", url);
   return 0;

@@ -32,6 +32,7 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::magnet_start:
     case ControlCommand::calibrations_accept:
     case ControlCommand::calibrations_import:
+    case ControlCommand::calibrations_reject:
     case ControlCommand::calibrations_rollback:
       return true;
   }

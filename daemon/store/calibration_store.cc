@@ -36,7 +36,7 @@ Error failed_checks(const calib::calibration::Calibration& calibration) {
 }  // namespace
 
 std::string_view name(CalibrationState state) {
-  static constexpr std::array<std::string_view, 3> kNames{"proposed", "accepted", "active"};
+  static constexpr std::array<std::string_view, 4> kNames{"proposed", "accepted", "active", "rejected"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -75,14 +75,14 @@ Result<void> CalibrationStore::read_log() {
                                                                              : "";
     };
     const auto t = parse_utc(word("t"));
-    const bool known =
-        word("event") == "proposed" || word("event") == "accepted" || word("event") == "rolled-back";
+    const bool known = word("event") == "proposed" || word("event") == "accepted" ||
+                       word("event") == "rejected" || word("event") == "rolled-back";
     if (!t || !known || word("id").empty()) {
       return fail(ErrorCode::bad_input,
                   fmt::format("{}:{}: not a line of the calibration log", path.string(), number),
                   "restore the file from a backup, or move it away: the calibrations beside it stay");
     }
-    apply({*t, word("event"), word("id"), word("origin"), line.value("forced", json()) == true});
+    apply({*t, word("event"), word("id"), word("origin"), line.value("forced", json()) == true, word("why")});
   }
   return {};
 }
@@ -92,10 +92,20 @@ void CalibrationStore::apply(const Event& event) {
     entries_.push_back({event.id, CalibrationState::proposed, event.at, event.origin, false});
     return;
   }
+  if (event.what == "rejected") {
+    if (CalibrationEntry* entry = find(event.id)) {
+      entry->state = CalibrationState::rejected;
+      entry->since = event.at;
+      entry->why = event.why;
+    }
+    return;
+  }
   if (const auto before = active_id()) {
     CalibrationEntry* entry = find(*before);
-    if (entry != nullptr)
-      *entry = {entry->id, CalibrationState::accepted, event.at, entry->origin, entry->forced};
+    if (entry != nullptr) {
+      entry->state = CalibrationState::accepted;
+      entry->since = event.at;
+    }
   }
   if (event.what == "rolled-back") {
     if (!activations_.empty()) activations_.pop_back();
@@ -106,12 +116,14 @@ void CalibrationStore::apply(const Event& event) {
     entry->state = CalibrationState::active;
     entry->since = event.at;
     entry->forced = entry->forced || event.forced;
+    if (event.what == "accepted") entry->why = event.why;
   }
 }
 
 Result<void> CalibrationStore::record(const Event& event) {
   json line{{"t", format_utc(event.at)}, {"event", event.what}, {"id", event.id}, {"origin", event.origin}};
   if (event.forced) line["forced"] = true;
+  if (!event.why.empty()) line["why"] = event.why;
   const auto path = directory_ / kLog;
   std::error_code ignored;
   const auto size = std::filesystem::exists(path, ignored) ? std::filesystem::file_size(path, ignored) : 0;
@@ -152,13 +164,32 @@ Result<void> CalibrationStore::import(const calib::calibration::Calibration& cal
   return propose(calibration, origin, now);
 }
 
-Result<void> CalibrationStore::accept(std::string_view id, WallTime now, bool force) {
-  if (find(id) == nullptr) return tl::unexpected(unknown(id));
+Result<void> CalibrationStore::accept(std::string_view id, WallTime now, bool force, std::string_view why) {
+  const CalibrationEntry* const entry = find(id);
+  if (entry == nullptr) return tl::unexpected(unknown(id));
   if (active_id() == id) return {};
+  if (entry->state == CalibrationState::rejected && !force) {
+    return fail(
+        ErrorCode::refused,
+        fmt::format("calibration {} was rejected at {}: {}", id, format_utc(entry->since), entry->why),
+        "measure again; --force uses it all the same");
+  }
   const auto calibration = show(id);
   if (!calibration) return tl::unexpected(calibration.error());
   if (!calibration->accepted_by_checks && !force) return tl::unexpected(failed_checks(*calibration));
-  return record({now, "accepted", std::string(id), "", !calibration->accepted_by_checks});
+  return record({now, "accepted", std::string(id), "", !calibration->accepted_by_checks, std::string(why)});
+}
+
+Result<void> CalibrationStore::reject(std::string_view id, std::string_view why, WallTime now) {
+  const CalibrationEntry* const entry = find(id);
+  if (entry == nullptr) return tl::unexpected(unknown(id));
+  if (entry->state == CalibrationState::rejected) return {};
+  if (entry->state != CalibrationState::proposed) {
+    return fail(ErrorCode::state,
+                fmt::format("calibration {} is {}: only a proposal is rejected", id, name(entry->state)),
+                "mgt calibrations rollback, or accept another");
+  }
+  return record({now, "rejected", std::string(id), "", false, std::string(why)});
 }
 
 Result<std::string> CalibrationStore::rollback(WallTime now) {

@@ -16,7 +16,7 @@
 /// or the state after.
 namespace mgtd::daemon::store {
 
-enum class CalibrationState { proposed, accepted, active };
+enum class CalibrationState { proposed, accepted, active, rejected };
 [[nodiscard]] std::string_view name(CalibrationState state);
 
 struct CalibrationEntry {
@@ -25,6 +25,7 @@ struct CalibrationEntry {
   WallTime since;      ///< when it entered that state
   std::string origin;  ///< run id, or file it was imported from
   bool forced{false};  ///< it failed its checks and was made active all the same
+  std::string why{};   ///< the reason given when it was rejected or last accepted; may be empty
 };
 
 class CalibrationStore {
@@ -42,8 +43,12 @@ class CalibrationStore {
   [[nodiscard]] Result<void> import(const calib::calibration::Calibration& calibration,
                                     std::string_view origin, bool force, WallTime now);
   /// Makes a proposed (or formerly active) calibration active. Refuses an unknown id and, without `force`,
-  /// one that failed its checks.
-  [[nodiscard]] Result<void> accept(std::string_view id, WallTime now, bool force = false);
+  /// one that failed its checks or was rejected.
+  [[nodiscard]] Result<void> accept(std::string_view id, WallTime now, bool force = false,
+                                    std::string_view why = {});
+  /// Takes a proposed calibration off the proposals; its file stays. Refuses an unknown id, and one that is
+  /// or was in use.
+  [[nodiscard]] Result<void> reject(std::string_view id, std::string_view why, WallTime now);
   /// Back to the calibration that was active before this one. Gives its id.
   [[nodiscard]] Result<std::string> rollback(WallTime now);
 
@@ -58,6 +63,7 @@ class CalibrationStore {
     WallTime at;
     std::string what, id, origin;
     bool forced{false};
+    std::string why{};
   };
   explicit CalibrationStore(std::filesystem::path directory) : directory_(std::move(directory)) {}
   [[nodiscard]] Result<void> read_log();

@@ -139,6 +139,13 @@ TEST(CalibrationRequest, ForceAndContentAreRead) {
   EXPECT_TRUE(parse_accept_request({{"id", "c1"}, {"force", true}})->force);
   EXPECT_FALSE(parse_accept_request({{"id", "c1"}, {"force", "yes"}}));
   EXPECT_FALSE(parse_accept_request({{"force", true}}));
+  EXPECT_EQ(parse_accept_request({{"id", "c1"}, {"why", "known"}})->why, "known");
+  EXPECT_EQ(parse_reject_request({{"id", "c1"}, {"why", "a car"}})->why, "a car");
+  EXPECT_FALSE(parse_reject_request({{"id", "c1"}}));
+  EXPECT_FALSE(parse_reject_request({{"id", "c1"}, {"why", " \n"}}));
+  EXPECT_FALSE(parse_reject_request({{"id", "c1"}, {"why", 7}}));
+  EXPECT_FALSE(parse_reject_request({{"id", "c1"}, {"why", std::string(501, 'x')}}));
+  EXPECT_FALSE(parse_reject_request({{"why", "a car"}}));
   const auto import =
       parse_import_request({{"calibration", {{"id", "c1"}}}, {"origin", "cal.json"}, {"accept", true}});
   ASSERT_TRUE(import);

@@ -47,6 +47,7 @@ export function takeToken() {
     with {message, remedy}. */
 export class Control {
   #token; #socket = null; #waiting = new Map(); #next = 1;
+  ended = () => {};  ///< the connection is gone, and with it what was held
   constructor(token) { this.#token = token; }
   get possible() { return this.#token !== null; }
   async ask(cmd, args = {}) {
@@ -73,6 +74,7 @@ export class Control {
         for (const { reject: fail } of this.#waiting.values()) fail(why);
         this.#waiting.clear();
         this.#socket = null;
+        this.ended();
       };
     });
     return this.#socket;

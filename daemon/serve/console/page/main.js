@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { cards } from "./cards.js";
 import { Bench } from "./bench.js";
+import { Calibrations } from "./calibrations.js";
 import { by, fill, make, rows } from "./elements.js";
 import { Jobs } from "./jobs.js";
 import { Lanes, windows } from "./lanes.js";
@@ -41,13 +42,34 @@ async function act(cmd, args = {}) {
   try {
     const result = await control.ask(cmd, args);
     banner("");
-    if (cmd === "calibrations.accept" || cmd === "calibrations.rollback") listCalibrations();
     return result;
   } catch (error) {
     banner(inWords(error), true);
     return null;
   }
 }
+
+const calibrations = new Calibrations(control, (error) => banner(error ? inWords(error) : "", true), () => takeRun(run));
+let proposed = null, held = false;  // the proposal whose state was asked for; whether this page keeps control
+
+/** Keeps control for this page until it releases it, is closed, or says nothing for ten minutes. */
+async function takeControl() {
+  const wish = { why: "kept on the page", idle_s: 600 };
+  try {
+    await control.ask("control.take", wish);
+  } catch (error) {
+    if (error.code !== "state" || !confirm(`${error.message}. Take it away?`)) return banner(inWords(error), true);
+    if (!(await act("control.break")) || !(await act("control.take", wish))) return;
+  }
+  banner("");
+  showHold(true);
+}
+function showHold(now) {
+  held = now;
+  by("hold").textContent = held ? "Release control" : "Take control";
+  by("hold").setAttribute("aria-pressed", String(held));
+}
+control.ended = () => showHold(false);
 
 const kScreens = ["live", "run", "calibrations", "workbench"];
 function show(name) {
@@ -56,21 +78,9 @@ function show(name) {
     by(id).hidden = id !== name;
     id === name ? by(`tab-${id}`).setAttribute("aria-current", "page") : by(`tab-${id}`).removeAttribute("aria-current");
   }
-  if (name === "calibrations") listCalibrations();
+  if (name === "calibrations") calibrations.refresh();
   if (name === "live") lanes.redraw();
   if (name === "workbench" && !bench.open) bench.list().catch((error) => banner(inWords(error), true));
-}
-
-async function listCalibrations() {
-  if (!control.possible) {
-    fill(by("calibration-list"), make("caption", {}, "The list needs the token: open the address that mgt console prints"));
-    return;
-  }
-  const list = await act("calibrations.list").catch(() => null);
-  if (!list) return;
-  const button = (c) => (c.state === "active" ? "" : make("button", { onclick: () => act("calibrations.accept", { id: c.id }) }, "Accept"));
-  fill(by("calibration-list"), make("caption", {}, list.calibrations.length ? "Calibrations, newest first" : "No calibration yet: a run proposes one"),
-       rows(["id", "state", "since", "from", ""], list.calibrations.reverse().map((c) => [c.id, c.state + (c.forced ? ", forced" : ""), c.since, c.origin, button(c)])));
 }
 
 const kQuiet_ms = 900;  // STATUS comes once a second
@@ -116,6 +126,8 @@ function takeStatus(message) {
   lanes.channels = channelsOf(message.array, message.inputs);
   lanes.pass(Date.parse(message.t) / 1000);
   const holder = message.control.holder;
+  by("hold").hidden = !control.possible;
+  if (!holder?.taken && held) showHold(false);
   by("who").textContent = `${message.software}. ${message.array.sensors} sensor${message.array.sensors > 1 ? "s" : ""}: ${message.array.tells}. ` +
     (holder ? `Control is with ${holder.via || `pid ${holder.pid}`}${holder.why ? `: ${holder.why}` : ""}.` : "Nobody has control.") +
     (control.possible ? "" : " This page may look; mgt console prints the address with which it may control.");
@@ -139,7 +151,11 @@ function takeRun(message) {
   document.title = on ? `${run.pose}/${run.poses} ${status?.rig ?? "mgtd"}` : `${status?.rig ?? "mgtd"}`;
   by("run-form").hidden = on;
   by("start").disabled = !control.possible;
-  showRun(run, act);
+  showRun(run, act, calibrations, status?.cal);
+  if (run?.proposed && run.proposed !== proposed && control.possible) {
+    proposed = run.proposed;
+    calibrations.refresh();
+  }
 }
 
 /** The rig behind the page. */
@@ -184,7 +200,8 @@ for (const [label, seconds] of windows) {
 }
 by("pause").addEventListener("click", () => act("run.pause"));
 by("abort").addEventListener("click", () => { if (confirm("Abort the run? Its poses stay on disk.")) act("run.abort"); });
-by("rollback").addEventListener("click", () => { if (confirm("Roll back to the calibration before?")) act("calibrations.rollback"); });
+by("rollback").addEventListener("click", () => { if (confirm("Roll back to the calibration before?")) calibrations.rollback(); });
+by("hold").addEventListener("click", () => (held ? act("control.release").then((done) => { if (done) showHold(false); }) : takeControl()));
 by("look").addEventListener("click", async () => {
   const plan = await act("run.dry-run", listed ?? wanted(by("run-form")));
   if (plan) by("plan").textContent = `${plan.poses} poses, ${Math.round(plan.minutes)} minutes.`;

@@ -38,13 +38,23 @@ function asking(run, act) {
   return [make("p", {}, prompt.text), prompt.again ? make("p", { class: "warn" }, `Asked again: ${prompt.again}`) : null, form];
 }
 
-let shownPrompt = "";
-export function showRun(run, act) {
-  fill(by("run-now"), progress(run), run?.proposed
-    ? make("p", {}, make("button", { onclick: () => act("calibrations.accept", { id: run.proposed }) }, `Accept calibration ${run.proposed}`),
-           " It becomes active at once; roll back returns to the one before.")
-    : null,
-       run?.state === "paused" ? make("button", { onclick: () => act("run.resume") }, "Resume") : null);
+/** What became of the calibration that the run proposes, or what can be decided about it. */
+function proposal(id, calibrations, active) {
+  const known = calibrations.of(id);
+  if (active === id) return make("p", {}, `Calibration ${id} is in use.`);
+  if (known?.state === "rejected") return make("p", {}, `Calibration ${id} is rejected: ${known.why}`);
+  return make("p", { id: "proposal" }, `Calibration ${id}: `, calibrations.buttons(id), " Accepted it becomes active at once; roll back returns to the one before.");
+}
+
+let shownPrompt = "", shownNow = "";
+/** `calibrations`: calibrations.js; `used`: the id of the one in use. */
+export function showRun(run, act, calibrations, used) {
+  const now = JSON.stringify([{ ...run, elapsed_s: null, checks: null }, calibrations.of(run?.proposed), used]);
+  if (now !== shownNow) {  // a button stays the same one while a finger is on it
+    shownNow = now;
+    fill(by("run-now"), progress(run), run?.proposed ? proposal(run.proposed, calibrations, used) : null,
+         run?.state === "paused" ? make("button", { onclick: () => act("run.resume") }, "Resume") : null);
+  }
   const prompt = JSON.stringify(run?.prompt ?? null);
   if (prompt !== shownPrompt) {  // what a person types is not overwritten
     shownPrompt = prompt;

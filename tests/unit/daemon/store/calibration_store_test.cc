@@ -81,6 +81,35 @@ TEST(CalibrationStore, RefusesWhatIsNotProposedOrFailed) {
   EXPECT_FALSE(store.active_id());
 }
 
+TEST(CalibrationStore, ARejectedProposalKeepsItsReasonAndIsAcceptedByForceAlone) {
+  TempDir dir;
+  const auto a = calibration(1), b = calibration(2);
+  {
+    auto store = CalibrationStore::open(dir / "cal").value();
+    ASSERT_TRUE(store.propose(a, "run 1", t(1)));
+    ASSERT_TRUE(store.propose(b, "run 2", t(2)));
+    EXPECT_EQ(store.reject("c000000000000", "?", t(3)).error().code, ErrorCode::refused);
+    ASSERT_TRUE(store.reject(b.id, "a car stood beside the \"rig\"", t(3)));
+    ASSERT_TRUE(store.accept(a.id, t(4)));
+    EXPECT_EQ(store.reject(a.id, "in use", t(5)).error().code, ErrorCode::state);
+  }
+  auto store = CalibrationStore::open(dir / "cal").value();
+  EXPECT_EQ(store.list().at(1).state, CalibrationState::rejected);
+  EXPECT_EQ(store.list().at(1).since, t(3));
+  EXPECT_EQ(store.list().at(1).why, "a car stood beside the \"rig\"");
+  EXPECT_EQ(store.active_id(), a.id);
+  EXPECT_TRUE(store.show(b.id)) << "its file stays";
+  const auto refused = store.accept(b.id, t(6));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::refused);
+  EXPECT_NE(refused.error().message.find("a car stood"), std::string::npos) << refused.error().message;
+  ASSERT_TRUE(store.accept(b.id, t(7), true, "it was parked already in run 1"));
+  EXPECT_EQ(store.active_id(), b.id);
+  EXPECT_EQ(store.list().at(1).why, "it was parked already in run 1");
+  EXPECT_FALSE(store.list().at(1).forced) << "it passed its checks";
+  EXPECT_EQ(store.reject(a.id, "was in use", t(8)).error().code, ErrorCode::state);
+}
+
 TEST(CalibrationStore, ImportRefusesWhatCannotBeUsed) {
   TempDir dir;
   auto store = CalibrationStore::open(dir / "cal").value();
