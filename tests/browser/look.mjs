@@ -20,13 +20,13 @@ const browser = await Browser.start();
 let wrong = 0;
 
 /** Texts that leave the page or their button, and cards that lie over each other. */
-const kFaults = `(() => {
+const faults = (width) => `(() => {
   const out = [], seen = (e) => e.getClientRects().length > 0, name = (e) => e.id || e.dataset.panel || e.textContent.slice(0, 30);
-  if (document.documentElement.scrollWidth > innerWidth) out.push((document.documentElement.scrollWidth - innerWidth) + " px beyond the right edge");
+  if (document.documentElement.scrollWidth > ${width}) out.push((document.documentElement.scrollWidth - ${width}) + " px beyond the right edge");
   for (const e of document.querySelectorAll("button, h1, h2, h3, p, figure, .card, li")) {
     if (!seen(e) || e.closest("#tool")) continue;
     const box = e.getBoundingClientRect();
-    if (box.right > innerWidth + 1) out.push(name(e) + ": leaves the page");
+    if (box.right > ${width} + 1) out.push(name(e) + ": leaves the page");
     if (e.scrollWidth > e.clientWidth + 2 && e.clientWidth > 0) out.push(name(e) + ": its text is cut");
   }
   const boxes = [...document.querySelectorAll("figure, .card")].filter(seen).filter((e) => !e.parentElement.closest("figure, .card")).map((e) => [name(e), e.getBoundingClientRect()]);
@@ -38,7 +38,7 @@ const kFaults = `(() => {
 async function picture(name) {
   await browser.run("scrollTo(0, 0)");
   await new Promise((resolve) => setTimeout(resolve, 300));  // points have come to rest
-  for (const fault of await browser.run(kFaults)) {
+  for (const fault of await browser.run(faults(Number(/\d{3,}/.exec(name)[0])))) {
     console.log(`${name}: ${fault}`);
     ++wrong;
   }

@@ -84,6 +84,26 @@ TEST_F(EvidenceOfPrograms, AMaskedPoseIsLeftOutByEveryCommandUntilItIsTakenInAga
   EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "tried, not kept";
 }
 
+/// The reason is typed by a person and stands in a page: it is text there, whatever it says.
+TEST_F(EvidenceOfPrograms, TheReportTellsWhichPosesAreMaskedAndWhy) {
+  const auto reported = [&] {
+    EXPECT_EQ(mgt({"report", file(), "-o", file() + ".html"}).exit_code, 0);
+    return slurp(file() + ".html");
+  };
+  ASSERT_EQ(mgt({"mask", file(), "3", "7-9", "--why", "a <b>car</b> stood beside the rig"}).exit_code, 0);
+  const std::string page = reported();
+  for (const char* pose : {"3", "7", "8", "9"})
+    EXPECT_THAT(page, HasSubstr(std::string("<td>") + pose +
+                                "</td><td>a &lt;b&gt;car&lt;/b&gt; stood beside the rig</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>mask</td><td>3,7-9</td>")) << "the history";
+  EXPECT_EQ(page.find("<b>car"), std::string::npos);
+  ASSERT_EQ(mgt({"unmask", file(), "3", "7-9"}).exit_code, 0);
+  const std::string whole = reported();
+  EXPECT_EQ(whole.find("</td><td>a &lt;b&gt;car"), whole.rfind("</td><td>a &lt;b&gt;car"))
+      << "in the history alone";
+  EXPECT_THAT(whole, HasSubstr("<td>unmask</td>"));
+}
+
 /// A page draws the panels itself; what stands beside them is said here.
 TEST_F(EvidenceOfPrograms, PanelsAndFiguresHaveTheirWords) {
   const json compared = ask({"compare", file(), "--poses"});

@@ -150,7 +150,19 @@ TEST(LiveCalibration, WhatCannotBeUsedIsRefusedAndNothingChanges) {
   EXPECT_TRUE(bench.ask({"status"}).at("cal").is_null());
   ASSERT_EQ(bench.mgt({"calibrations", "import", cal}).exit_code, 0);
   EXPECT_TRUE(bench.ask({"status"}).at("cal").is_null()) << "proposed is not active";
-  EXPECT_EQ(bench.mgt({"calibrations", "accept", "latest"}).exit_code, 0);
+  EXPECT_EQ(bench.mgt({"calibrations", "reject", "latest"}).exit_code, 2) << "a reason is needed";
+  const Finished rejected = bench.mgt({"calibrations", "reject", "latest", "--why", "a car stood there"});
+  EXPECT_EQ(rejected.exit_code, 0) << rejected.err;
+  EXPECT_THAT(bench.mgt({"calibrations", "list"}).out, HasSubstr("because: a car stood there"));
+  const json listed = bench.ask({"calibrations", "list"}).at("calibrations").at(0);
+  EXPECT_EQ(listed.at("state"), "rejected");
+  EXPECT_EQ(bench.mgt({"calibrations", "accept", "latest"}).exit_code, 1) << "it is no proposal any more";
+  const Finished again = bench.mgt({"calibrations", "accept", listed.at("id")});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("a car stood there"));
+  EXPECT_TRUE(bench.ask({"status"}).at("cal").is_null());
+  EXPECT_EQ(
+      bench.mgt({"calibrations", "accept", listed.at("id"), "--force", "--why", "it was far"}).exit_code, 0);
   EXPECT_FALSE(streamed(bench).forced);
 }
 
