@@ -14,7 +14,8 @@
 namespace mgtd::calib::discovery {
 namespace {
 
-/// Formulas whose probabilities add up to this are shown.
+/// Formulas whose probabilities add up to this are the set; of a large set those that lead are described, and
+/// the others counted.
 constexpr double kShownSet = 0.99;
 constexpr std::size_t kMostShown = 40;
 /// Of a fall of chi-square: two formulas that differ by less are the same on these poses.
@@ -104,7 +105,7 @@ Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, co
                              double questions, const std::string& name) {
   ChosenLaw out;
   out.law.log10_p = criticism::tests::best_of(round.log10_p_best, questions);
-  out.law.stands_out = stands_out(out.law.log10_p);
+  out.law.stands_out = stands_out(out.law.log10_p, bench.looks);
   out.law.where = shares(round.ranked, round.head.score, [](const RankedLaw& law) { return law.where; });
   out.law.covariates = shares(round.ranked, round.head.score, [&](const RankedLaw& law) {
     std::string all;
@@ -115,8 +116,12 @@ Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, co
   double sum = 0;
   std::vector<std::optional<FittedLaw>> fitted;
   for (const RankedLaw& law : round.ranked) {
-    if (sum > kShownSet || out.law.formulas.size() >= kMostShown) break;
+    if (sum > kShownSet) break;
     sum += law.P;
+    if (out.law.formulas.size() >= kMostShown) {
+      ++out.law.more;
+      continue;
+    }
     if (law.kind == RankedLaw::Kind::library) {
       out.law.formulas.push_back(described(law));
       fitted.emplace_back();

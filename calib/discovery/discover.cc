@@ -152,7 +152,8 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
                         .values = *values,
                         .problem = in_force->fit.problem,
                         .noise = in_force->noise,
-                        .library = scored_library(*in_force, candidates)};
+                        .library = scored_library(*in_force, candidates),
+                        .looks = options.looks};
   const ChannelSums bare(in_force->fit, in_force->residual);
   DiscoveryReport out;
   out.poses = static_cast<std::size_t>(std::count_if(run.poses.begin(), run.poses.end(), fitted));
@@ -171,7 +172,8 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   const LeftOn left = left_on(found->left);
   out.left_sigmas = left.sigmas, out.left_on = sensor::channel_name(left.channel);
   out.may_be_drift = may_be_drift(*in_force, found->laws.front());
-  out.verdict = verdict_of(*in_force, found->laws, out);
+  const JudgedLaws judged = verdict_of(*in_force, found->laws, out, options.looks);
+  out.verdict = judged.verdict, out.reason = judged.reason;
   if (found->laws.front().law.stands_out && options.checks)
     if (const auto ok = check(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)
       return tl::unexpected(ok.error());

@@ -8,7 +8,7 @@
 /// on, how, where, how sure that is and what else it could be.
 ///
 ///     PASS        nothing stands out from noise
-///     LAW         one formula, P above 0.9, nothing left after it, and nothing random does as well
+///     LAW         one formula, P above 0.95, nothing left after it, and nothing random does as well
 ///     LAW-SET     the same, but several formulas remain that these poses do not tell apart
 ///     LIBRARY     an effect of the library describes it as well or better: explain names it
 ///     SHAPE-ONLY  something depends on what was recorded, and no formula of the grammar accounts for it
@@ -24,6 +24,8 @@ namespace mgtd::calib::discovery {
 struct DiscoverOptions {
   fit::FitOptions fit;  ///< method joint; its effects are the model that is asked about
   int draws{2000};
+  /// At a run as it grows, of which this is one: together they name as seldom what is not there as one alone.
+  int looks{1};
   bool checks{true};  ///< fits again with the law, repeats the search in folds and halves
 };
 

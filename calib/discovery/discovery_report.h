@@ -17,6 +17,28 @@ namespace mgtd::calib::discovery {
 enum class Verdict { pass, law, law_set, library, shape_only, noise_like };
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 
+/// The rule of verdict_of() that decided, with the number that it compared.
+struct VerdictReason {
+  enum class Rule {
+    nothing_found,   ///< PASS: log10 p of the search, not below its limit
+    only_scatter,    ///< NOISE-LIKE: no formula, but an axis scatters (standard deviations of chi-square)
+    only_wander,     ///< NOISE-LIKE: no formula, but the offsets wander
+    walk_instead,    ///< NOISE-LIKE: log10 p of the law against offsets that wander, not below its limit
+    random_instead,  ///< NOISE-LIKE: 2 ln of the odds against a random offset, below zero
+    random_near,     ///< SHAPE-ONLY: the same, below its limit
+    random_beside,   ///< SHAPE-ONLY: 2 ln of the odds of a random offset beside the laws, above zero
+    drift,           ///< SHAPE-ONLY: may_be_drift()
+    library,         ///< LIBRARY: P of an effect of the library, which leads
+    law_left,        ///< SHAPE-ONLY: log10 p of the search in what is left, below its limit
+    scatter_left,    ///< SHAPE-ONLY: standard deviations of chi-square on an axis, above their limit
+    formulas_open,   ///< LAW-SET: P of the leading formula, not above its limit
+    none             ///< LAW
+  };
+  Rule rule{Rule::nothing_found};
+  double measured{0}, limit{0};
+  std::size_t law{0};  ///< of which it was asked
+};
+
 struct LawCoefficient {
   std::string where{};  ///< "s3.z"; a component of the gradient: "Gxx"
   double value{0}, sd{0};
@@ -48,14 +70,18 @@ struct Share {
 /// One law and what else it could be.
 struct FoundLaw {
   std::vector<FoundFormula> formulas{};  ///< the 99 % set, best first; the first is in the model afterwards
+  std::size_t more{0};                   ///< formulas of the set that are not among these
   std::vector<Share> covariates{}, where{};
   double log10_p{0};  ///< of the whole search
   bool stands_out{false};
   double d{0};
+  /// Of an offset that walks or jumps: instead of this law (law_sequence.h); where `random_beside`, beside
+  /// it.
   double walk_P{0}, jumps_P{0};
-  double over_walk{0}, over_jumps{0};  ///< 2 ln of the odds of all formulas against them
+  double over_walk{0}, over_jumps{0};  ///< 2 ln of the odds of all formulas against them instead of the law
   std::string random_where{};          ///< where those were asked about
-  bool random_beside{false};  ///< they describe best what is left beside the laws, not instead of them
+  bool random_beside{false};      ///< they describe best what is left beside the laws, not instead of them
+  double over_nothing_beside{0};  ///< 2 ln of the odds of that against laws alone
   std::optional<double> halves_ratio{}, held_out_fall{};
   std::optional<double> extrapolation_spread{};
   std::optional<LawShape> shape{};
@@ -63,6 +89,7 @@ struct FoundLaw {
 
 struct DiscoveryReport {
   Verdict verdict{Verdict::pass};
+  VerdictReason reason{};
   std::vector<FoundLaw> laws{};  ///< strongest first; the first is found even where it is not believed
   double log10_p_left{0};        ///< of the search in what is left after the laws
   std::string left_on{};         ///< an axis on which more scatters than noise, after the laws

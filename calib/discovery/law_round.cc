@@ -94,7 +94,9 @@ double together(const std::vector<RankedLaw>& ranked) {
 
 }  // namespace
 
-bool stands_out(double log10_p) { return log10_p < std::log10(kFalseDiscovery); }
+double limit_log10_p(int looks) { return std::log10(kFalseDiscovery / looks); }
+
+bool stands_out(double log10_p, int looks) { return log10_p < limit_log10_p(looks); }
 
 Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library) {
   if (bench.problem.stop.stop_requested()) return fail(ErrorCode::state, "the search was stopped");

@@ -13,8 +13,10 @@ namespace mgtd::calib::discovery {
 
 /// Chance of a formula where nothing is there, of the whole search.
 inline constexpr double kFalseDiscovery = 0.01;
+/// log10 of the chance that each of so many looks at a growing run has, so that all of them have that.
+[[nodiscard]] double limit_log10_p(int looks);
 /// The whole search finds as much in noise less often than that.
-[[nodiscard]] bool stands_out(double log10_p);
+[[nodiscard]] bool stands_out(double log10_p, int looks);
 
 /// What a search works with, from the first round to the last.
 struct Workbench {
@@ -24,6 +26,7 @@ struct Workbench {
   const fit::joint::JointProblem& problem;
   criticism::tests::NoiseReference noise;
   std::vector<criticism::tests::ScoredFamily> library{};  ///< scored on the first residual
+  int looks{1};                                           ///< DiscoverOptions
 };
 
 /// What the search of one residual says.

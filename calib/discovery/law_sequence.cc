@@ -36,33 +36,70 @@ Result<void> sweep(const Workbench& bench, const ChannelSums& bare, double quest
   return {};
 }
 
-/// Models of the first m laws, alone and with an offset that walks or jumps beside them.
-struct Models {
-  double laws{-std::numeric_limits<double>::infinity()}, walk{laws}, jumps{laws};
-  std::size_t with_random{0};  ///< m of the best model with a random offset
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+/// Evidence of the first m laws, alone and with an offset that walks or jumps beside them.
+struct Model {
+  double alone{kNever}, walk{kNever}, jumps{kNever};
   std::string random_where{};
 
-  void add(std::size_t m, double T, const LawRound& left) {
-    laws = std::max(laws, m == 0 ? laws : T);
-    const double random = std::max(left.walk, left.jumps);
-    if (T + random > std::max(walk, jumps)) with_random = m, random_where = left.random_where;
-    walk = std::max(walk, T + left.walk);
-    jumps = std::max(jumps, T + left.jumps);
-  }
+  [[nodiscard]] double random() const { return std::max(walk, jumps); }
+  [[nodiscard]] double best() const { return std::max(alone, random()); }
 };
 
-void hold_against_random(const Models& models, FoundLaw& first) {
-  first.over_walk = models.laws - models.walk;
-  first.over_jumps = models.laws - models.jumps;
-  first.random_where = models.random_where;
-  first.random_beside = models.with_random > 0 && std::max(models.walk, models.jumps) > models.laws;
-  const double top = std::max({models.laws, models.walk, models.jumps});
-  const double laws = std::exp((models.laws - top) / 2), walk = std::exp((models.walk - top) / 2),
-               jumps = std::exp((models.jumps - top) / 2), all = laws + walk + jumps;
-  first.walk_P = walk / all;
-  first.jumps_P = jumps / all;
-  if (!first.random_beside)
-    for (FoundFormula& formula : first.formulas) formula.P *= laws / all;
+/// For m = 0, 1, ...; no law at all and nothing random is no model here: the p-value judges that.
+using Models = std::vector<Model>;
+
+Model model_of(std::size_t m, double T, const LawRound& left) {
+  return {.alone = m == 0 ? kNever : T,
+          .walk = T + left.walk,
+          .jumps = T + left.jumps,
+          .random_where = left.random_where};
+}
+
+double best_alone(const Models& models) {
+  double out = kNever;
+  for (const Model& model : models) out = std::max(out, model.alone);
+  return out;
+}
+
+/// m of the best model with a random offset.
+std::size_t best_random(const Models& models) {
+  return static_cast<std::size_t>(
+      std::max_element(models.begin(), models.end(),
+                       [](const Model& a, const Model& b) { return a.random() < b.random(); }) -
+      models.begin());
+}
+
+/// Law i stands in every model of more than i laws, whatever stands beside it there; a random offset stands
+/// in its place in those of no more.
+void hold_against_random(const Models& models, std::size_t i, FoundLaw& law) {
+  double top = kNever, held = kNever, walk = kNever, jumps = kNever;
+  for (const Model& model : models) top = std::max(top, model.best());
+  const auto weight = [top](double evidence) { return std::exp((evidence - top) / 2); };
+  double with = 0, walk_instead = 0, jumps_instead = 0, walk_beside = 0, jumps_beside = 0;
+  double random = kNever;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const Model& model = models[m];
+    if (m > i) {
+      held = std::max(held, model.best());
+      with += weight(model.alone) + weight(model.walk) + weight(model.jumps);
+      walk_beside += weight(model.walk), jumps_beside += weight(model.jumps);
+      continue;
+    }
+    walk = std::max(walk, model.walk), jumps = std::max(jumps, model.jumps);
+    walk_instead += weight(model.walk), jumps_instead += weight(model.jumps);
+    if (model.random() > random) random = model.random(), law.random_where = model.random_where;
+  }
+  law.over_walk = held - walk, law.over_jumps = held - jumps;
+  const std::size_t best = best_random(models);
+  law.over_nothing_beside = models[best].random() - best_alone(models);
+  law.random_beside = best > i && law.over_nothing_beside > 0;
+  const double all = with + walk_instead + jumps_instead;
+  law.walk_P = (law.random_beside ? walk_beside : walk_instead) / all;
+  law.jumps_P = (law.random_beside ? jumps_beside : jumps_instead) / all;
+  if (law.random_beside) law.random_where = models[best].random_where;
+  for (FoundFormula& formula : law.formulas) formula.P *= with / all;
 }
 
 }  // namespace
@@ -75,24 +112,25 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
     const auto round = law_round(bench, out.left, out.laws.empty());
     if (!round) return tl::unexpected(round.error());
     if (out.laws.empty()) out.hypotheses = round->hypotheses;
-    models.add(out.laws.size(), T, *round);
-    const bool more = stands_out(criticism::tests::best_of(round->log10_p_best, questions));
+    models.push_back(model_of(out.laws.size(), T, *round));
+    const bool more = stands_out(criticism::tests::best_of(round->log10_p_best, questions), bench.looks);
     if (out.laws.size() >= kMostLaws || (!out.laws.empty() && !more)) break;
     auto one = chosen_law(bench, out.left, *round, questions, name_of(out.laws.size()));
     if (!one) return tl::unexpected(one.error());
     out.laws.push_back(*std::move(one));
     T += round->score;
     if (!more) {
-      models.laws = T;
+      models.push_back({.alone = T});
       break;
     }
     take_out(out.laws.back().head, out.left);
   }
   // What is random beside fewer laws takes the place of the later ones.
-  if (std::max(models.walk, models.jumps) > models.laws)
-    out.laws.resize(std::max<std::size_t>(1, models.with_random));
+  const std::size_t with_random = best_random(models);
+  if (models[with_random].random() > best_alone(models))
+    out.laws.resize(std::max<std::size_t>(1, with_random));
   if (const auto ok = sweep(bench, bare, questions, out.laws); !ok) return tl::unexpected(ok.error());
-  hold_against_random(models, out.laws.front().law);
+  for (std::size_t i = 0; i < out.laws.size(); ++i) hold_against_random(models, i, out.laws[i].law);
   out.left = bare;
   if (out.laws.front().law.stands_out)
     for (const ChosenLaw& law : out.laws) take_out(law.head, out.left);

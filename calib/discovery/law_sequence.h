@@ -8,9 +8,16 @@
 /// what is left, until nothing stands out. Then each is looked for again beside the others, because two laws
 /// on one axis first show as a compromise.
 ///
-/// Random rivals are held against all laws together. With T_m the evidence of the first m laws and R_m that
-/// of an offset that walks or jumps in what they leave, the best of T_m (laws alone) is compared with the
-/// best of T_m + R_m: one law of two would lose to jumps, which take up the other one too.
+/// Random rivals are held against all laws together. T_m is the evidence of the first m laws, R_m that of an
+/// offset that walks or jumps in what they leave; the models are T_m (laws alone) and T_m + R_m (both).
+///
+/// Instead of law i: its formulas stand in every model of i laws or more, an offset in their place in those
+/// of fewer. 2 ln of the odds of the law is the best of the former less the best T_m + R_m of the latter, and
+/// the probabilities of its formulas share what the former have of all. An offset in what all laws leave says
+/// nothing against their formulas. One law of two must not stand alone here: it would lose to jumps, which
+/// take up the other one too.
+///
+/// Beside the laws: the best T_m + R_m with laws in it is better than every T_m.
 namespace mgtd::calib::discovery {
 
 inline constexpr std::size_t kMostLaws = 3;

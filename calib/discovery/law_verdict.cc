@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "calib/criticism/tests/multiplicity.h"
 #include "calib/criticism/tests/wandering_alternative.h"
@@ -14,18 +15,19 @@ namespace {
 
 namespace tests = criticism::tests;
 
-/// P above which a formula is the law.
-constexpr double kSure = 0.9;
-/// 2 ln of the odds that formulas need against what is random.
+/// 1 - P below which a formula is the law.
+constexpr double kUnsure = 0.05;
+/// 2 ln of the odds that formulas need against what is random, instead of them.
 constexpr double kOverRandom = 6;
 /// Of what an axis may have left beyond its noise, in standard deviations.
 constexpr double kLeft = 3.7;
 
-/// A law must be better than the walk as the tests of the library see it, where those found one.
-bool beats_walk(const NoiseInForce& in_force, const FittedLaw& head, double questions) {
-  if (!in_force.wanders) return true;
+/// log10 p of a law beside the walk as the tests of the library see it; empty where those found none.
+std::optional<double> log10_p_over_walk(const NoiseInForce& in_force, const FittedLaw& head,
+                                        double questions) {
+  if (!in_force.wanders) return std::nullopt;
   const tests::WanderingAlternative alternative(in_force.fit);
-  if (!alternative.estimate().any()) return true;
+  if (!alternative.estimate().any()) return std::nullopt;
   const fit::joint::JointProblem& problem = in_force.fit.problem;
   const Eigen::MatrixXd of_gradient = gradient_rows(problem, in_force.fit.state);
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(problem.poses.size()) * problem.pose_rows(),
@@ -33,11 +35,13 @@ bool beats_walk(const NoiseInForce& in_force, const FittedLaw& head, double ques
   for (std::size_t j = 0; j < head.basis.size(); ++j)
     rows.col(static_cast<Eigen::Index>(j)) = law_rows(head.basis[j], problem, of_gradient);
   const auto ratio = alternative.ratio(rows);
-  if (ratio.rank == 0) return false;
+  if (ratio.rank == 0) return 0;
   const double log10_p = stats::chi_square_log10_p(std::max(0.0, ratio.R), ratio.rank) +
                          std::log10(head.place.alike(problem.channels()));
-  return stands_out(tests::best_of(std::min(0.0, log10_p), questions));
+  return tests::best_of(std::min(0.0, log10_p), questions);
 }
+
+double over_random(const FoundLaw& law) { return std::min(law.over_walk, law.over_jumps); }
 
 }  // namespace
 
@@ -68,22 +72,39 @@ bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first) {
          !std::all_of(first.covariates.begin(), first.covariates.end(), reading);
 }
 
-Verdict verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
-                   const DiscoveryReport& report) {
+JudgedLaws verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
+                      const DiscoveryReport& report, int looks) {
+  using Rule = VerdictReason::Rule;
   const bool left = report.left_sigmas > kLeft;
-  if (laws.empty() || !stands_out(laws.front().law.log10_p))
-    return in_force.wanders || left ? Verdict::noise_like : Verdict::pass;
+  const double log10_p = laws.empty() ? 0 : laws.front().law.log10_p;
+  if (!stands_out(log10_p, looks)) {
+    if (left) return {Verdict::noise_like, {Rule::only_scatter, report.left_sigmas, kLeft}};
+    if (in_force.wanders) return {Verdict::noise_like, {.rule = Rule::only_wander}};
+    return {Verdict::pass, {Rule::nothing_found, log10_p, limit_log10_p(looks)}};
+  }
+  const auto over_walk = log10_p_over_walk(in_force, laws.front().head, report.questions);
+  if (over_walk && !stands_out(*over_walk, looks))
+    return {Verdict::noise_like, {Rule::walk_instead, *over_walk, limit_log10_p(looks)}};
   const FoundLaw& first = laws.front().law;
-  const double over_random = std::min(first.over_walk, first.over_jumps);
-  if (!beats_walk(in_force, laws.front().head, report.questions)) return Verdict::noise_like;
-  if (first.random_beside) return Verdict::shape_only;
-  if (over_random < 0) return Verdict::noise_like;
-  if (over_random < kOverRandom || report.may_be_drift) return Verdict::shape_only;
-  if (first.formulas.front().columns.empty()) return Verdict::library;
-  if (stands_out(report.log10_p_left) || left) return Verdict::shape_only;
-  const bool sure = std::all_of(laws.begin(), laws.end(),
-                                [](const ChosenLaw& law) { return law.law.formulas.front().P > kSure; });
-  return sure ? Verdict::law : Verdict::law_set;
+  if (first.random_beside)
+    return {Verdict::shape_only, {.rule = Rule::random_beside, .measured = first.over_nothing_beside}};
+  const double needed = kOverRandom + 2 * std::log(looks);
+  if (over_random(first) < 0)
+    return {Verdict::noise_like, {Rule::random_instead, over_random(first), needed}};
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (over_random(laws[i].law) < needed)
+      return {Verdict::shape_only, {Rule::random_near, over_random(laws[i].law), needed, i}};
+  if (report.may_be_drift) return {Verdict::shape_only, {.rule = Rule::drift}};
+  const double sure = 1 - kUnsure / looks;
+  if (first.formulas.front().columns.empty())
+    return {Verdict::library, {Rule::library, first.formulas.front().P, sure}};
+  if (stands_out(report.log10_p_left, 1))
+    return {Verdict::shape_only, {Rule::law_left, report.log10_p_left, limit_log10_p(1)}};
+  if (left) return {Verdict::shape_only, {Rule::scatter_left, report.left_sigmas, kLeft}};
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (const double P = laws[i].law.formulas.front().P; !(P > sure))
+      return {Verdict::law_set, {Rule::formulas_open, P, sure, i}};
+  return {Verdict::law, {.rule = Rule::none}};
 }
 
 }  // namespace mgtd::calib::discovery

@@ -12,8 +12,13 @@ namespace mgtd::calib::discovery {
 /// a while, whatever its cause, looks like a law of time or of anything else that drifts.
 [[nodiscard]] bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first);
 
-/// `report`: with what is left after the laws.
-[[nodiscard]] Verdict verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
-                                 const DiscoveryReport& report);
+struct JudgedLaws {
+  Verdict verdict{Verdict::pass};
+  VerdictReason reason{};
+};
+/// `report`: with what is left after the laws. What must stand out does so of all `looks` together; what is
+/// left counts as a single look finds it, because that takes a name away.
+[[nodiscard]] JudgedLaws verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
+                                    const DiscoveryReport& report, int looks);
 
 }  // namespace mgtd::calib::discovery

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/effects/effect_spec.h"
+#include "calib/report/discovery_reason.h"
 #include "calib/report/json_number.h"
 #include "calib/report/wrapped.h"
 #include "calib/stats/probability.h"
@@ -89,12 +90,14 @@ json law_json(const FoundLaw& law) {
            {"covariates", shares_json(law.covariates)},
            {"where", shares_json(law.where)},
            {"formulas", std::move(formulas)},
+           {"formulas_more", law.more},
            {"stochastic",
             {{"walk_P", law.walk_P},
              {"jumps_P", law.jumps_P},
              {"two_ln_over_walk", number_or_null(law.over_walk)},
              {"two_ln_over_jumps", number_or_null(law.over_jumps)},
              {"beside", law.random_beside},
+             {"two_ln_over_nothing_beside", number_or_null(law.over_nothing_beside)},
              {"where", law.random_where}}},
            {"extrapolation_spread", optional_number(law.extrapolation_spread)}};
   if (law.shape) {
@@ -119,34 +122,9 @@ json law_json(const FoundLaw& law) {
   return out;
 }
 
-std::string what_next(const DiscoveryReport& r, const std::string& run) {
-  switch (r.verdict) {
-    case Verdict::pass:
-      return "nothing: no formula stands out from the noise of this run";
-    case Verdict::library:
-      return "mgt explain " + run + " names it, with its rivals and what it costs";
-    case Verdict::law:
-    case Verdict::law_set:
-      return r.laws.front().formulas.front().specs.empty()
-                 ? "measure again, and look whether the same formula leads"
-                 : "keep the formula with the commands below; it stays exploratory until a second run "
-                   "confirms it (mgt define --from)";
-    case Verdict::shape_only:
-      if (r.may_be_drift)
-        return "stay at each attitude for some seconds, come back to the first ones at the end, and compare: "
-               "what drifts does not come back with the attitude";
-      return "record more (supplies, loads, temperatures of the electronics) and run again; mgt report " +
-             run + " shows the residual against everything that was recorded";
-    case Verdict::noise_like:
-      if (!r.laws.empty() && r.laws.front().over_jumps < r.laws.front().over_walk)
-        return "record what switches between the poses (supplies, loads, presence) and run again";
-      return "repeat the run: what walks does not repeat, and a law does";
-  }
-  return {};
-}
-
 /// The commands that keep what leads.
-std::vector<std::string> commands(const DiscoveryReport& r, const std::string& run) {
+std::vector<std::string> commands(const DiscoveryReport& r, const std::string& run,
+                                  const std::vector<std::string>& before) {
   std::vector<std::string> out;
   if (r.verdict != Verdict::law && r.verdict != Verdict::law_set) return out;
   for (const FoundLaw& law : r.laws) {
@@ -156,6 +134,7 @@ std::vector<std::string> commands(const DiscoveryReport& r, const std::string& r
       out.push_back(fmt::format("mgt add {} {}", d.name, shell_word(run)));
     }
   }
+  if (!out.empty()) out.insert(out.begin(), before.begin(), before.end());
   return out;
 }
 
@@ -170,7 +149,7 @@ std::string headline(const DiscoveryReport& r) {
                                 : fmt::format("LAW: {} formulas, each told from every other.", r.laws.size());
     case Verdict::law_set:
       return fmt::format("LAW-SET: {} at {}, or one of {} others that these poses do not exclude.",
-                         first->formula, first->where, law->formulas.size() - 1);
+                         first->formula, first->where, law->formulas.size() + law->more - 1);
     case Verdict::library:
       return fmt::format("LIBRARY: {} at {} describes it.", first->formula, first->where);
     case Verdict::shape_only:
@@ -237,8 +216,8 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
       fmt::format_to(to, "     in the library: {}\n", f.library);
     if (i == 0) tell_coefficients(f, out);
   }
-  if (law.formulas.size() > kShown)
-    fmt::format_to(to, "    and {} more in the 99 % set\n", law.formulas.size() - kShown);
+  if (const std::size_t all = law.formulas.size() + law.more; all > kShown)
+    fmt::format_to(to, "    and {} more in the 99 % set\n", all - kShown);
   if (number == 1)
     fmt::format_to(to, "    {}: offset walks {:.2f}, jumps from pose to pose {:.2f}\n",
                    law.random_beside ? "beside it" : "no formula", law.walk_P, law.jumps_P);
@@ -275,11 +254,17 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
 
 }  // namespace
 
-json to_json(const DiscoveryReport& r, const std::string& run) {
+json to_json(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before) {
   json laws = json::array();
   for (const FoundLaw& law : r.laws) laws.push_back(law_json(law));
   json out{{"schema", "mgt.discover/1"},
            {"verdict", std::string(discovery::to_string(r.verdict))},
+           {"reason",
+            {{"rule", std::string(rule_name(r.reason.rule))},
+             {"measured", number_or_null(r.reason.measured)},
+             {"limit", number_or_null(r.reason.limit)},
+             {"law", r.reason.law},
+             {"text", reason_text(r)}}},
            {"poses", r.poses},
            {"poses_searched", r.searched},
            {"hypotheses", r.hypotheses},
@@ -298,12 +283,12 @@ json to_json(const DiscoveryReport& r, const std::string& run) {
            {"laws", laws},
            {"after", json()},
            {"next", json::array({what_next(r, run)})},
-           {"commands", commands(r, run)},
-           {"text", to_text(r, run)}};
+           {"commands", commands(r, run, before)},
+           {"text", to_text(r, run, before)}};
   // The strongest law once more, where a reader of one law looks for it.
   const json first = laws.empty() ? json::object() : laws.front();
   for (const char* key : {"log10_p_search", "stands_out", "d", "covariates", "where", "formulas",
-                          "stochastic", "curve", "extrapolation_spread"})
+                          "formulas_more", "stochastic", "curve", "extrapolation_spread"})
     out[key] = first.contains(key) ? first[key] : json();
   if (r.after)
     out["after"] = {{"residual_nT", r.after->residual_nT},
@@ -312,7 +297,8 @@ json to_json(const DiscoveryReport& r, const std::string& run) {
   return out;
 }
 
-std::string to_text(const DiscoveryReport& r, const std::string& run) {
+std::string to_text(const DiscoveryReport& r, const std::string& run,
+                    const std::vector<std::string>& before) {
   std::string out = wrapped(headline(r));
   const auto to = std::back_inserter(out);
   out += wrapped(fmt::format(
@@ -321,10 +307,6 @@ std::string to_text(const DiscoveryReport& r, const std::string& run) {
   if (r.searched < r.poses)
     out += wrapped(fmt::format("{} of the {} poses are searched, evenly chosen: a search takes no more",
                                r.searched, r.poses));
-  if (r.may_be_drift && r.verdict == Verdict::shape_only)
-    out += wrapped(
-        "one sample a pose: samples that follow one another are no replicates, and what drifts for a while, "
-        "whatever its cause, looks like such a law");
   if (r.wanders) out += wrapped("the offsets of this run wander: slow laws are held against that");
   const bool show = r.verdict != Verdict::pass && !r.laws.empty() && r.laws.front().stands_out;
   // Of what is not believed the first says enough.
@@ -342,8 +324,10 @@ std::string to_text(const DiscoveryReport& r, const std::string& run) {
                      *r.after->unseen_after_nT);
     out += "\n";
   }
-  out += "\n" + wrapped("next: " + what_next(r, run));
-  for (const std::string& command : commands(r, run)) out += "  " + command + "\n";
+  out += "\n";
+  if (const std::string reason = reason_text(r); !reason.empty()) out += wrapped("why: " + reason);
+  out += wrapped("next: " + what_next(r, run));
+  for (const std::string& command : commands(r, run, before)) out += "  " + command + "\n";
   return out;
 }
 

@@ -2,14 +2,18 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "calib/discovery/discovery_report.h"
 
 /// What discover() found, as an object (schema mgt.discover/1) and for a person. `run` as the person typed
-/// it, for the commands that the text proposes.
+/// it, for the commands that the text proposes; `before`: those that come first, so that the kept model is
+/// the one that was searched.
 namespace mgtd::calib::report {
 
-[[nodiscard]] nlohmann::json to_json(const discovery::DiscoveryReport& report, const std::string& run);
-[[nodiscard]] std::string to_text(const discovery::DiscoveryReport& report, const std::string& run);
+[[nodiscard]] nlohmann::json to_json(const discovery::DiscoveryReport& report, const std::string& run,
+                                     const std::vector<std::string>& before = {});
+[[nodiscard]] std::string to_text(const discovery::DiscoveryReport& report, const std::string& run,
+                                  const std::vector<std::string>& before = {});
 
 }  // namespace mgtd::calib::report

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "calib/discovery/discover.h"
+#include "calib/report/discovery_reason.h"
 #include "tests/blind/page.h"
 #include "tests/discovery/unknown_law.h"
 
@@ -31,7 +32,7 @@ struct Answer {
   double log10_p{0}, P{0};
   bool found{false}, place{false}, covariate{false}, first{false}, in_set{false}, alike{false};
   std::size_t set{0};
-  std::string formula{};
+  std::string formula{}, reason{};
 };
 
 bool is_true(const UnknownLaw& law, const discovery::FoundFormula& f) {
@@ -39,14 +40,15 @@ bool is_true(const UnknownLaw& law, const discovery::FoundFormula& f) {
 }
 
 Answer ask(const PoseTable& table, const UnknownLaw* law, int draws) {
-  const auto report = discovery::discover(table, {.fit = {}, .draws = draws, .checks = false});
-  if (!report) throw std::runtime_error(report.error().text());
-  const discovery::FoundLaw& first = report->laws.front();
-  Answer out{.verdict = report->verdict, .log10_p = first.log10_p};
+  const auto found = discovery::discover(table, {.fit = {}, .draws = draws, .checks = false});
+  if (!found) throw std::runtime_error(found.error().text());
+  const discovery::FoundLaw& first = found->laws.front();
+  Answer out{.verdict = found->verdict, .log10_p = first.log10_p};
   out.found = first.log10_p < -2;
   out.P = first.formulas.front().P;
   out.formula = first.formulas.front().formula + " at " + first.formulas.front().where;
-  out.set = first.formulas.size();
+  out.set = first.formulas.size() + first.more;
+  out.reason = report::reason_text(*found);
   out.place = first.where.front().name == "s3.z";
   if (law == nullptr) return out;
   out.covariate = first.covariates.front().name == law->covariate;
@@ -157,9 +159,9 @@ std::string laws_page(int runs, int draws) {
         const bool right = a.first || a.alike;
         s.law_wrong += a.verdict == Verdict::law && !right ? 1 : 0;
         s.sure += a.P > 0.99 ? 1 : 0, s.sure_wrong += a.P > 0.99 && !right ? 1 : 0;
-        if (!a.first)
-          fmt::print(stderr, "{} d {}: {} P {:.2f} {}{}\n", law.name, d, discovery::to_string(a.verdict), a.P,
-                     a.formula, a.in_set ? "" : " (not in set)");
+        if (!a.first || a.verdict != Verdict::law)
+          fmt::print(stderr, "{} d {}: {} P {:.2f} {}{}; {}\n", law.name, d, discovery::to_string(a.verdict),
+                     a.P, a.formula, a.in_set ? "" : " (not in set)", a.reason);
       }
       s.n += runs;
       std::nth_element(sets.begin(), sets.begin() + static_cast<std::ptrdiff_t>(sets.size() / 2), sets.end());
@@ -206,9 +208,9 @@ std::string lawless_page(int runs, int draws) {
         return percent(count_of(answers, [v](const Answer& a) { return a.verdict == v; }), runs);
       };
       for (const Answer& a : answers)
-        if (a.verdict == Verdict::law || a.verdict == Verdict::law_set)
-          fmt::print(stderr, "{} d {}: {} P {:.2f} {}\n", lawless()[l].name, d,
-                     discovery::to_string(a.verdict), a.P, a.formula);
+        if (a.verdict != Verdict::noise_like)
+          fmt::print(stderr, "{} d {}: {} P {:.2f} {}; {}\n", lawless()[l].name, d,
+                     discovery::to_string(a.verdict), a.P, a.formula, a.reason);
       out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", lawless()[l].name, d,
                          percent(count_of(answers, [](const Answer& a) { return a.found; }), runs),
                          percent(count_of(answers, [](const Answer& a) { return a.place; }), runs),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/discover.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -16,10 +17,12 @@ namespace {
 using calib::testing::Hidden;
 using ::testing::HasSubstr;
 
-DiscoveryReport found_in(const Hidden& hidden, std::uint64_t seed, bool checks = false) {
+DiscoveryReport found_in(const Hidden& hidden, std::uint64_t seed, bool checks = false, int looks = 1) {
   const PoseTable table = testing::run_with({.noise_nT = 0.05, .hidden = hidden}, seed);
-  return testing::must(discover(table, {.fit = {}, .draws = 300, .checks = checks}));
+  return testing::must(discover(table, {.fit = {}, .draws = 300, .looks = looks, .checks = checks}));
 }
+
+using Rule = VerdictReason::Rule;
 
 /// Added to one channel.
 Hidden on(int channel, const std::function<double(const Pose&)>& law) {
@@ -32,6 +35,8 @@ TEST(Discover, NoiseHasNoLaw) {
   for (const std::uint64_t seed : {4U, 5U, 6U}) {
     const DiscoveryReport r = found_in({}, seed);
     EXPECT_EQ(r.verdict, Verdict::pass) << report::to_text(r, "run.csv");
+    EXPECT_EQ(r.reason.rule, Rule::nothing_found);
+    EXPECT_EQ(r.reason.measured, r.laws.front().log10_p);
     EXPECT_GT(r.hypotheses, 15'000U);
   }
 }
@@ -46,6 +51,8 @@ TEST(Discover, NamesAHarmonicOfTheAzimuth) {
   ASSERT_EQ(law.formulas.front().coefficients.size(), 2U);
   const auto& c = law.formulas.front().coefficients;
   EXPECT_NEAR(std::hypot(c[0].value, c[1].value), 0.12, 4 * c[0].sd);
+  EXPECT_GT(law.formulas.front().P, 0.99) << "an offset beside the law says nothing against it";
+  EXPECT_EQ(r.reason.rule, Rule::none);
   ASSERT_TRUE(law.halves_ratio && law.held_out_fall && r.after);
   EXPECT_NEAR(*law.halves_ratio, 1, 0.4);
   EXPECT_GT(*law.held_out_fall, 50);
@@ -112,6 +119,11 @@ TEST(Discover, AnUnrecordedLoadIsNoLaw) {
                                      7);
   EXPECT_EQ(r.verdict, Verdict::noise_like) << report::to_text(r, "run.csv");
   EXPECT_LT(r.laws.front().over_jumps, 0);
+  EXPECT_GT(r.laws.front().jumps_P, 0.99);
+  EXPECT_LT(r.laws.front().formulas.front().P, 0.01) << "jumps stand in its place";
+  EXPECT_EQ(r.reason.rule, Rule::random_instead);
+  const std::string text = report::to_text(r, "run.csv");
+  EXPECT_THAT(text, HasSubstr("why: 2 ln of the odds of all formulas against an offset that jumps"));
 }
 
 TEST(Discover, AnOffsetThatWalksIsNoLaw) {
@@ -143,6 +155,48 @@ TEST(Discover, ALawBesideAnUnrecordedLoadIsOnlyAShape) {
                7);
   EXPECT_EQ(r.verdict, Verdict::shape_only) << report::to_text(r, "run.csv");
   EXPECT_EQ(r.laws.front().covariates.front().name, "azimuth_deg");
+  EXPECT_EQ(r.reason.rule, Rule::random_beside);
+  EXPECT_GT(r.reason.measured, 0);
+  const nlohmann::json reason = report::to_json(r, "run.csv").at("reason");
+  EXPECT_EQ(reason.at("rule"), "random-beside");
+  EXPECT_THAT(reason.at("text").get<std::string>(), HasSubstr("beside them is"));
+}
+
+/// In noise thousands of formulas are as good as each other: those that are not described are counted.
+TEST(Discover, CountsTheWholeSet) {
+  DiscoveryReport r = found_in({}, 4);
+  FoundLaw& law = r.laws.front();
+  ASSERT_EQ(law.formulas.size(), 40U);
+  double P = 0;
+  for (const FoundFormula& formula : law.formulas) P += formula.P;
+  EXPECT_LT(P, 0.9);
+  EXPECT_GT(law.more, 100U);
+  r.verdict = Verdict::law_set, law.stands_out = true;
+  EXPECT_THAT(report::to_text(r, "run.csv"), HasSubstr(fmt::format("and {} more in the", 32 + law.more)));
+}
+
+/// An offset may walk beside a law as well as in noise: that is nothing against the formula.
+TEST(Discover, WhatIsLeftSaysNothingAgainstTheFormula) {
+  const DiscoveryReport r =
+      found_in(on(5, [](const Pose& p) { return 0.12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 8);
+  ASSERT_EQ(r.verdict, Verdict::law) << report::to_text(r, "run.csv");
+  const FoundLaw& law = r.laws.front();
+  EXPECT_LT(law.over_nothing_beside, 0);
+  EXPECT_GT(law.over_nothing_beside, -8) << "chosen so that an offset beside the law has some probability";
+  EXPECT_GT(law.over_walk, 100) << "in its place it has none";
+  EXPECT_GT(law.formulas.front().P, 0.99);
+}
+
+/// Judgements of a growing run share the chance of a false name.
+TEST(Discover, NamesLessAtEachOfSeveralLooks) {
+  const Hidden weak = on(5, [](const Pose& p) { return 0.042 * std::sin(3 * *p.azimuth_rad + 0.6); });
+  const DiscoveryReport once = found_in(weak, 4), often = found_in(weak, 4, false, 5);
+  EXPECT_EQ(once.laws.front().log10_p, often.laws.front().log10_p);
+  EXPECT_LT(once.laws.front().log10_p, -2.05);
+  EXPECT_GT(once.laws.front().log10_p, -2.65);
+  EXPECT_NE(once.verdict, Verdict::pass) << report::to_text(once, "run.csv");
+  EXPECT_EQ(often.verdict, Verdict::pass) << report::to_text(often, "run.csv");
+  EXPECT_FALSE(often.laws.front().stands_out);
 }
 
 TEST(Discover, TellsTheSameInWordsAndNumbers) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "calib/discovery/discovery_report.h"
+
+/// Why discover() says its word: the rule that decided, what was measured against which limit, and what can
+/// be done about it.
+namespace mgtd::calib::report {
+
+/// "random-beside", as JSON names the rule; "none" of a LAW.
+[[nodiscard]] std::string_view rule_name(discovery::VerdictReason::Rule rule);
+/// One sentence; empty where no rule kept the verdict from being LAW.
+[[nodiscard]] std::string reason_text(const discovery::DiscoveryReport& report);
+/// What a person does next. `run` as the person typed it.
+[[nodiscard]] std::string what_next(const discovery::DiscoveryReport& report, const std::string& run);
+
+}  // namespace mgtd::calib::report
