@@ -152,11 +152,10 @@ std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, 
            "does where a filter or a delay stands between the sensor and the file.";
   const auto formula = kTry.find(m.map);
   return fmt::format(
-      "What to do next: mgt discover RUN looks for the formula of a law that is in no library. The residual "
-      "of "
-      "{} over {} shows most of it (mgt report draws it); a law of your own: mgt define RUN my.law '{}' "
-      "--scale {}, then mgt explain again.",
-      m.where, m.map, formula == kTry.end() ? m.map : formula->second, m.where);
+      "What to do next: mgt discover RUN looks for the formula of a law that is in no library; mgt report "
+      "draws this residual; a law of your own: mgt define RUN my.law '{}' --scale {}, then mgt explain "
+      "again.",
+      formula == kTry.end() ? m.map : formula->second, m.where);
 }
 
 std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
