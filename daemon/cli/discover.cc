@@ -7,6 +7,7 @@
 #include "calib/report/discovery_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/searched_model.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -47,13 +48,14 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
                                       {.fit = told, .draws = args.draws, .checks = !args.quick});
   });
   if (!found) return report(session, found.error());
+  const auto before = commands_to_model(options->effects, *source, args.run);
   if (session.json) {
-    print_json(calib::report::to_json(*found, args.run));
+    print_json(calib::report::to_json(*found, args.run, before));
   } else if (args.spec) {
     for (const auto& law : found->laws)
       for (const std::string& spec : law.formulas.front().specs) fmt::print("{}\n", spec);
   } else {
-    fmt::print("{}", calib::report::to_text(*found, args.run));
+    fmt::print("{}", calib::report::to_text(*found, args.run, before));
   }
   return found->verdict == Verdict::shape_only || found->verdict == Verdict::noise_like ? 1 : 0;
 }

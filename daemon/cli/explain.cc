@@ -74,14 +74,14 @@ int run_explain(const Session& session, const ExplainArguments& args) {
       args.no_law ? std::nullopt : remaining_law(source->table, whole, explained->finding);
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*explained);
-    if (!args.no_law) out["law"] = law_json(law, args.run);
+    if (!args.no_law) out["law"] = law_json(law, whole, *source, args.run);
     out["chosen_in_doubt"] = doubts_json(*doubts);
     if (args.confusion) out["figures"] = figures_json(*explained);
     print_json(out);
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
     if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
-    text += law_text(law, whole, args.run);
+    text += law_text(law, whole, *source, args.run);
     print_text(session, text);
   }
   return explained->finding == calib::criticism::search::Finding::pass ? 0 : 1;

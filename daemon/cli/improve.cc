@@ -76,12 +76,12 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);
     out["waterfall"] = steps ? calib::report::to_json(*steps) : nlohmann::json();
-    if (!args.no_law) out["law"] = law_json(law, args.run);
+    if (!args.no_law) out["law"] = law ? law_json(law, *whole, *source, args.run) : nlohmann::json();
     print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*improved));
     if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
-    if (law) fmt::print("{}", law_text(law, *whole, args.run));
+    if (law) fmt::print("{}", law_text(law, *whole, *source, args.run));
   }
   return improved->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }

@@ -9,6 +9,7 @@
 
 #include "calib/discovery/discover.h"
 #include "calib/report/discovery_report.h"
+#include "daemon/cli/searched_model.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -22,13 +23,15 @@ RemainingLaw remaining_law(const PoseTable& table, const calib::fit::FitOptions&
   });
 }
 
-nlohmann::json law_json(const RemainingLaw& law, const std::string& run) {
+nlohmann::json law_json(const RemainingLaw& law, const calib::fit::FitOptions& options,
+                        const store::PoseSource& source, const std::string& run) {
   if (!law) return {};
   if (!*law) return {{"refused", law->error().message}, {"remedy", law->error().remedy}};
-  return calib::report::to_json(**law, run);
+  return calib::report::to_json(**law, run, commands_to_model(options.effects, source, run));
 }
 
-std::string law_text(const RemainingLaw& law, const calib::fit::FitOptions& options, const std::string& run) {
+std::string law_text(const RemainingLaw& law, const calib::fit::FitOptions& options,
+                     const store::PoseSource& source, const std::string& run) {
   if (!law) return {};
   if (!*law) return fmt::format("\nNo formula was looked for: {}.\n", law->error().message);
   std::vector<std::string> model;
@@ -36,7 +39,7 @@ std::string law_text(const RemainingLaw& law, const calib::fit::FitOptions& opti
   const std::string beside =
       model.empty() ? std::string() : fmt::format(" beside {}", fmt::join(model, ", "));
   return fmt::format("\nA formula for what remains{} (mgt discover --quick):\n{}", beside,
-                     calib::report::to_text(**law, run));
+                     calib::report::to_text(**law, run, commands_to_model(options.effects, source, run)));
 }
 
 }  // namespace mgtd::daemon::cli
