@@ -10,6 +10,7 @@
 #include "calib/criticism/search/next_among.h"
 #include "calib/discovery/discover.h"
 #include "calib/effects/effect_context.h"
+#include "calib/effects/library/library.h"
 #include "calib/poses/pose_list.h"
 #include "calib/report/next_report.h"
 #include "daemon/plan/plan_from_list.h"
@@ -35,6 +36,7 @@ std::string found_text(const RunEvidence& e) {
     out += fmt::format(": {}", fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "));
   if (e.discovered) {
     const DiscoveryReport& d = *e.discovered;
+    for (const std::string& effect : e.beside) out += fmt::format("; for the rest LIBRARY: {}", effect);
     out += fmt::format("; for the rest {}", to_string(d.verdict));
     if (d.verdict == calib::discovery::Verdict::law || d.verdict == calib::discovery::Verdict::law_set)
       out += fmt::format(": {} at {}", d.laws.front().formulas.front().formula,
@@ -87,10 +89,36 @@ int sensors_of(const PoseTable& table) {
   return calib::effects::EffectContext{.table = &table, .offset_nT = {}}.sensors();
 }
 
+/// Formulas for what is left, beside the effects of the library that account for a part of it. Each of those
+/// joins the model, and the rest is searched again. What no search can say is no reason to end the run
+/// without its verdict.
+void discover_in(calib::fit::FitOptions& options, RunEvidence& evidence) {
+  constexpr std::size_t kMostEffects = 3;
+  const int sensors = sensors_of(evidence.table);
+  while (true) {
+    auto found = calib::discovery::discover(evidence.table,
+                                            {.fit = options, .looks = kMostJudgements, .checks = false});
+    if (!found) return;
+    evidence.discovered = *std::move(found);
+    if (evidence.discovered->verdict != calib::discovery::Verdict::library ||
+        evidence.leaves_formulas_open() || evidence.beside.size() == kMostEffects)
+      return;
+    const calib::discovery::FoundFormula& leading = evidence.discovered->laws.front().formulas.front();
+    auto effect = calib::effects::library::make_effect(leading.library + "@" + leading.where, sensors);
+    if (!effect) return;
+    evidence.beside.push_back((*effect)->spec());
+    options.effects.push_back(*std::move(effect));
+  }
+}
+
 }  // namespace
 
 bool RunEvidence::leaves_formulas_open() const {
-  return discovered && discovered->verdict == calib::discovery::Verdict::law_set;
+  using calib::discovery::Verdict;
+  if (!discovered) return false;
+  const calib::discovery::VerdictReason& reason = discovered->reason;
+  return discovered->verdict == Verdict::law_set ||
+         (discovered->verdict == Verdict::library && !(reason.measured > reason.limit));
 }
 
 NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) {
@@ -98,17 +126,25 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
   out.judgement.poses = static_cast<int>(e.table.poses.size());
   out.judgement.found = found_text(e);
   const Finding finding = e.explained.finding;
+  const bool open = e.next && !e.next->effect.empty();
+  using calib::discovery::Verdict;
   if (finding == Finding::pass || finding == Finding::explained) {
     out.judgement.next = finding == Finding::pass ? "nothing is left to explain"
                                                   : "the verdict is clear: mgt improve adds what it names";
   } else if (finding == Finding::bad_data) {
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
-  } else if (e.discovered && e.discovered->verdict == calib::discovery::Verdict::law) {
-    out.judgement.next = "a formula accounts for the rest: mgt discover says how to keep it";
+  } else if (!open && e.discovered && e.discovered->verdict == Verdict::law) {
+    out.judgement.next =
+        e.beside.empty()
+            ? "a formula accounts for the rest: mgt discover says how to keep it"
+            : fmt::format("a formula accounts for the rest: mgt discover --with {} says how to keep it",
+                          fmt::join(e.beside, " --with "));
+  } else if (!open && e.discovered && e.discovered->verdict == Verdict::pass && !e.beside.empty()) {
+    out.judgement.next =
+        fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.beside, " and "));
   } else if (looks_left <= 0) {
     out.judgement.next = fmt::format("the run was judged {} times, and that is the most", kMostJudgements);
-  } else if ((finding == Finding::ambiguous || e.leaves_formulas_open()) && e.next &&
-             !e.next->effect.empty()) {
+  } else if (open) {
     settle(*e.next, minutes_left, out);
   } else {
     out.judgement.next =
@@ -131,15 +167,19 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
   }
   if (explained->finding == Finding::partial || explained->finding == Finding::unknown) {
     options.effects = explained->model;
-    // What no search can say is no reason to end the run without its verdict.
-    if (auto found = calib::discovery::discover(table, {.fit = options, .checks = false}))
-      evidence.discovered = *std::move(found);
+    discover_in(options, evidence);
     if (evidence.leaves_formulas_open()) {
       const auto rivals = rivals_of(evidence.discovered->laws.front(), sensors_of(table));
-      if (rivals.empty()) return next_poses(evidence, minutes_left, looks_left);
-      if (auto next = calib::criticism::search::next_among(table, options, rivals))
-        evidence.next = *std::move(next);
+      if (!rivals.empty())
+        if (auto next = calib::criticism::search::next_among(table, options, rivals))
+          evidence.next = *std::move(next);
     }
+    const bool names_open =
+        std::any_of(explained->rounds.begin(), explained->rounds.end(),
+                    [](const calib::criticism::search::Round& r) { return !r.possible.empty(); });
+    if ((!evidence.next || evidence.next->effect.empty()) && names_open)
+      if (auto next = calib::criticism::search::next_after(*explained, table, search, std::nullopt))
+        evidence.next = *std::move(next);
   }
   return next_poses(evidence, minutes_left, looks_left);
 }

@@ -20,7 +20,12 @@
 ///
 /// Nothing more is measured when the verdict is clear, when nothing that is known would make it so within the
 /// minutes that are left, and after kMostJudgements looks. Each look declares the true name impossible in one
-/// of 1000 runs, all five together in at most one of 200, as a single look at a finished run does.
+/// of 1000 runs, all five together in at most one of 200, as a single look at a finished run does. The search
+/// for formulas has the same share of its error rates at each look.
+///
+/// What is named in part is no end: where no formula is open, effects that stay open beside one another are
+/// told apart; and where an effect of the library accounts for what explain() leaves, formulas are looked for
+/// once more beside it.
 namespace mgtd::daemon::run {
 
 struct NextPoses {
@@ -34,6 +39,7 @@ struct RunEvidence {
   const calib::criticism::search::ExplainReport& explained;
   std::optional<calib::criticism::search::NextReport> next{};
   std::optional<calib::discovery::DiscoveryReport> discovered{};
+  std::vector<std::string> beside{};  ///< effects of the library that the search found before that, specs
 
   [[nodiscard]] bool leaves_formulas_open() const;
 };

@@ -139,6 +139,57 @@ TEST(JudgeRun, ALawEndsIt) {
   EXPECT_THAT(out.judgement.next, HasSubstr("a formula accounts for the rest"));
 }
 
+/// A part that is named is no end while other names of it are open, whatever a formula says of the rest.
+TEST(JudgeRun, APartThatIsOpenIsToldApart) {
+  const PoseTable table = ten_poses();
+  ExplainReport explained;
+  explained.finding = Finding::partial;
+  explained.named = {"a"};
+  calib::discovery::DiscoveryReport found;
+  found.laws.emplace_back();
+  found.laws.front().formulas.resize(1);
+  NextReport next;
+  next.effect = "a", next.alternative = "b";
+  next.steps = {step("approached from both sides", 7, 0.97, true)};
+  for (const auto verdict : {calib::discovery::Verdict::law, calib::discovery::Verdict::shape_only}) {
+    found.verdict = verdict;
+    const NextPoses out =
+        next_poses({.table = table, .explained = explained, .next = next, .discovered = found}, 30, 4);
+    EXPECT_THAT(out.judgement.next, HasSubstr("7 minutes, to tell a from b")) << to_string(verdict);
+    EXPECT_EQ(out.poses.size(), 10U);
+  }
+}
+
+/// An effect of the library that leads by little is one of several rivals.
+TEST(JudgeRun, AnEffectThatLeadsByLittleLeavesFormulasOpen) {
+  const PoseTable table = ten_poses();
+  const ExplainReport explained;
+  calib::discovery::DiscoveryReport found;
+  found.verdict = calib::discovery::Verdict::library;
+  found.reason = {calib::discovery::VerdictReason::Rule::library, 0.5, 0.98};
+  RunEvidence evidence{.table = table, .explained = explained, .next = {}, .discovered = found};
+  EXPECT_TRUE(evidence.leaves_formulas_open());
+  evidence.discovered->reason.measured = 0.99;
+  EXPECT_FALSE(evidence.leaves_formulas_open());
+}
+
+TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
+  const PoseTable table = ten_poses();
+  ExplainReport explained;
+  explained.finding = Finding::unknown;
+  calib::discovery::DiscoveryReport found;
+  RunEvidence evidence{
+      .table = table, .explained = explained, .next = {}, .discovered = found, .beside = {"axis.cubic@s3.z"}};
+  NextPoses out = next_poses(evidence, 30, 4);
+  EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LIBRARY: axis.cubic@s3.z; for the rest PASS");
+  EXPECT_THAT(out.judgement.next, HasSubstr("nothing is left beside axis.cubic@s3.z"));
+  evidence.discovered->verdict = calib::discovery::Verdict::law;
+  evidence.discovered->laws.emplace_back();
+  evidence.discovered->laws.front().formulas.resize(1);
+  out = next_poses(evidence, 30, 4);
+  EXPECT_THAT(out.judgement.next, HasSubstr("mgt discover --with axis.cubic@s3.z says how to keep it"));
+}
+
 TEST(RunJudgement, ReadsBackAsItWasWritten) {
   const std::vector<RunJudgement> written{{157, "AMBIGUOUS: a or b", "24 more", 12.5},
                                           {181, "EXPLAINED: a", "clear", 0}};
