@@ -103,6 +103,10 @@ TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
     EXPECT_EQ(whole.at("law").at("schema"), "mgt.discover/1");
     EXPECT_EQ(whole.at("law").at("verdict"), "LAW") << command;
     EXPECT_EQ(whole.at("law").at("laws").at(0).at("formulas").at(0).at("formula"), "z^4");
+    const json& commands = whole.at("law").at("commands");
+    ASSERT_EQ(commands.size(), 3U) << command;
+    EXPECT_EQ(commands.at(0), "mgt add axis.quadratic@s3.z " + table) << "the model that was searched";
+    EXPECT_THAT(commands.at(2).get<std::string>(), HasSubstr("mgt add law1 "));
     const json bare = json::parse(run({"mgt", command, table, "--no-law", "--json"}).out, nullptr, false);
     EXPECT_EQ(bare.at("verdict"), whole.at("verdict"));
     EXPECT_FALSE(bare.contains("law")) << command;
@@ -110,6 +114,8 @@ TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
     EXPECT_EQ(text.exit_code, 1);
     EXPECT_THAT(text.out, HasSubstr("A formula for what remains beside axis.quadratic@s3.z"));
     EXPECT_THAT(text.out, HasSubstr("LAW: z^4 at s3.z."));
+    EXPECT_THAT(text.out, HasSubstr("  mgt add axis.quadratic@s3.z "));
+    EXPECT_THAT(text.out, Not(HasSubstr("shows most of it"))) << "what is left was told one sentence before";
     EXPECT_THAT(run({"mgt", command, table, "--no-law"}).out, Not(HasSubstr("A formula for")));
   }
 }
