@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 
 namespace mgtd {
@@ -148,6 +149,20 @@ void append_inputs(std::string& out, std::span<const InputValue> inputs) {
   out += '}';
 }
 
+/// "2026-11-21T10:00:00." as format_utc writes it, but without an allocation once `out` holds 20 characters.
+void write_second(std::string& out, std::int64_t second) {
+  const std::chrono::sys_seconds t{std::chrono::seconds{second}};
+  const auto day = std::chrono::floor<std::chrono::days>(t);
+  const std::chrono::year_month_day date{day};
+  const std::chrono::hh_mm_ss time{t - day};
+  std::array<char, 32> text{};
+  const auto written = fmt::format_to_n(text.data(), text.size(), "{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.",
+                                        static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                                        static_cast<unsigned>(date.day()), time.hours().count(),
+                                        time.minutes().count(), time.seconds().count());
+  out.assign(text.data(), written.size);
+}
+
 }  // namespace
 
 void TensorEncoder::append_time(WallTime t) {
@@ -155,7 +170,7 @@ void TensorEncoder::append_time(WallTime t) {
   if (t.ns % 1'000'000'000 < 0) --second;
   if (second != second_) {
     second_ = second;
-    second_text_ = format_utc(WallTime{second * 1'000'000'000}).substr(0, 20);
+    write_second(second_text_, second);
   }
   line_ += second_text_;
   append_six(line_, static_cast<std::uint64_t>(t.ns - second * 1'000'000'000) / 1000);
