@@ -112,7 +112,7 @@ serve::console::ConsoleSource DaemonApp::console_source() {
                     {"rate_hz", config_.rate_hz},       {"array", with_closure_limit(array_)}};
                 return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
               },
-          .metrics = [this] { return serve::console::metrics(report(), console_.refused()); },
+          .metrics = [this] { return serve::console::metrics(report(), console_.server.refused()); },
           .lane = [this](std::string_view query) -> Result<std::string> {
             const auto request = serve::console::parse_lane_request(query);
             if (!request) return tl::unexpected(request.error());
