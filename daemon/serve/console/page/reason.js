@@ -10,14 +10,14 @@ export function askReason(title, text, action) {
   by("reason-act").textContent = action;
   why.value = "";
   return new Promise((resolve) => {
+    // Not by the event "close": it comes later than the next question may.
+    const end = (reason) => { dialog.close(); resolve(reason); };
     by("reason-form").onsubmit = (event) => {
       event.preventDefault();
-      if (why.value.trim()) dialog.close(why.value.trim());
+      if (why.value.trim()) end(why.value.trim());
     };
-    by("reason-cancel").onclick = () => dialog.close("");
-    dialog.oncancel = () => { dialog.returnValue = ""; };  // the escape key
-    dialog.onclose = () => resolve(dialog.returnValue || null);
-    dialog.returnValue = "";
+    by("reason-cancel").onclick = () => end(null);
+    dialog.oncancel = (event) => { event.preventDefault(); end(null); };  // the escape key
     dialog.showModal();
     why.focus();
   });
