@@ -99,13 +99,19 @@ TEST_F(ServedRuns, AJobAnswersWhatTheTerminalAnswers) {
 }
 
 TEST_F(ServedRuns, CancelledJobsEndAndTheNextOneRuns) {
-  const json slow{{"verb", "explain"}, {"run", "poses.csv"}};
+  const std::string scenario = source_path("tests/scenarios/hidden_temperature.toml");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario, "--poses", "grid5832", "-o", dir_ / "many.csv"})
+                .exit_code,
+            0);
+  const json slow{{"verb", "explain"}, {"run", "many.csv"}};
   EXPECT_EQ(json::parse(ask("POST", "/jobs", slow.dump())).at("job"), 1);
   const json next{{"verb", "fit"}, {"run", "poses.csv"}};
   EXPECT_EQ(json::parse(ask("POST", "/jobs", next.dump())).at("job"), 2);
   EXPECT_EQ(state(1).at("state"), "running");
   EXPECT_EQ(state(2).at("state"), "waiting");
   EXPECT_EQ(state(2).at("before"), 1);
+  EXPECT_TRUE(eventually([&] { return state(1).value("said", "").starts_with("explain: working for "); }))
+      << "it does not say how far it is";
   EXPECT_EQ(json::parse(ask("DELETE", "/jobs/1")).at("state"), "cancelled");
   EXPECT_TRUE(eventually([&] { return state(2).at("state") == "done"; }));
   EXPECT_EQ(state(1).at("state"), "cancelled");
