@@ -15,9 +15,10 @@ inline constexpr double kNearlyConverged = 0.1;
 inline constexpr double kWeightsUnknown = 10;
 /// A predicted fall below this share of chi-square is rounding, not progress.
 inline constexpr double kRelativeDecrease = 1e-11;
-/// Levenberg-Marquardt damping of the first step that failed, and where the solver gives up; relative to the
+/// Levenberg-Marquardt damping: the least, tried after a step without it failed; from where on it grows in
+/// steps of ten instead of a hundred; and where the solver gives up. Relative to the
 /// diagonal of the information.
-inline constexpr double kFirstDamping = 1e-4, kMaxDamping = 1e8;
+inline constexpr double kLeastDamping = 1e-10, kFirstDamping = 1e-4, kMaxDamping = 1e8;
 /// Termination::slow_progress: at the step limit, over so many last steps, chi-square fell by less than this
 /// and this share of it.
 inline constexpr int kSlowIterations = 12;

@@ -32,11 +32,20 @@ void move_nuisances(const JointProblem& problem, const JointState& from, const E
   }
 }
 
+/// Along what is weakly known a step without damping is far too long, and one with the first that would do
+/// for a bad start is far too short: between them the damping is searched.
+double harder(double damping) {
+  if (damping == 0) return kLeastDamping;
+  return damping * (damping < kFirstDamping ? 100 : 10);
+}
+
+double softer(double damping) { return damping <= kLeastDamping ? 0 : damping / 10; }
+
 }  // namespace
 
 Result<JointSolution> solve(const JointProblem& problem, JointState start, double enough) {
   JointSolution best{.state = std::move(start), .reduced = {}, .iterations = 0};
-  double damping = 0;
+  double damping = 0, failed = -1;  // the latter from the same state; negative: none did
   best.reduced = reduce(problem, best.state, damping);
   double before = best.reduced.cost.total();
   for (; best.iterations < kMaxIterations; ++best.iterations) {
@@ -47,28 +56,32 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
       const double decrease = best.reduced.predicted_decrease + step.dot(best.reduced.g);
       if (decrease < enough + kRelativeDecrease * best.reduced.cost.total()) {
         if (damping == 0) return best;
-        damping = 0;  // a damped step is short by nature: ask again without
-        best.reduced = reduce(problem, best.state, damping);
-        continue;
+        if (softer(damping) > failed) {  // a damped step is short by nature: ask again with less
+          damping = softer(damping);
+          best.reduced = reduce(problem, best.state, damping);
+          continue;
+        }
       }
       JointState next = best.state.moved(step);
       move_nuisances(problem, best.state, step, damping, next);
-      const double softer = damping < kFirstDamping ? 0 : damping / 10;
+      const double next_damping = softer(damping);
       const double limit = best.reduced.cost.total() * (1 + kRelativeDecrease);
-      Reduced reduced = reduce(problem, next, softer);
+      Reduced reduced = reduce(problem, next, next_damping);
       if (reduced.cost.total() > limit) {
         // A long step along what is weakly known: the poses' own unknowns follow it on a curve.
         refit_nuisances(problem, next);
-        reduced = reduce(problem, next, softer);
+        reduced = reduce(problem, next, next_damping);
       }
       if (reduced.cost.total() <= limit) {
-        damping = softer;
+        damping = next_damping;
+        failed = -1;
         best.state = std::move(next);
         best.reduced = std::move(reduced);
         continue;
       }
     }
-    damping = std::max(kFirstDamping, 10 * damping);
+    failed = damping;
+    damping = harder(damping);
     if (damping > kMaxDamping) break;
     best.reduced = reduce(problem, best.state, damping);
   }
