@@ -116,9 +116,10 @@ std::string text(const criticism::search::DescribesRecording& n) {
 }
 
 std::string text(const criticism::search::LawOfNoLibrary& n) {
+  const std::string what = fmt::format("{} follows something that is in no library", n.where);
+  if (n.effects.empty()) return what;
   const bool one = n.effects.size() == 1;
-  return fmt::format("{} follows something that is in no library: {} {}, so {} named or added", n.where,
-                     fmt::join(n.effects, ", "),
+  return fmt::format("{}: {} {}, so {} named or added", what, fmt::join(n.effects, ", "),
                      one ? "describes it and is not its cause" : "describe it together and are not its cause",
                      one ? "it is not" : "none of them is");
 }

@@ -113,13 +113,16 @@ std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double 
 }
 
 /// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
-/// or a few readings make it; empty when it is not so.
-std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit,
-                                                const tests::Criticism& last) {
+/// or a few readings make it; beside effects that were `named`, both the poses contradict each other and a
+/// few readings make it. Empty when it is not so.
+std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit, const tests::Criticism& last,
+                                                bool named) {
   if (!(fit.noise_inflation > 1) || last.noise.wandering.any()) return std::nullopt;
   const fit::joint::Scatter scatter = fit::joint::scatter_of(fit);
-  const bool shapeless = !last.rejects() && fit.contradicting > fit::checks::kMaxBadPoses;
-  if (!shapeless && !scatter.few_far_off()) return std::nullopt;
+  const bool contradicting = fit.contradicting > fit::checks::kMaxBadPoses;
+  const bool bad = named ? contradicting && scatter.few_far_off()
+                         : (contradicting && !last.rejects()) || scatter.few_far_off();
+  if (!bad) return std::nullopt;
   return ResidualWithoutLaw{fit.noise_inflation, scatter.residual_nT, scatter.typical_nT, fit.contradicting};
 }
 
@@ -127,12 +130,12 @@ std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit,
 
 Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,
                  std::vector<ExplainNote>& notes) {
-  if (report.rounds.empty()) {
-    auto why = residual_without_law(*report.fit, last);
-    if (!why) return last.rejects() ? Finding::unknown : Finding::pass;
+  const fit::joint::JointFit& fit = report.rounds.empty() ? *report.fit : *report.rounds.back().fit;
+  if (auto why = residual_without_law(fit, last, !report.rounds.empty())) {
     notes.push_back(*std::move(why));
     return Finding::bad_data;
   }
+  if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
   const Round& round = report.rounds.front();
   if (last.rejects()) return Finding::partial;
   if (auto remains = lack_of_fit_that_remains(report, last)) {

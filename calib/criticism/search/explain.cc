@@ -154,18 +154,25 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     take_back(found, search, out);
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
+  take_back_beside_unknown_laws(search.unknown, criticism, out);
+  keep_names_found_again(out);
   note_absurd_sizes(search, criticism, out);
   const bool described = take_back_what_describes_a_recording(out, criticism);
   if (memory || memory_may_be_it(search, out)) out.notes.emplace_back(TablePathUnknown{});
   if (!out.rounds.empty()) out.detectable = detectable(criticism);
   share_what_fell(out);
   out.maps_left = described ? out.maps : criticism.maps;
-  out.model = out.rounds.empty() ? search.given : search.joint.effects;
+  out.model = out.rounds.empty() ? search.given : out.rounds.back().model;
   out.left = !criticism.rejects() && search.unknown.empty() ? Finding::pass
              : criticism.rejects_named()                    ? Finding::partial
                                                             : Finding::unknown;
   out.finding = conclude(out, first, criticism, out.notes);
-  if (!search.unknown.empty()) out.finding = out.rounds.empty() ? Finding::unknown : Finding::partial;
+  if (out.finding == Finding::bad_data) {
+    out.rounds.clear(), out.next.clear();
+    out.model = search.given;
+  } else if (!search.unknown.empty()) {
+    out.finding = out.rounds.empty() ? Finding::unknown : Finding::partial;
+  }
   if (described) out.finding = out.left = Finding::unknown;
   name(out);
   return out;

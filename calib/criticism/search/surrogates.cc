@@ -25,10 +25,6 @@ constexpr double kHere = 0.5;
 /// Of the largest fall of chi-square on an axis: what takes less away tidies up after the law that is there.
 constexpr double kPart = 0.01;
 
-/// Of the misfit before the first round: what several effects on one sensor leave at least, if they are not
-/// what is there.
-constexpr double kSensorRemainder = 0.1;
-
 /// Of its standard deviations: a coefficient that says where an effect of all axes acts.
 constexpr double kSeen = 5;
 
@@ -43,17 +39,6 @@ int parts(const ExplainReport& report, const Rounds& rounds) {
   for (const std::size_t i : rounds) largest = std::max(largest, fall(report.rounds[i]));
   return static_cast<int>(std::count_if(
       rounds.begin(), rounds.end(), [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; }));
-}
-
-/// Axes that the effects of a round were put on one by one.
-std::set<std::string> axes_of(const Round& round) {
-  std::set<std::string> out;
-  for (const effects::EffectPtr& effect : round.effects) {
-    const auto spec = effects::EffectSpec::parse(effect->spec());
-    if (spec && spec->where && spec->where->scale == effects::Where::Scale::axis)
-      out.insert(spec->where->text());
-  }
-  return out;
 }
 
 /// Axes on which what a round added is seen, put there or as one of many.
@@ -101,20 +86,12 @@ bool took_little(const ExplainReport& report, const Round& round) {
   return beyond_noise(report, round.rms_after_nT) > kMost * beyond_noise(report, round.rms_before_nT);
 }
 
-/// The surrogates on an axis: `there`, and before them a law of the whole sensor that took little away.
+/// The surrogates on an axis: `there`, and before them the first effect, wherever it acts, that took little
+/// away: what bends one axis bends the others through the field of the pose.
 Surrogates on_axis(const ExplainReport& report, const std::string& axis, const Rounds& there) {
-  const std::string sensor = axis.substr(0, axis.find('.'));
   for (std::size_t i = 0; i < there.front(); ++i)
-    if (took_little(report, report.rounds[i]) && sensors_of(report.rounds[i]).contains(sensor))
-      return {axis, i};
+    if (took_little(report, report.rounds[i])) return {axis, i};
   return {axis, there.front()};
-}
-
-/// Whether all names together leave more than a tenth of the misfit.
-bool much_is_left(const ExplainReport& report) {
-  return report.noise.known &&
-         beyond_noise(report, report.rounds.back().rms_after_nT) >
-             kSensorRemainder * beyond_noise(report, report.rounds.front().rms_before_nT);
 }
 
 /// The first round after which most of what is beyond the noise is still there.
@@ -159,7 +136,7 @@ std::string axis_left(const tests::Criticism& last) {
 /// Surrogates on a whole sensor, the one with most of what is left; with `spread` only where no one axis of
 /// it holds most of that.
 Surrogates on_sensor(const ExplainReport& report, const tests::Criticism& last, bool spread) {
-  if (!much_is_left(report)) return {};
+  if (!(share_left(report) > kMuch)) return {};
   Surrogates found;
   double most = 0;
   for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
@@ -176,6 +153,22 @@ Surrogates on_sensor(const ExplainReport& report, const tests::Criticism& last, 
 }
 
 }  // namespace
+
+std::set<std::string> axes_of(const Round& round) {
+  std::set<std::string> out;
+  for (const effects::EffectPtr& effect : round.effects) {
+    const auto spec = effects::EffectSpec::parse(effect->spec());
+    if (spec && spec->where && spec->where->scale == effects::Where::Scale::axis)
+      out.insert(spec->where->text());
+  }
+  return out;
+}
+
+double share_left(const ExplainReport& report) {
+  if (!report.noise.known) return 0;
+  return beyond_noise(report, report.rounds.back().rms_after_nT) /
+         std::max(beyond_noise(report, report.rounds.front().rms_before_nT), 1e-300);
+}
 
 Surrogates find_surrogates(const ExplainReport& report, const tests::Criticism& last,
                            const std::set<std::string>& closed) {

@@ -26,6 +26,16 @@ struct Surrogates {
   [[nodiscard]] bool whole_sensor() const { return any() && where.find('.') == std::string::npos; }
 };
 
+/// Axes that the effects of a round were put on one by one.
+[[nodiscard]] std::set<std::string> axes_of(const Round& round);
+
+/// Of the misfit that the first round found, squared and beyond the noise, what all of them leave; 0 where
+/// the noise is not known. `report` has a round.
+[[nodiscard]] double share_left(const ExplainReport& report);
+
+/// That share from which on several effects are not what is there.
+inline constexpr double kMuch = 0.1;
+
 /// In the rounds of `report`, after which `last` was found. What is left on an axis that is `closed` to names
 /// already is no sign against the other rounds.
 [[nodiscard]] Surrogates find_surrogates(const ExplainReport& report, const tests::Criticism& last,

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/take_back.h"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
+#include <variant>
 
 #include "calib/effects/where.h"
 #include "calib/fit/joint/pose_residuals.h"
@@ -10,7 +13,15 @@
 namespace mgtd::calib::criticism::search {
 namespace {
 
-/// What an axis, or each axis of a sensor, misfits becomes part of its noise.
+/// Noise of an axis that is closed to names, over what it misfits: effects on what is left could otherwise
+/// follow a part of its law, and lower chi-square by up to one for each pose.
+constexpr double kSaysNothing = 10;
+
+/// Of the misfit: what names leave at most, where one of them acts on an axis that a law of no library acts
+/// on too. The square of a neighbour's reading is the square of the own reading but for a twentieth.
+constexpr double kLittle = 0.01;
+
+/// What an axis, or each axis of a sensor, misfits becomes part of its noise, many times over.
 void loosen(const fit::joint::JointFit& fit, const std::string& place, fit::joint::JointOptions& options) {
   const auto where = effects::Where::parse(place);
   if (!where) return;
@@ -18,8 +29,9 @@ void loosen(const fit::joint::JointFit& fit, const std::string& place, fit::join
   const calibration::AxisNoise ratio = fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio;
   for (int axis = 0; axis < 3; ++axis) {
     if (!where->covers(where->sensor, axis)) continue;
-    const double residual_nT = fit.pose_noise_nT(where->sensor, axis) * ratio(where->sensor, axis);
-    options.more_nT2[3 * where->sensor + axis] += residual_nT * residual_nT;
+    const double residual_nT =
+        fit.pose_noise_nT(where->sensor, axis) * fit.noise_inflation * ratio(where->sensor, axis);
+    options.more_nT2[3 * where->sensor + axis] += std::pow(kSaysNothing * residual_nT, 2);
   }
 }
 
@@ -55,6 +67,37 @@ void take_back(const Surrogates& found, EffectSearch& search, ExplainReport& rep
   before = fit::joint::fit_joint_at_size(search.table, search.joint, &warm_start);
   if (!before) return;
   search.judge_anew(*before);
+}
+
+void take_back_beside_unknown_laws(const std::set<std::string>& closed, const tests::Criticism& last,
+                                   ExplainReport& report) {
+  if (report.rounds.empty()) return;
+  const auto note = std::find_if(report.notes.rbegin(), report.notes.rend(), [](const ExplainNote& n) {
+    return std::holds_alternative<LawOfNoLibrary>(n);
+  });
+  if (note == report.notes.rend()) return;
+  const double left = share_left(report);
+  auto first = report.rounds.end();
+  if (last.rejects() && left > kMuch) {
+    first = report.rounds.begin();
+  } else if (left > kLittle) {
+    first = std::find_if(report.rounds.begin(), report.rounds.end(), [&](const Round& round) {
+      const std::set<std::string> axes = axes_of(round);
+      return std::any_of(axes.begin(), axes.end(), [&](const std::string& a) { return closed.contains(a); });
+    });
+  }
+  for (auto round = first; round != report.rounds.end(); ++round)
+    std::get<LawOfNoLibrary>(*note).effects.insert(round->added.effect);
+  report.rounds.erase(first, report.rounds.end());
+  if (report.rounds.empty()) report.next.clear();
+}
+
+void keep_names_found_again(ExplainReport& report) {
+  for (ExplainNote& note : report.notes) {
+    auto* const unknown = std::get_if<LawOfNoLibrary>(&note);
+    if (unknown == nullptr) continue;
+    for (const Round& round : report.rounds) unknown->effects.erase(round.added.effect);
+  }
 }
 
 }  // namespace mgtd::calib::criticism::search

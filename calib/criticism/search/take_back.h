@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <set>
+#include <string>
+
 #include "calib/criticism/search/effect_search.h"
 #include "calib/criticism/search/surrogates.h"
 
@@ -8,5 +11,16 @@ namespace mgtd::calib::criticism::search {
 /// Takes back the rounds from the first surrogate on, says so in the notes, and closes the axis or the sensor
 /// to names: what it misfits counts as its noise from now on, so that it does not bend what others know.
 void take_back(const Surrogates& found, EffectSearch& search, ExplainReport& report);
+
+/// Takes names back where laws of no library were found on the axes `closed`: all of them, if they leave more
+/// than a tenth of the misfit and something is still rejected, since beside so much that is unknown a name
+/// comes by chance; else, if they leave more than a hundredth, those from the first one on that acts on such
+/// an axis, since it may describe the larger part of that law.
+void take_back_beside_unknown_laws(const std::set<std::string>& closed, const tests::Criticism& last,
+                                   ExplainReport& report);
+
+/// An effect that is found again once the axis is closed was not a surrogate of its law: the notes do not say
+/// so any more.
+void keep_names_found_again(ExplainReport& report);
 
 }  // namespace mgtd::calib::criticism::search
