@@ -11,6 +11,7 @@
 #include "calib/report/figures/residual_figure.h"
 #include "calib/report/figures/scatter_figures.h"
 #include "calib/report/figures/sky_figures.h"
+#include "calib/report/point_columns.h"
 #include "calib/sensor/channels.h"
 #include "calib/stats/probability.h"
 #include "proto/units.h"
@@ -140,12 +141,6 @@ std::vector<std::string> shown_closures(const PosePoints& p) {
                                                                  p.closure_names.size(), kMostClosures))};
 }
 
-std::vector<std::string> sensor_names(std::size_t n) {
-  std::vector<std::string> out;
-  for (std::size_t i = 1; i <= n; ++i) out.push_back(fmt::format("s{}", i));
-  return out;
-}
-
 figures::Figure skies_of(const PanelModel& before, const PanelModel* after) {
   const auto sensors = static_cast<std::size_t>(before.points.scalar_nT.rows());
   figures::SkiesValues v{
@@ -233,7 +228,7 @@ std::vector<figures::Figure> panel_figures(const PanelModel& before, const Panel
   if (after != nullptr) qq.after = quantiles_of(*after);
   out.push_back(figures::qq_figure(qq));
   const auto memory = criticism::tests::residual_autocorrelation(*before.comparison.fit);
-  figures::AutocorrelationValues r{.sensors = sensor_names(sensors),
+  figures::AutocorrelationValues r{.sensors = sensor_names(static_cast<Eigen::Index>(sensors)),
                                    .before = memory.by_sensor,
                                    .after = {},
                                    .bound = memory.bound,
@@ -245,7 +240,7 @@ std::vector<figures::Figure> panel_figures(const PanelModel& before, const Panel
       before, after,
       values("residual-scalar", "Scalar residual against time", "time since the start, h", "|b| − F, nT",
              "|b| of each sensor less the field of the pose: blind to every error of angles."),
-      p.t_h, &PosePoints::scalar_nT, sensor_names(sensors), "scalar", "time_h"));
+      p.t_h, &PosePoints::scalar_nT, sensor_names(static_cast<Eigen::Index>(sensors)), "scalar", "time_h"));
   if (p.attitude_deg.array().isFinite().any() && before.comparison.fit->problem.has_angles) {
     auto v = values("residual-attitude", "Corrections of the table angles against azimuth",
                     "azimuth of the table, deg", "correction, deg",

@@ -5,14 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "calib/report/json_number.h"
-#include "calib/sensor/channels.h"
+#include "calib/report/point_columns.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -20,68 +17,9 @@ namespace {
 using criticism::tests::PosePoints;
 using nlohmann::json;
 
-constexpr double kEmpty = std::numeric_limits<double>::quiet_NaN();
-
-/// A column: its group ("residual_nT"), its name in the group ("s1.x"; empty: the group is one column), and
-/// its values.
-struct PointColumn {
-  std::string group, name;
-  std::vector<double> values;
-};
-
-std::vector<std::string> channel_names(Eigen::Index channels) {
-  std::vector<std::string> out;
-  for (int c = 0; c < channels; ++c) out.push_back(sensor::channel_name(c));
-  return out;
-}
-
-std::vector<std::string> sensor_names(Eigen::Index sensors) {
-  std::vector<std::string> out;
-  for (Eigen::Index i = 0; i < sensors; ++i) out.push_back(fmt::format("s{}", i + 1));
-  return out;
-}
-
-void add_rows(const std::string& group, const std::vector<std::string>& names, const Eigen::MatrixXd& rows,
-              std::vector<PointColumn>& out) {
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    PointColumn column{group, names[static_cast<std::size_t>(i)], {}};
-    for (Eigen::Index k = 0; k < rows.cols(); ++k) column.values.push_back(rows(i, k));
-    out.push_back(std::move(column));
-  }
-}
-
 std::vector<PointColumn> columns_of(const PosePoints& p) {
-  std::vector<PointColumn> out;
-  const auto add = [&](std::string group, std::string name, auto&& value) {
-    PointColumn column{std::move(group), std::move(name), {}};
-    for (std::size_t k = 0; k < p.pose.size(); ++k) column.values.push_back(value(k));
-    out.push_back(std::move(column));
-  };
-  const auto angle = [&](std::string group, std::optional<double> Pose::*rad) {
-    add(std::move(group), "", [&, rad](std::size_t k) {
-      const std::optional<double>& known = p.pose[k]->*rad;
-      return known ? to_deg(*known) : kEmpty;
-    });
-  };
-  const auto whole = [&](std::string group, std::optional<int> Pose::*value) {
-    add(std::move(group), "", [&, value](std::size_t k) {
-      const std::optional<int>& known = p.pose[k]->*value;
-      return known ? static_cast<double>(*known) : kEmpty;
-    });
-  };
-  whole("mount", &Pose::mount);
-  whole("sense", &Pose::sense);
-  add("t_h", "", [&](std::size_t k) { return p.t_h[k]; });
-  angle("azimuth_deg", &Pose::azimuth_rad);
-  angle("pitch_deg", &Pose::pitch_rad);
-  angle("roll_deg", &Pose::roll_rad);
   const Eigen::Index sensors = p.scalar_nT.rows();
-  for (Eigen::Index i = 0; i < sensors; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    add("T_degC", sensor_names(sensors)[at],
-        [&](std::size_t k) { return p.pose[k]->T_degC[at].value_or(kEmpty); });
-  }
-  for (const auto& [name, values] : p.columns) out.push_back({"columns", name, values});
+  std::vector<PointColumn> out = circumstance_columns(p.pose, p.t_h, p.columns, sensors);
   const std::vector<std::string> channels = channel_names(p.residual_nT.rows()), axes{"x", "y", "z"};
   add_rows("residual_nT", channels, p.residual_nT, out);
   add_rows("whitened", channels, p.whitened, out);
@@ -89,8 +27,13 @@ std::vector<PointColumn> columns_of(const PosePoints& p) {
   add_rows("attitude_deg", axes, p.attitude_deg, out);
   add_rows("closure", p.closure_names, p.closure_nT, out);
   add_rows("direction_S", channels, p.direction_S, out);
-  add("leverage", "", [&](std::size_t k) { return p.influence[k].leverage; });
-  add("tensor_shift_nT_per_m", "", [&](std::size_t k) { return p.influence[k].tensor_shift_nT_per_m; });
+  PointColumn leverage{"leverage", "", {}}, shift{"tensor_shift_nT_per_m", "", {}};
+  for (const fit::joint::PoseInfluence& influence : p.influence) {
+    leverage.values.push_back(influence.leverage);
+    shift.values.push_back(influence.tensor_shift_nT_per_m);
+  }
+  out.push_back(std::move(leverage));
+  out.push_back(std::move(shift));
   return out;
 }
 
@@ -118,15 +61,7 @@ json to_json(const PosePoints& p) {
   json out{{"pose", std::move(number)}, {"set", std::move(set)},
            {"left_out", p.left_out},    {"tensor_shift_component", std::move(component)},
            {"columns", json::object()}, {"closure", json::object()}};
-  for (const PointColumn& column : columns_of(p)) {
-    json values = json::array();
-    for (const double value : column.values) values.push_back(number_or_null(value));
-    if (column.name.empty()) {
-      out[column.group] = std::move(values);
-    } else {
-      out[column.group][column.name] = std::move(values);
-    }
-  }
+  put_columns(columns_of(p), out);
   return out;
 }
 

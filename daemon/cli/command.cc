@@ -40,12 +40,12 @@ void print_json(const nlohmann::json& object) {
   fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-int report(const Session& session, const Error& error) {
+int report(const Session& session, const Error& error, nlohmann::json beside) {
   fmt::print(stderr, "mgt: {}\n", error.message);
   if (!error.remedy.empty()) fmt::print(stderr, "     {}\n", error.remedy);
   if (session.json) {
-    print_json(
-        {{"error", {{"code", name(error.code)}, {"message", error.message}, {"remedy", error.remedy}}}});
+    beside["error"] = {{"code", name(error.code)}, {"message", error.message}, {"remedy", error.remedy}};
+    print_json(beside);
   }
   return exit_code(error.code);
 }

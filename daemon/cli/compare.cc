@@ -4,9 +4,11 @@
 #include <optional>
 
 #include "calib/criticism/tests/comparison.h"
+#include "calib/criticism/tests/measured_points.h"
 #include "calib/criticism/tests/pose_points.h"
 #include "calib/report/comparison_report.h"
 #include "calib/report/figure_words.h"
+#include "calib/report/measured_report.h"
 #include "calib/report/pose_points_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
@@ -20,7 +22,8 @@ constexpr const char* kCompareHelp =
     "extra column, with the means over each as a small plot. A scalar residual with no attitude residual is "
     "a\n"
     "sensor; an attitude residual alone is the table; what is alike in all sensors is the site.\n\n"
-    "  mgt compare run.mgtrun --poses --json       arrays by column, one entry a pose\n"
+    "  mgt compare run.mgtrun --poses --json       arrays by column, one entry a pose; where the fit is\n"
+    "                                              refused, what was measured, beside the refusal\n"
     "  mgt compare run.mgtrun -o residuals.csv     the same as a table\n\n"
     "Exit code 0: the model fits to the noise. 1: it does not.";
 
@@ -38,12 +41,17 @@ int run_compare(const Session& session, const CompareArguments& args) {
   const auto comparison = with_progress("compare", *options, [&](const calib::fit::FitOptions& told) {
     return calib::criticism::tests::compare(source->table, told);
   });
-  if (!comparison) return report(session, comparison.error());
+  const auto refused = [&](const Error& error) {
+    if (!args.poses) return report(session, error);
+    const auto measured = calib::criticism::tests::measured_points(source->table, *options);
+    return report(session, error, calib::report::to_json(measured));
+  };
+  if (!comparison) return refused(comparison.error());
   std::optional<calib::criticism::tests::PosePoints> points;
   if (args.poses || !args.output.empty()) {
     auto found =
         with_progress("compare", [&] { return calib::criticism::tests::pose_points(*comparison->fit); });
-    if (!found) return report(session, found.error());
+    if (!found) return refused(found.error());
     points = *std::move(found);
   }
   if (!args.output.empty()) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The story of a hidden effect, by clicks alone: a run with an effect that nobody told is opened with mgt serve, the effect
 // found, looked at and added, the error on held-out poses falls; undo, a mask, a formula, a veto. Every number of the page is
-// held against mgt --json to the digit that is printed.
+// held against mgt --json to the digit that is printed. A run whose fit is refused shows what was measured, and why.
 //
 //   node tests/browser/story.mjs build/bin
 //
 // Exit code 0: told. 1: something else happened. 77: not told, because chromium is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
-import { copyFileSync, mkdtempSync, rmSync } from "node:fs";
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -25,6 +25,11 @@ const run = join(folder, "hidden.mgtrun");
 execFileSync(join(bin, "mgt-rig"), ["table", "--scenario", join(here, "../scenarios/hidden_temperature.toml"), "-o", join(folder, "poses.csv")]);
 execFileSync(join(bin, "mgt"), ["import", join(folder, "poses.csv"), "-o", run], { stdio: "ignore" });
 copyFileSync(join(folder, "poses.csv"), join(folder, kHostile));
+// The first 36 poses turn the table about the vertical alone: the readings lie on a plane, which is no calibration.
+const flat = join(folder, "flat.mgtrun"), kFlatPoses = 36;
+writeFileSync(join(folder, "flat.csv"), readFileSync(join(folder, "poses.csv"), "utf8").split("\n").slice(0, kFlatPoses + 1).join("\n") + "\n");
+execFileSync(join(bin, "mgt"), ["import", join(folder, "flat.csv"), "-o", flat], { stdio: "ignore" });
+rmSync(join(folder, "flat.csv"));
 
 /** What the terminal says; exit code 1 is an answer. */
 const mgt = (...words) => JSON.parse(spawnSync(join(bin, "mgt"), [...words, "--json"], { encoding: "utf8", maxBuffer: 1e8 }).stdout);
@@ -72,7 +77,7 @@ try {
   }
 
   await browser.open(address.trim());
-  await until(() => browser.run("document.querySelectorAll('[data-run]').length === 3"), "three files in the list");
+  await until(() => browser.run("document.querySelectorAll('[data-run]').length === 4"), "four files in the list");
   holds("the name of a file is text, whatever it is", (await browser.run("document.querySelectorAll('main img').length")) === 0 && (await text("run-list")).includes("<img"));
 
   await browser.run("document.querySelector('[data-run=\"hidden.mgtrun\"]').click()");
@@ -154,6 +159,23 @@ try {
   await browser.click("bench-import");
   await until(async () => (await text("run-name")) === "poses.mgtrun" && (await shown()) !== "", "a run file made of it");
   holds("a pose table becomes a run file", mgt("model", join(folder, "poses.mgtrun")).model.length === 0 && !(await browser.run("document.getElementById('mask').hidden")));
+
+  await browser.click("bench-runs");
+  await until(() => browser.run("document.querySelector('[data-run=\"flat.mgtrun\"]') !== null"), "the list again");
+  await browser.run("document.querySelector('[data-run=\"flat.mgtrun\"]').click()");
+  await until(async () => (await shown()) !== "", "the run that is refused");
+  const refused = mgt("compare", flat, "--poses");
+  holds("a refused fit has its reason, and what to do", refused.error.message.includes("lie on a plane") && (await text("refusal")) === `${refused.error.message}: ${refused.error.remedy}`, await text("refusal"));
+  const drawn = await browser.run(`[...document.querySelectorAll("#panels figure")].map((f) => { const c = f.querySelector("canvas");
+    return [f.dataset.panel, new Set(new Uint32Array(c.getContext("2d").getImageData(0, 0, c.width, c.height).data.buffer)).size]; })`);
+  holds("its panels show what was measured", drawn.length === refused.panels.length && drawn.every(([name, colours], i) => name === refused.panels[i].name && colours > 8), drawn);
+  holds("their sentences are those of mgt compare", (await browser.run("document.querySelector('[data-panel=measured-skies]').innerText")).includes(refused.panels[1].good.slice(refused.panels[1].good.indexOf("Here "))));
+  holds("no card is empty", await browser.run("[...document.querySelectorAll('#bench-run .card')].every((c) => c.getClientRects().length === 0 || c.innerText.trim() !== '')"));
+  await key("]");
+  holds("its poses can be walked through", (await text("pose")).startsWith(`pose ${refused.poses.pose[0]} `) && (await text("pose")).includes("F 53"), await text("pose"));
+  await browser.click("tool-parameters");
+  holds("in the place of parameters stands the reason", (await text("tool")).includes("lie on a plane"));
+  holds("the reason is said once", await browser.run("document.getElementById('banner').hidden"), await text("banner"));
 
   holds("the browser has nothing to complain of", browser.log.length === 0, browser.log);
   console.log(`told: ${told} things`);

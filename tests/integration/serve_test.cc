@@ -98,6 +98,20 @@ TEST_F(ServedRuns, AJobAnswersWhatTheTerminalAnswers) {
   EXPECT_EQ(answer({{"verb", "undo"}, {"run", "poses.mgtrun"}}).at("model").size(), 0U);
 }
 
+TEST_F(ServedRuns, ARefusedFitAnswersWithWhatWasMeasured) {
+  // The first twenty poses turn the table about the vertical alone.
+  std::ifstream whole(dir_ / "poses.csv");
+  std::ofstream part(dir_ / "flat.csv");
+  std::string line;
+  for (int i = 0; i <= 20 && std::getline(whole, line); ++i) part << line << '\n';
+  part.close();
+  const json said = answer({{"verb", "compare"}, {"run", "flat.csv"}});
+  EXPECT_EQ(said.at("error").at("code"), "refused");
+  EXPECT_THAT(said.at("error").at("message").get<std::string>(), HasSubstr("lie on a plane"));
+  EXPECT_EQ(said.at("poses").at("reading_nT").at("s4.z").size(), 20U);
+  EXPECT_EQ(said.at("panels").size(), 9U);
+}
+
 TEST_F(ServedRuns, CancelledJobsEndAndTheNextOneRuns) {
   const std::string scenario = source_path("tests/scenarios/hidden_temperature.toml");
   ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario, "--poses", "grid5832", "-o", dir_ / "many.csv"})

@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <limits>
-#include <set>
 
+#include "calib/criticism/tests/measured_points.h"
 #include "calib/criticism/tests/residual_fields.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -23,19 +23,6 @@ Eigen::MatrixXd residuals_nT(const fit::joint::JointFit& fit) {
     out.col(k) = fit.problem.poses[at].y_nT - linear.y_nT;
   }
   return out;
-}
-
-void fill_columns(const fit::joint::JointProblem& problem, PosePoints& out) {
-  std::set<std::string> names;
-  for (const fit::joint::JointPose& pose : problem.poses)
-    for (const auto& [name, value] : pose.pose->covariates) names.insert(name);
-  for (const std::string& name : names) {
-    std::vector<double>& column = out.columns[name];
-    for (const fit::joint::JointPose& pose : problem.poses) {
-      const auto found = pose.pose->covariates.find(name);
-      column.push_back(found == pose.pose->covariates.end() ? kNotKnown : found->second);
-    }
-  }
 }
 
 /// What was left out has no residual in units of noise, and what is made of it has none either.
@@ -65,7 +52,7 @@ Result<PosePoints> pose_points(const fit::joint::JointFit& fit) {
     out.pose.push_back(pose.pose);
     out.t_h.push_back(pose.t_h);
   }
-  fill_columns(fit.problem, out);
+  out.columns = extra_columns(out.pose);
   out.residual_nT = residuals_nT(fit);
   out.whitened = std::move(fields.whitened);
   out.scalar_nT = std::move(fields.scalar_nT);

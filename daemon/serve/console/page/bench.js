@@ -3,6 +3,7 @@
 // sentence about statistics is an answer of mgt; its command stands below.
 import { by, fill, make } from "./elements.js";
 import { sig } from "./numbers.js";
+import { measuredLine, measuredPanelsOf } from "./measured.js";
 import { Panels, panelsOf, poseLine } from "./panels.js";
 import { Evidence, number, showChange, showFall, showSuspects } from "./suspects.js";
 import { showLaws } from "./law.js";
@@ -14,7 +15,8 @@ const kColour = { PASS: "good", EXPLAINED: "warn", AMBIGUOUS: "warn", PARTIAL: "
 
 export class Bench {
   #jobs; #say; #measure; #state = { pose: null, selected: new Set() }; #panels; #evidence; #formula; #map = null; #run = null; #channel = null; #chosen = null; #tool = "next"; #opened = 0;
-  #answers = {};  // of mgt on this run, by verb
+  #answers = {};  // of mgt on this run, by verb; measured: what compare says where the fit is refused
+  #refusals = {};
   #commands = {};
 
   /** `measure(step)`: null without a rig. */
@@ -62,6 +64,8 @@ export class Bench {
     this.#run = run;
     this.#channel = this.#chosen = null;
     this.#answers = {};
+    this.#refusals = {};
+    this.#say("");
     this.#map = null;
     this.#state.selected.clear();
     this.#state.pose = null;
@@ -91,9 +95,11 @@ export class Bench {
       return answer;
     } catch (error) {
       if (quiet) throw error;
-      const said = `${error.message}${error.remedy ? `: ${error.remedy}` : ""}`;
-      if (opened === this.#opened && !error.cancelled && verb !== "compare" && verb !== "explain") this.#say(said);
-      if (opened === this.#opened && !error.cancelled && (verb === "compare" || verb === "explain")) fill(by("verdict"), make("p", { class: "bad" }, said));
+      if (opened !== this.#opened || error.cancelled) return null;
+      const said = this.#refusals[verb] = `${error.message}${error.remedy ? `: ${error.remedy}` : ""}`;
+      if (verb === "compare" && error.beside?.poses) this.#answers.measured = error.beside;
+      if (verb === "compare" || verb === "explain") fill(by("verdict"), make("p", { class: "bad", id: "refusal" }, said));
+      else if (verb !== "fit") this.#say(said);  // that of a fit is said when that of compare is known
       return null;
     }
   }
@@ -102,6 +108,8 @@ export class Bench {
   async #load(keep) {
     const opened = ++this.#opened;
     delete this.#answers.discover;
+    delete this.#answers.measured;
+    this.#refusals = {};
     by("bench-run").classList.toggle("veiled", keep);
     delete by("bench-run").dataset.shown;
     const long = (this.#run.poses ?? 0) > kLong && !keep;
@@ -114,7 +122,11 @@ export class Bench {
       if (answer) show();
     };
     await then("compare", asked.compare, () => { this.#channels(); this.#drawPanels(keep); by("bench-run").classList.remove("veiled"); });
+    if (opened !== this.#opened) return;
+    by("bench-run").classList.toggle("refused", Boolean(this.#answers.measured));
+    if (this.#answers.measured) { this.#channels(); this.#drawPanels(false); }
     await then("fit", asked.fit, () => {});
+    if (opened === this.#opened && this.#refusals.fit && this.#refusals.fit !== this.#refusals.compare) this.#say(this.#refusals.fit);
     await then("model", asked.model, () => {});
     if (opened !== this.#opened) return;
     this.#drawFall();
@@ -131,11 +143,15 @@ export class Bench {
   }
 
   #channels() {
-    const names = Object.keys(this.#answers.compare.poses.residual_nT);
-    fill(by("channel"), make("option", { value: "" }, "the channel that depends most"), names.map((n) => make("option", { value: n }, n)));
+    const { compare, measured } = this.#answers, names = Object.keys(compare?.poses.residual_nT ?? measured.poses.reading_nT);
+    fill(by("channel"), make("option", { value: "" }, compare ? "the channel that depends most" : "the first"), names.map((n) => make("option", { value: n }, n)));
     by("channel").value = this.#channel ?? "";
   }
   #drawPanels(keep) {
+    if (this.#answers.measured) {
+      this.#panels.show(measuredPanelsOf(this.#answers.measured, this.#channel), false);
+      return this.#redraw();
+    }
     const list = panelsOf(this.#answers.compare, this.#channel);
     // The channel that was looked at stays the one that is looked at when the model changes.
     if (!this.#channel) this.#channel = list[0]?.judged && this.#run.kind === "run" ? list[0].judged : null;
@@ -145,7 +161,12 @@ export class Bench {
   }
   #drawFall() {
     const { compare, model, fit } = this.#answers;
-    if (!compare) return;
+    if (!compare) {
+      if (this.#answers.measured && model?.history.length)
+        fill(by("fall-card"), make("h2", {}, "The model that is refused"), make("p", {}, model.model.join(", ") || "no effects"),
+             make("p", { class: "row" }, make("button", { id: "undo", onclick: () => this.#undo() }, `Undo ${model.history.at(-1).action}`)));
+      return;
+    }
     fill(by("fall-card"), make("h2", {}, "What is left of the error"), showFall(model, compare, fit, (steps) => [
       steps.length ? make("button", { id: "undo", onclick: () => this.#undo() }, `Undo ${steps.at(-1).action}`) : null,
       model?.model.map((spec) => make("button", { class: "small", onclick: () => this.#change("drop", spec, {}) }, `Drop ${spec}`))].flat()));
@@ -242,12 +263,13 @@ export class Bench {
     this.#tool = id;
     for (const other of Object.keys(kTools)) by(`tool-${other}`).setAttribute("aria-pressed", String(other === id));
     const { explain, fit, model, compare } = this.#answers, words = (name) => explain?.figures.find((f) => f.name === name);
-    const wait = [make("p", { class: "caption" }, "not computed yet")];
-    if (id === "formula") return void fill(by("tool"), compare ? this.#formula.elements(this.#names(compare)) : wait);
+    const wait = (verb) => [make("p", { class: "caption" }, this.#refusals[verb] ?? "not computed yet")];
+    if (this.#answers.measured && id !== "history") return fill(by("tool"), wait("compare"));
+    if (id === "formula") return void fill(by("tool"), compare ? this.#formula.elements(this.#names(compare)) : wait("compare"));
     if (id === "law") return this.#showLaw();
-    if (id === "alike") { fill(by("tool"), this.#map?.elements ?? wait); return this.#map?.draw(); }
-    if (id === "limits") return fill(by("tool"), explain ? showLimits(explain, words("detectable")) : wait);
-    if (id === "parameters") return fill(by("tool"), fit ? showParameters(fit) : wait);
+    if (id === "alike") { fill(by("tool"), this.#map?.elements ?? wait("explain")); return this.#map?.draw(); }
+    if (id === "limits") return fill(by("tool"), explain ? showLimits(explain, words("detectable")) : wait("explain"));
+    if (id === "parameters") return fill(by("tool"), fit ? showParameters(fit) : wait("fit"));
     if (id === "history") return fill(by("tool"), showHistory(model, async (pose) => { if (await this.#ask("unmask", { poses: [pose] })) this.#load(true); }));
     const known = this.#answers.next;
     if (known) return fill(by("tool"), showNext(known, this.#measure()));
@@ -276,7 +298,8 @@ export class Bench {
   #hover(pose) {
     if (pose !== undefined && pose !== this.#state.pose) {
       this.#state.pose = pose;
-      by("pose").textContent = pose === null || !this.#answers.compare ? "" : poseLine(this.#answers.compare, pose);
+      const { compare, measured } = this.#answers;
+      by("pose").textContent = pose === null ? "" : compare ? poseLine(compare, pose) : measured ? measuredLine(measured, pose) : "";
     }
     this.#redraw();
   }
@@ -300,7 +323,7 @@ export class Bench {
 
   #key(event) {
     if (!this.open || by("workbench").hidden || event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) return;
-    const poses = this.#answers.compare?.poses.pose;
+    const poses = (this.#answers.compare ?? this.#answers.measured)?.poses.pose;
     if ((event.key === "[" || event.key === "]") && poses) {
       const at = poses.indexOf(this.#state.pose), step = event.key === "]" ? 1 : -1;
       this.#hover(poses[at < 0 ? 0 : (at + step + poses.length) % poses.length]);

@@ -25,7 +25,8 @@ export class Jobs {
   }
   async runs() { return (await (await fetch("/runs")).json()).runs; }
 
-  /** {answer, exit_code, command}; fails with {message, remedy}, where the job was ended with {cancelled: true} beside it.
+  /** {answer, exit_code, command}; fails with {message, remedy}, where the job was ended with {cancelled: true} beside it, where
+      mgt refused with what it says all the same in `beside`.
       `text`: the answer is no JSON. */
   async ask(verb, run, args = {}, text = false) {
     if (!this.possible) throw { message: "this page may look and not compute", remedy: "open the address that mgt serve or mgt console prints" };
@@ -41,7 +42,7 @@ export class Jobs {
         const answer = await this.#send("GET", `/jobs/${id}/result`);
         if (text) return { answer: await answer.text(), exit_code: job.exit_code, command: job.command };
         const result = await answer.json();
-        if (result.error) throw { ...result.error, command: job.command };
+        if (result.error) throw { ...result.error, command: job.command, beside: result };
         return { answer: result, exit_code: job.exit_code, command: job.command };
       }
       await pause(wait);

@@ -4,6 +4,7 @@
 import { binMeans, extent, ticks } from "./numbers.js";
 
 const kMostMarks = 2000, kNear_px = 14, kMove_ms = 450;
+const kLegend = 0.1;  // of the height, free of points for the names of the series
 const kMargin = { left: 44, right: 10, top: 8, bottom: 34 };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const kTones = ["--s1", "--s2", "--s3", "--s4"];
@@ -42,7 +43,8 @@ export class Panel {
   get spec() { return this.#spec; }
   fit() {
     const { x, y, series } = this.#spec;
-    this.#range = { x: extent(series.map((s) => s.x ?? x.values)), y: extent([...series.map((s) => s.values), ...(y.also ?? [])], y.symmetric) };
+    const [low, high] = extent([...series.map((s) => s.values), ...(y.also ?? [])], y.symmetric);
+    this.#range = { x: extent(series.map((s) => s.x ?? x.values)), y: [low, series.length > 1 ? high + kLegend * (high - low) : high] };
     this.#base = null;
   }
   stale() { this.#base = null; }
