@@ -67,11 +67,12 @@ export class Browser {
     this.#child.stdio[3].write(`${JSON.stringify({ id, method, params, ...(this.#session ? { sessionId: this.#session } : {}) })}\0`);
     return new Promise((resolve, reject) => this.#waiting.set(id, { resolve, reject }));
   }
-  async open(url, width = 1280, height = 800) {
+  /** `ready`: an expression that is true of the page when it is there. */
+  async open(url, width = 1280, height = 800, ready = "document.body && 'ready' in document.body.dataset") {
     await this.#call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 600 });
     await this.#call("Page.navigate", { url: "about:blank" });  // the same address with another fragment would load nothing
     await this.#call("Page.navigate", { url });
-    await until(() => this.run("document.body && 'ready' in document.body.dataset"), `the page at ${url}`);
+    await until(() => this.run(ready), `the page at ${url}`);
   }
   async run(expression) {
     const { result, exceptionDetails } = await this.#call("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
@@ -82,6 +83,15 @@ export class Browser {
   click(id) { return this.run(`document.getElementById(${JSON.stringify(id)}).click()`); }
   async picture(path, whole = true) {
     const { data } = await this.#call("Page.captureScreenshot", { captureBeyondViewport: whole });
+    writeFileSync(path, Buffer.from(data, "base64"));
+  }
+  /** `media`: screen or print; `colours`: light or dark, as the system is set. */
+  media(media, colours) {
+    return this.#call("Emulation.setEmulatedMedia", { media, features: [{ name: "prefers-color-scheme", value: colours }] });
+  }
+  /** As it is printed, by its own style. */
+  async print(path) {
+    const { data } = await this.#call("Page.printToPDF", { preferCSSPageSize: true, printBackground: true });
     writeFileSync(path, Buffer.from(data, "base64"));
   }
   async close() {

@@ -21,7 +21,7 @@ details .scroll{max-height:320px;overflow:auto}
 .figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(400px,100%),1fr));gap:12px}
 .figures .wide{grid-column:1/-1}
 @media screen and (prefers-color-scheme:dark){figure{border-color:#39424b}figure.out{border-color:#f58a3c}}
-@media print{details{display:none}figure{break-inside:avoid}.figures{grid-template-columns:1fr 1fr}
+@media print{details{display:none}figure{break-inside:avoid}figcaption{font-size:11px}.figures{grid-template-columns:1fr 1fr}
 svg{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )";
 

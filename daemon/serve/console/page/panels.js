@@ -113,7 +113,7 @@ export class Panels {
     this.#panels = list.map((p) => {
       const canvas = make("canvas", { role: "img", class: "panel" }), title = make("h3", {}), good = make("p", { class: "good-one" });
       const wide = make("button", { class: "small", title: "larger", "aria-label": "larger", onclick: () => { figure.classList.toggle("wide"); own.say(); this.redraw(); } }, "⤢");
-      const place = make("div", { class: "data" }), data = make("details", { ontoggle: () => fill(place, data.open ? own.table() : null) }, make("summary", {}, "data"), place);
+      const place = make("div", { class: "data", tabindex: "0", role: "region", "aria-label": `${p.words.title}, data` }), data = make("details", { ontoggle: () => fill(place, data.open ? own.table() : null) }, make("summary", {}, "data"), place);
       const figure = make("figure", { "data-panel": p.words.name }, make("header", {}, title, wide), canvas, good, data);
       const drawer = p.kind === "skies" ? new Skies(canvas, this.#on) : p.kind === "memory" ? new Memory(canvas) : new Panel(canvas, this.#on);
       const own = { name: p.words.name, figure, canvas, title, good, data, drawer, say: () => {}, table: () => null };
