@@ -43,7 +43,8 @@ double softer(double damping) { return damping <= kLeastDamping ? 0 : damping / 
 
 }  // namespace
 
-Result<JointSolution> solve(const JointProblem& problem, JointState start, double enough) {
+Result<JointSolution> solve(const JointProblem& problem, JointState start, double enough,
+                            JointState* unsettled) {
   JointSolution best{.state = std::move(start), .reduced = {}, .iterations = 0};
   double damping = 0, failed = -1;  // the latter from the same state; negative: none did
   best.reduced = reduce(problem, best.state, damping);
@@ -91,6 +92,7 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
     best.slow_progress = true;
     return best;
   }
+  if (unsettled != nullptr) *unsettled = best.state;
   return fail(
       ErrorCode::refused,
       fmt::format("the joint fit did not settle in {} iterations: chi-square {:.6g} with {} poses",

@@ -64,9 +64,10 @@ struct JointSolution {
 };
 
 /// Stops at `enough`. Refuses when it does not get there, when a stop is requested (ErrorCode::state), or
-/// when the information is not positive definite (which parameters that is about says identifiability.h).
+/// when the information is not positive definite (which parameters that is about says identifiability.h);
+/// `unsettled` then holds how far it came.
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
-                                          double enough = kConverged);
+                                          double enough = kConverged, JointState* unsettled = nullptr);
 
 /// Best nuisances for a fixed block that stays as it is: what a new pose says about its own field.
 void refit_nuisances(const JointProblem& problem, JointState& state);

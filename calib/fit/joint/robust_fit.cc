@@ -44,9 +44,14 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
     out.outliers.restore(problem);
     noise.apply(problem);
     out.outliers.leave_out(problem);
-    auto solution = solve(problem, std::move(state), enough);
-    unsettled = !solution;
-    if (!solution) return tl::unexpected(solution.error());
+    JointState reached;
+    auto solution = solve(problem, std::move(state), enough, &reached);
+    if (!solution) {
+      const auto ok = plausible(reached);
+      unsettled = ok.has_value();
+      return tl::unexpected(ok ? solution.error() : ok.error());
+    }
+    unsettled = false;
     if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
     out.rounds = round;
     out.iterations += solution->iterations;
