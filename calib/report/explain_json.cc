@@ -90,7 +90,7 @@ json to_json(const criticism::tests::NoiseModel& n) {
            {"scale", std::sqrt(n.reference.scale2)},
            {"beyond_dwells", n.beyond_dwells},
            {"quantisation_nT", n.quantisation_nT},
-           {"slow_nT_per_sqrt_h", n.wandering.any() ? n.wandering.nT_per_sqrt_h.maxCoeff() : 0.0},
+           {"slow_nT_per_sqrt_h", n.wandering.any() ? n.wandering.size.maxCoeff() : 0.0},
            {"slow_where", n.wandering.where}};
   out["between_revisits"] =
       n.revisits ? json{{"pairs", n.revisits->pairs}, {"ratio", n.revisits->ratio}, {"dof", n.revisits->nu}}

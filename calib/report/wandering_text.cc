@@ -8,12 +8,15 @@ namespace mgtd::calib::report {
 
 std::string wandering_text(const fit::joint::WanderingEstimate& w) {
   if (!w.any()) return {};
+  const bool walks = w.spectrum == fit::joint::SlowSpectrum::walk;
   Eigen::Index most = 0;
-  w.nT_per_sqrt_h.maxCoeff(&most);
+  w.size.maxCoeff(&most);
+  const double unit = walks ? 1 : 1000;  // nT or pT
   return fmt::format(
-      "slow wandering of {}, up to {:.2g} +- {:.1g} nT per root hour (s{}.{})",
+      "{} of {}, up to {:.2g} +- {:.1g} {} (s{}.{})", walks ? "slow wandering" : "1/f noise",
       w.where.front() == "all" ? "all offsets" : fmt::format("the offsets of {}", fmt::join(w.where, ", ")),
-      w.nT_per_sqrt_h[most], w.sd[most], most / 3 + 1, "xyz"[most % 3]);
+      unit * w.size[most], unit * w.sd[most], walks ? "nT per root hour" : "pT/sqrt(Hz) at 1 Hz",
+      most / 3 + 1, "xyz"[most % 3]);
 }
 
 }  // namespace mgtd::calib::report

@@ -6,7 +6,8 @@
 
 namespace mgtd::calib::report {
 
-/// "slow wandering of all offsets, up to 0.98 +- 0.06 nT per root hour (s2.x)"; empty where none wander.
+/// "slow wandering of all offsets, up to 0.98 +- 0.06 nT per root hour (s2.x)", or "1/f noise of
+/// the offsets of s2, up to 21 +- 2 pT/sqrt(Hz) at 1 Hz (s2.y)"; empty where none wander.
 [[nodiscard]] std::string wandering_text(const fit::joint::WanderingEstimate& wandering);
 
 }  // namespace mgtd::calib::report

@@ -155,6 +155,8 @@ bool RealAnswer::good(const RealKind& kind) const {
   switch (kind.must) {
     case Must::pass:
       return said && accepted && finding == criticism::search::Finding::pass && named.empty();
+    case Must::no_name:
+      return said && accepted && named.empty();
     case Must::name:
       return said && right_names(*this, kind);
     case Must::open:

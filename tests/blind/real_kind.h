@@ -17,6 +17,7 @@ namespace mgtd::calib::testing {
 enum class Must {
   pass,       ///< PASS without a name
   name,       ///< EXPLAINED or AMBIGUOUS, the right names among them and no other named alone
+  no_name,    ///< accepted, and no name: PASS, or UNKNOWN where too much comes together
   open,       ///< something is there, and no name is given that is not right
   set_aside,  ///< the disturbed poses cost nothing, and no name is given that is not right
   refuse,     ///< not accepted by the fit, BAD-DATA or refused by explain

@@ -133,9 +133,9 @@ void hold_against(const AgainstWalk& walk, Criticism& c) {
 fit::joint::WanderingRates with_margin(const fit::joint::WanderingRates& rates,
                                        const fit::joint::WanderingEstimate& found) {
   constexpr double kMargin = 2;  // standard deviations
-  const auto wanders = found.nT_per_sqrt_h.array() > 0;
+  const auto wanders = found.size.array() > 0;
   const Eigen::ArrayXd margin =
-      wanders.select(1 + kMargin * found.sd.array() / found.nT_per_sqrt_h.array().max(1e-300), 1.0);
+      wanders.select(1 + kMargin * found.sd.array() / found.size.array().max(1e-300), 1.0);
   return (rates.array() * margin).matrix();
 }
 
@@ -183,7 +183,7 @@ std::optional<Against> beside_larger_noise(const fit::joint::JointFit& stated, c
   for (double at = kStep; at < kMost; at *= kStep) {
     const fit::joint::JointFit fit = with_noise(stated, at);
     const auto deviance = [&](const fit::joint::WanderingRates& r) { return deviance_of(fit, r); };
-    const fit::joint::WanderingRates beside = at_least(found.nT_per_sqrt_h, deviance);
+    const fit::joint::WanderingRates beside = at_least(found.size, deviance);
     if (const double now = deviance(beside); now < least) {
       least = now, factor = at, rates = beside;
     } else if (factor > 1) {
@@ -198,7 +198,7 @@ std::optional<Against> beside_larger_noise(const fit::joint::JointFit& stated, c
 Criticism judged_against_walk(const fit::joint::JointFit& stated, const fit::joint::WanderingEstimate& found,
                               const CandidateEffects& candidate_effects, std::uint64_t seed,
                               const Rates& before) {
-  Against against{stated, beside_white(stated, found.nT_per_sqrt_h)};
+  Against against{stated, beside_white(stated, found.size)};
   const auto tests = [&](const fit::joint::WanderingRates& rates) {
     Criticism out = criticise_against_walk(against.fit, rates, candidate_effects, seed, &before);
     if (!out.rejects_named()) look_at_maps(out);
@@ -259,7 +259,7 @@ Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candida
   // A few slow terms do not tell a law from a walk that is far above the noise: a law then has to make it
   // vanish, or the tests stand against the walk as it was found without any law.
   const auto mild = [&](const fit::joint::WanderingEstimate& w) {
-    return step_over_noise(stated, beside_white(stated, w.nT_per_sqrt_h)) < kMild;
+    return step_over_noise(stated, beside_white(stated, w.size)) < kMild;
   };
   ask(*alternative, out.criticism, walk);
   if (walk.passed && (!walk.beside.any() || mild(walk.beside))) {

@@ -45,8 +45,8 @@ fit::joint::SlowSums sums_of(const Residual& residual, const Eigen::VectorXd& va
 fit::joint::Channels relative(const fit::joint::WanderingEstimate& estimate,
                               const fit::joint::SlowLikelihood& likelihood) {
   // The noise that the rates stand beside follows from them: two rounds settle it.
-  fit::joint::Channels theta = estimate.nT_per_sqrt_h.cwiseAbs2();
-  for (int i = 0; i < 2; ++i) theta = estimate.nT_per_sqrt_h.cwiseAbs2() / likelihood.noise_variance(theta);
+  fit::joint::Channels theta = estimate.size.cwiseAbs2();
+  for (int i = 0; i < 2; ++i) theta = estimate.size.cwiseAbs2() / likelihood.noise_variance(theta);
   return theta;
 }
 

@@ -1,37 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "calib/calibration/tensor.h"
 
 /// Offsets that wander: the slow noise of a fluxgate, which lasts from one pose to the next.
 ///
-/// The offset of channel c is a random walk with rate a_c: var[o(t) - o(s)] = a_c^2 |t - s|. Its mean over a
-/// run of length T is the offset of the model. What remains has the Karhunen-Loeve expansion
+/// Over a run of length T the offset of channel c has the expansion
 ///
-///     o(t) = sum_j z_j sqrt(2) cos(j pi (t - t0) / T),   z_j independent, normal, sd a_c sqrt(T) / (j pi).
+///     o(t) = sum_j z_j sqrt(2) cos(j pi (t - t0) / T),   z_j independent, normal,
 ///
-/// The first kWanderingTerms tell how fast an offset wanders. Rates in nT per root hour, times in hours. It
-/// is noise: no calibration holds it.
+///     walk     sd of z_j = a_c sqrt(T) / (j pi):  var[o(t) - o(s)] = a_c^2 |t - s|, exactly (Karhunen-Loeve)
+///     flicker  sd of z_j = a_c / sqrt(j):         power spectral density a_c^2 / f (one-sided), a term
+///     having
+///                                                 the power of the band 1 / (2 T) about its frequency
+///
+/// Its mean over the run is the offset of the model. The first kWanderingTerms tell how far an offset
+/// wanders. Sizes a_c in nT per root hour (walk) or in nT/sqrt(Hz) at 1 Hz (flicker), times in hours. It is
+/// noise: no calibration holds it.
 namespace mgtd::calib::fit::joint {
 
 inline constexpr int kWanderingTerms = 16;
 using WanderingRates = sensor::FieldVector;
 
-/// The terms of a walk of 1 nT per root hour over one run.
+enum class SlowSpectrum { walk, flicker };
+
+/// The terms of an offset of unit size over one run.
 class WanderingTerms {
  public:
-  WanderingTerms(double from_h, double to_h) : from_h_(from_h), length_h_(to_h - from_h) {}
+  /// `poses` in the run: flicker that is faster than they follow each other is in the noise of each.
+  WanderingTerms(double from_h, double to_h, SlowSpectrum spectrum = SlowSpectrum::walk,
+                 std::size_t poses = 0)
+      : from_h_(from_h), length_h_(to_h - from_h), spectrum_(spectrum), poses_(poses) {}
   /// False where the poses have no time, or one.
   [[nodiscard]] bool any() const { return length_h_ > 0; }
   /// sd(z_j) sqrt(2) cos(j pi (t - t0) / T), j from 1, nT.
   [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> at(double t_h) const;
   [[nodiscard]] double to_h() const { return from_h_ + length_h_; }
-  /// Of the walk less its mean over the run, at either end, with all terms: T / 3, nT^2.
-  [[nodiscard]] double variance_at_end() const { return length_h_ / 3; }
+  /// Of the offset less its mean over the run, at either end, nT^2: T / 3 for a walk, the sum of 2/j up to
+  /// the number of poses for flicker.
+  [[nodiscard]] double variance_at_end() const;
+  /// Of the terms beyond the last, mean over the run, nT^2.
+  [[nodiscard]] double variance_beyond() const;
 
  private:
   double from_h_, length_h_;
+  SlowSpectrum spectrum_;
+  std::size_t poses_;
 };
 
 }  // namespace mgtd::calib::fit::joint

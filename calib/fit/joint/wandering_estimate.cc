@@ -164,33 +164,95 @@ Eigen::MatrixXd fixed_rows(const JointProblem& problem, const JointPose& pose, c
   return pose.weight.asDiagonal() * out;
 }
 
+/// What the readings of one pose do once the nuisances have followed, each moved by its standard deviation.
+struct FollowedPose {
+  sensor::ChannelCovariance readings;  ///< to the readings themselves: a projection
+  Eigen::MatrixXd by_fixed;            ///< to the normal equations of the fixed block: fixed x channels
+  Channels residual;
+};
+
+FollowedPose followed(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b) {
+  const Eigen::Index channels = problem.channels();
+  const Eigen::LLT<Eigen::Matrix4d> H(b.H);
+  const sensor::ChannelColumns<kNuisances> solved = H.solve(b.N.transpose());
+  return {.readings = sensor::ChannelCovariance::Identity(channels, channels) - b.N * solved,
+          .by_fixed = fixed_rows(problem, pose, b).transpose() - b.U * solved,
+          .residual = b.residual - solved.transpose() * b.g};
+}
+
+void for_each_followed(const JointProblem& problem, const JointState& state, const auto& use) {
+  const PoseModel model(problem, state);
+  PoseBlocks b;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    assemble(problem, model, state, k, true, b);
+    use(problem.poses[k], followed(problem, problem.poses[k], b));
+  }
+}
+
 SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
                              const WanderingTerms& terms) {
   const Eigen::Index channels = problem.channels(), m = channels * kJ;
   SlowEquations out{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
                     .gram = Eigen::MatrixXd::Zero(m, m),
                     .by_residual = Eigen::VectorXd::Zero(m)};
-  const PoseModel model(problem, state);
-  PoseBlocks b;
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    const JointPose& pose = problem.poses[k];
-    assemble(problem, model, state, k, true, b);
-    const Eigen::LLT<Eigen::Matrix4d> H(b.H);
-    const sensor::ChannelColumns<kNuisances> solved = H.solve(b.N.transpose());
-    // What a reading of a channel, moved by its standard deviation, does once the nuisances have followed.
+  for_each_followed(problem, state, [&](const JointPose& pose, const FollowedPose& f) {
     const auto w = pose.weight.asDiagonal();
-    const sensor::ChannelCovariance M =
-        w * (sensor::ChannelCovariance::Identity(channels, channels) - b.N * solved) * w;
-    const Eigen::MatrixXd X = (fixed_rows(problem, pose, b).transpose() - b.U * solved) * w;
-    const Channels r = w * (b.residual - solved.transpose() * b.g);
+    const sensor::ChannelCovariance M = w * f.readings * w;
+    const Eigen::MatrixXd X = f.by_fixed * w;
+    const Channels r = w * f.residual;
     const auto at = terms.at(pose.t_h);
     for (int c = 0; c < channels; ++c) {
       out.by_fixed.middleCols<kJ>(c * kJ) += X.col(c) * at.transpose();
       out.by_residual.segment<kJ>(c * kJ) += r[c] * at;
       for (int d = 0; d <= c; ++d) out.gram.block<kJ, kJ>(c * kJ, d * kJ) += M(c, d) * at * at.transpose();
     }
-  }
+  });
   out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
+  return out;
+}
+
+/// Of the white noise, over that of the weights: what all readings have, and beside it by channel.
+struct WhiteNoise {
+  double common;
+  Channels beside;
+};
+
+/// From pose to pose the terms of a wandering offset beyond the last look white. Where the dwells say how
+/// large the white noise is at least, those terms account for what noise_scale2 has above it, as far as the
+/// size of the wandering asks for that.
+WhiteNoise white_noise(const JointFit& fit, const WanderingEstimate& w, const WanderingTerms& terms) {
+  const Eigen::Index channels = fit.problem.channels();
+  WhiteNoise out{w.noise_scale2, Channels::Zero(channels)};
+  const double least = 1 / (fit.noise_inflation * fit.noise_inflation);
+  if (!fit.sample_noise_nT || out.common <= least) return out;
+  // One size for all that wander: those of single channels are known to a fifth at best.
+  const Channels wanders = (w.size.array() > 0).cast<double>();
+  const double beyond_nT2 = w.size.squaredNorm() / wanders.sum() * terms.variance_beyond();
+  Channels beyond = Channels::Zero(channels), freedom = beyond;
+  for_each_followed(fit.problem, fit.state, [&](const JointPose& pose, const FollowedPose& f) {
+    beyond += beyond_nT2 * wanders.cwiseProduct(pose.weight.cwiseAbs2());
+    freedom += f.readings.diagonal();
+  });
+  beyond /= static_cast<double>(fit.problem.poses.size());
+  const double mean = beyond.dot(freedom) / freedom.sum();
+  if (!(mean > 0)) return out;
+  const double share = std::min(1.0, (out.common - least) / mean);
+  out.common -= share * mean;
+  out.beside = share * beyond;
+  return out;
+}
+
+/// What the white noise of single channels adds to the covariance of the fixed block, pose by pose: a product
+/// of three matrices would lose what a coarse table knows of the common rotation.
+Eigen::MatrixXd covariance_beside(const JointProblem& problem, const JointState& state,
+                                  const linear::Cholesky& information, const Channels& beside) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(problem.fixed(), problem.fixed());
+  if (!(beside.maxCoeff() > 0)) return out;
+  const Channels sd = beside.cwiseSqrt();
+  for_each_followed(problem, state, [&](const JointPose&, const FollowedPose& f) {
+    const Eigen::MatrixXd errors = information.solve(Eigen::MatrixXd(f.by_fixed * sd.asDiagonal()));
+    out.noalias() += errors * errors.transpose();
+  });
   return out;
 }
 
@@ -211,15 +273,15 @@ SlowSums SlowSums::thinned(double per_effective) const {
           .dof = dof / per_effective};
 }
 
-WanderingTerms wandering_terms(const JointProblem& problem) {
+WanderingTerms wandering_terms(const JointProblem& problem, SlowSpectrum spectrum) {
   const auto [first, last] =
       std::minmax_element(problem.poses.begin(), problem.poses.end(),
                           [](const JointPose& a, const JointPose& b) { return a.t_h < b.t_h; });
-  return {first->t_h, last->t_h};
+  return {first->t_h, last->t_h, spectrum, problem.poses.size()};
 }
 
-SlowSums slow_sums(const JointFit& fit) {
-  const WanderingTerms terms = wandering_terms(fit.problem);
+SlowSums slow_sums(const JointFit& fit, SlowSpectrum spectrum) {
+  const WanderingTerms terms = wandering_terms(fit.problem, spectrum);
   if (!terms.any()) return {};
   const Reduced all = reduce(fit.problem, fit.state, 0);
   const SlowEquations slow = slow_equations(fit.problem, fit.state, terms);
@@ -270,7 +332,7 @@ WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
   likelihood.climb(theta, kClimbs);
   theta = theta.cwiseMax(least);
   const double sigma2 = likelihood.noise_variance(theta);
-  out.nT_per_sqrt_h = (theta * sigma2).cwiseSqrt();
+  out.size = (theta * sigma2).cwiseSqrt();
   out.noise_scale2 = sigma2;
   out.sd = WanderingRates::Zero(theta.size());
   for (Eigen::Index c = 0; c < theta.size(); ++c) {
@@ -280,7 +342,7 @@ WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
       const double x = theta[c] * likelihood.sums().gram(c * kJ + j, c * kJ + j);
       freedom += std::pow(x / (1 + x), 2);
     }
-    out.sd[c] = out.nT_per_sqrt_h[c] / std::sqrt(2 * std::max(freedom, 0.5));
+    out.sd[c] = out.size[c] / std::sqrt(2 * std::max(freedom, 0.5));
   }
   return out;
 }
@@ -293,23 +355,30 @@ double unequal_noise_evidence(const JointFit& fit) {
 }
 
 WanderingEstimate wandering_of(const JointFit& fit) {
-  WanderingEstimate out =
-      estimate_wandering(SlowLikelihood(slow_sums(fit).thinned(fit.samples_per_effective)));
-  return out.evidence < kWanderingEvidence + unequal_noise_evidence(fit) ? WanderingEstimate{} : out;
+  WanderingEstimate best;
+  for (const SlowSpectrum spectrum : {SlowSpectrum::walk, SlowSpectrum::flicker}) {
+    WanderingEstimate found =
+        estimate_wandering(SlowLikelihood(slow_sums(fit, spectrum).thinned(fit.samples_per_effective)));
+    found.spectrum = spectrum;
+    if (found.evidence > best.evidence) best = std::move(found);
+  }
+  return best.evidence < kWanderingEvidence + unequal_noise_evidence(fit) ? WanderingEstimate{} : best;
 }
 
 std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, const WanderingEstimate& w) {
-  const WanderingTerms terms = wandering_terms(fit.problem);
-  const auto inverse = covariance_of(reduce(fit.problem, fit.state, 0).S);
-  if (!inverse || !terms.any()) return std::nullopt;
-  Eigen::MatrixXd errors = *inverse * slow_equations(fit.problem, fit.state, terms).by_fixed;
-  Eigen::MatrixXd out = w.noise_scale2 * *inverse;
+  const WanderingTerms terms = wandering_terms(fit.problem, w.spectrum);
+  const auto information = linear::Cholesky::of(reduce(fit.problem, fit.state, 0).S);
+  if (!information || !terms.any()) return std::nullopt;
+  const WhiteNoise white = white_noise(fit, w, terms);
+  Eigen::MatrixXd errors = information->solve(slow_equations(fit.problem, fit.state, terms).by_fixed);
+  Eigen::MatrixXd out = white.common * information->inverse() +
+                        covariance_beside(fit.problem, fit.state, *information, white.beside);
   const auto at_end = terms.at(terms.to_h());
   for (int c = 0; c < fit.problem.channels(); ++c) {
     const int offset = sensor::kSensorParameters * (c / 3) + sensor::ix + c % 3;
     errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
-    errors.middleCols<kJ>(c * kJ) *= w.nT_per_sqrt_h[c];
-    out(offset, offset) += std::pow(w.nT_per_sqrt_h[c], 2) * (terms.variance_at_end() - at_end.squaredNorm());
+    errors.middleCols<kJ>(c * kJ) *= w.size[c];
+    out(offset, offset) += w.size[c] * w.size[c] * (terms.variance_at_end() - at_end.squaredNorm());
   }
   return Eigen::MatrixXd(out + errors * errors.transpose());
 }

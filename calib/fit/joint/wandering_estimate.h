@@ -11,16 +11,19 @@
 /// Which offsets wander, and how fast, from the residual of a joint fit (wandering.h).
 ///
 /// With everything else of the model projected out, the residual r has covariance sigma^2 (I + sum_c theta_c
-/// U_c U_c'), U_c the terms of channel c for a rate of 1 nT per root hour. The rates are those of the largest
-/// restricted likelihood (REML), in which sigma^2 is profiled: what a dwell says of the noise does not enter.
-/// The evidence is 2 ln of the odds against white noise, the likelihood averaged over the rate, less 2 ln of
-/// the number of places that were asked (all channels, one of four sensors, one of twelve channels).
+/// U_c U_c'), U_c the terms of channel c for a walk or flicker of unit size. The sizes are those of the
+/// largest restricted likelihood (REML), in which sigma^2 is profiled: what a dwell says of the noise does
+/// not enter. The evidence is 2 ln of the odds against white noise, the likelihood averaged over the size,
+/// less 2 ln of the number of places that were asked (all channels, one of four sensors, one of twelve
+/// channels).
+///
+/// Walk and flicker are told apart by their evidence.
 ///
 /// A law that the model lacks and that follows time makes an offset wander too. This says how well a walk
 /// describes the residual, never that nothing better does: see criticism/wandering_alternative.h.
 namespace mgtd::calib::fit::joint {
 
-/// Sums of the linearised fit, one column per channel and term, for rates of 1 nT per root hour.
+/// Sums of the linearised fit, one column per channel and term, for an offset of unit size.
 struct SlowSums {
   Eigen::MatrixXd gram;         ///< U' U
   Eigen::VectorXd by_residual;  ///< U' r
@@ -36,11 +39,12 @@ struct SlowSums {
 };
 
 /// The terms of the run of these poses.
-[[nodiscard]] WanderingTerms wandering_terms(const JointProblem& problem);
+[[nodiscard]] WanderingTerms wandering_terms(const JointProblem& problem,
+                                             SlowSpectrum spectrum = SlowSpectrum::walk);
 /// Empty gram where the poses have no time.
-[[nodiscard]] SlowSums slow_sums(const JointFit& fit);
+[[nodiscard]] SlowSums slow_sums(const JointFit& fit, SlowSpectrum spectrum = SlowSpectrum::walk);
 
-/// The restricted likelihood of relative variances theta_c = (rate_c / sigma)^2.
+/// The restricted likelihood of relative variances theta_c = (size_c / sigma)^2.
 class SlowLikelihood {
  public:
   explicit SlowLikelihood(SlowSums sums) : sums_(std::move(sums)) {}
@@ -59,9 +63,10 @@ class SlowLikelihood {
 };
 
 struct WanderingEstimate {
-  WanderingRates nT_per_sqrt_h, sd;  ///< by channel; empty where nothing wanders
+  SlowSpectrum spectrum{SlowSpectrum::walk};
+  WanderingRates size, sd;           ///< by channel (wandering.h); empty where nothing wanders
   double evidence{0};                ///< 2 ln odds against white noise, places priced
-  double noise_scale2{1};            ///< variance of the white noise over that of the weights
+  double noise_scale2{1};            ///< variance of the white noise over that of the weights, all channels
   std::vector<std::string> where{};  ///< "all", or those that wander: "s2", "s3.z"
   [[nodiscard]] bool any() const { return evidence > 0; }
 };
@@ -79,12 +84,15 @@ inline constexpr double kWanderingEvidence = 9.2;
 /// the run, where the calibration begins to be used. The estimates are those of least squares; with S the
 /// information of the fixed block, X its products with the slow terms, D their variance and E their values at
 /// the end of the run in the rows of the offsets,
-///     sigma^2 S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms beyond the last add to the offsets.
+///     sigma^2 S^-1 + S^-1 W S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms beyond the last add to
+///     the offsets,
+/// W that of the channels in which terms beyond the last look white.
 /// How much further an offset wanders after the run is not in it. Empty where S is not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit,
                                                                        const WanderingEstimate& wandering);
 
-/// What wanders in a fit and is worth saying: estimate_wandering() against unequal_noise_evidence().
+/// What wanders in a fit and is worth saying, as the spectrum with the larger evidence has it:
+/// estimate_wandering() against unequal_noise_evidence().
 [[nodiscard]] WanderingEstimate wandering_of(const JointFit& fit);
 
 }  // namespace mgtd::calib::fit::joint

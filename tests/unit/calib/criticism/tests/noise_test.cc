@@ -123,8 +123,8 @@ TEST(NoiseText, WithoutRevisitsSaysHowManyWouldTell) {
 TEST(NoiseText, OneAxisThatWandersMayFollowALawOfNoLibrary) {
   NoiseModel noise;
   noise.wandering.evidence = 20;
-  noise.wandering.nT_per_sqrt_h = noise.wandering.sd = fit::joint::WanderingRates::Zero(sensor::kChannels);
-  noise.wandering.nT_per_sqrt_h[3] = 1;
+  noise.wandering.size = noise.wandering.sd = fit::joint::WanderingRates::Zero(sensor::kChannels);
+  noise.wandering.size[3] = 1;
   noise.wandering.where = {"s2.x"};
   EXPECT_THAT(report::noise_of_tests(noise), HasSubstr("measure again on another day"));
   noise.wandering.where = {"all"};

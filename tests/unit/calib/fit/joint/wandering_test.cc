@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <memory>
+#include <random>
+#include <vector>
+
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/wandering_estimate.h"
 #include "tests/blind/wandering_offsets.h"
+#include "tests/rig/slow_noise.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -28,6 +34,19 @@ TEST(Wandering, ItsTermsHoldNearlyTheWholeWalk) {
   EXPECT_NEAR(square.sum() / (3.0 / 6), 0.963, 0.002);
 }
 
+/// The mean over a run is no part of the noise; of 1/f noise every octave has the same power.
+TEST(Wandering, EveryOctaveOfFlickerHasTheSamePower) {
+  const WanderingTerms terms(0, 2, SlowSpectrum::flicker, 100);
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(kWanderingTerms);
+  constexpr int kSteps = 3000;
+  for (int k = 0; k < kSteps; ++k) square += terms.at(2 * (k + 0.5) / kSteps).cwiseAbs2() / kSteps;
+  EXPECT_NEAR(square[0], 1, 1e-6);
+  EXPECT_NEAR(square[7], 1.0 / 8, 1e-6);
+  double to_100 = 0;
+  for (int j = 1; j <= 100; ++j) to_100 += 2.0 / j;
+  EXPECT_NEAR(terms.variance_at_end(), to_100, 1e-9);
+}
+
 TEST(Wandering, NothingWandersWithoutTime) { EXPECT_FALSE(WanderingTerms(2, 2).any()); }
 
 WanderingEstimate estimate_of(const PoseTable& table) {
@@ -47,10 +66,10 @@ TEST(WanderingEstimate, FindsTheRateOfAllOffsets) {
     run.hidden = wandering_offsets({.step_nT = kStep_nT}, seed);
     const WanderingEstimate found = estimate_of(hidden_run(run, seed));
     ASSERT_EQ(found.where, std::vector<std::string>{"all"});
-    EXPECT_GT(found.nT_per_sqrt_h.minCoeff(), 0);
+    EXPECT_GT(found.size.minCoeff(), 0);
     for (int c = 0; c < sensor::kChannels; ++c)
-      EXPECT_LT(std::abs(found.nT_per_sqrt_h[c] - kRate), 5 * found.sd[c]) << seed << ' ' << c;
-    sum += found.nT_per_sqrt_h.mean();
+      EXPECT_LT(std::abs(found.size[c] - kRate), 5 * found.sd[c]) << seed << ' ' << c;
+    sum += found.size.mean();
   }
   EXPECT_NEAR(sum / 3, kRate, 0.15 * kRate);
 }
@@ -65,6 +84,50 @@ TEST(WanderingEstimate, FindsNothingInWhiteNoise) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) found += estimate_of(hidden_run({}, seed)).any() ? 1 : 0;
   EXPECT_EQ(found, 0);
+}
+
+/// 1/f noise of the simulated rig, the same length of time from pose to pose.
+testing::Hidden flickering_offsets(double nT_per_sqrt_hz, std::uint64_t seed) {
+  constexpr int kPoses = 200;
+  constexpr double kSpacing_s = 30;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  auto at = std::make_shared<std::vector<std::array<double, 12>>>(kPoses);
+  for (std::size_t c = 0; c < 12; ++c) {
+    std::vector<rig::SlowProcess> parts = rig::flicker(nT_per_sqrt_hz);
+    for (rig::SlowProcess& part : parts) part.begin(random, normal);
+    for (auto& pose : *at) {
+      for (rig::SlowProcess& part : parts) {
+        pose.at(c) += part.value_nT();
+        part.advance(kSpacing_s, random, normal);
+      }
+    }
+  }
+  return [at](const Pose& pose, int sensor, int axis, const Eigen::Vector3d&) {
+    return at->at(static_cast<std::size_t>(pose.number)).at(static_cast<std::size_t>(3 * sensor + axis));
+  };
+}
+
+TEST(WanderingOf, TellsFlickerFromAWalk) {
+  constexpr double kSize = 0.05;
+  int flicker = 0, walk = 0;
+  double size = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    HiddenRun run{.noise_nT = 0.05};
+    run.hidden = flickering_offsets(kSize, seed);
+    const auto flickers = fit_joint(hidden_run(run, seed), joint_options({}));
+    ASSERT_TRUE(flickers);
+    const WanderingEstimate found = wandering_of(*flickers);
+    flicker += found.any() && found.spectrum == SlowSpectrum::flicker ? 1 : 0;
+    size += found.any() ? found.size.mean() / 6 : 0;
+    run.hidden = wandering_offsets({.step_nT = kStep_nT}, seed);
+    const auto walks = fit_joint(hidden_run(run, seed), joint_options({}));
+    ASSERT_TRUE(walks);
+    walk += wandering_of(*walks).spectrum == SlowSpectrum::walk ? 1 : 0;
+  }
+  EXPECT_EQ(flicker, 6);
+  EXPECT_EQ(walk, 6);
+  EXPECT_NEAR(size, kSize, 0.2 * kSize);
 }
 
 /// A parameter's square of error over its variance has the mean one where the uncertainty is honest. An
