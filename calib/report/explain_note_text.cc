@@ -115,6 +115,14 @@ std::string text(const criticism::search::DescribesRecording& n) {
       fmt::join(n.effects, ", "), n.before_nT, n.after_nT, them);
 }
 
+std::string text(const criticism::search::LostInWandering& n) {
+  return fmt::format(
+      "{} stood out in {} ({:.1f} sigma), but in the fit its size is what the wandering makes of none ({}): "
+      "it "
+      "is not named",
+      n.effect, n.where, n.d, stats::p_phrase(n.log10_p_of_fit));
+}
+
 std::string text(const criticism::search::LawOfNoLibrary& n) {
   const std::string what = fmt::format("{} follows something that is in no library", n.where);
   if (n.effects.empty()) return what;

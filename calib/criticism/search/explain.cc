@@ -155,6 +155,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
   take_back_beside_unknown_laws(search.unknown, criticism, out);
+  take_back_lost_in_wandering(criticism.noise, out);
   keep_names_found_again(out);
   note_absurd_sizes(search, criticism, out);
   const bool described = take_back_what_describes_a_recording(out, criticism);

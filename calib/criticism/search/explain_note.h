@@ -77,6 +77,12 @@ struct DescribesRecording {
   double before_nT{0}, after_nT{0};  ///< residual without and with them
   bool curve{false};                 ///< they are steps that follow a curve; else they take the lesser part
 };
+/// Beside offsets that wander, the fit with the effect does not find it.
+struct LostInWandering {
+  std::string effect, where;
+  double d{0};               ///< by which it stood out
+  double log10_p_of_fit{0};  ///< that its coefficients are zero
+};
 struct LawOfNoLibrary {
   std::string where;
   std::set<std::string> effects;  ///< that only describe it
@@ -86,6 +92,6 @@ using ExplainNote =
     std::variant<SensorsMirrored, TableAnglesContradict, TableAnglesRough, PosesContradict, NoiseOverstated,
                  ResidualWithoutLaw, SensorsExchanged, TablePathUnknown, ExcessRemains, FallNotAsPredicted,
                  LackOfFitRemains, SizeTooSmall, StepsFollowCurve, EvidenceOfOnePose, FitWithEffectFailed,
-                 SizeUnusual, SizeBeyondAll, DescribesRecording, LawOfNoLibrary>;
+                 SizeUnusual, SizeBeyondAll, DescribesRecording, LostInWandering, LawOfNoLibrary>;
 
 }  // namespace mgtd::calib::criticism::search

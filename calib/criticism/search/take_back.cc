@@ -9,6 +9,8 @@
 
 #include "calib/effects/where.h"
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/linear/cholesky.h"
+#include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -20,6 +22,20 @@ constexpr double kSaysNothing = 10;
 /// Of the misfit: what names leave at most, where one of them acts on an axis that a law of no library acts
 /// on too. The square of a neighbour's reading is the square of the own reading but for a twentieth.
 constexpr double kLittle = 0.01;
+
+/// Chance that a size of none is found as large, above which the fit does not find the effect.
+const double kNotFound_log10 = std::log10(0.05);
+
+/// log10 p of the coefficients that a round added, in the fit with them: they are its last.
+double log10_p_of_fit(const Round& round) {
+  Eigen::Index count = 0;
+  for (const effects::EffectPtr& effect : round.effects)
+    count += static_cast<Eigen::Index>(effect->coefficients().size());
+  const auto covariance = linear::Cholesky::of(round.fit->covariance.bottomRightCorner(count, count));
+  if (!covariance) return 0;
+  const double square = covariance->squared_length(round.fit->state.coefficients.tail(count));
+  return stats::chi_square_log10_p(square, static_cast<double>(count));
+}
 
 /// What an axis, or each axis of a sensor, misfits becomes part of its noise, many times over.
 void loosen(const fit::joint::JointFit& fit, const std::string& place, fit::joint::JointOptions& options) {
@@ -90,6 +106,17 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
     std::get<LawOfNoLibrary>(*note).effects.insert(round->added.effect);
   report.rounds.erase(first, report.rounds.end());
   if (report.rounds.empty()) report.next.clear();
+}
+
+void take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report) {
+  while (noise.wandering.any() && !report.rounds.empty()) {
+    const Round& last = report.rounds.back();
+    const double log10_p = log10_p_of_fit(last);
+    if (log10_p < kNotFound_log10) return;
+    report.notes.emplace_back(LostInWandering{last.added.effect, last.added.where, last.added.d, log10_p});
+    report.rounds.pop_back();
+    if (report.rounds.empty()) report.next.clear();
+  }
 }
 
 void keep_names_found_again(ExplainReport& report) {

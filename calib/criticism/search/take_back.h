@@ -19,6 +19,11 @@ void take_back(const Surrogates& found, EffectSearch& search, ExplainReport& rep
 void take_back_beside_unknown_laws(const std::set<std::string>& closed, const tests::Criticism& last,
                                    ExplainReport& report);
 
+/// Beside offsets that wander, takes the last rounds back as long as the fit does not find what they added: a
+/// test that knows the size of the wandering to a fifth only makes names that the fit, in whose uncertainties
+/// it stands, does not confirm.
+void take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report);
+
 /// An effect that is found again once the axis is closed was not a surrogate of its law: the notes do not say
 /// so any more.
 void keep_names_found_again(ExplainReport& report);

@@ -34,6 +34,20 @@ TEST(TakeBack, NoEffectIsNamedForALawOfNoLibrary) {
   }
 }
 
+/// What the tests see beside a walk of which they know the size to a fifth, and no fit confirms.
+TEST(TakeBack, NothingIsNamedThatTheWanderingMayMake) {
+  const std::pair<const char*, std::uint64_t> runs[] = {{"walk-1", 810}, {"walk-1-once", 814}};
+  for (const auto& [kind, seed] : runs) {
+    const PoseTable run = run_of(kind, seed);
+    const auto r = explain(run, {});
+    ASSERT_TRUE(r) << kind << ": " << r.error().text();
+    EXPECT_EQ(r->finding, Finding::pass) << kind << ": " << report::sentence(*r);
+    EXPECT_TRUE(std::any_of(r->notes.begin(), r->notes.end(), [](const ExplainNote& n) {
+      return std::holds_alternative<LostInWandering>(n);
+    })) << kind;
+  }
+}
+
 TEST(TakeBack, ANameThatIsFoundAgainIsNotInTheNotes) {
   ExplainReport report;
   report.rounds.emplace_back();
