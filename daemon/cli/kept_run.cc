@@ -59,4 +59,14 @@ Result<void> keep_step(KeptRun& run, const std::string& action, const std::strin
       {now(), who(), action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
+std::string residual_change(const nlohmann::json& result, const std::string& arrow) {
+  const auto residual = [&](const char* key) {
+    const auto found = result.find(key);
+    return found != result.end() && found->is_number() ? fmt::format("{:.3g}", found->get<double>())
+                                                       : "refused";
+  };
+  const std::string before = residual("rms_before_nT"), after = residual("rms_after_nT");
+  return before == after && before == "refused" ? "" : fmt::format("{} {} {} nT", before, arrow, after);
+}
+
 }  // namespace mgtd::daemon::cli

@@ -27,6 +27,7 @@ constexpr const char* kMaskHelp =
     "Every command on the run file leaves masked poses out and says so; they stay in the file. The reason "
     "is\n"
     "kept with them (mgt model). mgt undo takes the last mask back, mgt unmask takes poses in again.\n"
+    "Poses can be masked while the fit is still refused: one reason may stand beside another.\n"
     "--without POSES of fit, compare, explain, why, next and improve tries it without keeping it.\n\n"
     "  mgt mask run.mgtrun 3 7-9 --why 'a car stood beside the rig'\n"
     "  mgt unmask run.mgtrun 3 7-9\n\n"
@@ -61,10 +62,11 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
   });
   const auto after = with_progress(
       action, run.options, [&](const calib::fit::FitOptions& told) { return residual_nT(table, told); });
-  if (!after) return report(session, after.error());
+  if (!after && after.error().code != ErrorCode::refused) return report(session, after.error());
   const std::string spec = store::pose_numbers_text(numbers);
-  json result{{"because", args.why}, {"rms_after_nT", *after}};
+  json result{{"because", args.why}};
   result["rms_before_nT"] = before ? json(*before) : json();
+  result["rms_after_nT"] = after ? json(*after) : json();
   if (auto ok = keep_step(run, action, spec, result); !ok) return report(session, ok.error());
   std::set<int> masked = masked_in(run.source);
   for (const int number : numbers) {
@@ -75,18 +77,20 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
     }
   }
   if (session.json) {
-    json out = std::move(result);
+    json out = result;
     out["schema"] = "mgt.mask/1";
     out["action"] = action;
     out["poses"] = numbers;
     out["masked"] = masked;
+    if (!after) out["refused"] = after.error().text();
     print_json(out);
     return 0;
   }
   fmt::print("{}: {}{}\n", action == "mask" ? "masked" : "taken in again", spec,
              args.why.empty() ? "" : " (" + args.why + ")");
-  if (before) fmt::print("residual {:.3g} -> {:.3g} nT\n", *before, *after);
+  if (before || after) fmt::print("residual {}\n", residual_change(result, "->"));
   fmt::print("masked now: {}\n", masked.empty() ? "none" : store::pose_numbers_text(masked));
+  if (!after) fmt::print("no fit of what is left yet: {}\n", after.error().text());
   return 0;
 }
 

@@ -221,12 +221,9 @@ int run_model(const Session& session, const ModelArguments& args) {
   }
   for (const store::ModelStep& s : *steps) {
     const json result = json::parse(s.result, nullptr, false);
-    std::string rms;
-    if (result.is_object() && result.contains("rms_before_nT")) {
-      rms = fmt::format("residual {:.3g} -> {:.3g} nT", result["rms_before_nT"].get<double>(),
-                        result["rms_after_nT"].get<double>());
-    }
-    fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, rms, s.who);
+    std::string change = residual_change(result, "->");
+    if (!change.empty()) change = "residual " + change;
+    fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, change, s.who);
   }
   fmt::print("the model: {}\n", model_text(model));
   for (const store::MaskedPose& m : masked) fmt::print("masked: pose {}: {}\n", m.number, m.because);

@@ -13,6 +13,7 @@
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
+#include "daemon/cli/kept_run.h"
 #include "daemon/cli/report_page.h"
 
 namespace mgtd::daemon::cli {
@@ -145,12 +146,9 @@ std::string history_section(const ReportContent& c) {
   Rows rows;
   for (const store::ModelStep& s : c.history) {
     const auto result = nlohmann::json::parse(s.result, nullptr, false);
-    std::string change, because;
-    if (result.is_object()) because = result.value("because", "");
-    if (result.is_object() && result.contains("rms_before_nT"))
-      change = fmt::format("{:.3f} → {:.3f} nT", result["rms_before_nT"].get<double>(),
-                           result["rms_after_nT"].get<double>());
-    rows.push_back({fmt::format("{:.19}Z", format_utc(s.at)), s.action, s.spec, change, because, s.who});
+    const std::string because = result.is_object() ? result.value("because", "") : "";
+    rows.push_back({fmt::format("{:.19}Z", format_utc(s.at)), s.action, s.spec, residual_change(result, "→"),
+                    because, s.who});
   }
   return "<h2>How the model came to be</h2>" +
          html_table({"when", "step", "effect", "residual before → after", "reason", "who"}, rows, true);

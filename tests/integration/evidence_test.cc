@@ -84,6 +84,20 @@ TEST_F(EvidenceOfPrograms, AMaskedPoseIsLeftOutByEveryCommandUntilItIsTakenInAga
   EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "tried, not kept";
 }
 
+/// Where the fit is refused for two reasons, the poses of one are masked after those of the other.
+TEST_F(EvidenceOfPrograms, PosesAreMaskedWhileTheFitOfTheOthersIsRefused) {
+  const json few = ask({"mask", file(), "6-157", "--why", "the cable was loose"});
+  EXPECT_EQ(few.at("masked").size(), 152U);
+  EXPECT_TRUE(few.at("rms_after_nT").is_null());
+  EXPECT_THAT(few.at("refused").get<std::string>(), HasSubstr("poses"));
+  EXPECT_THAT(mgt({"model", file()}).out, HasSubstr("-> refused nT"));
+  const json all = ask({"unmask", file(), "6-157"});
+  EXPECT_TRUE(all.at("rms_before_nT").is_null());
+  EXPECT_GT(all.at("rms_after_nT").get<double>(), 0);
+  EXPECT_EQ(mgt({"report", file(), "-o", file() + ".html"}).exit_code, 0);
+  EXPECT_THAT(slurp(file() + ".html"), HasSubstr("refused → "));
+}
+
 /// The reason is typed by a person and stands in a page: it is text there, whatever it says.
 TEST_F(EvidenceOfPrograms, TheReportTellsWhichPosesAreMaskedAndWhy) {
   const auto reported = [&] {

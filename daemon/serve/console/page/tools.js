@@ -41,7 +41,8 @@ export function showParameters(fit) {
 
 export function showHistory(model, unmask) {
   if (!model) return [make("p", {}, "A pose table keeps no model and no history.")];
-  const left = (r) => (r.rms_before_nT === undefined || r.rms_before_nT === null ? "" : `${sig(r.rms_before_nT)} → ${sig(r.rms_after_nT)}`);
+  const told = (value) => (value === null || value === undefined ? "refused" : sig(value));
+  const left = (r) => ((r.rms_before_nT ?? r.rms_after_nT ?? null) === null ? "" : `${told(r.rms_before_nT)} → ${told(r.rms_after_nT)}`);
   return [model.history.length ? table("Steps, the oldest first", ["when", "who", "", "", "residual, nT", "why"], model.history.map((s) => [time(s.t), s.who, s.action, s.spec, left(s.result), s.result.because ?? ""]))
                                : make("p", {}, "No steps yet."),
           model.masked.length ? table("Masked poses", ["pose", "why", "who", ""], model.masked.map((m) => [m.pose, m.because, m.who, make("button", { onclick: () => unmask(m.pose) }, "Take in again")])) : null,
