@@ -23,6 +23,7 @@
 ///   run.pause, run.resume, run.finish, run.abort, run.status       -> RUN
 ///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
 ///   run.redo             what was entered last is asked for again                            -> RUN
+///   run.course           what the run has gained so far             -> run_course.h
 ///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
 ///   calibrations.list                    ->
 ///   {"calibrations":[{"id","state","since","origin","forced","why"}]} calibrations.show    args:
@@ -39,7 +40,7 @@
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 4;
+inline constexpr int kControlProtocolMinor = 5;
 /// A calibration with a hundred coefficients takes 0.4 MB.
 inline constexpr std::size_t kControlLineLimit = 1 << 20;
 
@@ -55,6 +56,7 @@ enum class ControlCommand : std::uint8_t {
   run_status,
   run_enter,
   run_redo,
+  run_course,
   calibrations_list,
   calibrations_show,
   calibrations_accept,
@@ -69,7 +71,7 @@ enum class ControlCommand : std::uint8_t {
   control_break,
   console,
 };
-inline constexpr std::array<std::string_view, 24> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 25> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -80,6 +82,7 @@ inline constexpr std::array<std::string_view, 24> kControlCommandNames{"version"
                                                                        "run.status",
                                                                        "run.enter",
                                                                        "run.redo",
+                                                                       "run.course",
                                                                        "calibrations.list",
                                                                        "calibrations.show",
                                                                        "calibrations.accept",

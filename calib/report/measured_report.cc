@@ -12,6 +12,7 @@
 
 #include "calib/report/figure_words.h"
 #include "calib/report/figures/sky.h"
+#include "calib/report/figures/sky_figures.h"
 #include "calib/report/point_columns.h"
 
 namespace mgtd::calib::report {
@@ -19,8 +20,6 @@ namespace {
 
 using criticism::tests::MeasuredPoints;
 using nlohmann::json;
-
-constexpr double kLargestHole_deg = 45;  // as for the coverage of a run
 
 /// Lowest and highest of what is finite.
 struct Extremes {
@@ -98,8 +97,8 @@ json sky_panel(const MeasuredPoints& p) {
                "Each sensor saw the field in these directions.",
                fmt::format("points on all sides, and colours that change slowly: no direction farther than "
                            "{:.0f}° from a pose. Here the largest hole, in s{}, has a radius of {:.0f}°.",
-                           kLargestHole_deg, sensor + 1, hole_deg),
-               hole_deg > kLargestHole_deg);
+                           figures::kGoodHole_deg, sensor + 1, hole_deg),
+               hole_deg > figures::kGoodHole_deg);
 }
 
 /// Lengths less the mean over the sensors.

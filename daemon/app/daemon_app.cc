@@ -113,6 +113,11 @@ serve::console::ConsoleSource DaemonApp::console_source() {
                 return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
               },
           .metrics = [this] { return serve::console::metrics(report(), console_.server.refused()); },
+          .course =
+              [this] {
+                return to_json(run_.course()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                       '\n';
+              },
           .lane = [this](std::string_view query) -> Result<std::string> {
             const auto request = serve::console::parse_lane_request(query);
             if (!request) return tl::unexpected(request.error());

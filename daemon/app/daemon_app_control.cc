@@ -33,6 +33,8 @@ Reply DaemonApp::answer(const ControlRequest& request) {
                                                         : nlohmann::ordered_json(console_.server.address())},
           {"token", console_.server.token().text()},
           {"refused", console_.server.refused()}};
+    case ControlCommand::run_course:
+      return to_json(run_.course());
     case ControlCommand::run_start:
     case ControlCommand::run_dry_run:
     case ControlCommand::run_pause:

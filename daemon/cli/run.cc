@@ -10,6 +10,7 @@
 
 #include "calib/poses/pose_list.h"
 #include "daemon/cli/ask.h"
+#include "daemon/cli/course_text.h"
 #include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
@@ -214,6 +215,16 @@ int simple(const Session& session, ControlCommand command, bool then_follow) {
   return 0;
 }
 
+int course(const Session& session) {
+  const auto reply = ask(session, ControlCommand::run_course);
+  if (!reply) return report(session, reply.error());
+  if (session.json)
+    print_json(*reply);
+  else
+    fmt::print("{}", course_text(*reply));
+  return 0;
+}
+
 int enter(const Session& session, const RunArguments& args) {
   const auto reply = ask(session, ControlCommand::run_enter,
                          {{"azimuth_deg", args.scales_deg[0]},
@@ -243,9 +254,9 @@ void add_plan_options(CLI::App* command, RunArguments& args) {
 }  // namespace
 
 void add_run(CLI::App& app, Session& session) {
-  CLI::App* const group = app.add_subcommand(
-      "run",
-      "a calibration run: start, dry-run, magnet-test, follow, enter, redo, pause, resume, finish, abort");
+  CLI::App* const group = app.add_subcommand("run",
+                                             "a calibration run: start, dry-run, magnet-test, follow, "
+                                             "course, enter, redo, pause, resume, finish, abort");
   group->require_subcommand(1);
   auto args = std::make_shared<RunArguments>();
   CLI::App* const begin = add_command(
@@ -270,6 +281,9 @@ void add_run(CLI::App& app, Session& session) {
               [&session] { return follow(session); });
   add_command(*group, session, "status", "the run in one object",
               [&session] { return simple(session, ControlCommand::run_status, false); });
+  add_command(*group, session, "course",
+              "what the run has gained so far: directions of the field, accuracy, disturbances",
+              [&session] { return course(session); });
   add_command(*group, session, "pause", "stop the table; the present pose will be measured again",
               [&session] { return simple(session, ControlCommand::run_pause, false); });
   add_command(*group, session, "resume",

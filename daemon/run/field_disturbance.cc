@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calib/stats/f_distribution.h"
@@ -59,9 +60,18 @@ void FieldNoise::add(const FieldBlocks& at_rest) {
 
 double FieldNoise::block_nT() const { return known() ? std::sqrt(sum_ / dof_ * per_sensor(weight_nT2_)) : 0; }
 
+std::string_view name(FieldDisturbance::SeenBy seen_by) {
+  static constexpr std::array<std::string_view, 3> kNames{"array", "scalar", "level"};
+  return kNames.at(static_cast<std::size_t>(seen_by));
+}
+
 std::string FieldDisturbance::in_words() const {
+  if (seen_by == SeenBy::level)
+    return fmt::format(
+        "the scalar reference reads {:.1f} nT, {:+.1f} nT against the pose before (limit {:.1f} nT)",
+        level_nT, change_nT, limit_nT);
   return fmt::format("the field changed by {:.2g} nT{} while the table stood (limit {:.2g} nT)", change_nT,
-                     scalar ? " at the scalar reference" : "", limit_nT);
+                     seen_by == SeenBy::scalar ? " at the scalar reference" : "", limit_nT);
 }
 
 /// Reads the noise.
@@ -78,7 +88,7 @@ struct DisturbanceStatistic {
     const double f = scatter_nT2.cwiseQuotient(noise.weight_nT2_).mean() / n / (noise.sum_ / noise.dof_);
     const double noise_nT = noise.block_nT();
     const double change_nT = std::sqrt(std::max(0.0, per_sensor(scatter_nT2) / n - noise_nT * noise_nT));
-    return disturbance(change_nT, f, dof_of(field.blocks()), noise.dof_, false);
+    return disturbance(change_nT, f, dof_of(field.blocks()), noise.dof_, FieldDisturbance::SeenBy::array);
   }
   [[nodiscard]] std::optional<FieldDisturbance> scalar() const {
     if (field.scalar_nT().size() < kScalarReadings) return std::nullopt;
@@ -86,12 +96,12 @@ struct DisturbanceStatistic {
     const double square_nT2 = square_sum(field.scalar_nT()) / n,
                  at_rest_nT2 = noise.scalar_sum_nT2_ / noise.scalar_dof_;
     return disturbance(std::sqrt(std::max(0.0, square_nT2 - at_rest_nT2)), square_nT2 / at_rest_nT2, n,
-                       noise.scalar_dof_, true);
+                       noise.scalar_dof_, FieldDisturbance::SeenBy::scalar);
   }
   [[nodiscard]] std::optional<FieldDisturbance> disturbance(double change_nT, double f, double k, double nu,
-                                                            bool by_scalar) const {
+                                                            FieldDisturbance::SeenBy seen_by) const {
     if (change_nT <= limit_nT || calib::stats::f_log10_p(f, k, nu) > log10_p) return std::nullopt;
-    return FieldDisturbance{change_nT, limit_nT, by_scalar};
+    return FieldDisturbance{.change_nT = change_nT, .limit_nT = limit_nT, .seen_by = seen_by};
   }
 };
 

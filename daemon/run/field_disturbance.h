@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "daemon/run/field_blocks.h"
 
@@ -47,11 +48,14 @@ class FieldNoise {
 };
 
 struct FieldDisturbance {
-  double change_nT{0};
-  double limit_nT{0};  ///< that change_nT had to exceed to be no noise
-  bool scalar{false};  ///< seen by the scalar reference
+  enum class SeenBy { array, scalar, level };  ///< level: of the scalar reference, against the pose before
+  double change_nT{0};                         ///< of the level with its sign
+  double limit_nT{0};                          ///< that the change had to exceed to be no noise
+  SeenBy seen_by{SeenBy::array};
+  double level_nT{0};  ///< that the scalar reference reads, where the level changed
   [[nodiscard]] std::string in_words() const;
 };
+[[nodiscard]] std::string_view name(FieldDisturbance::SeenBy seen_by);
 
 /// `looks`: how often one dwell is judged. Nothing while there are fewer than two blocks.
 [[nodiscard]] std::optional<FieldDisturbance> disturbance_in(const FieldBlocks& field,

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/run/field_guard.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numeric>
 
@@ -23,12 +21,13 @@ std::optional<FieldDisturbance> FieldGuard::disturbed(double length_s) {
                         static_cast<std::size_t>(std::ceil(length_s / FieldBlocks::kBlock_s)));
 }
 
-std::optional<std::string> FieldGuard::at_another_level(std::optional<double> f_nT) const {
+std::optional<FieldDisturbance> FieldGuard::at_another_level(std::optional<double> f_nT) const {
   if (!level_nT_ || !f_nT || config_.step_nT <= 0 || std::abs(*f_nT - *level_nT_) <= config_.step_nT)
     return std::nullopt;
-  return fmt::format(
-      "the scalar reference reads {:.1f} nT, {:+.1f} nT against the pose before (limit {:.1f} nT)", *f_nT,
-      *f_nT - *level_nT_, config_.step_nT);
+  return FieldDisturbance{.change_nT = *f_nT - *level_nT_,
+                          .limit_nT = config_.step_nT,
+                          .seen_by = FieldDisturbance::SeenBy::level,
+                          .level_nT = *f_nT};
 }
 
 void FieldGuard::given_up(Instant now) {

@@ -2,7 +2,6 @@
 #pragma once
 #include <cstddef>
 #include <optional>
-#include <string>
 
 #include "daemon/run/field_blocks.h"
 #include "daemon/run/field_disturbance.h"
@@ -36,7 +35,7 @@ class FieldGuard {
   /// Judged once for every block; `length_s`: of all that will be judged together.
   [[nodiscard]] std::optional<FieldDisturbance> disturbed(double length_s);
   /// What came while the table moved, and stands there now, is not seen within a dwell.
-  [[nodiscard]] std::optional<std::string> at_another_level(std::optional<double> f_nT) const;
+  [[nodiscard]] std::optional<FieldDisturbance> at_another_level(std::optional<double> f_nT) const;
 
   /// The dwell under way was given up at `now`, for the first time at this pose or once more.
   void given_up(Instant now);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/plan/run_plan.h"
+#include "daemon/run/field_disturbance.h"
 #include "daemon/run/run_judgement.h"
 #include "proto/pose.h"
 #include "proto/reading.h"
@@ -40,6 +41,12 @@ struct StoreChecks {
   std::vector<Check> checks;
 };
 
+/// The field did not stand still at a pose: the run waits until it is calm.
+struct FieldDisturbed {
+  int pose{0};
+  FieldDisturbance seen;
+};
+
 /// Judge the poses of the run as far as it is measured. Answered by FurtherPoses.
 struct JudgeRun {};
 /// What was judged, and the plan that follows from it: on disk before the table moves.
@@ -71,7 +78,7 @@ struct Finish {
 };
 
 using Action = std::variant<HomeTable, MoveTable, SetTable, StopTable, StorePose, DropPoses, StorePath,
-                            StoreChecks, JudgeRun, StoreJudgement, StartSolve, CancelSolve,
+                            StoreChecks, FieldDisturbed, JudgeRun, StoreJudgement, StartSolve, CancelSolve,
                             ProposeCalibration, PublishStatus, Record, Finish>;
 
 }  // namespace mgtd::daemon::run

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "calib/fit/joint/joint_problem.h"
 #include "calib/report/described_array.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/plan/plan_from_list.h"
@@ -50,6 +51,11 @@ store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
   out.until_tensor_sd_nT_per_m = r.until_tensor_sd_nT_per_m;
   out.until_explained_min = r.until_explained_min;
   return out;
+}
+
+std::optional<Eigen::Vector3d> site_direction(const config::Config& c) {
+  if (!c.inclination_deg) return std::nullopt;
+  return calib::fit::joint::direction_of(to_rad(*c.inclination_deg), to_rad(c.declination_deg.value_or(0)));
 }
 
 /// With what was planned while it was measured.
@@ -179,6 +185,8 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   judgements_ = judgements_of(*file_);
   auto stored = file_->poses();
   poses_ = stored ? *std::move(stored) : PoseTable{};
+  course_ = CourseRecorder(config.run_id, plan, site_direction(config_), config.until_tensor_sd_nT_per_m);
+  for (const Pose& pose : poses_.poses) course_.measured(pose);
   warm_start_.reset();
   learning_ = false;
   learning_job_.request_stop();
@@ -187,6 +195,7 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   ++generation_;
   spdlog::info("run {}: {} poses into {}", config.run_id, plan.poses.size(), file_->path().string());
   run_.begin(std::move(config), std::move(plan), now, earlier);
+  if (!poses_.poses.empty()) expect_accuracy();
 }
 
 /// A run that ends when the tensor is known well enough needs an array that tells a tensor.

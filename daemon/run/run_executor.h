@@ -12,6 +12,7 @@
 #include "calib/fit/joint/accuracy_so_far.h"
 #include "daemon/config/config.h"
 #include "daemon/plan/run_duration.h"
+#include "daemon/run/course_recorder.h"
 #include "daemon/run/current_run.h"
 #include "daemon/run/run_judgement.h"
 #include "daemon/run/solver.h"
@@ -65,6 +66,8 @@ class RunExecutor {
   }
   [[nodiscard]] RunStatus status(Instant now) const;
   [[nodiscard]] bool active() const { return run_.active(); }
+  /// Of the run under way, or of the last one of this life of the daemon.
+  [[nodiscard]] RunCourse course() const { return course_.course(); }
   /// The daemon ends: the run file is left to be resumed.
   void abandon();
 
@@ -94,6 +97,7 @@ class RunExecutor {
   void begin(store::RunFile file, RunConfig config, plan::RunPlan plan, Stamp now,
              const std::optional<EarlierLife>& earlier);
   void learn_accuracy();
+  void expect_accuracy();
   void act(const HomeTable&, Stamp) {}  // the core's, as are the next three
   void act(const MoveTable&, Stamp) {}
   void act(const SetTable&, Stamp) {}
@@ -102,6 +106,7 @@ class RunExecutor {
   void act(const StorePose& action, Stamp now);
   void act(const StorePath& action, Stamp now);
   void act(const StoreChecks& action, Stamp now);
+  void act(const FieldDisturbed& action, Stamp now) { course_.disturbed(action.pose, action.seen, now); }
   void act(const JudgeRun&, Stamp now);
   void act(const StoreJudgement& action, Stamp now);
   void act(const StartSolve&, Stamp now);
@@ -119,6 +124,7 @@ class RunExecutor {
   RunHooks hooks_;
   std::optional<store::RunFile> file_;
   PoseTable poses_;  ///< stored so far; the worker gets copies
+  CourseRecorder course_;
   std::shared_ptr<const calib::fit::joint::JointState> warm_start_;  ///< of the last fit while measuring
   bool learning_{false};                                             ///< the worker is at such a fit
   std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};

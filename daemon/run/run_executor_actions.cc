@@ -11,6 +11,7 @@
 #include "calib/report/fit_reasons.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/plan/run_plan_json.h"
+#include "daemon/run/expected_accuracy.h"
 #include "daemon/run/further_poses.h"
 #include "daemon/run/run_executor.h"
 #include "daemon/run/solver.h"
@@ -22,6 +23,7 @@ void RunExecutor::act(const DropPoses& action, Stamp) {
     spdlog::error("poses to be measured again could not be taken out: {}", dropped.error().text());
     return;
   }
+  course_.dropped(action.numbers);
   std::erase_if(poses_.poses, [&](const Pose& pose) {
     return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
   });
@@ -31,6 +33,8 @@ void RunExecutor::act(const StorePose& action, Stamp) {
   auto stored = file_->append_pose(action.pose);
   if (stored) {
     poses_.poses.push_back(action.pose);
+    course_.measured(action.pose);
+    if (poses_.poses.size() == 1) expect_accuracy();
     learn_accuracy();
   }
   run_.answer(PoseStored{action.pose.number, std::move(stored)});
@@ -50,13 +54,26 @@ void RunExecutor::learn_accuracy() {
        count = poses_.poses.size()](Result<calib::fit::joint::AccuracySoFar> known) {
         if (generation != generation_ || !active()) return;
         learning_ = false;
+        if (!known) course_.not_known(known.error().message);
         if (known) {
+          course_.known(known->poses, known->tensor_sd_nT_per_m);
           if (std::isfinite(known->worst_nT_per_m()))
             run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
           warm_start_ = std::make_shared<const calib::fit::joint::JointState>(std::move(known->state));
         }
         if (poses_.poses.size() != count) learn_accuracy();
       });
+}
+
+/// Of the plan, once its first pose tells the noise.
+void RunExecutor::expect_accuracy() {
+  auto request = planned_design(config_, run_.fsm()->plan(), poses_.poses.front());
+  if (!request) return;
+  worker_.run([request = *std::move(request)](
+                  const std::stop_token& stop) { return expected_accuracy(request, stop); },
+              [this, generation = generation_](std::vector<CourseAccuracy> expected) {
+                if (generation == generation_) course_.expects(std::move(expected));
+              });
 }
 
 void RunExecutor::act(const StorePath& action, Stamp now) {
@@ -84,6 +101,8 @@ void RunExecutor::act(const JudgeRun&, Stamp) {
 
 void RunExecutor::act(const StoreJudgement& action, Stamp now) {
   judgements_.push_back(action.judgement);
+  course_.extend(action.plan);
+  if (!poses_.poses.empty()) expect_accuracy();
   auto stored = file_->set_document(kJudgements, to_json(judgements_).dump());
   if (stored && action.judgement.minutes > 0)
     stored = file_->set_document(kExtendedPlan, to_json(action.plan).dump());
@@ -105,6 +124,7 @@ void RunExecutor::act(const StartSolve&, Stamp) {
                       done.result = Solution{c.accepted_by_checks, c.id, calib::report::fit_reasons(*report),
                                              c.checks, calib::report::lack_of_fit_text(*report)};
                       solved_ = c;
+                      course_.known(static_cast<int>(poses_.poses.size()), report->tensor_sd_nT_per_m);
                     } else {
                       done.result = tl::unexpected(report.error());
                     }
@@ -124,6 +144,7 @@ void RunExecutor::act(const ProposeCalibration& action, Stamp now) {
 }
 
 void RunExecutor::act(const PublishStatus& action, Stamp now) {
+  course_.shows(action.status, now);
   // The file knows the state it would be found in after a crash.
   if (const auto known = file_->state();
       known && known->state != action.status.state && is_active(action.status.state)) {

@@ -145,7 +145,7 @@ class RunFsm {
   void store(Pose pose);
   void solve();
   void ask();  ///< what is set by hand
-  void suspend(const std::string& why);
+  void suspend(const FieldDisturbance& seen);
   void bad_pose(const Error& why);
   void lost_reference();
   void hold(const std::string& message);  ///< stop and ask the operator

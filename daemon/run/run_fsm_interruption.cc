@@ -175,14 +175,15 @@ void RunFsm::redo() {
 
 // A field that does not stand still.
 
-void RunFsm::suspend(const std::string& why) {
+void RunFsm::suspend(const FieldDisturbance& seen) {
   progress_.repeat();
+  act(FieldDisturbed{planned().number, seen});
   const auto* dwelling = in<phase::Dwelling>();
   const bool railed = dwelling && dwelling->dwell.quality().saturated > 0;
   field_.given_up(now_.mono);
   enter(phase::Suspended{},
         fmt::format("pose {} is suspended: {}; {}; it is measured again when the field is calm",
-                    planned().number, why,
+                    planned().number, seen.in_words(),
                     railed ? "a sensor is at the end of its range: look at its supply and range, and for "
                              "magnets and iron near it"
                            : "something magnetic is passing or has been put down nearby, or the array itself "

@@ -200,7 +200,7 @@ void RunFsm::advance(phase::Dwelling& now) {
     return bad_pose({ErrorCode::refused,
                      "the table moved during the dwell: it reports " + in_words(table->angles),
                      "clamp or balance the table, or keep its servo on during the dwell"});
-  if (const auto seen = field_.disturbed(planned().dwell_s)) return suspend(seen->in_words());
+  if (const auto seen = field_.disturbed(planned().dwell_s)) return suspend(*seen);
   if (!now.dwell.complete(now_.mono)) return;
   DwellPlace place;
   place.number = planned().number;

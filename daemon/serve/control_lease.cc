@@ -15,6 +15,7 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::run_pause:
     case ControlCommand::run_abort:
     case ControlCommand::run_status:
+    case ControlCommand::run_course:
     case ControlCommand::calibrations_list:
     case ControlCommand::calibrations_show:
     case ControlCommand::magnet_status:

@@ -11,7 +11,7 @@ const page = join(dirname(fileURLToPath(import.meta.url)), "../../daemon/serve/c
 /** A module of the page; those that only name the document are loaded without one. */
 const load = (name) => import(`data:text/javascript,${encodeURIComponent(readFileSync(join(page, name), "utf8").replace(/from "\.\/(\w+)\.js"/g, (_, other) =>
   `from "data:text/javascript,${encodeURIComponent(readFileSync(join(page, `${other}.js`), "utf8").replace(/^import .*$/gm, "const css = () => '';").replace(/^const css = \(name.*$/gm, ""))}"`))}`);
-const { binMeans, chance, extent, plusMinus, sig, ticks } = await load("numbers.js");
+const { binMeans, chance, extent, logTicks, plusMinus, sig, ticks } = await load("numbers.js");
 
 assert.deepEqual([0.60506, 0.019, 31.5, 928065, 0, 1e-8, null, NaN].map((v) => sig(v)), ["0.605", "0.0190", "31.5", "928065", "0", "1.00e-8", "--", "--"]);
 assert.equal(plusMinus(2.99874, 0.00233, "nT/degC"), "+2.9987 ± 0.0023 nT/°C");
@@ -24,6 +24,8 @@ for (const [low, high, wanted] of [[0, 1, 5], [-2.7, 3.4, 4], [1e-9, 4e-9, 3], [
   assert.ok(at.length >= 1 && at.length <= 2 * wanted + 2, `${at.length} ticks for ${wanted}`);
   assert.equal(new Set(at.map(text)).size, at.length, "two ticks with one text");
 }
+assert.deepEqual(logTicks(0.8, 30), [1, 2, 5, 10, 20]);
+assert.deepEqual(logTicks(0.03, 70), [0.1, 1, 10], "decades where there are many");
 assert.deepEqual(extent([[null, 1, 3], [2]]), [0.88, 3.12]);
 assert.deepEqual(extent([[]]), [-1, 1]);
 const [least, greatest] = extent([[-1, 3]], true);

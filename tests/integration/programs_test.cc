@@ -53,6 +53,13 @@ TEST(Programs, ARunEndsWhenTheTensorIsKnownWellEnough) {
   EXPECT_LE(status.at("tensor_sd_nT_per_m").get<double>(), 1000);
   EXPECT_LT(status.at("pose").get<int>(), 60);
   EXPECT_EQ(status.at("poses"), 78);
+  const json course = bench.ask({"run", "course"});
+  EXPECT_EQ(course.at("run_id"), status.at("run_id"));
+  EXPECT_EQ(course.at("accuracy").at("wanted_nT_per_m"), 1000);
+  EXPECT_FALSE(course.at("accuracy").at("poses").empty());
+  EXPECT_FALSE(course.at("accuracy").at("expected").at("poses").empty());
+  const json& states = course.at("coverage").at("state");
+  EXPECT_EQ(std::count(states.begin(), states.end(), "measured"), status.at("pose").get<int>());
 }
 
 TEST(Programs, AKilledDaemonOffersTheRunAndGoesOnAtTheNextPose) {

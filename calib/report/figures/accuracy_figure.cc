@@ -9,6 +9,15 @@
 
 namespace mgtd::calib::report::figures {
 
+std::string good_accuracy(double last_nT_per_m, int poses, const std::optional<double>& wanted_nT_per_m) {
+  return fmt::format(
+      "the curve has reached what was wanted{}, and runs along the thin line. Here it ends at {} nT/m after "
+      "{} "
+      "poses.",
+      wanted_nT_per_m ? fmt::format(", {} nT/m", short_number(*wanted_nT_per_m)) : "",
+      short_number(last_nT_per_m), poses);
+}
+
 Figure accuracy_figure(const AccuracyValues& v) {
   Drawing drawing("accuracy", 410, 250);
   std::vector<double> ys = v.worst_nT_per_m;
@@ -42,11 +51,7 @@ Figure accuracy_figure(const AccuracyValues& v) {
     if (v.wanted_nT_per_m)
       drawing.text_over({plot.box().x + 6, plot.y()(*v.wanted_nT_per_m) - 5}, "wanted", Anchor::start,
                         Tone::green);
-    out.good = fmt::format(
-        "the curve has reached what was wanted{}, and runs along the thin line. Here it ends at {} nT/m "
-        "after {} poses.",
-        v.wanted_nT_per_m ? fmt::format(", {} nT/m", short_number(*v.wanted_nT_per_m)) : "",
-        short_number(last), v.poses.back());
+    out.good = good_accuracy(last, v.poses.back(), v.wanted_nT_per_m);
     out.stands_out = v.wanted_nT_per_m && last > *v.wanted_nT_per_m;
   }
   for (std::size_t i = 0; i < v.x.size(); ++i)

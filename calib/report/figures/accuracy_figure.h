@@ -19,5 +19,8 @@ struct AccuracyValues {
   std::optional<double> wanted_nT_per_m{};
 };
 [[nodiscard]] Figure accuracy_figure(const AccuracyValues& values);
+/// What a good one looks like, and what this one is: the last value, and from so many poses.
+[[nodiscard]] std::string good_accuracy(double last_nT_per_m, int poses,
+                                        const std::optional<double>& wanted_nT_per_m);
 
 }  // namespace mgtd::calib::report::figures

@@ -30,6 +30,20 @@ Eigen::Vector3d unit_at(double longitude_rad, double sin_latitude) {
   return {across * std::cos(longitude_rad), across * std::sin(longitude_rad), sin_latitude};
 }
 
+constexpr int kHoleRows = 60, kHoleColumns = 120;
+
+const std::vector<Eigen::Vector3d>& hole_grid() {
+  static const std::vector<Eigen::Vector3d> grid = [] {
+    std::vector<Eigen::Vector3d> out;
+    for (int row = 0; row < kHoleRows; ++row)
+      for (int column = 0; column < kHoleColumns; ++column)
+        out.push_back(
+            unit_at(-kPi + 2 * kPi * (column + 0.5) / kHoleColumns, -1 + 2 * (row + 0.5) / kHoleRows));
+    return out;
+  }();
+  return grid;
+}
+
 }  // namespace
 
 SkyPoint sky_point(double longitude_rad, double latitude_rad) {
@@ -57,21 +71,26 @@ std::vector<Eigen::Vector3d> circle_around(const Eigen::Vector3d& centre, double
   return out;
 }
 
+HoleSearch::HoleSearch() : nearest_(static_cast<std::size_t>(kHoleRows) * kHoleColumns, -1) {}
+
+void HoleSearch::add(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d d = direction.normalized();
+  any_ = true;
+  for (std::size_t i = 0; i < nearest_.size(); ++i)
+    nearest_[i] = std::max(nearest_[i], hole_grid()[i].dot(d));
+}
+
+std::optional<LargestHole> HoleSearch::largest() const {
+  if (!any_) return std::nullopt;
+  const auto at = std::min_element(nearest_.begin(), nearest_.end());
+  return LargestHole{.centre = hole_grid()[static_cast<std::size_t>(at - nearest_.begin())],
+                     .radius_rad = std::acos(std::clamp(*at, -1.0, 1.0))};
+}
+
 LargestHole largest_hole(std::span<const Eigen::Vector3d> directions) {
-  if (directions.empty()) return {};
-  constexpr int kRows = 60, kColumns = 120;
-  LargestHole out{.centre = {0, 0, 1}, .radius_rad = -1};
-  for (int row = 0; row < kRows; ++row) {
-    const double sine = -1 + 2 * (row + 0.5) / kRows;
-    for (int column = 0; column < kColumns; ++column) {
-      const Eigen::Vector3d at = unit_at(-kPi + 2 * kPi * (column + 0.5) / kColumns, sine);
-      double nearest = -1;
-      for (const Eigen::Vector3d& d : directions) nearest = std::max(nearest, at.dot(d) / d.norm());
-      const double radius = std::acos(std::clamp(nearest, -1.0, 1.0));
-      if (radius > out.radius_rad) out = {at, radius};
-    }
-  }
-  return out;
+  HoleSearch search;
+  for (const Eigen::Vector3d& d : directions) search.add(d);
+  return search.largest().value_or(LargestHole{});
 }
 
 std::vector<SkyCell> sky_cells(int rows, int columns) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,19 @@ struct LargestHole {
   double radius_rad{std::numbers::pi};
 };
 [[nodiscard]] LargestHole largest_hole(std::span<const Eigen::Vector3d> directions);
+
+/// The same while directions come one after the other: one more costs as little as the first.
+class HoleSearch {
+ public:
+  HoleSearch();
+  void add(const Eigen::Vector3d& direction);
+  /// Nothing without directions.
+  [[nodiscard]] std::optional<LargestHole> largest() const;
+
+ private:
+  std::vector<double> nearest_;  ///< of each place of the grid: cosine of the way to the nearest direction
+  bool any_{false};
+};
 
 /// A part of the sphere between two latitudes and two longitudes. All cells of one call have the same area.
 struct SkyCell {

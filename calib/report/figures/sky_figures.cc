@@ -212,6 +212,13 @@ Figure skies_figure(const SkiesValues& v) {
   return out;
 }
 
+std::string good_coverage(double hole_deg, std::size_t measured, double good_deg) {
+  return fmt::format(
+      "no direction farther than {:.0f}° from a pose. Here the largest hole has a radius of {:.0f}°, with {} "
+      "directions.",
+      good_deg, hole_deg, measured);
+}
+
 Figure coverage_figure(const CoverageValues& v) {
   Drawing drawing("coverage", 410, 246);
   const Map map{{205, 128}, 192};
@@ -255,10 +262,7 @@ Figure coverage_figure(const CoverageValues& v) {
                  "Direction of the field in the frame of the platform, Mollweide's equal-area projection. "
                  "{}The dashed circle is the largest hole.",
                  v.planned.empty() ? "" : "Filled: measured; open: planned. "),
-             .good = fmt::format(
-                 "no direction farther than {:.0f}° from a pose. Here the largest hole has a radius of "
-                 "{:.0f}°, with {} directions.",
-                 v.good_deg, radius_deg, v.measured.size()),
+             .good = good_coverage(radius_deg, v.measured.size(), v.good_deg),
              .data = {.head = {"", "longitude, deg", "latitude, deg"}, .rows = {}}};
   const auto add = [&](const std::string& name, const Eigen::Vector3d& d) {
     out.data.rows.push_back(

@@ -26,10 +26,14 @@ struct SkiesValues {
 [[nodiscard]] Figure skies_figure(const SkiesValues& values);
 
 /// Directions of the field in the platform: where the sensors were looked at from, and where not.
+inline constexpr double kGoodHole_deg = 45;  ///< no direction should be farther from a pose than this
 struct CoverageValues {
   std::vector<Eigen::Vector3d> measured{}, planned{};  ///< planned: those still open
-  double good_deg{45};  ///< no direction should be farther from a pose than this
+  double good_deg{kGoodHole_deg};
 };
 [[nodiscard]] Figure coverage_figure(const CoverageValues& values);
+/// What a good one looks like, and what this one is: radius of the largest hole, and so many directions.
+[[nodiscard]] std::string good_coverage(double hole_deg, std::size_t measured,
+                                        double good_deg = kGoodHole_deg);
 
 }  // namespace mgtd::calib::report::figures

@@ -341,6 +341,7 @@ Response ConsoleServer::State::content(const Request& request, std::string_view 
   if (path == "/api/hello") return with(kJson, source_.hello());
   if (path == "/runs" && desk_) return with(kJson, desk_->runs());
   if (path == "/metrics" && source_.metrics) return with("text/plain; version=0.0.4", source_.metrics());
+  if (path == "/run/course" && source_.course) return with(kJson, source_.course());
   if (path == "/lane" && source_.lane) {
     auto lane = source_.lane(query);
     if (lane) return with(kJson, *std::move(lane));

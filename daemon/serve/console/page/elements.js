@@ -14,6 +14,14 @@ export function make(tag, options = {}, ...children) {
   return out;
 }
 
+/** The same of a drawing: elements of SVG. Children may be lists of lists. */
+export function draw(tag, attributes = {}, ...children) {
+  const out = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [key, value] of Object.entries(attributes)) if (value !== "") out.setAttribute(key, value);
+  for (const child of children.flat(Infinity)) if (child !== null && child !== undefined) out.append(child);
+  return out;
+}
+
 export function fill(element, ...children) { element.replaceChildren(...children.flat().filter((c) => c !== null && c !== undefined)); }
 
 /** Rows of a table: the first one its head; numbers to the right; {wide, columns} is a text over several columns. */

@@ -2,6 +2,7 @@
 import { cards } from "./cards.js";
 import { Bench } from "./bench.js";
 import { Calibrations } from "./calibrations.js";
+import { showCourse } from "./course.js";
 import { by, fill, make, rows } from "./elements.js";
 import { Jobs } from "./jobs.js";
 import { Lanes, windows } from "./lanes.js";
@@ -152,6 +153,7 @@ function takeRun(message) {
   by("run-form").hidden = on;
   by("start").disabled = !control.possible;
   showRun(run, act, calibrations, status?.cal);
+  showCourse(run);
   if (run?.proposed && run.proposed !== proposed && control.possible) {
     proposed = run.proposed;
     calibrations.refresh();

@@ -37,6 +37,17 @@ export function ticks(low, high, wanted) {
   return { at: out, text: (v) => v.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))) };
 }
 
+/** 1, 2 and 5 of each decade between two positive numbers; only the decades where there are many. */
+export function logTicks(low, high) {
+  const out = [];
+  for (let k = Math.floor(Math.log10(low)); k <= Math.log10(high); ++k)
+    for (const m of high / low > 1000 ? [1] : [1, 2, 5]) {
+      const v = Number(`${m}e${k}`);
+      if (v >= low && v <= high) out.push(v);
+    }
+  return out;
+}
+
 export function extent(lists, symmetric = false) {
   let low = Infinity, high = -Infinity;
   for (const list of lists) for (const v of list) if (v !== null && Number.isFinite(v)) { if (v < low) low = v; if (v > high) high = v; }

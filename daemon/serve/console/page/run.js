@@ -12,13 +12,10 @@ export function chip(run) {
 
 function progress(run) {
   if (!run || !run.run_id) return [make("h2", {}, "No run yet"), make("p", {}, "A run turns the table through its poses, fits, and proposes a calibration. Nothing changes until a person accepts it.")];
-  const accuracy = run.tensor_sd_nT_per_m === null ? null
-    : make("p", {}, `The calibration knows the worst component to ${run.tensor_sd_nT_per_m.toFixed(2)} nT/m by now` +
-        (run.wanted_tensor_sd_nT_per_m === null ? "." : `; ${run.wanted_tensor_sd_nT_per_m} nT/m is wanted.`));
   return [make("h2", {}, `Run ${run.run_id}: ${run.state}`), make("progress", { max: run.poses || 1, value: run.pose }),
           make("p", {}, `${run.pose} of ${run.poses} poses${run.set ? `, set ${run.set}` : ""}${run.remaining_s ? `, ${minutes(run.remaining_s)} left` : ""}` +
                `${run.retries ? `, ${run.retries} repeated` : ""}`),
-          make("p", {}, run.message), run.judged ? make("p", { id: "run-judged" }, `The poses say: ${run.judged}`) : null, accuracy];
+          make("p", {}, run.message), run.judged ? make("p", { id: "run-judged" }, `The poses say: ${run.judged}`) : null];
 }
 
 /** A hand-turned table: what to do now, and three numbers. */

@@ -92,7 +92,7 @@ TEST(FieldDisturbance, APassingVehicleIsSeenByTheArrayAndByTheReference) {
   site.change_nT = [](double t) { return 3 * std::exp(-(t - 3) * (t - 3)); };
   const auto seen = disturbance_in(site.watch(6), noise, {}, kLooks);
   ASSERT_TRUE(seen);
-  EXPECT_FALSE(seen->scalar);
+  EXPECT_EQ(seen->seen_by, FieldDisturbance::SeenBy::array);
   EXPECT_GT(seen->change_nT, 0.5);
   EXPECT_THAT(seen->in_words(), ::testing::HasSubstr("while the table stood (limit 0.5 nT)"));
 }
@@ -105,7 +105,7 @@ TEST(FieldDisturbance, WhatOnlyTheReferenceSeesIsSeenToo) {
   site.change_nT = [](double t) { return 3e-6 * t; };
   const auto seen = disturbance_in(site.watch(4), noise, {}, kLooks);
   ASSERT_TRUE(seen);
-  EXPECT_TRUE(seen->scalar);
+  EXPECT_EQ(seen->seen_by, FieldDisturbance::SeenBy::scalar);
 }
 
 TEST(FieldDisturbance, WhatIsBelowTheLimitNeverMatters) {

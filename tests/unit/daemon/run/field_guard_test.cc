@@ -77,7 +77,11 @@ TEST(FieldGuard, ALevelIsHeldAgainstThatOfThePoseBefore) {
   EXPECT_FALSE(g.at_another_level(50'000.0)) << "there is no pose before";
   g.stored(50'000.0);
   EXPECT_FALSE(g.at_another_level(50'004.9));
-  EXPECT_EQ(g.at_another_level(50'005.5),
+  const auto seen = g.at_another_level(50'005.5);
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->seen_by, FieldDisturbance::SeenBy::level);
+  EXPECT_NEAR(seen->change_nT, 5.5, 1e-9);
+  EXPECT_EQ(seen->in_words(),
             "the scalar reference reads 50005.5 nT, +5.5 nT against the pose before (limit 5.0 nT)");
   EXPECT_FALSE(g.at_another_level(std::nullopt));
   g.paused();

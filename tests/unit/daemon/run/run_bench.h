@@ -108,6 +108,7 @@ class RunBench {
   bool judge_stalls{false};
   std::vector<daemon::run::StoreJudgement> judgements;
 
+  std::vector<daemon::run::FieldDisturbed> disturbed;
   std::vector<daemon::run::Action> log;
   std::vector<Pose> stored;
   std::vector<TableAngles> moves;
@@ -269,6 +270,7 @@ class RunBench {
   }
   void carry_out(const daemon::run::StorePath&) {}
   void carry_out(const daemon::run::StoreChecks&) {}
+  void carry_out(const daemon::run::FieldDisturbed& seen) { disturbed.push_back(seen); }
   void carry_out(const daemon::run::Record&) {}
 
   void answer() {

@@ -76,5 +76,23 @@ TEST(RunExecutor, ACancelledFitIsToldToStop) {
   EXPECT_TRUE(held.stopped);
 }
 
+TEST(RunExecutor, TheCourseFollowsWhatTheRunAsksFor) {
+  HeldFit held;
+  const std::size_t planned = held.run.fsm()->plan().poses.size();
+  EXPECT_EQ(held.executor.course().poses.size(), planned);
+  Pose pose;
+  pose.number = 1;
+  pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = 0;
+  pose.y_nT.fill(Eigen::Vector3d(20'000, 0, 45'000));
+  held.executor.carry_out(StorePose{pose}, held.now);
+  held.executor.carry_out(FieldDisturbed{2, {.change_nT = 3, .limit_nT = 0.5}}, held.now);
+  RunCourse course = held.executor.course();
+  EXPECT_EQ(course.poses.at(0).state, CourseState::measured);
+  EXPECT_TRUE(course.poses.at(1).direction_P);
+  ASSERT_EQ(course.disturbances.size(), 1u);
+  held.executor.carry_out(DropPoses{{1}}, held.now);
+  EXPECT_NE(held.executor.course().poses.at(0).state, CourseState::measured);
+}
+
 }  // namespace
 }  // namespace mgtd::daemon::run

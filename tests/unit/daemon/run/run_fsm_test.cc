@@ -180,6 +180,9 @@ TEST(RunFsm, DisturbedDwellIsMeasuredAgain) {
   bench.disturbance_nT = 0;
   ASSERT_TRUE(ends(bench, RunState::done));
   EXPECT_EQ(bench.status->retries, 1);
+  ASSERT_EQ(bench.disturbed.size(), 1u);
+  EXPECT_EQ(bench.disturbed.front().pose, 1);
+  EXPECT_GT(bench.disturbed.front().seen.change_nT, 10);
 }
 
 TEST(RunFsm, DisturbanceThatStaysIsNotSettled) {

@@ -71,5 +71,16 @@ TEST(Sky, TheLargestHoleIsWhereNothingWasMeasured) {
     EXPECT_NEAR(std::acos(d.dot(hole.centre)), hole.radius_rad, 1e-9);
 }
 
+TEST(Sky, TheHoleShrinksFromDirectionToDirection) {
+  HoleSearch search;
+  EXPECT_FALSE(search.largest());
+  search.add({0, 0, 3});
+  EXPECT_NEAR(search.largest()->radius_rad, kPi, 0.2) << "the other pole";
+  search.add({0, 0, -1});
+  EXPECT_NEAR(search.largest()->radius_rad, kPi / 2, 0.03) << "the equator";
+  search.add({1, 0, 0});
+  EXPECT_LT(search.largest()->centre.x(), 0);
+}
+
 }  // namespace
 }  // namespace mgtd::calib::report::figures

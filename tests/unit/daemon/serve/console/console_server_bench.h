@@ -34,6 +34,7 @@ class ConsoleServerBench : public ::testing::Test {
         ConsoleSource{
             .hello = [] { return std::string(R"({"rig":"bench"})"); },
             .metrics = [] { return std::string("mgtd_up 1\n"); },
+            .course = [] { return std::string("{\"run_id\":\"monday\"}\n"); },
             .lane = [](std::string_view query) -> Result<std::string> { return std::string(query); },
             .stream = [this](const std::shared_ptr<Peer>& peer) { feed(peer); },
             .control = [this](const std::shared_ptr<Peer>& peer,

@@ -29,6 +29,7 @@ TEST_F(ConsoleServerTest, HandsOutThePageAndForbidsItAllElse) {
   EXPECT_EQ(page.count("X-Content-Type-Options: nosniff"), 1U);
   ask(get("/page/main.js"), "openStream");
   ask(get("/metrics"), "mgtd_up 1");
+  ask(get("/run/course"), R"({"run_id":"monday"})");
   ask(get("/nothing"), "404 Not Found");
   ask(get("/page/../console_server.cc"), "404 Not Found");
 }

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/report/figures/sky.h"
+#include "daemon/plan/run_plan.h"
+#include "daemon/run/field_disturbance.h"
+#include "proto/pose.h"
+#include "proto/run_course.h"
+#include "proto/run_status.h"
+
+/// Records the course of a run while it goes on: the directions of the field at the poses planned and
+/// measured, the accuracy after each fit of the poses so far, and the disturbances with what the run did.
+///
+/// The direction at a measured pose is the mean of its raw readings; that at a planned one is
+///
+///     d_P = R(azimuth, pitch, roll) d_site
+///
+/// with d_site the mean over the measured poses, before the first of them the inclination and declination of
+/// the configuration, and unknown without either. Offsets of the sensors are in it: a few tenths of a degree,
+/// less than a mark on the map is wide.
+///
+/// Pure: what happens and the time come in. It fits nothing (accuracy_so_far.h does, on the worker). A run
+/// that is resumed by another life of the daemon has its poses again, not the accuracy and the disturbances
+/// of before: those are in the events of its file.
+namespace mgtd::daemon::run {
+
+class CourseRecorder {
+ public:
+  CourseRecorder() = default;
+  CourseRecorder(std::string run_id, const plan::RunPlan& plan, std::optional<Eigen::Vector3d> site_direction,
+                 std::optional<double> wanted_nT_per_m);
+
+  /// Poses behind those that it knows.
+  void extend(const plan::RunPlan& plan);
+  void measured(const Pose& pose);
+  void dropped(const std::vector<int>& numbers);
+  void known(int poses, const Gradient& tensor_sd_nT_per_m);
+  void expects(std::vector<CourseAccuracy> of_plan) { course_.expected = std::move(of_plan); }
+  void not_known(std::string why) { course_.why_unknown = std::move(why); }
+  void disturbed(int pose, const FieldDisturbance& seen, Stamp now);
+  /// The state that the run shows: what follows a disturbance.
+  void shows(const RunStatus& status, Stamp now);
+
+  [[nodiscard]] RunCourse course() const;
+
+ private:
+  struct Measured {
+    std::optional<Eigen::Vector3d> d_P, d_site;
+  };
+  [[nodiscard]] std::optional<Eigen::Vector3d> site_direction() const;
+
+  RunCourse course_;                          ///< but for what course() makes anew
+  std::map<int, Eigen::Matrix3d> attitudes_;  ///< of the plan, site to platform, by number
+  std::map<int, Measured> measured_;          ///< by number
+  std::optional<Eigen::Vector3d> configured_site_;
+  calib::report::figures::HoleSearch hole_;
+  std::optional<Instant> disturbed_since_;
+  bool active_{false};
+};
+
+}  // namespace mgtd::daemon::run

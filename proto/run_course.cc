@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/run_course.h"
+
+#include <array>
+#include <cmath>
+
+#include "proto/units.h"
+
+namespace mgtd {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 6> kComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
+
+OrderedJson direction(const Eigen::Vector3d& d) {
+  const auto rounded = [](double x) { return std::round(x * 1e4) / 1e4; };
+  return {rounded(d.x()), rounded(d.y()), rounded(d.z())};
+}
+
+OrderedJson finite_or_null(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
+}
+
+OrderedJson text_or_null(const std::string& text) {
+  return text.empty() ? OrderedJson(nullptr) : OrderedJson(text);
+}
+
+OrderedJson coverage(const RunCourse& course) {
+  OrderedJson out{{"pose", OrderedJson::array()},
+                  {"state", OrderedJson::array()},
+                  {"direction", OrderedJson::array()},
+                  {"hole", nullptr},
+                  {"good", text_or_null(course.good_coverage)}};
+  for (const CoursePose& pose : course.poses) {
+    out["pose"].push_back(pose.number);
+    out["state"].push_back(name(pose.state));
+    out["direction"].push_back(pose.direction_P ? direction(*pose.direction_P) : OrderedJson(nullptr));
+  }
+  if (course.hole)
+    out["hole"] = {{"direction", direction(course.hole->direction_P)},
+                   {"radius_deg", to_deg(course.hole->radius_rad)}};
+  return out;
+}
+
+OrderedJson accuracy(const RunCourse& course) {
+  OrderedJson out{{"poses", OrderedJson::array()}, {"worst_nT_per_m", OrderedJson::array()}};
+  for (const char* component : kComponents) out[component] = OrderedJson::array();
+  for (const CourseAccuracy& known : course.accuracy) {
+    out["poses"].push_back(known.poses);
+    out["worst_nT_per_m"].push_back(finite_or_null(known.worst_nT_per_m));
+    const std::array<double, 6> sd = components(known.tensor_sd_nT_per_m);
+    for (std::size_t i = 0; i < sd.size(); ++i) out[kComponents.at(i)].push_back(finite_or_null(sd.at(i)));
+  }
+  out["wanted_nT_per_m"] =
+      course.wanted_nT_per_m ? OrderedJson(*course.wanted_nT_per_m) : OrderedJson(nullptr);
+  out["why"] = text_or_null(course.why_unknown);
+  OrderedJson expected{{"poses", OrderedJson::array()}, {"worst_nT_per_m", OrderedJson::array()}};
+  for (const CourseAccuracy& known : course.expected) {
+    expected["poses"].push_back(known.poses);
+    expected["worst_nT_per_m"].push_back(finite_or_null(known.worst_nT_per_m));
+  }
+  out["expected"] = std::move(expected);
+  out["good"] = text_or_null(course.good_accuracy);
+  return out;
+}
+
+OrderedJson to_json(const CourseDisturbance& d) {
+  return {{"t", format_utc(d.t)},
+          {"pose", d.pose},
+          {"change_nT", finite_or_null(d.change_nT)},
+          {"limit_nT", finite_or_null(d.limit_nT)},
+          {"seen_by", d.seen_by},
+          {"lasted_s", d.lasted_s ? finite_or_null(*d.lasted_s) : OrderedJson(nullptr)},
+          {"then", d.then}};
+}
+
+}  // namespace
+
+std::string_view name(CourseState state) {
+  static constexpr std::array<std::string_view, 3> kNames{"planned", "next", "measured"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+OrderedJson to_json(const RunCourse& course) {
+  OrderedJson disturbances = OrderedJson::array();
+  for (const CourseDisturbance& d : course.disturbances) disturbances.push_back(to_json(d));
+  return {{"run_id", course.run_id},
+          {"coverage", coverage(course)},
+          {"accuracy", accuracy(course)},
+          {"disturbances", std::move(disturbances)}};
+}
+
+}  // namespace mgtd

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/cli/course_text.h"
+
+#include <gmock/gmock.h>
+
+#include "proto/run_course.h"
+
+namespace mgtd::daemon::cli {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(CourseText, SaysWhatWasGainedAndWhatDisturbed) {
+  EXPECT_EQ(course_text(to_json(RunCourse{})), "no run yet\n");
+  RunCourse course;
+  course.run_id = "monday";
+  course.poses = {{1, CourseState::measured, {}}, {2, CourseState::next, {}}, {3, CourseState::planned, {}}};
+  course.why_unknown = "too few";
+  EXPECT_THAT(course_text(to_json(course)), HasSubstr("1 of 3 poses measured\n"));
+  EXPECT_THAT(course_text(to_json(course)), HasSubstr("not known yet: too few\ndisturbances: none\n"));
+  for (int n = 18; n <= 60; ++n) course.accuracy.push_back({n, {}, 9.0 / n});
+  course.good_accuracy = "the curve ends low.";
+  course.disturbances = {{.pose = 2,
+                          .change_nT = 12.5,
+                          .limit_nT = 0.5,
+                          .seen_by = "array",
+                          .lasted_s = 7.2,
+                          .then = "pose 2 was measured again"}};
+  const std::string text = course_text(to_json(course));
+  EXPECT_THAT(text, HasSubstr("     18 poses  0.5 nT/m\n")) << text;
+  EXPECT_THAT(text, HasSubstr("     60 poses  0.15 nT/m\n")) << text;
+  EXPECT_THAT(text, HasSubstr("pose 2: 12 nT (limit 0.5 nT), 7 s; pose 2 was measured again\n")) << text;
+}
+
+}  // namespace
+}  // namespace mgtd::daemon::cli
