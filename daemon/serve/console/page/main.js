@@ -51,7 +51,7 @@ async function act(cmd, args = {}) {
 }
 
 const calibrations = new Calibrations(control, (error) => banner(error ? inWords(error) : "", true), () => takeRun(run));
-let proposed = null, held = false;  // the proposal whose state was asked for; whether this page keeps control
+let proposed = null, held = false, seenHeld = false;  // the proposal whose state was asked for; whether this page keeps control
 
 /** Keeps control for this page until it releases it, is closed, or says nothing for ten minutes. */
 async function takeControl() {
@@ -67,6 +67,7 @@ async function takeControl() {
 }
 function showHold(now) {
   held = now;
+  seenHeld = false;
   by("hold").textContent = held ? "Release control" : "Take control";
   by("hold").setAttribute("aria-pressed", String(held));
 }
@@ -128,7 +129,8 @@ function takeStatus(message) {
   lanes.pass(Date.parse(message.t) / 1000);
   const holder = message.control.holder;
   by("hold").hidden = !control.possible;
-  if (!holder?.taken && held) showHold(false);
+  if (held && holder?.taken) seenHeld = true;
+  else if (seenHeld) showHold(false);  // a status that was under way when control was taken does not know it yet
   by("who").textContent = `${message.software}. ${message.array.sensors} sensor${message.array.sensors > 1 ? "s" : ""}: ${message.array.tells}. ` +
     (holder ? `Control is with ${holder.via || `pid ${holder.pid}`}${holder.why ? `: ${holder.why}` : ""}.` : "Nobody has control.") +
     (control.possible ? "" : " This page may look; mgt console prints the address with which it may control.");
