@@ -21,7 +21,7 @@ if (!bin) {
 }
 needBrowser();
 needAxe();
-const kSpeed = 10, kLong_ms = 240000, kWide = [1280, 800], kSmall = [390, 844], kThemes = ["light", "dark", "sun"];
+const kSpeed = 10, kWide = [1280, 800], kSmall = [390, 844], kThemes = ["light", "dark", "sun"];
 const here = dirname(fileURLToPath(import.meta.url)), folder = mkdtempSync(join(tmpdir(), "mgtd-access-"));
 let views = 0, found = 0, browser = null, rig = null, server = null, failed = false;
 
@@ -36,7 +36,7 @@ const theme = (name) => browser.run(`while ((document.documentElement.dataset.th
 
 async function console_(size) {
   await browser.open(rig.ask("console").url, ...size);
-  await until(async () => (await browser.text("link")) === "live", "a live stream", kLong_ms);
+  await until(async () => (await browser.text("link")) === "live", "a live stream");
   await until(() => browser.run("document.querySelector('#cards table') !== null"), "the instruments");
   for (const colours of kThemes) {
     await theme(colours);
@@ -48,7 +48,7 @@ async function console_(size) {
 }
 
 const opened = (run) => browser.run(`document.querySelector('[data-run="${run}"]').click()`)
-  .then(() => until(() => browser.run("'shown' in document.getElementById('bench-run').dataset"), `the run ${run}`, kLong_ms));
+  .then(() => until(() => browser.run("'shown' in document.getElementById('bench-run').dataset"), `the run ${run}`));
 const listed = (run) => until(() => browser.run(`document.querySelector('[data-run="${run}"]') !== null`), `${run} in the list`);
 
 async function workbench(size, address) {
@@ -57,7 +57,7 @@ async function workbench(size, address) {
   await judged(`workbench, the runs, ${size[0]} px`);
   await opened("hidden.mgtrun");
   await browser.run("document.querySelector('.suspect').click()");
-  await until(() => browser.run("document.getElementById('try') !== null"), "the evidence", kLong_ms);
+  await until(() => browser.run("document.getElementById('try') !== null"), "the evidence");
   await browser.run("for (const e of document.querySelectorAll('details')) e.open = true");
   await browser.run("document.querySelector('#panels figure button').click()");
   for (const colours of kThemes) {

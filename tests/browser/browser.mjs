@@ -8,8 +8,8 @@ import { join } from "node:path";
 
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Polls until `ask` gives something true; what it gave. */
-export async function until(ask, what, limit_ms = 30000) {
+/** Polls until `ask` gives something true; what it gave. The limit is for what never happens: no test is about time. */
+export async function until(ask, what, limit_ms = 300000) {
   for (const end = Date.now() + limit_ms; Date.now() < end; await pause(50)) {
     const found = await ask();
     if (found) return found;

@@ -64,9 +64,9 @@ async function workbench(width) {
   await until(() => browser.run(`document.querySelector('[data-run="${run}"]') !== null`), `${run} in the list`);
   await picture(`runs-${width}-light`);
   await browser.run(`document.querySelector('[data-run="${run}"]').click()`);
-  await until(() => browser.run("'shown' in document.getElementById('bench-run').dataset"), "the run", 300000);
+  await until(() => browser.run("'shown' in document.getElementById('bench-run').dataset"), "the run");
   await browser.run("document.querySelector('.suspect').click()");
-  await until(() => browser.run("document.getElementById('try') !== null"), "the evidence", 300000);
+  await until(() => browser.run("document.getElementById('try') !== null"), "the evidence");
   for (const colours of ["light", "dark", "sun"]) {
     await theme(colours);
     await browser.click("tool-alike");
@@ -80,7 +80,7 @@ async function workbench(width) {
   const changed = async (id) => {
     const before = await browser.run("document.getElementById('bench-run').dataset.shown");
     await browser.click(id);
-    await until(() => browser.run(`![undefined, "${before}"].includes(document.getElementById("bench-run").dataset.shown)`), id, 300000);
+    await until(() => browser.run(`![undefined, "${before}"].includes(document.getElementById("bench-run").dataset.shown)`), id);
   };
   await browser.click("tool-history");
   await changed("add");

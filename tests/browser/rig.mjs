@@ -40,7 +40,7 @@ export class Rig {
     this.#said = "";
     this.#daemon = spawn(join(this.#bin, "mgtd"), ["--config", join(this.#folder, "mgtd.toml")], { stdio: ["ignore", "pipe", "pipe"] });
     for (const stream of [this.#daemon.stdout, this.#daemon.stderr]) stream.on("data", (bytes) => { this.#said += bytes; });
-    await until(() => this.mgt("status", "--wait", "20").status === 0, `the daemon and its devices`, 120000);
+    await until(() => this.mgt("status", "--wait", "20").status === 0, "the daemon and its devices");
   }
   /** As a power failure: nothing is flushed, nobody is told. */
   async killDaemon(signal = "SIGKILL") {
