@@ -31,6 +31,7 @@ void read_reference(Section& section, Scenario& s) {
   section.read("sd_nT", reference.sd_nT, {0, 1e5});
   section.read("misalignment_deg", reference.misalignment_deg);
   section.read("frame", frame);
+  section.read("at_m", reference.at_m);
   if (frame != "platform" && frame != "site")
     section.complain("frame", fmt::format("frame = '{}' must be platform or site", frame));
   reference.on_platform = frame != "site";
@@ -82,6 +83,8 @@ void read_known_field(Section& cage, Section& reference, Section& recording, Sce
     reference.complain("frame", "a cage stands round the array: frame = \"platform\"");
   if (s.cage && s.recording)
     recording.complain("", "a recording is of an array in motion, in a [cage] it stands still");
+  if (s.reference && s.reference->on_platform && s.reference->at_m != VectorReference{}.at_m)
+    reference.complain("at_m", "only a reference beside the table has a place of its own: frame = \"site\"");
   if (s.reference && !s.reference->on_platform && !s.angles)
     reference.complain("angles",
                        "a reference in the site frame says nothing without angles: angles = true, or frame = "

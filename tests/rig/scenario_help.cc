@@ -34,7 +34,8 @@ constexpr const char* kScenarioHelp =
   [scalar]       present, noise_nT, period_s, bad_every
   [reference]    vector = true: columns ref_x_nT ref_y_nT ref_z_nT ref_sd_nT in a table; sd_nT, misalignment_deg =
                  [rx, ry, rz] (R ref = b with R = Rz Ry Rx), frame = "platform" (fixed to what holds the sensors) or
-                 "site" (beside the table), angles (default: true with "site"), scalar (whether f_nT is there too)
+                 "site" (still beside the table, at_m = [3] from the centre), angles (default: true with "site"),
+                 scalar (whether f_nT is there too)
   [cage]         fields = "sphere" or "random", max_nT, poses: a coil cage makes the fields of the table, the array
                  stands still in it; needs [reference] vector = true. f_nT only where scalar = true
   [recording]    motion = "hand", "flight", "level" or "one-axis", rate_hz (10), duration_s (300), rest_s (5, at the

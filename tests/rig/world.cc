@@ -286,7 +286,7 @@ double World::quiet_scalar(double t_s) const {
 
 Eigen::Vector3d World::quiet_reference(double t_s) const {
   const VectorReference reference = scenario_.reference.value_or(VectorReference{});
-  const Eigen::Vector3d B = site_field(t_s, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d B = site_field(t_s, Eigen::Vector3d(reference.at_m.data()));
   const Eigen::Vector3d seen = reference.on_platform ? Eigen::Vector3d(moment(t_s).R * B) : B;
   return reference.R().transpose() * seen;
 }

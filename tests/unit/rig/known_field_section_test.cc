@@ -40,6 +40,8 @@ TEST(KnownFieldSection, WhatCannotBeIsToldWithItsLine) {
                           HasSubstr("s.toml:4: [reference] misalignment_deg must be a list of 3 numbers")));
   EXPECT_THAT(errors("[reference]\nvector = true\nframe = 'site'\nangles = false\n"),
               ElementsAre(HasSubstr("s.toml:4: [reference] a reference in the site frame says nothing")));
+  EXPECT_THAT(errors("[reference]\nvector = true\nat_m = [1, 0, 0]\n"),
+              ElementsAre(HasSubstr("s.toml:3: [reference] only a reference beside the table has a place")));
   EXPECT_THAT(errors("[reference]\nvector = true\nframe = 'site'\n[cage]\n"),
               ElementsAre(HasSubstr("s.toml:3: [reference] a cage stands round the array")));
   EXPECT_THAT(errors("[reference]\nvector = true\n[cage]\n[recording]\nmotion = 'swim'\nduration_s = 12\n"),

@@ -59,6 +59,18 @@ TEST(VectorReference, BesideTheTableItStandsStill) {
                             "z_nT,ref_sd_nT,s1_x_nT,"));
 }
 
+/// 4 m to the east in a gradient of 10 nT/m along east; the sensor stays at the centre.
+TEST(VectorReference, BesideTheTableItSeesTheFieldOfItsPlace) {
+  const std::string gradient =
+      "scalar = false\n[[effect]]\nname = 'site.gradient'\nnT_per_m = [0, 10, 0, 0, 0]\n";
+  const Survey here = run(one("sd_nT = 0\nframe = 'site'\n" + gradient));
+  const Survey there = run(one("sd_nT = 0\nframe = 'site'\nat_m = [0, 4, 0]\n" + gradient));
+  for (std::size_t k = 0; k < here.rows.size(); ++k) {
+    EXPECT_LT((*there.rows[k].ref_nT - *here.rows[k].ref_nT - Eigen::Vector3d(0, 40, 0)).norm(), 1e-6);
+    EXPECT_EQ(there.rows[k].y_nT[0], here.rows[k].y_nT[0]);
+  }
+}
+
 TEST(VectorReference, ItsNoiseIsAsLargeAsItSays) {
   const Scenario scenario = one("sd_nT = 2\n[cage]\nposes = 1000\n");
   const Survey survey = simulated_survey(scenario, cage_fields(*scenario.cage, 1), 1);
