@@ -21,6 +21,7 @@ using Places = std::vector<Eigen::Vector3d>;
 
 inline Places one_sensor() { return {{0, 0, 0}}; }
 inline Places two_along_x() { return {{0.25, 0, 0}, {-0.25, 0, 0}}; }
+inline Places cross_of_four() { return {{0.2, 0, 0}, {0, 0.2, 0}, {-0.2, 0, 0}, {0, -0.2, 0}}; }
 inline Places tetrahedron() {
   constexpr double h = 0.15;
   return {{h, h, h}, {h, -h, -h}, {-h, h, -h}, {-h, -h, h}};
