@@ -176,9 +176,8 @@ std::span<const LawAction> law_actions() { return kLawActions; }
 
 bool turnable(const PoseTable& run) {
   const std::optional<int>& mount = run.poses.front().mount;
-  return std::all_of(run.poses.begin(), run.poses.end(), [&](const Pose& p) {
-    return p.angles().has_value() && !p.ref_nT.has_value() && p.mount == mount;
-  });
+  return std::all_of(run.poses.begin(), run.poses.end(),
+                     [&](const Pose& p) { return p.angles().has_value() && p.mount == mount; });
 }
 
 }  // namespace mgtd::calib::design

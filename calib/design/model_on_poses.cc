@@ -14,8 +14,8 @@ Result<ModelOnPoses> model_on_poses(const PoseTable& table, const fit::joint::Jo
   fit::joint::fix_gauge(out.problem, options);
   fit::joint::weight_by_pose(out.problem, fit.pose_noise_nT);
   for (fit::joint::JointPose& pose : out.problem.poses)
-    if (pose.has_angles && fit.table_sd_rad > 0) pose.attitude_weight = 1 / fit.table_sd_rad;
-  out.state = fit::joint::joint_state(out.problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+    if (pose.has_angles && fit.table_sd_rad > 0) pose.weigh_attitude(fit.table_sd_rad);
+  out.state = fit::joint::joint_state(out.problem, fit.state);
   if (out.state.coefficients.size() == fit.state.coefficients.size())
     out.state.coefficients = fit.state.coefficients;
   fit::joint::refit_nuisances(out.problem, out.state);

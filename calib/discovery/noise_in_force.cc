@@ -41,6 +41,7 @@ NoiseInForce noise_beside_law(const fit::joint::JointFit& fit, const NoiseInForc
     out.problem.poses[k].weight = with.fit.problem.poses[k].weight;
     out.problem.poses[k].f_weight = with.fit.problem.poses[k].f_weight;
     out.problem.poses[k].attitude_weight = with.fit.problem.poses[k].attitude_weight;
+    out.problem.poses[k].reference_weight = with.fit.problem.poses[k].reference_weight;
   }
   fit::joint::refit_nuisances(out.problem, out.state);
   return measured(std::move(out), with.residual.whitener().rho(), with.noise, with.wanders);

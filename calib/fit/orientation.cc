@@ -2,9 +2,11 @@
 #include "calib/fit/orientation.h"
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace mgtd::calib::fit {
 
@@ -31,6 +33,19 @@ Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R) {
     }
   }
   return best;
+}
+
+Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d d = Eigen::Vector3d::Ones();
+  if (proper) d[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * d.asDiagonal() * svd.matrixV().transpose();
+}
+
+Eigen::Vector3d direction_of_sphere(int i, int n) {
+  const double z = 1 - (2 * i + 1.0) / n, turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+  const double h = std::sqrt(1 - z * z);
+  return {h * std::cos(turn), h * std::sin(turn), z};
 }
 
 sensor::SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,

@@ -13,6 +13,12 @@ namespace mgtd::calib::fit {
 /// The nearest of the 48 signed permutations to an orthogonal matrix.
 [[nodiscard]] Eigen::Matrix3d nearest_signed_permutation(const Eigen::Matrix3d& R);
 
+/// Orthogonal matrix nearest to H; det = +1 when `proper`.
+[[nodiscard]] Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper);
+
+/// The i-th of n directions spread evenly over the sphere (Fibonacci).
+[[nodiscard]] Eigen::Vector3d direction_of_sphere(int i, int n);
+
 /// The sensor with b_P = R K (y - offset): K upper triangular with positive diagonal, R orthogonal (det -1:
 /// mirrored).
 [[nodiscard]] sensor::SensorModel sensor_from(const Eigen::Matrix3d& K, const Eigen::Vector3d& offset_nT,

@@ -25,12 +25,17 @@ constexpr std::size_t kMinPoses = 4;
 /// Of the poses: what more of them contradict is the calibration.
 constexpr double kMostLeftOut = 0.1;
 
-/// The poses as the test wants them: all alike, and without table angles unless an effect needs them.
+/// The poses as the test wants them: all alike, and without table angles unless an effect needs them. Of a
+/// reference beside the table the size of the field is then what is left.
 PoseTable prepared(const PoseTable& table, bool needs_angles) {
   PoseTable out = table;
   for (Pose& pose : out.poses) {
     pose.set = "check";  // predicted, never fitted: as few as there are
-    if (!needs_angles) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
+    if (needs_angles || !pose.angles()) continue;
+    pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
+    if (!pose.ref_nT) continue;
+    if (!pose.f_nT) pose.f_nT = pose.ref_nT->norm(), pose.f_sd_nT = pose.ref_sd_nT;
+    pose.ref_nT = std::nullopt, pose.ref_sd_nT = std::nullopt;
   }
   return out;
 }
@@ -126,11 +131,11 @@ double excess_of(const fit::joint::JointProblem& problem, const fit::joint::Join
   const fit::joint::PoseResiduals residuals = fit::joint::pose_residuals(problem, state);
   double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
   for (const fit::joint::JointPose& pose : problem.poses)
-    observed += (pose.has_angles ? -1 : -3) + (problem.common_field ? 1 : 0);
-  const double site = (problem.has_angles ? 2 : 0) + (problem.common_field && !field_known(problem) ? 1 : 0) +
+    observed += pose.beside() + (problem.common_field ? 1 : 0);
+  const double site = problem.site_unknowns() - (problem.common_field && field_known(problem) ? 1 : 0) +
                       static_cast<double>(frozen.nuisance.size()) - fit::joint::kGlobals;
   const double dof = observed - site - static_cast<double>(seen.z.size());
-  const double chi2 = cost.readings + cost.scalar - seen.z.squaredNorm();
+  const double chi2 = cost.of_model() - seen.z.squaredNorm();
   return dof > 0 && std::abs(chi2 / dof - 1) > 3 * std::sqrt(2 / dof) ? std::sqrt(chi2 / dof) : 1;
 }
 
@@ -186,7 +191,9 @@ Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses
   const double f_nT =
       options.field_nT.value_or(c.reference.f_nT.value_or(fit::joint::start_field_nT(*problem, joint)));
   Settled out{.problem = std::move(*problem), .placed = {}, .outliers = fit::joint::Outliers(kMostLeftOut)};
-  out.placed = fit::joint::placed_state(out.problem, c.sensors, f_nT);
+  auto placed = fit::joint::placed_state(out.problem, c.sensors, f_nT);
+  if (!placed) return tl::unexpected(placed.error());
+  out.placed = *std::move(placed);
   fit::joint::JointState& state = out.placed.state;
   state.coefficients = frozen.coefficients;
   fit::joint::refit_nuisances(out.problem, state);

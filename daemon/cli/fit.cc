@@ -13,6 +13,14 @@
 namespace mgtd::daemon::cli {
 namespace {
 
+constexpr const char* kFitHelp =
+    R"(What may be known about the field, alone or together:
+  f_nT, or --field                   its size at every pose
+  azimuth_deg, pitch_deg, roll_deg   angles of the table that turned the array
+  ref_x_nT .. ref_z_nT, ref_sd_nT    the field as a vector: without angles in a frame fixed to the sensors (a coil
+                                     cage), with angles that of a reference magnetometer which stands still
+                                     beside the table, in axes of its own)";
+
 struct FitArguments {
   std::string run, output;
   std::shared_ptr<FitFlags> flags;
@@ -51,6 +59,7 @@ void add_fit(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "write the calibration here (CAL.json)");
   args->flags = add_fit_flags(command);
+  command->footer(kFitHelp);
 }
 
 }  // namespace mgtd::daemon::cli

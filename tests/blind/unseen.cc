@@ -34,10 +34,9 @@ double unseen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& opt
   fit::joint::JointProblem problem = must(fit::joint::joint_problem(table, options, fit::PoseUse::check));
   for (fit::joint::JointPose& pose : problem.poses) {
     pose.weight = fit.pose_noise_nT.reshaped<Eigen::RowMajor>().cwiseInverse();
-    if (pose.has_angles) pose.attitude_weight = 1 / fit.table_sd_rad;
+    if (pose.has_angles) pose.weigh_attitude(fit.table_sd_rad);
   }
-  fit::joint::JointState state =
-      fit::joint::joint_state(problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  fit::joint::JointState state = fit::joint::joint_state(problem, fit.state);
   state.coefficients = fit.state.coefficients;
   fit::joint::refit_nuisances(problem, state);
   return fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen).residual_nT;

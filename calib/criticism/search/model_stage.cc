@@ -16,6 +16,7 @@ void weigh_alike(const fit::joint::JointProblem& from, fit::joint::JointProblem&
     to.poses[k].weight = from.poses[k].weight;
     to.poses[k].attitude_weight = from.poses[k].attitude_weight;
     to.poses[k].f_weight = from.poses[k].f_weight;
+    to.poses[k].reference_weight = from.poses[k].reference_weight;
   }
 }
 
@@ -40,14 +41,13 @@ Result<fit::joint::JointFit> fit_under_same_weights(const PoseTable& table, cons
   if (!problem) return tl::unexpected(problem.error());
   fit::joint::fix_gauge(*problem, options);
   weigh_alike(stage.fit.problem, *problem);
-  fit::joint::JointState start = fit::joint::joint_state(*problem, stage.fit.state.sensors,
-                                                         stage.fit.state.direction, stage.fit.state.f_nT);
+  fit::joint::JointState start = fit::joint::joint_state(*problem, stage.fit.state);
   auto solved = fit::joint::solve(*problem, std::move(start));
   if (!solved) return tl::unexpected(solved.error());
   fit::joint::JointFit out = stage.fit;
   out.problem = std::move(*problem);
   out.state = std::move(solved->state);
-  out.chi2 = solved->reduced.cost.readings + solved->reduced.cost.scalar;
+  out.chi2 = solved->reduced.cost.of_model();
   return out;
 }
 

@@ -27,9 +27,9 @@ std::optional<Narrow> without_winner(const PoseTable& table, const fit::joint::J
     problem->poses[k].weight = with.problem.poses[k].weight;
     problem->poses[k].f_weight = with.problem.poses[k].f_weight;
     problem->poses[k].attitude_weight = with.problem.poses[k].attitude_weight;
+    problem->poses[k].reference_weight = with.problem.poses[k].reference_weight;
   }
-  fit::joint::JointState state =
-      fit::joint::joint_state(*problem, with.state.sensors, with.state.direction, with.state.f_nT);
+  fit::joint::JointState state = fit::joint::joint_state(*problem, with.state);
   state.nuisances = with.state.nuisances;
   Eigen::Index at = 0;
   for (const effects::EffectPtr& effect : problem->effects) {

@@ -232,8 +232,11 @@ bool is_a_curve(const WanderingAlternative& alternative) {
 fit::joint::JointFit at_stated_weights(const fit::joint::JointFit& fit) {
   fit::joint::JointFit out = fit;
   if (!(fit.noise_inflation > 1)) return out;
-  for (fit::joint::JointPose& pose : out.problem.poses)
-    pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
+  for (fit::joint::JointPose& pose : out.problem.poses) {
+    pose.weight *= fit.noise_inflation;
+    pose.f_weight *= fit.noise_inflation;
+    pose.reference_weight *= fit.noise_inflation;
+  }
   out.noise_inflation = 1;
   fit::joint::refit_nuisances(out.problem, out.state);
   return out;

@@ -177,7 +177,7 @@ std::pair<fit::joint::Channels, fit::joint::Channels> in_common_units(const fit:
 double pose_correlation(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   // One sensor leaves one direction a pose, which changes from pose to pose: channels cannot be taken one by
   // one.
-  if (problem.sensors() == 1 && !problem.has_reference)
+  if (problem.sensors() == 1 && !problem.platform_reference())
     return std::clamp(fit::joint::sample_correlation(problem, state).seen(), 0.0, kMaxRho);
   const double rho = median_correlation(problem, state);
   if (rho <= kCorrelated) return rho;
@@ -193,8 +193,11 @@ std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2
   fit::joint::JointProblem problem = fit.problem;
   fit::joint::JointState state = fit.state;
   if (fit.noise_inflation > 1) {
-    for (fit::joint::JointPose& pose : problem.poses)
-      pose.weight *= fit.noise_inflation, pose.f_weight *= fit.noise_inflation;
+    for (fit::joint::JointPose& pose : problem.poses) {
+      pose.weight *= fit.noise_inflation;
+      pose.f_weight *= fit.noise_inflation;
+      pose.reference_weight *= fit.noise_inflation;
+    }
     fit::joint::refit_nuisances(problem, state);
   }
   const Fitted f = fitted(problem, state);

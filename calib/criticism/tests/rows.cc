@@ -16,18 +16,21 @@ Eigen::Index row_of(const fit::joint::JointProblem& problem, std::size_t pose) {
 void fill_attitude(const fit::joint::JointPose& pose, const fit::joint::Nuisance& nuisance, Eigen::Index row,
                    LinearRows& out) {
   const Eigen::Index first = row + pose.y_nT.size() + 1;
+  if (pose.has_angles) {
+    out.residual.segment<3>(first) = -pose.attitude_weight * nuisance.head<3>();
+    out.nuisance.block<3, 3>(first, 0).diagonal().setConstant(pose.attitude_weight);
+    if (!(pose.reference_weight > 0)) return;
+    out.residual[first + 3] = pose.reference_weight * (pose.reference_nT.norm() - nuisance[3]);
+    out.nuisance(first + 3, 3) = pose.reference_weight;
+    return;
+  }
   if (pose.reference_weight > 0) {
     out.residual.segment<3>(first) = pose.reference_weight * (pose.reference_nT - nuisance.head<3>());
     out.nuisance.block<3, 3>(first, 0).diagonal().setConstant(pose.reference_weight);
     out.nuisance(first + 3, 3) = 1;
     return;
   }
-  if (!pose.has_angles) {
-    out.nuisance(first, 3) = 1;
-    return;
-  }
-  out.residual.segment<3>(first) = -pose.attitude_weight * nuisance.head<3>();
-  out.nuisance.block<3, 3>(first, 0).diagonal().setConstant(pose.attitude_weight);
+  out.nuisance(first, 3) = 1;
 }
 
 }  // namespace

@@ -94,8 +94,8 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
     carried = (step.second * left).topRows(U);
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
     // Readings, scalar reference, and what stands in the place of the attitude, less the pose's own unknowns.
-    const int beside = pose.has_angles ? 3 - 4 : pose.reference_weight > 0 ? 3 - 3 : 0 - 3;
-    rank_ += static_cast<int>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + beside;
+    rank_ +=
+        static_cast<int>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + pose.beside();
   }
 }
 

@@ -16,6 +16,20 @@ std::string common_rotation_zero(std::size_t sensors) {
                      sensors == 4 ? "four" : std::to_string(sensors));
 }
 
+/// How a reference beside the table stands.
+std::string reference_text(const joint::Gauge& gauge) {
+  if (!gauge.beside_table) return {};
+  const std::string stands =
+      "; the vector reference stands still beside the table and takes the variations of the field out, ";
+  if (gauge.reference_turn_sd_rad)
+    return stands +
+           fmt::format("its turn about the field known to {:.2g} deg", to_deg(*gauge.reference_turn_sd_rad));
+  return stands +
+         "its turn about the field not known and without effect: as far as the table can tell the field kept "
+         "its "
+         "direction";
+}
+
 }  // namespace
 
 std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
@@ -58,6 +72,7 @@ std::string gauge_text(const joint::Gauge& gauge, std::size_t sensors, double ta
     text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
                        : fmt::format(", {:.2g} about Z", to_deg(rotation_sd_rad[2]));
     if (gauge.declination_known) text += "; declination as given";
+    text += reference_text(gauge);
   }
   if (!gauge.scale_known)
     text += fmt::format("; no field is known: mean scale factor of the {} axes = 1, {}",

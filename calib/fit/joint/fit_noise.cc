@@ -13,6 +13,18 @@ const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
 /// Changes of an estimate that its own uncertainty makes meaningless: a tenth of it.
 double settled(double freedom) { return std::max(kSettled, 0.1 / std::sqrt(2 * std::max(freedom, 1.0))); }
 
+/// Of the directions that a reference beside the table shows: root mean square over the poses.
+double reference_sd_rad(const JointProblem& problem) {
+  double squares = 0;
+  for (const JointPose& pose : problem.poses) squares += pose.reference_sd_rad * pose.reference_sd_rad;
+  return std::sqrt(squares / static_cast<double>(problem.poses.size()));
+}
+
+/// What is left of a standard deviation without an independent part of it.
+double without(double whole, double part) {
+  return part > 0 ? std::sqrt(std::max(0.0, whole * whole - part * part)) : whole;
+}
+
 }  // namespace
 
 void FitNoise::apply(JointProblem& problem) const {
@@ -24,8 +36,7 @@ void FitNoise::apply(JointProblem& problem) const {
   }
   for (JointPose& pose : problem.poses) {
     // Loosened attitudes stay loose.
-    if (pose.has_angles && pose.attitude_weight > 1 / kTableCeiling_rad)
-      pose.attitude_weight = 1 / table_sd_rad;
+    if (pose.has_angles && pose.attitude_weight > 1 / kTableCeiling_rad) pose.weigh_attitude(table_sd_rad);
   }
 }
 
@@ -37,9 +48,11 @@ bool FitNoise::update(const PoseResiduals& residuals, const JointProblem& proble
             pose_nT.maxCoeff() > kNoiseFloor_nT;
   }
   if (problem.has_angles) {
-    const double before = table_sd_rad;
-    table_sd_rad = std::clamp(before * residuals.table_ratio, kTableFloor_rad, kTableCeiling_rad);
-    moved = moved || std::abs(table_sd_rad / before - 1) > settled(residuals.attitude_freedom);
+    const double reference_rad = reference_sd_rad(problem), before = std::hypot(table_sd_rad, reference_rad);
+    const double now = before * residuals.table_ratio;
+    table_sd_rad = std::clamp(without(now, reference_rad), kTableFloor_rad, kTableCeiling_rad);
+    moved = moved || std::abs(std::hypot(table_sd_rad, reference_rad) / before - 1) >
+                         settled(residuals.attitude_freedom);
   }
   return moved;
 }

@@ -26,7 +26,7 @@ Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
   Eigen::VectorXd d = Eigen::VectorXd::Constant(problem.fixed(), f_nT);
   for (int i = 0; i < problem.sensors(); ++i)
     d.segment<3>(sensor::kSensorParameters * i + sensor::ix).setOnes();
-  d[problem.slots().field()] = 1;
+  if (!problem.site_reference()) d[problem.slots().field()] = 1;
   int slot = problem.slots().effects();
   for (const effects::EffectPtr& effect : problem.effects) {
     // An effect of its typical size counts as ten nanotesla: what makes it worth a place in the model.
@@ -35,15 +35,16 @@ Eigen::VectorXd nanotesla(const JointProblem& problem, double f_nT) {
   return d;
 }
 
-/// Orthonormal basis of the common small rotations of all sensors, nT units, with the site direction
-/// left free.
+/// Orthonormal basis of the common small rotations of all sensors, nT units, with the site direction and the
+/// turn of a reference left free.
 Eigen::MatrixXd common_rotation(const JointProblem& problem, const Eigen::VectorXd& d) {
-  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(problem.fixed(), 5);
+  const int of_site = problem.site_reference() ? 3 : 2;
+  Eigen::MatrixXd q = Eigen::MatrixXd::Zero(problem.fixed(), 3 + of_site);
   for (int i = 0; i < problem.sensors(); ++i) {
     for (int j = 0; j < 3; ++j) q(sensor::kSensorParameters * i + sensor::alpha + j, j) = d[sensor::alpha];
   }
   const int site = problem.slots().site();
-  q(site, 3) = q(site + 1, 4) = 1;
+  for (int j = 0; j < of_site; ++j) q(site + j, 3 + j) = 1;
   return linear::orthonormal(q);
 }
 
@@ -59,7 +60,8 @@ std::string slot_name(const JointProblem& problem, int slot, bool all) {
                : fmt::format("s{} {}", slot / sensor::kSensorParameters + 1, word);
   }
   if (slot < slots.field()) return "direction of the site's field";
-  if (slot == slots.field()) return "strength of the field";
+  if (slot == slots.field())
+    return problem.site_reference() ? "turn of the reference about the field" : "strength of the field";
   int at = slots.effects();
   for (const effects::EffectPtr& effect : problem.effects) {
     for (const effects::Coefficient& c : effect->coefficients()) {
@@ -185,6 +187,7 @@ Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& st
   one.effects = problem.effects;
   one.common_field = problem.common_field;
   one.has_angles = problem.has_angles;
+  one.has_reference = problem.has_reference;
   JointPose pose = problem.poses.front();
   Pose recorded = *pose.pose;
   recorded.azimuth_rad = angles.azimuth_rad;
@@ -199,10 +202,8 @@ Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& st
   at.nuisances = {Nuisance(0, 0, 0, f_nT)};
   if (!pose.has_angles) at.nuisances.front().head<3>() = pose.T * state.direction * f_nT;
   Eigen::MatrixXd S = reduce(one, at, 0).S;
-  const FixedSlots at_slot = problem.slots();
   // What reduce holds because nothing observes it is no information.
-  if (!problem.common_field) S(at_slot.field(), at_slot.field()) = 0;
-  if (!problem.has_angles) S(at_slot.site(), at_slot.site()) = S(at_slot.site() + 1, at_slot.site() + 1) = 0;
+  for (const int slot : problem.idle_slots()) S(slot, slot) = 0;
   return S;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/reference_turn.h"
 #include "calib/fit/joint/robust_fit.h"
 #include "calib/fit/joint/sample_correlation.h"
 #include "calib/fit/joint/single_samples.h"
@@ -30,16 +31,16 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
   fit.chi2 = reduced.cost.of_model() * fit.noise_inflation * fit.noise_inflation;
   fit.chi2_table = reduced.cost.attitude;
   fit.dof_table = residuals.attitude_freedom;
-  double unknowns = problem.slots().sensor_block() + problem.coefficients() + (problem.common_field ? 1 : 0) +
-                    (problem.has_angles ? 2 : 0);
+  double unknowns = problem.slots().sensor_block() + problem.coefficients() + problem.site_unknowns() -
+                    (fit.gauge.beside_table && !fit.gauge.reference_turn_sd_rad ? 1 : 0);
   double observed = residuals.readings + residuals.scalars + fit.gauge.constraints +
                     (problem.has_angles && problem.known_inclination_rad ? 1 : 0) +
                     (problem.has_angles && problem.known_declination_rad ? 1 : 0);
   for (const JointPose& pose : problem.poses) {
     // Of a pose without angles and without readings only the size of its field is asked.
     unknowns += pose.has_angles ? 4 : pose.weight.isZero(0) && !problem.has_reference ? 1 : 3;
-    observed +=
-        (pose.has_angles ? 3 : 0) + (pose.reference_weight > 0 ? 3 : 0) + (problem.common_field ? 1 : 0);
+    observed += (pose.has_angles ? 3 : 0) + (problem.common_field ? 1 : 0) +
+                (pose.reference_weight > 0 ? (pose.has_angles ? 1 : 3) : 0);
   }
   fit.dof = observed - unknowns - fit.dof_table;
   // Three standard deviations of a chi-square: wider than noise alone would make it, so the uncertainties
@@ -78,9 +79,8 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   fit.problem = std::move(*problem);
   fit.gauge = fix_gauge(fit.problem, options);
   const double f_nT = start_field_nT(fit.problem, options);
-  Result<JointState> state = warm_start != nullptr ? joint_state(fit.problem, warm_start->sensors,
-                                                                 warm_start->direction, warm_start->f_nT)
-                                                   : joint_start(fit.problem, f_nT);
+  Result<JointState> state =
+      warm_start != nullptr ? joint_state(fit.problem, *warm_start) : joint_start(fit.problem, f_nT);
   if (state && warm_start != nullptr && warm_start->coefficients.size() == state->coefficients.size())
     state->coefficients = warm_start->coefficients;
 
@@ -113,6 +113,7 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   fit.sample_noise_nT = noise.sample_nT;
   fit.table_sd_rad = fit.problem.has_angles ? noise.table_sd_rad : 0;
   Reduced& reduced = found->solution.reduced;
+  if (fit.gauge.beside_table) fit.gauge.reference_turn_sd_rad = reference_turn_sd_rad(fit.problem, reduced.S);
   fill_statistics(found->residuals, reduced, fit);
   auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : std::move(reduced.S));
   if (!covariance) return tl::unexpected(covariance.error());

@@ -15,6 +15,18 @@ int JointProblem::coefficients() const {
   return static_cast<int>(sum);
 }
 
+std::vector<int> JointProblem::idle_slots() const {
+  const FixedSlots at = slots();
+  std::vector<int> out;
+  if (!has_angles) out = {at.site(), at.site() + 1};
+  if (!common_field && !site_reference()) out.push_back(at.field());
+  return out;
+}
+
+int JointProblem::site_unknowns() const {
+  return (common_field ? 1 : 0) + (has_angles ? 2 : 0) + (site_reference() ? 1 : 0);
+}
+
 Eigen::VectorXd JointState::fixed() const {
   const FixedSlots at = slots();
   Eigen::VectorXd x(at.effects() + coefficients.size());
@@ -23,7 +35,7 @@ Eigen::VectorXd JointState::fixed() const {
         sensors[i].parameters();
   }
   x.segment<2>(at.site()).setZero();
-  x[at.field()] = f_nT;
+  x[at.field()] = R_SR ? 0 : f_nT;
   x.tail(coefficients.size()) = coefficients;
   return x;
 }
@@ -54,8 +66,15 @@ JointState JointState::moved(const Eigen::VectorXd& step) const {
         sensor::SensorModel::from_parameters(sensors[i].parameters() + part, sensors[i].mounting);
     turn(sensors[i], part.tail<3>(), next.sensors[i]);
   }
-  next.direction = (direction + tangents(direction) * step.segment<2>(at.site())).normalized();
-  next.f_nT += step[at.field()];
+  if (R_SR) {
+    const Eigen::Vector3d w = reference_turns(direction) * step.segment<3>(at.site());
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(w.norm(), w.stableNormalized()).toRotationMatrix();
+    next.R_SR = turn * *R_SR;
+    next.direction = (turn * direction).normalized();
+  } else {
+    next.direction = (direction + tangents(direction) * step.segment<2>(at.site())).normalized();
+    next.f_nT += step[at.field()];
+  }
   next.coefficients += step.tail(coefficients.size());
   return next;
 }
@@ -82,6 +101,13 @@ Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n) {
   t.col(0) = n.cross(Eigen::Vector3d::Unit(smallest)).normalized();
   t.col(1) = n.cross(t.col(0));
   return t;
+}
+
+Eigen::Matrix3d reference_turns(const Eigen::Vector3d& n) {
+  const Eigen::Matrix<double, 3, 2> t = tangents(n);
+  Eigen::Matrix3d out;
+  out << n.cross(t.col(0)), n.cross(t.col(1)), n;
+  return out;
 }
 
 }  // namespace mgtd::calib::fit::joint

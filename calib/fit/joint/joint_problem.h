@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -22,15 +23,20 @@
 ///      3 attitude  R_k = turn_by(w_k) T(table angles of k), w_k near 0
 ///      3 vector    b_k itself, where it was measured beside the sensors or made by a coil cage; the platform
 ///                  frame is then that of the reference, and the angles of the sensors are their misalignment
-/// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field, coefficients of
-/// effects) and four nuisances a pose: w_k (3) and F_k where B(0) = F_k n; or, for a pose without table
-/// angles, the field b_k (3) itself in the platform frame and one idle slot.
+///      1 size      with table angles the vector r_k is that of a reference that stands still beside the
+///                  table: B(0) = F_k R_SR r_k/|r_k|, R_SR unknown (reference_turn.h). |r_k| is F_k, unless
+///                  there is a scalar reference; the noise of its direction adds to that of the attitude
+/// Unknowns: the fixed block (12 per sensor, direction n and magnitude F of the site's field or, with a
+/// reference beside the table, R_SR, coefficients of effects) and four nuisances a pose: w_k (3) and F_k
+/// where B(0) = F_k n; or, for a pose without table angles, the field b_k (3) itself in the platform frame
+/// and one idle slot.
 namespace mgtd::calib::fit::joint {
 
 inline constexpr int kNuisances = 4;
 inline constexpr int kGlobals = 3;  ///< of every model: two tangents of n, F; effects come behind
 
-/// Where the unknowns of the fixed block stand: the sensors, two tangents of n, F, then the effects.
+/// Where the unknowns of the fixed block stand: the sensors, two tangents of n, F, then the effects. With a
+/// reference beside the table the turn of R_SR about n stands in the place of F.
 struct FixedSlots {
   int sensors{kSensors};
 
@@ -54,14 +60,25 @@ struct JointPose {
   Channels y_nT;
   Channels weight;              ///< 1/sd of each reading; 0 leaves it out (outlier node)
   double f_nT{0}, f_weight{0};  ///< scalar reference of this pose; with `common_field` its spread about F
-  Eigen::Vector3d reference_nT{Eigen::Vector3d::Zero()};  ///< the field as a known vector, frame P
-  double reference_weight{0};                             ///< 1/nT, of each component; 0: not known
+  /// The field as a known vector: in frame P, or, of a reference beside the table, in its own axes.
+  Eigen::Vector3d reference_nT{Eigen::Vector3d::Zero()};
+  double reference_weight{0};  ///< 1/nT, of each component, or of the size alone; 0: not known
+  double reference_sd_rad{0};  ///< of the direction that a reference beside the table shows
   bool has_angles{false};
   Eigen::Matrix3d T{Eigen::Matrix3d::Identity()};  ///< table rotation at the recorded angles
-  double attitude_weight{0};                       ///< 1/rad, of each component of w_k
+  double attitude_weight{0};                       ///< 1/rad, of each component of w_k: weigh_attitude()
   const effects::CovariateMeans* means{nullptr};   ///< those of the problem
 
   [[nodiscard]] effects::Conditions conditions() const { return {*pose, t_h, previous, means}; }
+  /// Observations beside readings and scalar reference, less the pose's own unknowns: with angles three of
+  /// the attitude and perhaps the size of the field against four, else perhaps its vector against itself.
+  [[nodiscard]] int beside() const {
+    return has_angles ? (reference_weight > 0 ? 4 : 3) - 4 : reference_weight > 0 ? 3 - 3 : 0 - 3;
+  }
+  /// What the angles of the table and the direction of the field tell together about an attitude.
+  void weigh_attitude(double table_sd_rad) {
+    attitude_weight = 1 / std::hypot(table_sd_rad, reference_sd_rad);
+  }
 };
 
 /// A Gaussian observation of a linear form of the fixed block: row' x = target.
@@ -90,23 +107,35 @@ struct JointProblem {
   [[nodiscard]] FixedSlots slots() const { return {static_cast<int>(geometry.sensors())}; }
   [[nodiscard]] int sensors() const { return slots().sensors; }
   [[nodiscard]] int channels() const { return slots().channels(); }
+  /// The vector is in the platform frame, which is then defined by it.
+  [[nodiscard]] bool platform_reference() const { return has_reference && !has_angles; }
+  /// The vector is that of a reference which stands still beside the table: of every pose with its angles.
+  [[nodiscard]] bool site_reference() const { return has_reference && has_angles; }
+  /// Slots of the fixed block that no observation of any pose reaches.
+  [[nodiscard]] std::vector<int> idle_slots() const;
+  /// Unknowns of the site's field and of the reference in the fixed block.
+  [[nodiscard]] int site_unknowns() const;
   /// Rows of a pose in the linearised fit: its readings, the scalar reference, the attitude; with a vector
-  /// reference that in the place of the attitude, and one row more for the idle slot.
+  /// reference in the platform frame that in the place of the attitude, and one row more for the idle slot;
+  /// with one beside the table one row more for its size.
   [[nodiscard]] int pose_rows() const { return channels() + kNuisances + (has_reference ? 1 : 0); }
   [[nodiscard]] int fixed() const { return slots().effects() + coefficients(); }
 };
 
 struct JointState {
   PerSensor<sensor::SensorModel> sensors;
-  Eigen::Vector3d direction{0, 0, 1};  ///< n, unit vector in the site frame
-  double f_nT{0};                      ///< F, used with common_field
+  Eigen::Vector3d direction{0, 0, 1};  ///< n, unit vector in the site frame; of its mean with R_SR
+  /// From the axes of a reference beside the table to the site frame; set where there is one.
+  std::optional<Eigen::Matrix3d> R_SR{};
+  double f_nT{0};  ///< F, used with common_field
   Eigen::VectorXd coefficients;
   std::vector<Nuisance> nuisances;
 
   [[nodiscard]] FixedSlots slots() const { return {static_cast<int>(sensors.size())}; }
   /// The fixed block as a vector; the two slots of n hold zero (they are steps in its tangent plane).
   [[nodiscard]] Eigen::VectorXd fixed() const;
-  /// x + step on the manifold: n moves in its tangent plane and is normalised.
+  /// x + step on the manifold: n moves in its tangent plane and is normalised; R_SR turns with it, and about
+  /// it.
   [[nodiscard]] JointState moved(const Eigen::VectorXd& step) const;
 };
 
@@ -119,5 +148,8 @@ struct JointState {
 
 /// Two orthonormal tangents of the unit sphere at n, columns.
 [[nodiscard]] Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& n);
+/// The rotation vectors, site frame, that the slots of R_SR stand for: the first two move n along its
+/// tangents, the third turns about it.
+[[nodiscard]] Eigen::Matrix3d reference_turns(const Eigen::Vector3d& n);
 
 }  // namespace mgtd::calib::fit::joint

@@ -15,9 +15,7 @@ constexpr int kBatch = 32;
 
 /// Slots that no observation reaches are held by a unit information.
 void hold_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
-  const FixedSlots at = problem.slots();
-  if (!problem.has_angles) S(at.site(), at.site()) = S(at.site() + 1, at.site() + 1) = 1;
-  if (!problem.common_field) S(at.field(), at.field()) = 1;
+  for (const int slot : problem.idle_slots()) S(slot, slot) = 1;
 }
 
 void add_direction_prior(const JointProblem& problem, const Eigen::Vector3d& n, Reduced& out) {
@@ -138,6 +136,13 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
     out.H.diagonal().head<3>().array() += w2;
     out.g.head<3>() -= w2 * state.nuisances[k].head<3>();
     out.cost.attitude = w2 * state.nuisances[k].head<3>().squaredNorm();
+    if (pose.reference_weight > 0) {
+      const double w = pose.reference_weight;
+      const double off_nT = pose.reference_nT.norm() - state.nuisances[k][3];
+      out.H(3, 3) += w * w;
+      out.g[3] += w * w * off_nT;
+      out.cost.reference = w * w * off_nT * off_nT;
+    }
   } else {
     out.H(3, 3) += 1;  // the idle slot
     const bool known = pose.reference_weight > 0;

@@ -81,9 +81,9 @@ std::optional<ErrorSummary> errors_of_check_poses(const PoseTable& table, const 
   if (!problem) return std::nullopt;
   for (JointPose& pose : problem->poses) {
     pose.weight = fit.pose_noise_nT.reshaped<Eigen::RowMajor>().cwiseInverse();
-    if (pose.has_angles) pose.attitude_weight = 1 / fit.table_sd_rad;
+    if (pose.has_angles) pose.weigh_attitude(fit.table_sd_rad);
   }
-  JointState state = joint_state(*problem, fit.state.sensors, fit.state.direction, fit.state.f_nT);
+  JointState state = joint_state(*problem, fit.state);
   state.coefficients = fit.state.coefficients;
   refit_nuisances(*problem, state);
   return joint_errors(*problem, state, FixedBlock::frozen).summary;

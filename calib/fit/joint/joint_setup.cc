@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/reference_turn.h"
 #include "calib/poses/run_time.h"
 #include "calib/sensor/sensor_equations.h"
 
@@ -15,8 +16,14 @@ namespace {
 
 /// A reference cannot be better than its last digit, and the weights stay finite.
 constexpr double kMinFieldSd_nT = 1e-3;
+/// Field over its uncertainty from which on a vector has a direction, and the error of its size is Gaussian.
+constexpr double kLeastFieldOfReference = 30;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
 constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
+
+double reference_sd_nT(const Pose& pose) {
+  return std::max(pose.ref_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
+}
 
 JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field,
                      const poses::RunTime& time) {
@@ -26,9 +33,14 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   out.y_nT = calibration::stacked(pose.y_nT);
   out.weight = Channels::Constant(out.y_nT.size(), 1 / kStartNoise_nT);
   if (pose.ref_nT) {
+    const double sd_nT = reference_sd_nT(pose);
     out.reference_nT = *pose.ref_nT;
-    out.reference_weight = 1 / std::max(pose.ref_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
+    out.reference_weight = 1 / sd_nT;
     out.f_nT = pose.f_nT.value_or(pose.ref_nT->norm());
+    if (pose.angles()) {
+      out.reference_sd_rad = sd_nT / pose.ref_nT->norm();
+      if (pose.f_nT) out.reference_weight = 0;  // two places, two sizes: that of the array counts
+    }
     if (pose.f_nT) out.f_weight = 1 / std::max(pose.f_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
   } else if (common_field) {
     out.f_weight = 1 / kCommonFieldSpread_nT;
@@ -41,7 +53,7 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   if (const auto angles = pose.angles()) {
     out.has_angles = true;
     out.T = sensor::table_rotation(angles->azimuth_rad, angles->pitch_rad, angles->roll_rad, 0.0, 0.0);
-    out.attitude_weight = 1 / options.table_sd_rad;
+    out.weigh_attitude(options.table_sd_rad);
   }
   return out;
 }
@@ -80,13 +92,25 @@ Result<void> check_reference(const PoseTable& table, std::ptrdiff_t with_referen
         ErrorCode::refused,
         fmt::format("{} of {} poses have the field as a vector (ref_x_nT ...)", with_reference, total),
         "give it for every pose, or take the columns out");
-  const auto turned = std::find_if(table.poses.begin(), table.poses.end(),
-                                   [&](const Pose& p) { return fitted(p) && p.angles(); });
-  if (turned == table.poses.end()) return {};
+  const auto turned = std::count_if(table.poses.begin(), table.poses.end(),
+                                    [&](const Pose& p) { return fitted(p) && p.angles(); });
+  if (turned == 0) return {};
+  if (turned != total)
+    return fail(
+        ErrorCode::refused,
+        fmt::format("{} of {} poses with the field as a vector have table angles", turned, total),
+        "give the angles of every pose (the reference then stands still beside the table) or of none (the "
+        "vector is then in a frame fixed to the sensors)");
+  const auto weak = std::find_if(table.poses.begin(), table.poses.end(), [&](const Pose& p) {
+    return fitted(p) && p.ref_nT->norm() < kLeastFieldOfReference * reference_sd_nT(p);
+  });
+  if (weak == table.poses.end()) return {};
   return fail(
-      ErrorCode::refused, fmt::format("pose {} has table angles and the field as a vector", turned->number),
-      "the vector must be in a frame fixed to the sensors: turn it by the table's angles yourself and "
-      "leave the columns azimuth_deg, pitch_deg and roll_deg out");
+      ErrorCode::refused,
+      fmt::format("pose {}: a field of {:.4g} nT, known to {:.3g} nT for each component, has no direction; "
+                  "beside a table it takes {:.0f} times its uncertainty",
+                  weak->number, weak->ref_nT->norm(), reference_sd_nT(*weak), kLeastFieldOfReference),
+      "look whether ref_sd_nT is right, or leave this pose out");
 }
 
 }  // namespace
@@ -149,7 +173,11 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
     problem.known_declination_rad = options.declination_rad;
     problem.direction_weight = 1 / options.table_sd_rad;
   }
-  gauge.by_reference = problem.has_reference;
+  gauge.by_reference = problem.platform_reference();
+  gauge.beside_table = problem.site_reference();
+  if (gauge.beside_table)
+    problem.priors.push_back(about_slot(problem, problem.slots().field(), 0,
+                                        keeps_direction(problem) ? kHeldTurn_rad : kFreeTurn_rad));
   if (gauge.angles == AngleCoverage::none && !gauge.by_reference) {
     for (const int p : {sensor::alpha, sensor::beta, sensor::gamma})
       problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));

@@ -40,8 +40,9 @@ inline constexpr double kCommonFieldSpread_nT = 0.05;
 /// Noise of a pose mean until something better is known.
 inline constexpr double kStartNoise_nT = 1.0;
 
-/// Poses of set "check" are left out. Refuses too few poses, a scalar reference in only part of the poses,
-/// and effects whose needs the poses do not meet. Keeps pointers into `table`.
+/// Poses of set "check" are left out. Refuses too few poses, a scalar or vector reference in only part of the
+/// poses, with a vector reference table angles in only part of them and, beside the table, a field that its
+/// noise gives no direction, and effects whose needs the poses do not meet. Keeps pointers into `table`.
 [[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options,
                                                  PoseUse use = PoseUse::fit);
 
@@ -50,6 +51,9 @@ struct Gauge {
   AngleCoverage angles{AngleCoverage::none};
   bool declination_known{false};
   bool by_reference{false};  ///< the frame is that of a vector reference
+  bool beside_table{false};  ///< a vector reference stands still beside the table
+  /// Of its turn about the field; empty where the field kept its direction and nothing tells it.
+  std::optional<double> reference_turn_sd_rad{};
   bool scale_known{false};
   int constraints{0};  ///< freedoms fixed by convention
 };

@@ -6,13 +6,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <numbers>
 
 #include "calib/fit/joint/data_faults.h"
 #include "calib/fit/joint/joint_solver.h"
+#include "calib/fit/joint/reference_turn.h"
 #include "calib/fit/orientation.h"
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
@@ -32,14 +32,6 @@ struct Aligned {
   PerSensor<Eigen::Matrix3d> to_first;
   std::vector<Eigen::Vector3d> u;  ///< field of each pose in the frame of sensor 1, mean of the sensors
 };
-
-/// Orthogonal matrix nearest to H; det = +1 when `proper`.
-Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& H, bool proper) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d d = Eigen::Vector3d::Ones();
-  if (proper) d[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * d.asDiagonal() * svd.matrixV().transpose();
-}
 
 Result<Aligned> align_sensors(const JointProblem& problem, double f_nT) {
   const auto poses = static_cast<Eigen::Index>(problem.poses.size());
@@ -84,6 +76,8 @@ struct Placement {
   /// Frame of sensor 1 (made right-handed) to the platform, proper.
   Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
   Eigen::Vector3d n{0, 0, 1};
+  /// Of a reference beside the table; n is then its mean direction.
+  Eigen::Matrix3d R_SR{Eigen::Matrix3d::Identity()};
 };
 
 /// Maximises tr(Q' sum T_k n u_k'), linear in n and in Q: n is searched on a Fibonacci sphere, then both
@@ -104,20 +98,18 @@ Placement place(const JointProblem& problem, const std::vector<Eigen::Vector3d>&
   };
   if (problem.known_inclination_rad && problem.known_declination_rad) {
     const Eigen::Vector3d n = direction_of(*problem.known_inclination_rad, *problem.known_declination_rad);
-    return {best_turn(n), n};
+    return {best_turn(n), n, Eigen::Matrix3d::Identity()};
   }
   constexpr int kPoints = 200, kAlternations = 100;
   constexpr double kSettledTurn_rad = 1e-9;
   Placement best;
   double best_gain = -1;
   for (int i = 0; i < kPoints; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kPoints, turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double h = std::sqrt(1 - z * z);
-    const Eigen::Vector3d n{h * std::cos(turn), h * std::sin(turn), z};
+    const Eigen::Vector3d n = direction_of_sphere(i, kPoints);
     const Eigen::Matrix3d Q = best_turn(n);
     if (pull(Q).dot(n) > best_gain) {
       best_gain = pull(Q).dot(n);
-      best = {Q, n};
+      best.Q = Q, best.n = n;
     }
   }
   for (int i = 0; i < kAlternations; ++i) {
@@ -168,7 +160,8 @@ void turn_free(const JointProblem& problem, Placement& p) {
     const Eigen::Matrix3d Z =
         Eigen::AngleAxisd(2 * std::numbers::pi * i / kSteps, turn.axis_P).toRotationMatrix();
     // T n = Z' T (n') for turns T about the axis away from the first: n moves by T_1' Z T_1.
-    const Placement turned{Z * from.Q, first->T.transpose() * Z * first->T * from.n};
+    const Eigen::Matrix3d at_site = first->T.transpose() * Z * first->T;
+    const Placement turned{Z * from.Q, at_site * from.n, at_site * from.R_SR};
     const double merit = problem.known_declination_rad
                              ? std::cos(declination_of(turned.n) - *problem.known_declination_rad)
                              : turned.Q.trace();
@@ -179,10 +172,20 @@ void turn_free(const JointProblem& problem, Placement& p) {
   }
 }
 
-Placement best_placement(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+Placement beside_table(const ReferencePlacement& placement, const JointProblem& problem) {
+  return {placement.Q, placement.R_SR * mean_reference(problem), placement.R_SR};
+}
+
+Result<Placement> best_placement(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
   Placement p;
   const AngleCoverage coverage = angle_coverage(problem);
-  if (coverage != AngleCoverage::none) p = place(problem, u);
+  if (coverage != AngleCoverage::none && problem.site_reference()) {
+    const ReferencePlacement beside = place_beside(problem, u);
+    if (auto ok = check_reference_stands(problem, u, beside); !ok) return tl::unexpected(ok.error());
+    p = beside_table(beside, problem);
+  } else if (coverage != AngleCoverage::none) {
+    p = place(problem, u);
+  }
   if (coverage == AngleCoverage::one_axis) turn_free(problem, p);
   return p;
 }
@@ -195,17 +198,30 @@ AngleCoverage angle_coverage(const JointProblem& problem) {
   return turn.off_axis < kOneAxis ? AngleCoverage::one_axis : AngleCoverage::full;
 }
 
-JointState joint_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
-                       const Eigen::Vector3d& direction, double f_nT) {
+namespace {
+
+/// With the smallest turn that lets the reference show the direction.
+Placement towards(const JointProblem& problem, const Eigen::Vector3d& direction) {
+  Placement out;
+  out.n = direction;
+  if (problem.site_reference()) out.R_SR = turn_between(mean_reference(problem), direction);
+  return out;
+}
+
+JointState placed_joint_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
+                              const Placement& p, double f_nT) {
   JointState state{.sensors = sensors,
-                   .direction = direction,
+                   .direction = p.n,
+                   .R_SR = std::nullopt,
                    .f_nT = f_nT,
                    .coefficients = Eigen::VectorXd::Zero(problem.coefficients()),
                    .nuisances = {}};
+  if (problem.site_reference()) state.R_SR = p.R_SR;
   for (const JointPose& pose : problem.poses) {
     Nuisance x = Nuisance::Zero();
     if (pose.has_angles) {
-      x[3] = pose.f_weight > 0 && !problem.common_field ? pose.f_nT : f_nT;
+      const bool known = (pose.f_weight > 0 || pose.reference_weight > 0) && !problem.common_field;
+      x[3] = known ? pose.f_nT : f_nT;
     } else if (pose.reference_weight > 0) {
       x.head<3>() = pose.reference_nT;
     } else {
@@ -218,8 +234,6 @@ JointState joint_state(const JointProblem& problem, const PerSensor<sensor::Sens
   refit_nuisances(problem, state);
   return state;
 }
-
-namespace {
 
 /// Readings are an affine map of a field that is known as a vector, y = M r + o: least squares for each
 /// sensor, and M^-1 = R K with R orthogonal, K upper triangular with positive diagonal (QR).
@@ -259,35 +273,48 @@ Result<JointState> start_from_reference(const JointProblem& problem, double f_nT
 
 }  // namespace
 
+JointState joint_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
+                       const Eigen::Vector3d& direction, double f_nT) {
+  return placed_joint_state(problem, sensors, towards(problem, direction), f_nT);
+}
+
+JointState joint_state(const JointProblem& problem, const JointState& from) {
+  Placement p = towards(problem, from.direction);
+  if (from.R_SR) p.R_SR = *from.R_SR;
+  return placed_joint_state(problem, from.sensors, p, from.f_nT);
+}
+
 Result<JointState> joint_start(const JointProblem& problem, double f_nT) {
   if (const auto ok = check_units(problem, f_nT); !ok) return tl::unexpected(ok.error());
   if (const auto ok = check_copies(problem); !ok) return tl::unexpected(ok.error());
-  if (problem.has_reference) return start_from_reference(problem, f_nT);
+  if (problem.platform_reference()) return start_from_reference(problem, f_nT);
   auto aligned = align_sensors(problem, f_nT);
   if (!aligned) return tl::unexpected(aligned.error());
   const double hand = handedness(*aligned);
   for (Eigen::Vector3d& u : aligned->u) u *= hand;
-  const Placement p = best_placement(problem, aligned->u);
+  const auto p = best_placement(problem, aligned->u);
+  if (!p) return tl::unexpected(p.error());
   PerSensor<sensor::SensorModel> sensors(problem.geometry.sensors());
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     sensors[i] =
-        sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p.Q * hand * aligned->to_first[i]);
+        sensor_from(aligned->alone[i].K, aligned->alone[i].offset_nT, p->Q * hand * aligned->to_first[i]);
   }
-  return joint_state(problem, sensors, p.n, f_nT);
+  return placed_joint_state(problem, sensors, *p, f_nT);
 }
 
-PlacedState placed_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
-                         double f_nT) {
+Result<PlacedState> placed_state(const JointProblem& problem, const PerSensor<sensor::SensorModel>& sensors,
+                                 double f_nT) {
   std::vector<Eigen::Vector3d> u(problem.poses.size(), Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < u.size(); ++k) {
     for (std::size_t i = 0; i < sensors.size(); ++i)
       u[k] +=
           sensors[i].correct(problem.poses[k].y_nT.segment<3>(3 * static_cast<int>(i))) / problem.sensors();
   }
-  const Placement p = best_placement(problem, u);
+  const auto p = best_placement(problem, u);
+  if (!p) return tl::unexpected(p.error());
   PerSensor<sensor::SensorModel> placed = sensors;
-  for (sensor::SensorModel& sensor : placed) sensor = turned(sensor, p.Q);
-  return {joint_state(problem, placed, p.n, f_nT), p.Q};
+  for (sensor::SensorModel& sensor : placed) sensor = turned(sensor, p->Q);
+  return PlacedState{placed_joint_state(problem, placed, *p, f_nT), p->Q};
 }
 
 }  // namespace mgtd::calib::fit::joint

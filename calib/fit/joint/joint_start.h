@@ -8,7 +8,7 @@
 ///   2. sensors to each other: Procrustes over all poses, reflections allowed;
 ///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n,
 ///      n searched over the whole sphere. (Q, n) and (-Q, -n) fit equally: the majority of the sensors is
-///      taken as right-handed.
+///      taken as right-handed. With a reference beside the table Q u_k = T_k R_SR r_k (reference_turn.h).
 /// Without table angles, or with angles about one axis only, the freedom that is left is spent on turning
 /// sensor 1 upright.
 namespace mgtd::calib::fit::joint {
@@ -17,22 +17,25 @@ namespace mgtd::calib::fit::joint {
 enum class AngleCoverage { none, one_axis, full };
 [[nodiscard]] AngleCoverage angle_coverage(const JointProblem& problem);
 
-/// Fills sensors, direction, F and nuisances; the coefficients of effects start at zero. `f_nT` is the field
-/// where a pose has none.
+/// Fills sensors, direction, F or R_SR, and nuisances; the coefficients of effects start at zero. `f_nT` is
+/// the field where a pose has none.
 [[nodiscard]] Result<JointState> joint_start(const JointProblem& problem, double f_nT);
 
 /// A state around given sensors (a two-step result, an earlier calibration, another fold's fit).
 [[nodiscard]] JointState joint_state(const JointProblem& problem,
                                      const PerSensor<sensor::SensorModel>& sensors,
                                      const Eigen::Vector3d& direction, double f_nT);
+/// Around the sensors and the site of another state.
+[[nodiscard]] JointState joint_state(const JointProblem& problem, const JointState& from);
 
 /// The same around sensors of an earlier calibration that may stand turned on the table since: they are
 /// turned together by the rotation Q that brings them to these poses' angles (identity without angles).
+/// Refuses a vector reference that turns with the table.
 struct PlacedState {
   JointState state;
   Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};
 };
-[[nodiscard]] PlacedState placed_state(const JointProblem& problem,
-                                       const PerSensor<sensor::SensorModel>& sensors, double f_nT);
+[[nodiscard]] Result<PlacedState> placed_state(const JointProblem& problem,
+                                               const PerSensor<sensor::SensorModel>& sensors, double f_nT);
 
 }  // namespace mgtd::calib::fit::joint

@@ -27,15 +27,12 @@ JointProblem without_poses(const JointProblem& problem) {
 
 /// reduce() holds slots that no observation reaches by a unit information, which is no pose's.
 void release_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
-  const FixedSlots at = problem.slots();
-  if (!problem.has_angles) S(at.site(), at.site()) = S(at.site() + 1, at.site() + 1) = 0;
-  if (!problem.common_field) S(at.field(), at.field()) = 0;
+  for (const int slot : problem.idle_slots()) S(slot, slot) = 0;
 }
 
 /// Observations of a pose less its own nuisances.
 double observations_of(const JointPose& pose) {
-  const int beside = pose.has_angles ? 3 - 4 : pose.reference_weight > 0 ? 3 - 3 : 0 - 3;
-  return static_cast<double>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + beside;
+  return static_cast<double>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + pose.beside();
 }
 
 }  // namespace

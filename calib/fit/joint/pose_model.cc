@@ -29,6 +29,8 @@ struct PoseModel::Attitude {
   bool known{false};
   double f_nT{0};
   Eigen::Vector3d b_P_nT;  ///< of a pose without angles
+  Eigen::Vector3d n;       ///< direction of the field, site frame
+  Eigen::Matrix3d d_n;     ///< of n by the slots of R_SR, where there is one
   Eigen::Matrix3d R;
   std::array<Eigen::Matrix3d, kAttitude + kTable> dR;
   Eigen::Matrix<double, kTable, Eigen::Dynamic> state_d_coefficient;
@@ -49,6 +51,7 @@ PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
       reference_(problem.effects, effects::Level::reference),
       positions_P_m_(problem.geometry.positions_P_m()),
       tangents_(tangents(state.direction)),
+      reference_turns_(reference_turns(state.direction)),
       globals_(kGlobals + problem.coefficients()),
       common_field_(problem.common_field) {
   gains_.clear();
@@ -76,6 +79,12 @@ void PoseModel::set_attitude(const JointPose& pose, const Nuisance& nuisance, At
     return;
   }
   a.f_nT = nuisance[3];
+  if (state_.R_SR) {
+    a.n = *state_.R_SR * pose.reference_nT.normalized();
+    for (int j = 0; j < 3; ++j) a.d_n.col(j) = reference_turns_.col(j).cross(a.n);
+  } else {
+    a.n = state_.direction;
+  }
   using W = sensor::Dual<3>;
   const sensor::Matrix3<W> error = sensor::turn_by<W>(
       {W::variable(nuisance[0], 0), W::variable(nuisance[1], 1), W::variable(nuisance[2], 2)});
@@ -107,8 +116,12 @@ void PoseModel::add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, 
     return a.dR[j] * B_S + through_place * (a.dR[j].transpose() * r_P_m);
   };
   for (int j = 0; j < 3; ++j) field.d_nuisance.col(j) = column(static_cast<std::size_t>(j));
-  field.d_nuisance.col(3) = a.R * state_.direction;
-  field.d_global.leftCols<2>() = a.f_nT * a.R * tangents_;
+  field.d_nuisance.col(3) = a.R * a.n;
+  if (state_.R_SR) {
+    field.d_global.leftCols<3>() = a.f_nT * a.R * a.d_n;
+  } else {
+    field.d_global.leftCols<2>() = a.f_nT * a.R * tangents_;
+  }
   if (table_.empty()) return;
   for (int j = 0; j < Attitude::kTable; ++j) {
     field.d_global.rightCols(globals_ - kGlobals) +=
@@ -125,7 +138,7 @@ void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, F
     return;
   }
   const Eigen::Vector3d& r_P_m = positions_P_m_[static_cast<std::size_t>(sensor)];
-  Eigen::Vector3d B_S = a.f_nT * state_.direction;
+  Eigen::Vector3d B_S = a.f_nT * a.n;
   Eigen::Matrix3d dB_dx = Eigen::Matrix3d::Zero();
   if (!site_.empty()) {
     const Eigen::Vector3d x_S_m = a.R.transpose() * r_P_m;
@@ -174,7 +187,7 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
     out.f_nuisance[3] = 1;
     return;
   }
-  Eigen::Vector3d B_S = a.f_nT * state_.direction;
+  Eigen::Vector3d B_S = a.f_nT * a.n;
   Eigen::Matrix<double, 3, Eigen::Dynamic> d_coefficient;
   if (!site_.empty()) {
     const Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -184,8 +197,12 @@ void PoseModel::scalar_field(const JointPose& pose, const Attitude& a, PoseLinea
   }
   out.f_nT = B_S.norm();
   const auto add = [&](const Eigen::RowVector3d& by_B) {
-    out.f_nuisance[3] += by_B.dot(state_.direction);
-    out.f_global.head<2>() += a.f_nT * by_B * tangents_;
+    out.f_nuisance[3] += by_B.dot(a.n);
+    if (state_.R_SR) {
+      out.f_global.head<3>() += a.f_nT * by_B * a.d_n;
+    } else {
+      out.f_global.head<2>() += a.f_nT * by_B * tangents_;
+    }
     if (!site_.empty()) out.f_global.tail(globals_ - kGlobals) += by_B * d_coefficient;
   };
   add(B_S.transpose() / out.f_nT);

@@ -51,6 +51,7 @@ class PoseModel {
   PerSensor<SensorGain> gains_;
   PerSensor<Eigen::Vector3d> positions_P_m_;
   Eigen::Matrix<double, 3, 2> tangents_;
+  Eigen::Matrix3d reference_turns_;
   int globals_;
   bool common_field_;
 };

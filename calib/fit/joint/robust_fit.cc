@@ -89,12 +89,12 @@ struct AllReadings {
 AllReadings all_readings(const JointProblem& problem, double f_nT) {
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
   const int channels = problem.channels();
-  AllReadings out{ReadingTable(channels + (problem.has_reference ? 3 : 0), n),
+  AllReadings out{ReadingTable(channels + (problem.platform_reference() ? 3 : 0), n),
                   Eigen::VectorXd::Constant(n, f_nT)};
   for (Eigen::Index k = 0; k < n; ++k) {
     const JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
     out.y_nT.col(k).head(channels) = pose.y_nT;
-    if (problem.has_reference) out.y_nT.col(k).tail<3>() = pose.reference_nT;
+    if (problem.platform_reference()) out.y_nT.col(k).tail<3>() = pose.reference_nT;
     if (!problem.common_field) out.f_nT[k] = pose.f_nT;
   }
   return out;
@@ -105,7 +105,8 @@ AllReadings all_readings(const JointProblem& problem, double f_nT) {
 std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings& all, double f_nT,
                                        const FitNoise& noise, double most_left_out) {
   // A field that is known as a vector lies in the same plane as the readings, and on no ellipsoid.
-  const auto agreeing = problem.has_reference ? agreeing_poses(all.y_nT) : agreeing_poses(all.y_nT, all.f_nT);
+  const auto agreeing =
+      problem.platform_reference() ? agreeing_poses(all.y_nT) : agreeing_poses(all.y_nT, all.f_nT);
   if (!agreeing) return std::nullopt;
   JointProblem some = problem;
   some.poses.clear();
@@ -117,7 +118,7 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
   if (!first) return std::nullopt;
   const JointState& known = first->solution.state;
   first->noise.apply(problem);
-  JointState state = joint_state(problem, known.sensors, known.direction, known.f_nT);
+  JointState state = joint_state(problem, known);
   state.coefficients = known.coefficients;
   refit_nuisances(problem, state);
   Outliers outliers(most_left_out);

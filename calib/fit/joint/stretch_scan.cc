@@ -150,7 +150,7 @@ Best best_window(const std::vector<Sums>& sums, int first, int count) {
 
 std::optional<ShiftedStretch> shifted_stretch(const JointProblem& problem, const JointSolution& solution) {
   const auto information = linear::Cholesky::of(solution.reduced.S);
-  if (!information || problem.has_reference) return std::nullopt;
+  if (!information || problem.platform_reference()) return std::nullopt;
   const std::vector<Sums> sums =
       sums_of(problem, solution.state, *information, [](const PoseBlocks&, const JointPose& pose) {
         return Eigen::MatrixXd((pose.weight.array() > 0).cast<double>().matrix().asDiagonal());

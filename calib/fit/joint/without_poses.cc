@@ -30,6 +30,7 @@ JointProblem without_poses_and_priors(const JointProblem& problem) {
 JointState without_poses(const JointState& state) {
   return {.sensors = state.sensors,
           .direction = state.direction,
+          .R_SR = state.R_SR,
           .f_nT = state.f_nT,
           .coefficients = state.coefficients,
           .nuisances = {}};

@@ -55,9 +55,24 @@ struct Case {
   JointState state;
 };
 
-Case make_case(std::vector<effects::EffectPtr> effects, bool with_angles) {
+/// What a reference beside the table reads, turned against it, in a field that moves by a few degrees.
+void add_reference(const Simulation& sim, PoseTable& table) {
+  std::mt19937_64 rng(5);
+  std::normal_distribution<double> normal;
+  const double ci = std::cos(sim.inclination_rad);
+  const Eigen::Vector3d B_S_nT =
+      sim.f_nT * Eigen::Vector3d{ci * std::cos(sim.declination_rad), ci * std::sin(sim.declination_rad),
+                                 std::sin(sim.inclination_rad)};
+  for (Pose& pose : table.poses)
+    pose.ref_nT =
+        testing::passive(0.7, 1) * (B_S_nT + 2000 * Eigen::Vector3d{normal(rng), normal(rng), normal(rng)});
+}
+
+Case make_case(std::vector<effects::EffectPtr> effects, bool with_angles, bool beside = false) {
   Case c;
-  c.table = simulate(Simulation{.with_angles = with_angles}, 12, 30, 3);
+  const Simulation sim{.with_angles = with_angles};
+  c.table = simulate(sim, 12, 30, 3);
+  if (beside) add_reference(sim, c.table);
   JointOptions options;
   auto problem = joint_problem(c.table, options);
   auto state = joint_start(*problem, 53'907);
@@ -141,6 +156,26 @@ TEST(PoseModel, DerivativesAreThoseOfTheModel) {
   EXPECT_LT(worst_derivative(make_case({}, true)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({}, false)), kTolerance);
   EXPECT_LT(worst_derivative(make_case({*effects::library::make_effect("site.gradient")}, true)), kTolerance);
+}
+
+TEST(PoseModel, DerivativesWithAReferenceBesideTheTableAreThoseOfTheModel) {
+  EXPECT_LT(worst_derivative(make_case({}, true, true)), kTolerance);
+  EXPECT_LT(worst_derivative(make_case({probe<effects::Level::reference>(), probe<effects::Level::table>(),
+                                        probe<effects::Level::site>(), probe<effects::Level::platform>()},
+                                       true, true)),
+            kTolerance);
+}
+
+TEST(PoseModel, TheTurnOfAReferenceAboutTheFieldMovesThePosesOfAnotherDirectionOnly) {
+  Case c = make_case({}, true, true);
+  PoseLinear linear;
+  const auto by_turn = [&] {
+    PoseModel(c.problem, c.state).linearise(c.problem.poses[20], c.state.nuisances[20], linear);
+    return linear.d_global.col(2).norm();
+  };
+  EXPECT_GT(by_turn(), 100);
+  c.problem.poses[20].reference_nT = 5e4 * c.state.R_SR->transpose() * c.state.direction;
+  EXPECT_LT(by_turn(), 1e-6);
 }
 
 TEST(PoseModel, DerivativesHoldThroughEveryLevel) {

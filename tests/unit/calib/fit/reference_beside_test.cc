@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "calib/criticism/search/explain.h"
+#include "calib/fit/joint/joint_fit.h"
+#include "calib/fit/joint/reference_turn.h"
+#include "calib/validity/validity_check.h"
+#include "tests/support/checkout.h"
+#include "tests/support/child_process.h"
+#include "tests/unit/calib/fit/fitted_arrays.h"
+
+/// A vector reference that stands still beside the table, which turns the sensors.
+namespace mgtd::calib {
+namespace {
+
+using testing::band;
+using testing::fitted;
+using ::testing::HasSubstr;
+using testing::options_of;
+using testing::Places;
+using testing::squared_error;
+
+constexpr const char* kBeside =
+    "[reference]\nvector = true\nframe = \"site\"\nscalar = false\nsd_nT = 0.2\nmisalignment_deg = [4, -7, "
+    "130]\n";
+/// The field moves by a third of a degree and half a percent, slowly enough to stand still in a dwell.
+constexpr const char* kStorm =
+    "[[effect]]\nname = \"hidden.site-oscillation\"\nnT = [520, -360, 280]\nperiod_s = 30000\n"
+    "[[effect]]\nname = \"hidden.site-oscillation\"\nnT = [-60, 100, 50]\nperiod_s = 6000\n";
+constexpr const char* kGoodTable = "[table]\naccuracy_deg = 0.005\n";
+
+PoseTable run_beside(const Places& places, std::uint64_t seed, const std::string& more = kStorm) {
+  return testing::turned_run(places, seed, kBeside + more);
+}
+
+fit::joint::JointFit joint_fit(const PoseTable& table, const Places& places) {
+  fit::joint::JointOptions options;
+  options.geometry = testing::geometry_of(places);
+  auto fit = fit::joint::fit_joint(table, options);
+  if (!fit) throw std::runtime_error(fit.error().text());
+  return *std::move(fit);
+}
+
+std::string refusal(const PoseTable& table) {
+  const auto report = fit::method_choice::fit(table, options_of(testing::one_sensor()));
+  return report ? "fitted" : report.error().text();
+}
+
+/// Without the vector, what a scalar magnetometer at the same place would have read.
+PoseTable with_its_size_alone(PoseTable table) {
+  for (Pose& pose : table.poses) {
+    pose.f_nT = pose.ref_nT->norm();
+    pose.f_sd_nT = pose.ref_sd_nT;
+    pose.ref_nT = std::nullopt, pose.ref_sd_nT = std::nullopt;
+  }
+  return table;
+}
+
+/// Mean over the runs.
+double mean_squared_error(const Places& places, int runs, const std::string& more) {
+  double sum = 0;
+  for (int seed = 1; seed <= runs; ++seed) {
+    const auto at = static_cast<std::uint64_t>(seed);
+    sum += squared_error(fitted(run_beside(places, at, more), places).calibration,
+                         testing::scenario_of(places, at, kBeside + more).truth);
+  }
+  return sum / runs;
+}
+
+TEST(ReferenceBeside, TheUncertaintiesAreHonestInAStorm) {
+  EXPECT_NEAR(mean_squared_error(testing::one_sensor(), 40, kStorm), 12, band(12, 40));
+  EXPECT_NEAR(mean_squared_error(testing::tetrahedron(), 12, kStorm), 48, band(48, 12));
+}
+
+TEST(ReferenceBeside, TheUncertaintiesAreHonestInAQuietField) {
+  EXPECT_NEAR(mean_squared_error(testing::one_sensor(), 40, ""), 12, band(12, 40));
+}
+
+TEST(ReferenceBeside, AStormIsTakenOut) {
+  const Places one = testing::one_sensor();
+  const PoseTable table = run_beside(one, 3, kStorm + std::string(kGoodTable));
+  const fit::joint::JointFit with = joint_fit(table, one),
+                             without = joint_fit(with_its_size_alone(table), one);
+  EXPECT_LT(with.table_sd_rad, to_rad(0.01));
+  EXPECT_GT(without.table_sd_rad, 4 * with.table_sd_rad);
+  // What is known about the common rotation is known better.
+  for (std::size_t a = 0; a < 3; ++a)
+    EXPECT_GT(without.common_rotation_sd_rad.at(a), 4 * with.common_rotation_sd_rad.at(a));
+  EXPECT_NEAR(with.chi2 / with.dof, 1, 5 * std::sqrt(2 / with.dof));
+}
+
+/// The turn of the reference, the direction of the field in it, and the rest of the misalignment.
+TEST(ReferenceBeside, HowItStandsIsFoundWhereTheFieldMoves) {
+  const Places one = testing::one_sensor();
+  const std::string more = kStorm + std::string(kGoodTable);
+  const auto scenario = testing::scenario_of(one, 4, kBeside + more);
+  const fit::joint::JointFit fit = joint_fit(run_beside(one, 4, more), one);
+  const Eigen::Matrix3d off = *fit.state.R_SR * scenario.reference->R().transpose();
+  ASSERT_TRUE(fit.gauge.reference_turn_sd_rad.has_value());
+  const double sd_rad = *fit.gauge.reference_turn_sd_rad;
+  EXPECT_LT(sd_rad, to_rad(1));
+  EXPECT_LT(Eigen::AngleAxisd(off).angle(), 5 * sd_rad);
+}
+
+/// The noise of the reference is no movement of the field, however small the errors of the table are.
+TEST(ReferenceBeside, ATurnThatNothingTellsHasNoUncertainty) {
+  const Places one = testing::one_sensor();
+  for (const char* noise : {"", "[table]\naccuracy_deg = 0\n"}) {
+    const PoseTable table = run_beside(one, 5, noise);
+    EXPECT_FALSE(joint_fit(table, one).gauge.reference_turn_sd_rad.has_value());
+    EXPECT_THAT(fitted(table, one).calibration.gauge,
+                HasSubstr("its turn about the field not known and without effect"));
+  }
+  EXPECT_THAT(fitted(run_beside(one, 5, kStorm + std::string(kGoodTable)), one).calibration.gauge,
+              HasSubstr("takes the variations of the field out, its turn about the field known to "));
+}
+
+/// Eight metres away the field is another; its size at the array is that of the scalar magnetometer.
+TEST(ReferenceBeside, TheScenarioIsFittedDownToTheNoise) {
+  const std::string path = mgtd::testing::source_path("tests/scenarios/reference_beside.toml");
+  const rig::Scenario scenario = rig::parse_scenario(mgtd::testing::slurp(path), path).value();
+  const PoseTable table = rig::simulated_table(scenario, rig::run_of_157({}, scenario.seed), scenario.seed);
+  EXPECT_GT(std::abs(*table.poses[0].f_nT - table.poses[0].ref_nT->norm()), 5);
+  const fit::FitReport report = fitted(table, testing::one_sensor());
+  EXPECT_TRUE(report.calibration.accepted_by_checks);
+  EXPECT_NEAR(report.chi2 / report.dof, 1, 5 * std::sqrt(2 / report.dof));
+  EXPECT_LT(squared_error(report.calibration, scenario.truth), 12 + band(12, 1));
+}
+
+TEST(ReferenceBeside, ALawIsNamedAndACleanStormPasses) {
+  const Places one = testing::one_sensor();
+  const auto explained = [&](const std::string& more) {
+    criticism::search::ExplainOptions options{.fit = options_of(one), .rounds = 3, .candidate_effects = {}};
+    auto report = criticism::search::explain(run_beside(one, 5, kStorm + more), options);
+    if (!report) throw std::runtime_error(report.error().text());
+    return *std::move(report);
+  };
+  EXPECT_EQ(explained("").left, criticism::search::Finding::pass);
+  const auto found = explained("[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.y\"\nnT_at_F0 = 4\n");
+  ASSERT_FALSE(found.rounds.empty());
+  EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
+}
+
+TEST(ReferenceBeside, ACalibrationIsCheckedBySuchARun) {
+  const Places one = testing::one_sensor();
+  const calibration::Calibration c = fitted(run_beside(one, 8), one).calibration;
+  PoseTable later = run_beside(one, 8);
+  later.poses.resize(30);
+  const auto valid = validity::check(c, later, options_of(one));
+  ASSERT_TRUE(valid) << valid.error().text();
+  EXPECT_TRUE(valid->valid);
+  for (Pose& pose : later.poses) pose.y_nT[0][1] += 20;
+  const auto moved = validity::check(c, later, options_of(one));
+  ASSERT_TRUE(moved) << moved.error().text();
+  EXPECT_FALSE(moved->valid);
+}
+
+TEST(ReferenceBeside, WhatCannotBeIsRefused) {
+  const PoseTable table = run_beside(testing::one_sensor(), 9);
+  PoseTable partly = table;
+  for (std::size_t k = 0; k < 57; ++k)
+    partly.poses[k].azimuth_rad = partly.poses[k].pitch_rad = partly.poses[k].roll_rad = std::nullopt;
+  EXPECT_THAT(refusal(partly), HasSubstr("100 of 157 poses with the field as a vector have table angles"));
+  PoseTable some = table;
+  some.poses[4].ref_nT = std::nullopt;
+  EXPECT_THAT(refusal(some), HasSubstr("156 of 157 poses have the field as a vector"));
+  PoseTable weak = table;
+  weak.poses[7].ref_nT = Eigen::Vector3d(3, 2, 1);
+  EXPECT_THAT(refusal(weak), HasSubstr("pose 8: a field of 3.742 nT, known to 0.2 nT for each component, has "
+                                       "no direction; beside a table it takes 30 times its uncertainty"));
+}
+
+TEST(ReferenceBeside, OneThatTurnsWithTheSensorsIsRefused) {
+  const std::string on_platform =
+      "[reference]\nvector = true\nangles = true\nscalar = false\nmisalignment_deg = [1, 2, 3]\n";
+  EXPECT_THAT(refusal(testing::turned_run(testing::one_sensor(), 9, on_platform)),
+              HasSubstr("the vector of the reference turns with the table"));
+}
+
+TEST(ReferenceBeside, TheSmallestTurnBringsOneDirectionToAnother) {
+  const Eigen::Vector3d from = Eigen::Vector3d(1, 2, 3).normalized(),
+                        to = Eigen::Vector3d(-2, 0, 1).normalized();
+  const Eigen::Matrix3d turn = fit::joint::turn_between(from, to);
+  EXPECT_LT((turn * from - to).norm(), 1e-14);
+  EXPECT_LT((turn * from.cross(to) - from.cross(to)).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace mgtd::calib
