@@ -315,7 +315,7 @@ export class Bench {
   }
   #redraw(colours = false) {
     this.#panels.redraw(colours);
-    if (colours) { this.#evidence.stale(); this.#formula.stale(); if (this.#tool === "alike") this.#map?.draw(); }
+    if (colours) { this.#evidence.stale(); this.#formula.stale(); if (this.#tool === "alike") this.#map?.draw(); if (this.#tool === "law" && this.#answers.discover) this.#showLaw(); }
     requestAnimationFrame(() => { this.#evidence.draw(this.#state); this.#formula.draw(this.#state); });
   }
   /** After another theme. */

@@ -58,9 +58,9 @@ function sky({ pose, state, direction, hole }) {
 
 /** The worst component against the poses, on log axes: measured, expected of the plan, wanted, and 1/sqrt(n). */
 function fall({ poses, worst_nT_per_m: worst, expected, wanted_nT_per_m: wanted }, planned) {
-  const left = 52, right = kWidth - 12, top = 12, bottom = kHeight - 36, known = poses.length > 0;
-  const frame = [draw("rect", { x: left, y: top, width: right - left, height: bottom - top, class: "rim" }), text((left + right) / 2, kHeight - 6, "poses measured"),
-                 draw("text", { transform: `translate(12 ${(top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, "standard error, nT/m")];
+  const left = 66, right = kWidth - 12, top = 12, bottom = kHeight - 42, known = poses.length > 0;
+  const frame = [draw("rect", { x: left, y: top, width: right - left, height: bottom - top, class: "rim" }), text((left + right) / 2, kHeight - 5, "poses measured"),
+                 draw("text", { transform: `translate(16 ${(top + bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, "standard error, nT/m")];
   const all = [...worst, ...expected.worst_nT_per_m];
   if (all.length === 0) return picture("The accuracy is not known yet", [frame, text((left + right) / 2, (top + bottom) / 2, "not known yet")]);
   const n = poses.at(-1), last = worst.at(-1), end = Math.max(planned, ...poses, ...expected.poses), guide = (p) => last * Math.sqrt(n / p);
@@ -70,7 +70,7 @@ function fall({ poses, worst_nT_per_m: worst, expected, wanted_nT_per_m: wanted 
   const xt = end / x0 < 20 ? ticks(x0, end, 5).at : logTicks(x0, end), mark = (p, v, css) => draw("circle", { cx: X(p).toFixed(1), cy: Y(v).toFixed(1), r: 3, class: css }, draw("title", {}, `${p} poses: ${sig(v)} nT/m`));
   const words = known ? `Standard error of the worst component: ${sig(last)} nT/m after ${n} poses` : "The standard error that the plan leads one to expect; none is measured yet";
   return picture(words, [logTicks(y0, y1).map((v) => [line([[left, Y(v)], [right, Y(v)]], "grid"), text(left - 5, Y(v) + 4, String(v), "end")]),
-                         xt.map((v) => [line([[X(v), bottom], [X(v), bottom + 4]], "rim"), text(X(v), bottom + 16, String(v))]), frame,
+                         xt.map((v) => [line([[X(v), bottom], [X(v), bottom + 4]], "rim"), text(X(v), bottom + 18, String(v))]), frame,
                          line(expected.poses.map((p, i) => [X(p), Y(expected.worst_nT_per_m[i])]), "expected"),
                          known ? line([Math.max(x0, n * (last / y1) ** 2), end].map((p) => [X(p), Y(guide(p))]), "guide") : null,
                          wanted === null ? null : [line([[left, Y(wanted)], [right, Y(wanted)]], "wanted"), text(left + 6, Y(wanted) - 5, `wanted ${wanted}`, "start", "wanted")],

@@ -25,7 +25,7 @@ function drawCurve(canvas, curve) {
   g.globalAlpha = 1;
   g.strokeStyle = css("--trace"); g.lineWidth = 2; line(curve.y_nT);
   if (curve.formulas.length) { g.strokeStyle = css("--named"); g.setLineDash([6, 4]); line(curve.formulas[0].y_nT); g.setLineDash([]); }
-  g.fillStyle = g.strokeStyle = css("--ink"); g.lineWidth = 1; g.font = "12px 'DejaVu Sans', sans-serif";
+  g.fillStyle = g.strokeStyle = css("--ink"); g.lineWidth = 1; g.font = `${css("--small")} 'DejaVu Sans', sans-serif`;
   g.strokeRect(left, top, width - left - right, height - top - bottom);
   g.textAlign = "center"; g.textBaseline = "top";
   for (const x of [x0, (x0 + x1) / 2, x1]) g.fillText(sig(x, 3), Math.min(Math.max(px(x), left + 14), width - 24), height - bottom + 5);
@@ -38,7 +38,7 @@ function drawCurve(canvas, curve) {
 /** `keep` adds the leading formulas to the model; null for a pose table. */
 export function showLaws(found, keep) {
   const canvas = found.curve ? make("canvas", { class: "curve", role: "img", "aria-label": `the shape of ${found.curve.where} over ${found.curve.covariate}` }) : null;
-  if (canvas) requestAnimationFrame(() => drawCurve(canvas, found.curve));
+  if (canvas) new ResizeObserver(() => requestAnimationFrame(() => drawCurve(canvas, found.curve))).observe(canvas);
   const believed = found.verdict !== "PASS" && found.stands_out;
   return [make("p", {}, make("b", { class: `word ${kColour[found.verdict] ?? ""}`, "data-key": "law-verdict" }, found.verdict)),
           canvas ? make("figure", {}, canvas, make("figcaption", { class: "caption" }, "The curve has no formula in it: splines or harmonics, up to a constant, with the band that holds all of it with 95 %; dashed the leading formula. Good: the dashes stay in the band.")) : null,

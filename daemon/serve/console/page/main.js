@@ -222,6 +222,7 @@ by("theme").addEventListener("click", () => {
   lanes.redraw();
   bench.recolour();
 });
+addEventListener("resize", () => lanes.redraw());
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lanes.redraw(); bench.recolour(); });
 const hello = await (await fetch("/api/hello")).json();
 if (hello.mode === "files") serveFiles(hello);

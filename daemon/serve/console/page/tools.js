@@ -59,6 +59,7 @@ export class ConfusionMap {
     this.#say = make("p", { class: "caption", "aria-live": "polite" });
     this.elements = [make("h3", {}, words?.title ?? ""), this.#canvas, this.#say, words ? make("p", { class: "good-one" }, `Good: ${words.good}`) : null];
     this.#canvas.addEventListener("pointermove", (event) => this.#hover(event));
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.#canvas);
     this.#canvas.addEventListener("click", (event) => { const pair = this.#pair(event); if (pair && pair[0] !== pair[1]) ask(...pair.map((i) => confusion.effects[i])); });
   }
   #alike(i, j) { const c = this.#data.correlation; return Math.max(c[i][j], c[j][i]); }
@@ -75,19 +76,23 @@ export class ConfusionMap {
   draw() {
     const n = this.#order.length, canvas = this.#canvas, scale = devicePixelRatio || 1, width = canvas.clientWidth;
     if (width === 0) return;
-    this.#left = width < 500 ? 8 : 210;
-    this.#cell = Math.max(5, Math.min(18, Math.floor((width - this.#left - 8) / n)));
+    const g = canvas.getContext("2d"), size = parseFloat(css("--small")), font = `${size}px 'DejaVu Sans', sans-serif`;
+    const room = (left) => Math.min(18, Math.floor((width - left - 8) / n));
+    g.font = font;
+    this.#left = 14 + Math.ceil(Math.max(...this.#data.effects.map((name) => g.measureText(name).width)));
+    const named = room(this.#left) >= size;  // else there is no room for a name at each row
+    if (!named) this.#left = 8;
+    this.#cell = Math.max(5, room(this.#left));
     const height = this.#top * 2 + n * this.#cell;
     canvas.style.height = `${height}px`;
     canvas.width = width * scale;
     canvas.height = height * scale;
-    const g = canvas.getContext("2d");
     g.scale(scale, scale);
-    g.font = `${Math.min(11, this.#cell - 1)}px 'DejaVu Sans', sans-serif`;
+    g.font = font;
     g.textAlign = "right"; g.textBaseline = "middle";
     this.#order.forEach((i, row) => {
       g.fillStyle = css("--ink");
-      if (this.#left > 50) g.fillText(this.#data.effects[i], this.#left - 6, this.#top + (row + 0.5) * this.#cell);
+      if (named) g.fillText(this.#data.effects[i], this.#left - 6, this.#top + (row + 0.5) * this.#cell);
       this.#order.forEach((j, column) => {
         const x = this.#left + column * this.#cell, y = this.#top + row * this.#cell, alike = this.#alike(i, j);
         g.fillStyle = css("--line"); g.globalAlpha = 0.35; g.fillRect(x, y, this.#cell - 1, this.#cell - 1);
