@@ -69,11 +69,15 @@ export class Browser {
   }
   /** `ready`: an expression that is true of the page when it is there. */
   async open(url, width = 1280, height = 800, ready = "document.body && 'ready' in document.body.dataset") {
-    await this.#call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 600 });
+    await this.size(width, height);
     await this.#call("Page.navigate", { url: "about:blank" });  // the same address with another fragment would load nothing
     await this.#call("Page.navigate", { url });
     await until(() => this.run(ready), `the page at ${url}`);
   }
+  size(width, height) { return this.#call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 600 }); }
+  scrollbars(shown) { return this.#call("Emulation.setScrollbarsHidden", { hidden: !shown }); }
+  /** A script that runs in every page before its own do. */
+  before(source) { return this.#call("Page.addScriptToEvaluateOnNewDocument", { source }); }
   async run(expression) {
     const { result, exceptionDetails } = await this.#call("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
     if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description ?? exceptionDetails.text}`);

@@ -1,100 +1,195 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of every screen of a running console, in three sizes and three themes, to be looked at:
+// Every screen of the console in three sizes and three themes, on a simulated rig and on a run with a hidden effect: whether
+// something leaves the page, is cut, lies over another, or is too small to read (structure.mjs); and a picture of each, to be
+// looked at.
 //
-//   node tests/browser/look.mjs "$(mgt console)" docs/console
-//   node tests/browser/look.mjs ADDRESS-OF-MGT-SERVE FOLDER RUN.mgtrun [add]
+//   node tests/browser/look.mjs build/bin             looks at the structure
+//   node tests/browser/look.mjs build/bin FOLDER      and takes the pictures, FOLDER/SCREEN-WIDTH-THEME.png
+//   node tests/browser/look.mjs build/bin docs/console --shown
+//                                                     takes those alone that FOLDER has already, of the top of the page
 //
-// Of a run also what stands behind each button of the workbench; nothing is changed in it, unless the word add has the first
-// suspect added, and taken out again. Says where an element leaves the
-// page, is cut, or lies over another.
-import { mkdirSync } from "node:fs";
-import { Browser, until } from "./browser.mjs";
+// Exit code 0: nothing is wrong. 1: something is, and printed. 77: not looked, because chromium is missing.
+import { execFileSync, spawn } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { Browser, needBrowser, until } from "./browser.mjs";
+import { Rig } from "./rig.mjs";
+import { kCanvasTexts, kFaults } from "./structure.mjs";
 
-const [url, folder, run, add] = process.argv.slice(2);
-if (!url || !folder) {
-  console.error("usage: node tests/browser/look.mjs URL FOLDER [RUN]");
+const [bin, pictures, only] = process.argv.slice(2);
+if (!bin || (only && only !== "--shown")) {
+  console.error("usage: node tests/browser/look.mjs BIN [FOLDER [--shown]]");
   process.exit(2);
 }
-mkdirSync(folder, { recursive: true });
-const browser = await Browser.start();
-let wrong = 0;
+needBrowser();
+if (pictures) mkdirSync(pictures, { recursive: true });
+const kSizes = [[1280, 800], [1024, 768], [390, 844]], kThemes = ["light", "dark", "sun"], kSpeed = 10, kPatience_ms = 5000;
+const kRandom = pictures ? 30 : 10, kPoses = pictures ? 36 : 24;  // of the run: planned at random, and measured when it is looked at
+const here = dirname(fileURLToPath(import.meta.url)), scratch = mkdtempSync(join(tmpdir(), "mgtd-look-")), folder = join(scratch, "magnetics");
+let views = 0, wrong = 0, browser = null, rig = null, server = null, failed = false;
 
-/** Texts that leave the page or their button, and cards that lie over each other. */
-const faults = (width) => `(() => {
-  const out = [], seen = (e) => e.getClientRects().length > 0, name = (e) => e.id || e.dataset.panel || e.textContent.slice(0, 30);
-  if (document.documentElement.scrollWidth > ${width}) out.push((document.documentElement.scrollWidth - ${width}) + " px beyond the right edge");
-  for (const e of document.querySelectorAll("button, h1, h2, h3, p, figure, .card, li")) {
-    if (!seen(e) || e.closest("#tool")) continue;
-    const box = e.getBoundingClientRect();
-    if (box.right > ${width} + 1) out.push(name(e) + ": leaves the page");
-    if (e.scrollWidth > e.clientWidth + 2 && e.clientWidth > 0) out.push(name(e) + ": its text is cut");
-  }
-  const boxes = [...document.querySelectorAll("figure, .card")].filter(seen).filter((e) => !e.parentElement.closest("figure, .card")).map((e) => [name(e), e.getBoundingClientRect()]);
-  for (const [i, [a, p]] of boxes.entries()) for (const [b, q] of boxes.slice(i + 1))
-    if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1) out.push(a + " and " + b + " overlap");
-  return out;
-})()`;
-
-async function picture(name) {
-  await browser.run("scrollTo(0, 0)");
-  await new Promise((resolve) => setTimeout(resolve, 300));  // points have come to rest
-  for (const fault of await browser.run(faults(Number(/\d{3,}/.exec(name)[0])))) {
-    console.log(`${name}: ${fault}`);
-    ++wrong;
-  }
-  await browser.picture(`${folder}/${name}.png`);
-}
-/** By the button, so that everything that is drawn gets its colours. */
+const drawn = () => browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50))))");
 const theme = (name) => browser.run(`while ((document.documentElement.dataset.theme ?? "") !== "${name}") document.getElementById("theme").click()`);
+const is = (expression, what) => until(() => browser.run(expression), what);
+const press = (where, text) => browser.run(`[...document.querySelectorAll("${where} button")].find((b) => b.textContent === "${text}").click()`);
 
-async function rig(width) {
-  await until(async () => (await browser.text("link")) === "live", "a live stream");
-  await new Promise((resolve) => setTimeout(resolve, 5000));  // the lanes fill
-  for (const colours of ["light", "dark", "sun"]) {
-    await theme(colours);
-    for (const screen of ["live", "run", "calibrations", "workbench"]) {
-      await browser.click(`tab-${screen}`);
-      await new Promise((resolve) => setTimeout(resolve, 1200));
-      await picture(`${screen}-${width}-${colours}`);
+/** What the page shows now, in all sizes and themes. */
+async function look(screen) {
+  for (const [width, height] of kSizes) {
+    await browser.size(width, height);
+    for (const colours of kThemes) {
+      const name = `${screen}-${width}-${colours}`, path = pictures ? join(pictures, `${name}.png`) : null;
+      await theme(colours);
+      await browser.run("scrollTo(0, 0)");
+      await drawn();
+      let faults = [];  // those that stay: a drawing follows its new size or theme after a moment
+      await until(async () => { faults = await browser.run(kFaults); return faults.length === 0; }, "no fault", kPatience_ms).catch(() => {});
+      for (const fault of faults) {
+        console.error(`${name}: ${fault}`);
+        ++wrong;
+      }
+      ++views;
+      if (!path || (only && !existsSync(path))) continue;
+      await browser.scrollbars(false);
+      if (only) await browser.size(width, 1.5 * height);
+      await new Promise((resolve) => setTimeout(resolve, 600));  // points have come to rest
+      await browser.picture(path, !only);
+      await browser.size(width, height);
+      await browser.scrollbars(true);
     }
   }
 }
 
-async function workbench(width) {
-  await until(() => browser.run(`document.querySelector('[data-run="${run}"]') !== null`), `${run} in the list`);
-  await picture(`runs-${width}-light`);
-  await browser.run(`document.querySelector('[data-run="${run}"]').click()`);
-  await until(() => browser.run("'shown' in document.getElementById('bench-run').dataset"), "the run");
-  await browser.run("document.querySelector('.suspect').click()");
-  await until(() => browser.run("document.getElementById('try') !== null"), "the evidence");
-  for (const colours of ["light", "dark", "sun"]) {
-    await theme(colours);
-    await browser.click("tool-alike");
-    await picture(`workbench-${width}-${colours}`);
-  }
-  for (const tool of ["next", "formula", "limits", "parameters", "history"]) {
-    await browser.click(`tool-${tool}`);
-    await picture(`workbench-${tool}-${width}`);
-  }
-  if (!add) return;
-  const changed = async (id) => {
-    const before = await browser.run("document.getElementById('bench-run').dataset.shown");
-    await browser.click(id);
-    await until(() => browser.run(`![undefined, "${before}"].includes(document.getElementById("bench-run").dataset.shown)`), id);
+async function workbench(address) {
+  const tool = async (name) => { await browser.click(`tool-${name}`); await look(`workbench-${name}`); };
+  const opened = async (run) => {
+    await is(`document.querySelector('[data-run="${run}"]') !== null`, `${run} in the list`);
+    await browser.run(`document.querySelector('[data-run="${run}"]').click()`);
+    await is("'shown' in document.getElementById('bench-run').dataset", run);
   };
+  await browser.open(address, ...kSizes[0]);
+  await is("document.querySelectorAll('[data-run]').length === 3", "the runs");
+  await look("runs");
+  await opened("hidden.mgtrun");
+  await browser.run("document.querySelector('.suspect').click()");
+  await is("document.getElementById('add') !== null", "the evidence");
+  await browser.click("tool-alike");
+  await look("workbench");
+  for (const name of ["limits", "parameters"]) await tool(name);
+  await browser.click("tool-next");
+  await browser.click("ask-next");
+  await is("document.getElementById('tool').innerText.includes('minutes')", "what to measure next");
+  await look("workbench-next");
+  await browser.click("tool-formula");
+  await browser.run("{ const e = document.getElementById('formula-form').elements.formula; e.value = 'T_degC - 20'; e.dispatchEvent(new Event('input', { bubbles: true })); }");
+  await is("document.getElementById('formula-said').innerText.includes('mine at')", "the formula examined");
+  await look("workbench-formula");
+  await browser.click("tool-law");
+  await browser.click("ask-law");
+  await is("document.querySelector('[data-key=\"law-verdict\"]') !== null", "the law");
+  await look("workbench-law");
   await browser.click("tool-history");
-  await changed("add");
-  for (const colours of ["light", "dark", "sun"]) {
-    await theme(colours);
-    await picture(`workbench-added-${width}-${colours}`);
-  }
-  await changed("undo");
+  const before = await browser.run("document.getElementById('bench-run').dataset.shown");
+  await browser.click("add");
+  await is(`![undefined, "${before}"].includes(document.getElementById("bench-run").dataset.shown)`, "the run with the effect");
+  await look("workbench-added");
+  await browser.run("for (const e of document.querySelectorAll('details')) e.open = true");
+  await browser.run("document.querySelector('#panels figure button').click()");
+  await look("workbench-open");
+  await browser.click("bench-runs");
+  await opened("flat.csv");
+  await look("refused");
 }
 
-for (const [width, height] of [[1280, 800], [1024, 768], [390, 844]]) {
-  await browser.open(url, width, height);
-  await (run ? workbench(width) : rig(width));
+async function running() {
+  const paused = "document.getElementById('run-now').innerText.includes(': paused')";
+  await browser.open(rig.ask("console").url, ...kSizes[0]);
+  await is("document.getElementById('link').innerText === 'live' && document.querySelector('#cards table') !== null", "a live stream");
+  await look("live-raw");
+  await browser.click("tab-run");
+  for (const [name, value] of Object.entries({ step_deg: 20, random: kRandom, revisits: 2, dwell_short_s: 1, dwell_long_s: 2 }))
+    await browser.run(`{ const e = document.getElementById("run-form").elements["${name}"]; e.value = "${value}"; e.dispatchEvent(new Event("input", { bubbles: true })); }`);
+  await browser.click("look");
+  await is("document.getElementById('plan').innerText !== ''", "what the run would do");
+  await look("form");
+  await browser.click("start");
+  // Until the accuracy is known; a pose that this computer has no time for pauses the run, which goes on then.
+  const enough = "document.querySelectorAll('#course circle.known').length >= 3 && document.querySelectorAll('#course circle.measured').length >= " + kPoses;
+  await until(async () => {
+    if (await browser.run(paused)) await press("#run-now", "Resume");
+    return browser.run(enough);
+  }, "the accuracy of the poses so far");
+  await browser.click("pause");
+  await is(paused, "the run paused");
+  await look("run");
+  rig.mgt("run", "finish");
+  await is("document.querySelectorAll('#proposal button').length === 2", "the calibration that the run proposes");
+  await look("proposed");
+  await press("#proposal", "Reject");
+  await look("reject");
+  await browser.click("reason-cancel");
+  rig.mgt("calibrations", "accept", "latest", "--force", "--why", "the run was ended early");
+  await browser.click("tab-calibrations");
+  await is("document.getElementById('calibration-list').innerText.includes('active')", "the calibration in use");
+  await look("calibrations");
+  await browser.click("tab-workbench");
+  await is("document.querySelector('[data-run]') !== null", "the run in the list");
+  await look("rig-runs");
+  await browser.click("tab-live");
+  await is("!document.getElementById('calibration').innerText.includes('no calibration')", "the calibrated stream");
+  if (pictures) await new Promise((resolve) => setTimeout(resolve, 20000));  // the lanes fill
+  await look("live");
 }
-for (const line of browser.log) console.log(`the browser says: ${line}`);
-await browser.close();
-process.exit(wrong + browser.log.length > 0 ? 1 : 0);
+
+/** What the check is for is planted in the page, and has to be found. */
+async function planted() {
+  await browser.size(...kSizes[0]);
+  const words = (style) => `const e = document.createElement("p"); e.textContent = "planted words"; e.style.cssText = "${style}"; document.querySelector("h1").append(e);`;
+  const canvas = `const e = document.createElement("canvas"); document.querySelector("main").append(e); e.getContext("2d").fillText("planted words", 290, 20);`;
+  for (const [fault, script] of [["px wider", words("width:3000px;height:1px")], ["text of 8.0 px", words("font-size:8px")], ["overlap", words("position:absolute;top:0;left:20px")],
+                                 ["are cut", words("width:20px;overflow:hidden;white-space:nowrap")], ['words": cut', canvas], ["text of 10.0 px", canvas], ["drawn 300 px wide", canvas]]) {
+    await browser.run(`{ ${script} e.id = "planted"; }`);
+    const found = await browser.run(kFaults);
+    await browser.run("document.getElementById('planted').remove()");
+    if (!found.some((line) => line.includes(fault) && (line.includes("planted") || line.includes("px wide")))) throw new Error(`planted, and not found: ${fault}`);
+  }
+}
+
+try {
+  const scenario = join(here, "../scenarios/hidden_temperature.toml"), poses = join(folder, "poses.csv");
+  mkdirSync(folder);
+  execFileSync(join(bin, "mgt-rig"), ["table", "--scenario", scenario, "-o", poses]);
+  execFileSync(join(bin, "mgt"), ["import", poses, "-o", join(folder, "hidden.mgtrun")], { stdio: "ignore" });
+  writeFileSync(join(folder, "flat.csv"), readFileSync(poses, "utf8").split("\n").slice(0, 37).join("\n") + "\n");
+  browser = await Browser.start();
+  await browser.before(kCanvasTexts);
+  let address = "";
+  server = spawn(join(bin, "mgt"), ["serve", folder], { stdio: ["ignore", "pipe", "ignore"] });
+  server.stdout.on("data", (bytes) => { address += bytes; });
+  await until(() => address.includes("\n"), "the address");
+  await workbench(address.trim());
+  await planted();
+  rig = await Rig.start(bin, kSpeed);
+  await rig.startDaemon();
+  await running();
+  for (const line of browser.log) console.error(`the browser says: ${line}`);
+  wrong += browser.log.length;
+  console.log(`${views} views, ${wrong} faults`);
+} catch (error) {
+  failed = true;
+  console.error(error.message);
+  if (browser) console.error(browser.log.join("\n"), (await browser.run("document.body.innerText")).slice(0, 2000));
+  if (rig) console.error(rig.said.slice(-2000));
+} finally {
+  if (browser) await browser.close();
+  if (rig) await rig.stop();
+  if (server) {
+    const ended = new Promise((resolve) => server.once("exit", resolve));
+    server.kill("SIGINT");
+    await ended;
+  }
+  rmSync(scratch, { recursive: true, force: true });
+}
+process.exit(failed || wrong > 0 ? 1 : 0);
