@@ -155,7 +155,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
   take_back_beside_unknown_laws(search.unknown, criticism, out);
-  take_back_lost_in_wandering(criticism.noise, out);
+  const bool wandering_describes = take_back_lost_in_wandering(criticism.noise, out);
   keep_names_found_again(out);
   note_absurd_sizes(search, criticism, out);
   const bool described = take_back_what_describes_a_recording(out, criticism);
@@ -164,14 +164,14 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   share_what_fell(out);
   out.maps_left = described ? out.maps : criticism.maps;
   out.model = out.rounds.empty() ? search.given : out.rounds.back().model;
-  out.left = !criticism.rejects() && search.unknown.empty() ? Finding::pass
-             : criticism.rejects_named()                    ? Finding::partial
-                                                            : Finding::unknown;
+  out.left = !criticism.rejects() && search.unknown.empty() && !wandering_describes ? Finding::pass
+             : criticism.rejects_named()                                            ? Finding::partial
+                                                                                    : Finding::unknown;
   out.finding = conclude(out, first, criticism, out.notes);
   if (out.finding == Finding::bad_data) {
     out.rounds.clear(), out.next.clear();
     out.model = search.given;
-  } else if (!search.unknown.empty()) {
+  } else if (!search.unknown.empty() || wandering_describes) {
     out.finding = out.rounds.empty() ? Finding::unknown : Finding::partial;
   }
   if (described) out.finding = out.left = Finding::unknown;

@@ -108,15 +108,18 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
   if (report.rounds.empty()) report.next.clear();
 }
 
-void take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report) {
+bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report) {
+  bool any = false;
   while (noise.wandering.any() && !report.rounds.empty()) {
     const Round& last = report.rounds.back();
     const double log10_p = log10_p_of_fit(last);
-    if (log10_p < kNotFound_log10) return;
+    if (log10_p < kNotFound_log10) break;
     report.notes.emplace_back(LostInWandering{last.added.effect, last.added.where, last.added.d, log10_p});
     report.rounds.pop_back();
-    if (report.rounds.empty()) report.next.clear();
+    any = true;
   }
+  if (report.rounds.empty()) report.next.clear();
+  return any && !report.noise.wandering.any();
 }
 
 void keep_names_found_again(ExplainReport& report) {

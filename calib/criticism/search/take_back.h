@@ -21,8 +21,9 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
 
 /// Beside offsets that wander, takes the last rounds back as long as the fit does not find what they added: a
 /// test that knows the size of the wandering to a fifth only makes names that the fit, in whose uncertainties
-/// it stands, does not confirm.
-void take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report);
+/// it stands, does not confirm. True where what they stood out against did not wander yet: then there is
+/// something, and the wandering only describes it.
+[[nodiscard]] bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report);
 
 /// An effect that is found again once the axis is closed was not a surrogate of its law: the notes do not say
 /// so any more.
