@@ -20,9 +20,10 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
                                    ExplainReport& report);
 
 /// Beside offsets that wander, takes the last rounds back as long as the fit does not find what they added: a
-/// test that knows the size of the wandering to a fifth only makes names that the fit, in whose uncertainties
-/// it stands, does not confirm. True where what they stood out against did not wander yet: then there is
-/// something, and the wandering only describes it.
+/// test, which knows the size of the wandering only to a fifth, can name effects that the fit, whose
+/// uncertainties contain the wandering, does not confirm. `noise`: that of the last model. True where
+/// something was taken back and nothing wandered before the first round: then something is missing, and the
+/// wandering only describes it.
 [[nodiscard]] bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report);
 
 /// An effect that is found again once the axis is closed was not a surrogate of its law: the notes do not say

@@ -16,9 +16,9 @@
 /// to)/theta/sqrt(poses). The noise of the reference looks like wandering and tells nothing.
 namespace mgtd::calib::fit::joint {
 
-/// A step of the turn about the field is held within the first, which keeps the equations solvable where
-/// little tells it; where the field kept its direction, within the second, so that the turn does not follow
-/// noise. A step is held, not the value: nothing is pulled anywhere.
+/// Standard deviation within which each step of the turn about the field is held: kFreeTurn_rad keeps the
+/// equations solvable where little tells the turn, kHeldTurn_rad keeps it from following noise where the
+/// field kept its direction. A step is held, not the value: nothing is pulled anywhere.
 inline constexpr double kFreeTurn_rad = 1, kHeldTurn_rad = 1e-7;
 
 /// Mean direction that the reference shows, in its own axes.
@@ -37,8 +37,9 @@ struct ReferencePlacement {
   double misfit_rad{0};                               ///< rms of the angle between both sides
 };
 
-/// Maximises tr(Q' sum T_k R_SR r_k u_k'), linear in Q and in R_SR: R_SR is searched on a grid, then both
-/// alternate (Procrustes). What the data leave of R_SR is the smallest turn.
+/// Of a problem with site_reference(); `u`: the field of each of its poses in the frame of the sensors, of
+/// any length. Maximises tr(Q' sum T_k R_SR r_k u_k'), linear in Q and in R_SR: R_SR is searched on a grid,
+/// then both alternate (Procrustes). What the data leave open of R_SR stays near where the search began.
 [[nodiscard]] ReferencePlacement place_beside(const JointProblem& problem,
                                               const std::vector<Eigen::Vector3d>& u);
 
@@ -48,7 +49,7 @@ struct ReferencePlacement {
                                                   const ReferencePlacement& placement);
 
 /// Standard deviation of the turn about the field by the information S of the fixed block, priors in it;
-/// empty where the field kept its direction.
+/// empty where the field kept its direction, or the turn is known to no better than 0.2 rad.
 [[nodiscard]] std::optional<double> reference_turn_sd_rad(const JointProblem& problem,
                                                           const Eigen::MatrixXd& S);
 

@@ -12,9 +12,8 @@
 ///     o(t) = sum_j z_j sqrt(2) cos(j pi (t - t0) / T),   z_j independent, normal,
 ///
 ///     walk     sd of z_j = a_c sqrt(T) / (j pi):  var[o(t) - o(s)] = a_c^2 |t - s|, exactly (Karhunen-Loeve)
-///     flicker  sd of z_j = a_c / sqrt(j):         power spectral density a_c^2 / f (one-sided), a term
-///     having
-///                                                 the power of the band 1 / (2 T) about its frequency
+///     flicker  sd of z_j = a_c / sqrt(j):         one-sided spectral density a_c^2 / f; a term has the
+///                                                 power of the band 1 / (2 T) about its frequency j / (2 T)
 ///
 /// Its mean over the run is the offset of the model. The first kWanderingTerms tell how far an offset
 /// wanders. Sizes a_c in nT per root hour (walk) or in nT/sqrt(Hz) at 1 Hz (flicker), times in hours. It is
@@ -29,7 +28,8 @@ enum class SlowSpectrum { walk, flicker };
 /// The terms of an offset of unit size over one run.
 class WanderingTerms {
  public:
-  /// `poses` in the run: flicker that is faster than they follow each other is in the noise of each.
+  /// From the first pose to the last. `poses`: how many; flicker that is faster than they follow each other
+  /// is part of the noise of each.
   WanderingTerms(double from_h, double to_h, SlowSpectrum spectrum = SlowSpectrum::walk,
                  std::size_t poses = 0)
       : from_h_(from_h), length_h_(to_h - from_h), spectrum_(spectrum), poses_(poses) {}
@@ -38,8 +38,8 @@ class WanderingTerms {
   /// sd(z_j) sqrt(2) cos(j pi (t - t0) / T), j from 1, nT.
   [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> at(double t_h) const;
   [[nodiscard]] double to_h() const { return from_h_ + length_h_; }
-  /// Of the offset less its mean over the run, at either end, nT^2: T / 3 for a walk, the sum of 2/j up to
-  /// the number of poses for flicker.
+  /// Of the offset less its mean over the run, at either end, nT^2: T / 3 for a walk; for flicker the sum of
+  /// 2/j up to the number of poses, or up to kWanderingTerms where there are fewer.
   [[nodiscard]] double variance_at_end() const;
   /// Of the terms beyond the last, mean over the run, nT^2.
   [[nodiscard]] double variance_beyond() const;

@@ -19,8 +19,8 @@
 ///
 /// Walk and flicker are told apart by their evidence.
 ///
-/// A law that the model lacks and that follows time makes an offset wander too. This says how well a walk
-/// describes the residual, never that nothing better does: see criticism/wandering_alternative.h.
+/// A law that the model lacks and that follows time makes an offset wander too. This says how well wandering
+/// describes the residual, never that nothing better does: see criticism/tests/wandering_alternative.h.
 namespace mgtd::calib::fit::joint {
 
 /// Sums of the linearised fit, one column per channel and term, for an offset of unit size.
@@ -86,8 +86,9 @@ inline constexpr double kWanderingEvidence = 9.2;
 /// the end of the run in the rows of the offsets,
 ///     sigma^2 S^-1 + S^-1 W S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms beyond the last add to
 ///     the offsets,
-/// W that of the channels in which terms beyond the last look white.
-/// How much further an offset wanders after the run is not in it. Empty where S is not positive definite.
+/// W what the terms beyond the last, which look white from pose to pose, add to the covariance of the normal
+/// equations. How much further an offset wanders after the run is not in it. Empty where S is not positive
+/// definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit,
                                                                        const WanderingEstimate& wandering);
 
