@@ -107,10 +107,11 @@ Result<void> check_reference(const PoseTable& table, std::ptrdiff_t with_referen
   if (weak == table.poses.end()) return {};
   return fail(
       ErrorCode::refused,
-      fmt::format("pose {}: a field of {:.4g} nT, known to {:.3g} nT for each component, has no direction; "
-                  "beside a table it takes {:.0f} times its uncertainty",
-                  weak->number, weak->ref_nT->norm(), reference_sd_nT(*weak), kLeastFieldOfReference),
-      "look whether ref_sd_nT is right, or leave this pose out");
+      fmt::format("pose {}: the vector of the reference, {:.4g} nT long and known to {:.3g} nT for each "
+                  "component, has no direction (limit {:.0f} times that, {:.3g} nT)",
+                  weak->number, weak->ref_nT->norm(), reference_sd_nT(*weak), kLeastFieldOfReference,
+                  kLeastFieldOfReference * reference_sd_nT(*weak)),
+      "check ref_sd_nT and the unit of ref_x_nT, ref_y_nT and ref_z_nT, or leave this pose out");
 }
 
 }  // namespace

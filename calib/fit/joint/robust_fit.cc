@@ -14,7 +14,7 @@
 namespace mgtd::calib::fit::joint {
 namespace {
 
-Result<void> plausible(const JointState& state) {
+Result<void> plausible(const JointProblem& problem, const JointState& state) {
   for (std::size_t i = 0; i < state.sensors.size(); ++i) {
     const double gain = std::abs(state.sensors[i].response().determinant());
     if (gain > 0.125 && gain < 8) continue;  // each axis within a factor of two of nominal scale
@@ -23,7 +23,11 @@ Result<void> plausible(const JointState& state) {
         fmt::format("sensor {}: the fit wants a volume gain of {:.3g}, a fluxgate at nominal scale has 1 "
                     "(limit 1/8 to 8)",
                     i + 1, gain),
-        "check the volts-to-nT scale of this sensor, the known field, and that the poses cover the sphere");
+        problem.platform_reference()
+            ? "check the volts-to-nT scale of this sensor and of the reference; a reference that stands "
+              "still beside a table needs the columns azimuth_deg, pitch_deg and roll_deg"
+            : "check the volts-to-nT scale of this sensor, the known field, and that the poses cover "
+              "the sphere");
   }
   return {};
 }
@@ -47,12 +51,12 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
     JointState reached;
     auto solution = solve(problem, std::move(state), enough, &reached);
     if (!solution) {
-      const auto ok = plausible(reached);
+      const auto ok = plausible(problem, reached);
       unsettled = ok.has_value();
       return tl::unexpected(ok ? solution.error() : ok.error());
     }
     unsettled = false;
-    if (const auto ok = plausible(solution->state); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = plausible(problem, solution->state); !ok) return tl::unexpected(ok.error());
     out.rounds = round;
     out.iterations += solution->iterations;
     out.termination = solution->slow_progress ? Termination::slow_progress : Termination::converged;

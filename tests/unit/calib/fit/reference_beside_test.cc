@@ -170,8 +170,9 @@ TEST(ReferenceBeside, WhatCannotBeIsRefused) {
   EXPECT_THAT(refusal(some), HasSubstr("156 of 157 poses have the field as a vector"));
   PoseTable weak = table;
   weak.poses[7].ref_nT = Eigen::Vector3d(3, 2, 1);
-  EXPECT_THAT(refusal(weak), HasSubstr("pose 8: a field of 3.742 nT, known to 0.2 nT for each component, has "
-                                       "no direction; beside a table it takes 30 times its uncertainty"));
+  EXPECT_THAT(refusal(weak),
+              HasSubstr("pose 8: the vector of the reference, 3.742 nT long and known to 0.2 nT for each "
+                        "component, has no direction (limit 30 times that, 6 nT)"));
 }
 
 TEST(ReferenceBeside, OneThatTurnsWithTheSensorsIsRefused) {
