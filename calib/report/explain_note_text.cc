@@ -117,9 +117,8 @@ std::string text(const criticism::search::DescribesRecording& n) {
 
 std::string text(const criticism::search::LostInWandering& n) {
   return fmt::format(
-      "{} stood out in {} ({:.1f} sigma), but in the fit its size is what the wandering makes of none ({}): "
-      "it "
-      "is not named",
+      "{} stood out in {} ({:.1f} sigma), but the fit, whose uncertainties contain the wandering, "
+      "does not find it ({}): it is not named",
       n.effect, n.where, n.d, stats::p_phrase(n.log10_p_of_fit));
 }
 

@@ -25,9 +25,8 @@ std::string reference_text(const joint::Gauge& gauge) {
     return stands +
            fmt::format("its turn about the field known to {:.2g} deg", to_deg(*gauge.reference_turn_sd_rad));
   return stands +
-         "its turn about the field not known and without effect: as far as the table can tell the field kept "
-         "its "
-         "direction";
+         "its turn about the field not known and without effect, because as far as the table can tell the "
+         "field kept its direction";
 }
 
 }  // namespace

@@ -11,9 +11,7 @@ namespace mgtd::calib::report::figures {
 
 std::string good_accuracy(double last_nT_per_m, int poses, const std::optional<double>& wanted_nT_per_m) {
   return fmt::format(
-      "the curve has reached what was wanted{}, and runs along the thin line. Here it ends at {} nT/m after "
-      "{} "
-      "poses.",
+      "the curve has reached what was wanted{}, and falls as 1/√n. Here it ends at {} nT/m after {} poses.",
       wanted_nT_per_m ? fmt::format(", {} nT/m", short_number(*wanted_nT_per_m)) : "",
       short_number(last_nT_per_m), poses);
 }
