@@ -17,8 +17,8 @@ constexpr const char* kFitHelp =
     R"(What may be known about the field, alone or together:
   f_nT, or --field                   its size at every pose
   azimuth_deg, pitch_deg, roll_deg   angles of the table that turned the array
-  ref_x_nT .. ref_z_nT, ref_sd_nT    the field as a vector: without angles in a frame fixed to the sensors (a coil
-                                     cage), with angles that of a reference magnetometer which stands still
+  ref_x_nT .. ref_z_nT, ref_sd_nT    the field as a vector. Without angles: in a frame fixed to the sensors (a coil
+                                     cage). With angles: measured by a reference magnetometer that stands still
                                      beside the table, in axes of its own)";
 
 struct FitArguments {

@@ -66,7 +66,9 @@ std::string residual_change(const nlohmann::json& result, const std::string& arr
                                                        : "refused";
   };
   const std::string before = residual("rms_before_nT"), after = residual("rms_after_nT");
-  return before == after && before == "refused" ? "" : fmt::format("{} {} {} nT", before, arrow, after);
+  const bool fitted = after != "refused";
+  if (!fitted && before == after) return "";
+  return fmt::format("{}{} {} {}{}", before, fitted ? "" : " nT", arrow, after, fitted ? " nT" : "");
 }
 
 }  // namespace mgtd::daemon::cli

@@ -29,8 +29,8 @@ enum class Keeping { steps, nothing };
 [[nodiscard]] Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                                      const nlohmann::json& result);
 
-/// "0.0911 -> 0.0809 nT" of the result of a step, "refused" in the place of a residual where no fit was to be
-/// had; empty where the step tells none.
+/// "0.0911 -> 0.0809 nT" of the result of a step, "0.0911 nT -> refused" where the fit after it is refused;
+/// empty where the step tells no residual.
 [[nodiscard]] std::string residual_change(const nlohmann::json& result, const std::string& arrow);
 
 }  // namespace mgtd::daemon::cli

@@ -27,7 +27,7 @@ constexpr const char* kMaskHelp =
     "Every command on the run file leaves masked poses out and says so; they stay in the file. The reason "
     "is\n"
     "kept with them (mgt model). mgt undo takes the last mask back, mgt unmask takes poses in again.\n"
-    "Poses can be masked while the fit is still refused: one reason may stand beside another.\n"
+    "Poses can be masked even while the fit of the others is still refused.\n"
     "--without POSES of fit, compare, explain, why, next and improve tries it without keeping it.\n\n"
     "  mgt mask run.mgtrun 3 7-9 --why 'a car stood beside the rig'\n"
     "  mgt unmask run.mgtrun 3 7-9\n\n"

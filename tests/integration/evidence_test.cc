@@ -90,7 +90,7 @@ TEST_F(EvidenceOfPrograms, PosesAreMaskedWhileTheFitOfTheOthersIsRefused) {
   EXPECT_EQ(few.at("masked").size(), 152U);
   EXPECT_TRUE(few.at("rms_after_nT").is_null());
   EXPECT_THAT(few.at("refused").get<std::string>(), HasSubstr("poses"));
-  EXPECT_THAT(mgt({"model", file()}).out, HasSubstr("-> refused nT"));
+  EXPECT_THAT(mgt({"model", file()}).out, HasSubstr(" nT -> refused"));
   const json all = ask({"unmask", file(), "6-157"});
   EXPECT_TRUE(all.at("rms_before_nT").is_null());
   EXPECT_GT(all.at("rms_after_nT").get<double>(), 0);
