@@ -21,9 +21,10 @@
 ///
 ///     d_P = R(azimuth, pitch, roll) d_site
 ///
-/// with d_site the mean over the measured poses, before the first of them the inclination and declination of
-/// the configuration, and unknown without either. Offsets of the sensors are in it: a few tenths of a degree,
-/// less than a mark on the map is wide.
+/// with d_site the mean over the measured poses; before the first of them by the inclination of the
+/// configuration and its declination (0 where it has none), and unknown without an inclination. The axes
+/// of the sensors are taken for those of the platform: the map is wrong where sensors are mounted in quarter
+/// turns. Their offsets are in it too: a few tenths of a degree, less than a mark on the map is wide.
 ///
 /// Pure: what happens and the time come in. It fits nothing (accuracy_so_far.h does, on the worker). A run
 /// that is resumed by another life of the daemon has its poses again, not the accuracy and the disturbances
@@ -39,7 +40,9 @@ class CourseRecorder {
   /// Poses behind those that it knows.
   void extend(const plan::RunPlan& plan);
   void measured(const Pose& pose);
+  /// To be measured again.
   void dropped(const std::vector<int>& numbers);
+  /// By a calibration from so many poses; replaces what was known from as many or more.
   void known(int poses, const Gradient& tensor_sd_nT_per_m);
   void expects(std::vector<CourseAccuracy> of_plan) { course_.expected = std::move(of_plan); }
   void not_known(std::string why) { course_.why_unknown = std::move(why); }

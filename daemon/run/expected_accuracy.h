@@ -16,11 +16,12 @@
 ///
 ///     noise^2 = mean over the axes of sd^2 / n  x  dwell of that pose / mean dwell of the plan
 ///
-/// with sd of one sample within the dwell and n samples. Nominal sensors, white noise, no effects.
+/// with sd of one sample within the dwell and n samples (n_eff where the pose tells it). Nominal sensors,
+/// white noise, no effects.
 namespace mgtd::daemon::run {
 
 /// Of the whole plan, at the site and with the field that the pose was measured in. Nothing where the pose
-/// shows no noise.
+/// has no table angles or shows no noise.
 [[nodiscard]] std::optional<calib::design::DesignRequest> planned_design(const config::Config& config,
                                                                          const plan::RunPlan& plan,
                                                                          const Pose& measured);
