@@ -25,9 +25,9 @@
 ///   run.redo             what was entered last is asked for again                            -> RUN
 ///   run.course           what the run has gained so far             -> run_course.h
 ///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
-///   calibrations.list                    ->
-///   {"calibrations":[{"id","state","since","origin","forced","why"}]} calibrations.show    args:
-///   calibration_request.h  -> CAL.json calibrations.accept  args: calibration_request.h  -> {"active"}
+///   calibrations.list    -> {"calibrations":[{"id","state","since","origin","forced","why"}]}
+///   calibrations.show    args: calibration_request.h  -> CAL.json
+///   calibrations.accept  args: calibration_request.h  -> {"active"}
 ///   calibrations.import  args: calibration_request.h  -> {"id","forced"}, and "active" when accepted
 ///   calibrations.reject  args: calibration_request.h  -> {"rejected"}
 ///   calibrations.rollback                             -> {"active"}
