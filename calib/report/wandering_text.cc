@@ -5,6 +5,13 @@
 #include <fmt/ranges.h>
 
 namespace mgtd::calib::report {
+namespace {
+
+std::string with_sd(double value, double sd) {
+  return value < 10 ? fmt::format("{:.2g} +- {:.1g}", value, sd) : fmt::format("{:.0f} +- {:.0f}", value, sd);
+}
+
+}  // namespace
 
 std::string wandering_text(const fit::joint::WanderingEstimate& w) {
   if (!w.any()) return {};
@@ -13,9 +20,9 @@ std::string wandering_text(const fit::joint::WanderingEstimate& w) {
   w.size.maxCoeff(&most);
   const double unit = walks ? 1 : 1000;  // nT or pT
   return fmt::format(
-      "{} of {}, up to {:.2g} +- {:.1g} {} (s{}.{})", walks ? "slow wandering" : "1/f noise",
+      "{} of {}, up to {} {} (s{}.{})", walks ? "slow wandering" : "1/f noise",
       w.where.front() == "all" ? "all offsets" : fmt::format("the offsets of {}", fmt::join(w.where, ", ")),
-      unit * w.size[most], unit * w.sd[most], walks ? "nT per root hour" : "pT/sqrt(Hz) at 1 Hz",
+      with_sd(unit * w.size[most], unit * w.sd[most]), walks ? "nT per root hour" : "pT/sqrt(Hz) at 1 Hz",
       most / 3 + 1, "xyz"[most % 3]);
 }
 

@@ -18,6 +18,8 @@ namespace {
 constexpr double kMinFieldSd_nT = 1e-3;
 /// Field over its uncertainty from which on a vector has a direction, and the error of its size is Gaussian.
 constexpr double kLeastFieldOfReference = 30;
+/// Length of a vector reference over the scalar reference, either way: iron between them makes no more.
+constexpr double kMostOfField = 2;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
 constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
 
@@ -104,14 +106,26 @@ Result<void> check_reference(const PoseTable& table, std::ptrdiff_t with_referen
   const auto weak = std::find_if(table.poses.begin(), table.poses.end(), [&](const Pose& p) {
     return fitted(p) && p.ref_nT->norm() < kLeastFieldOfReference * reference_sd_nT(p);
   });
-  if (weak == table.poses.end()) return {};
-  return fail(
-      ErrorCode::refused,
-      fmt::format("pose {}: the vector of the reference, {:.4g} nT long and known to {:.3g} nT for each "
-                  "component, has no direction (limit {:.0f} times that, {:.3g} nT)",
-                  weak->number, weak->ref_nT->norm(), reference_sd_nT(*weak), kLeastFieldOfReference,
-                  kLeastFieldOfReference * reference_sd_nT(*weak)),
-      "check ref_sd_nT and the unit of ref_x_nT, ref_y_nT and ref_z_nT, or leave this pose out");
+  if (weak != table.poses.end())
+    return fail(
+        ErrorCode::refused,
+        fmt::format("pose {}: the vector of the reference, {:.4g} nT long and known to {:.3g} nT for each "
+                    "component, has no direction (limit {:.0f} times that, {:.3g} nT)",
+                    weak->number, weak->ref_nT->norm(), reference_sd_nT(*weak), kLeastFieldOfReference,
+                    kLeastFieldOfReference * reference_sd_nT(*weak)),
+        "check ref_sd_nT and the unit of ref_x_nT, ref_y_nT and ref_z_nT, or leave this pose out");
+  const auto other_size = std::find_if(table.poses.begin(), table.poses.end(), [&](const Pose& p) {
+    if (!fitted(p) || !p.f_nT) return false;
+    const double ratio = p.ref_nT->norm() / *p.f_nT;
+    return ratio > kMostOfField || ratio < 1 / kMostOfField;
+  });
+  if (other_size != table.poses.end())
+    return fail(ErrorCode::refused,
+                fmt::format("pose {}: the vector of the reference is {:.4g} nT long where f_nT is {:.4g} nT "
+                            "(limit a factor of {:.0f})",
+                            other_size->number, other_size->ref_nT->norm(), *other_size->f_nT, kMostOfField),
+                "check the units of ref_x_nT, ref_y_nT, ref_z_nT and of f_nT");
+  return {};
 }
 
 }  // namespace

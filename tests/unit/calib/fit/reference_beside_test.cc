@@ -173,6 +173,9 @@ TEST(ReferenceBeside, WhatCannotBeIsRefused) {
   EXPECT_THAT(refusal(weak),
               HasSubstr("pose 8: the vector of the reference, 3.742 nT long and known to 0.2 nT for each "
                         "component, has no direction (limit 30 times that, 6 nT)"));
+  PoseTable microtesla = table;
+  for (Pose& pose : microtesla.poses) pose.f_nT = pose.ref_nT->norm(), *pose.ref_nT /= 1000;
+  EXPECT_THAT(refusal(microtesla), HasSubstr("(limit a factor of 2)"));
 }
 
 TEST(ReferenceBeside, OneThatTurnsWithTheSensorsIsRefused) {
