@@ -34,7 +34,7 @@ std::string what_followed(const RunStatus& status, int pose) {
   if (status.state == RunState::paused && !status.goes_on) return "the run paused";
   if (status.state == RunState::paused) return "the run waited for a device";
   if (is_active(status.state) && status.state != RunState::aborting)
-    return fmt::format("pose {} was measured again", pose);
+    return fmt::format("pose {} is measured again", pose);
   return "the run was ended";
 }
 

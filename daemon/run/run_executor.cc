@@ -190,6 +190,7 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   warm_start_.reset();
   learning_ = false;
   learning_job_.request_stop();
+  expecting_job_.request_stop();
   solving_job_.request_stop();
   solved_.reset();
   ++generation_;

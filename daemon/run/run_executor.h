@@ -127,7 +127,8 @@ class RunExecutor {
   CourseRecorder course_;
   std::shared_ptr<const calib::fit::joint::JointState> warm_start_;  ///< of the last fit while measuring
   bool learning_{false};                                             ///< the worker is at such a fit
-  std::stop_source learning_job_{std::nostopstate}, solving_job_{std::nostopstate};
+  std::stop_source learning_job_{std::nostopstate}, expecting_job_{std::nostopstate},
+      solving_job_{std::nostopstate};
   std::vector<RunJudgement> judgements_;  ///< of the run, as its file has them
   std::optional<calib::calibration::Calibration> solved_;
   std::optional<Interrupted> interrupted_;

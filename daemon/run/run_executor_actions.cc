@@ -69,11 +69,11 @@ void RunExecutor::learn_accuracy() {
 void RunExecutor::expect_accuracy() {
   auto request = planned_design(config_, run_.fsm()->plan(), poses_.poses.front());
   if (!request) return;
-  worker_.run([request = *std::move(request)](
-                  const std::stop_token& stop) { return expected_accuracy(request, stop); },
-              [this, generation = generation_](std::vector<CourseAccuracy> expected) {
-                if (generation == generation_) course_.expects(std::move(expected));
-              });
+  expecting_job_ = worker_.run([request = *std::move(request)](
+                                   const std::stop_token& stop) { return expected_accuracy(request, stop); },
+                               [this, generation = generation_](std::vector<CourseAccuracy> expected) {
+                                 if (generation == generation_) course_.expects(std::move(expected));
+                               });
 }
 
 void RunExecutor::act(const StorePath& action, Stamp now) {
@@ -88,6 +88,7 @@ void RunExecutor::act(const StoreChecks& action, Stamp now) {
 
 void RunExecutor::act(const JudgeRun&, Stamp) {
   learning_job_.request_stop();
+  expecting_job_.request_stop();
   const LooksLeft left = left_after(judgements_, file_->header().options.until_explained_min.value_or(0));
   solving_job_ = worker_.run(
       [path = file_->path(), left](std::stop_token stop) {
@@ -111,6 +112,7 @@ void RunExecutor::act(const StoreJudgement& action, Stamp now) {
 
 void RunExecutor::act(const StartSolve&, Stamp) {
   learning_job_.request_stop();  // what it would say is part of what follows
+  expecting_job_.request_stop();
   solving_job_ =
       worker_.run([path = file_->path(),
                    solve = hooks_.solve](std::stop_token stop) { return solve(path, std::move(stop)); },

@@ -25,11 +25,11 @@ TEST(CourseText, SaysWhatWasGainedAndWhatDisturbed) {
                           .limit_nT = 0.5,
                           .seen_by = "array",
                           .lasted_s = 7.2,
-                          .then = "pose 2 was measured again"}};
+                          .then = "pose 2 is measured again"}};
   const std::string text = course_text(to_json(course));
   EXPECT_THAT(text, HasSubstr("     18 poses  0.5 nT/m\n")) << text;
   EXPECT_THAT(text, HasSubstr("     60 poses  0.15 nT/m\n")) << text;
-  EXPECT_THAT(text, HasSubstr("pose 2: 12 nT (limit 0.5 nT), 7 s; pose 2 was measured again\n")) << text;
+  EXPECT_THAT(text, HasSubstr("pose 2: 12 nT (limit 0.5 nT), 7 s; pose 2 is measured again\n")) << text;
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(CourseRecorder, ADisturbanceLastsUntilTheRunGoesOn) {
   r.recorder.shows(showing(RunState::moving), second(17));
   course = r.recorder.course();
   EXPECT_EQ(course.disturbances[0].lasted_s, 7);
-  EXPECT_EQ(course.disturbances[0].then, "pose 2 was measured again");
+  EXPECT_EQ(course.disturbances[0].then, "pose 2 is measured again");
   r.recorder.shows(showing(RunState::paused), second(30));
   EXPECT_EQ(r.recorder.course().disturbances[0].lasted_s, 7) << "what comes later is not of it";
 }
