@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tests/blind/planted.h"
+#include "tests/blind/real_draw.h"
 #include "tests/rig/effects/temperature_law.h"
 
 namespace mgtd::calib::testing {
@@ -14,7 +15,6 @@ namespace {
 
 using rig::Gross;
 using rig::Scenario;
-using Random = std::mt19937_64;
 
 /// Changes what the plain rig is; `plain` is its run, for the times of the poses.
 using Change = std::function<void(Stage&, const PoseTable& plain, Random&)>;
@@ -71,33 +71,6 @@ RealKind noise(std::string name, std::string what, void (*change)(Scenario&), Po
   return kind(
       std::move(name), std::move(what), Must::pass, {}, true,
       [change](Stage& stage, const PoseTable&, Random&) { change(stage.scenario); }, poses);
-}
-
-double between(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-double sign(Random& random) { return random() % 2 == 0 ? 1 : -1; }
-
-std::vector<double> direction(Random& random, std::size_t count, double length) {
-  std::normal_distribution<double> normal;
-  std::vector<double> out(count);
-  double square = 0;
-  for (double& v : out) {
-    v = normal(random);
-    square += v * v;
-  }
-  for (double& v : out) v *= length / std::sqrt(square);
-  return out;
-}
-std::array<double, 3> vector(Random& random, double length) {
-  const auto v = direction(random, 3, length);
-  return {v[0], v[1], v[2]};
-}
-
-std::string sensor_at_random(Random& random) { return fmt::format("s{}", 1 + random() % 4); }
-std::string axis_at_random(Random& random) {
-  const std::string sensor = sensor_at_random(random);
-  return fmt::format("{}.{}", sensor, "xyz"[random() % 3]);
 }
 
 void plant(Scenario& scenario, const Planted& effect) { scenario.effects.push_back(make_planted(effect)); }
@@ -244,6 +217,19 @@ Planted dipole(Random& random) {
   return {"site.dipole", "all", {moment[0], moment[1], moment[2], at[0], at[1], at[2]}};
 }
 
+Planted gradient(Random& random) { return {"site.gradient", "all", direction(random, 5, 100)}; }
+Planted curvature(Random& random) { return {"site.curvature", "all", direction(random, 7, 150)}; }
+
+/// Two sources at the site.
+RealKind pair(std::string name, std::string what, std::vector<std::string> right, Planted (*one)(Random&),
+              Planted (*other)(Random&)) {
+  return kind(std::move(name), std::move(what), Must::name, std::move(right), false,
+              [one, other](Stage& stage, const PoseTable&, Random& random) {
+                plant(stage.scenario, one(random));
+                plant(stage.scenario, other(random));
+              });
+}
+
 /// One effect on one axis, its size given, its sign and place not.
 RealKind law(std::string name, std::string what, const std::string& effect, double size) {
   return kind(std::move(name), std::move(what), Must::name, {effect}, false,
@@ -261,6 +247,11 @@ std::vector<RealKind> laws() {
            }),
       kind("dipole", "a dipole of 3 A m2, 1 to 2 m away", Must::name, {"site.dipole"}, false,
            [](Stage& stage, const PoseTable&, Random& random) { plant(stage.scenario, dipole(random)); }),
+      pair("two-dipoles", "two dipoles of 3 A m2, 1 to 2 m away", {"site.dipole"}, &dipole, &dipole),
+      pair("dipole-gradient", "a dipole of 3 A m2, 1 to 2 m away, in a gradient of 100 nT/m",
+           {"site.dipole", "site.gradient"}, &dipole, &gradient),
+      pair("gradient-curvature", "a gradient of 100 nT/m and a curvature of 150 nT/m2",
+           {"site.gradient", "site.curvature"}, &gradient, &curvature),
       law("gain-drift-209", "gain of one axis drifts, 209 ppm/h", "axis.gain.drift", 209),
       law("offset-drift-50", "offset of one axis drifts, 50 nT/h", "axis.offset.drift", 50),
       law("gain-temperature-300", "gain of one axis follows temperature, 300 ppm/degC",
