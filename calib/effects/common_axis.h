@@ -9,7 +9,8 @@ namespace mgtd::calib::effects {
 
 [[nodiscard]] bool share_an_axis(const Where& a, const Where& b);
 
-/// Effects of site, table and platform, which have no axis, are the same law wherever they act.
+/// Effects of site, table and platform, which have no axis, are the same law wherever they act, but for
+/// dipoles whose places differ: those are two sources.
 [[nodiscard]] bool same_law_on_a_common_axis(const Effect& a, const Effect& b);
 
 }  // namespace mgtd::calib::effects

@@ -77,17 +77,17 @@ std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds) {
 
 /// One law on one axis with two values of its searched number.
 bool several_steps(const std::vector<Round>& rounds) {
-  std::vector<effects::EffectSpec> seen;
+  std::vector<effects::EffectPtr> seen;
   for (const Round& round : rounds) {
     for (const effects::EffectPtr& effect : round.effects) {
       const auto spec = effects::EffectSpec::parse(effect->spec());
       if (!spec) return true;
-      for (const effects::EffectSpec& other : seen) {
-        const bool together =
-            !spec->where || !other.where || effects::share_an_axis(*spec->where, *other.where);
-        if (spec->name == other.name && together && spec->parameters != other.parameters) return true;
+      for (const effects::EffectPtr& earlier : seen) {
+        const auto other = effects::EffectSpec::parse(earlier->spec());
+        if (effects::same_law_on_a_common_axis(*effect, *earlier) && spec->parameters != other->parameters)
+          return true;
       }
-      seen.push_back(*spec);
+      seen.push_back(effect);
     }
   }
   return false;

@@ -10,6 +10,7 @@
 #include "calib/criticism/search/forward_step.h"
 #include "calib/criticism/search/nonlinear_parameters.h"
 #include "calib/criticism/search/second_look.h"
+#include "calib/criticism/search/site_pair.h"
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/judgement.h"
 #include "calib/design/next_measurement.h"
@@ -150,16 +151,7 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
     report.next = design::next_measurements(search.table, search.fit, search.joint, round.added).steps;
     report.candidates[f].alternatives = round.added.alternatives;
   }
-  const double table_sd_rad = search.fit.table_sd_rad;
-  round.chi2_before = tests::chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
-  round.rms_before_nT = residual_of(search.fit);
-  search.joint = std::move(wider);
-  round.model = search.joint.effects;
-  search.judge_anew(*refit);
-  round.fit = std::make_shared<const fit::joint::JointFit>(search.fit);
-  round.chi2_after = tests::chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
-  round.rms_after_nT = residual_of(search.fit);
-  report.rounds.push_back(std::move(round));
+  add_round(std::move(round), std::move(wider), *refit, search, report);
   return true;
 }
 
@@ -204,6 +196,22 @@ bool add_winner(EffectSearch& search, ExplainReport& report) {
   return false;
 }
 
+bool of_site(const effects::EffectPtr& effect) { return effect->level() == effects::Level::site; }
+
+/// Whether two rounds may stand for a pair of sources at the site that is neither: they leave something, or
+/// both are of the site and are no such pair (a step of the site soon after the start is nearly one that was
+/// always there), or something else could stand in the place of one.
+bool may_be_a_pair(const EffectSearch& search, const ExplainReport& report) {
+  if (search.pairs_tried || report.rounds.size() != 2 || !search.unknown.empty() ||
+      search.criticism.noise.wandering.any())
+    return false;
+  if (search.criticism.rejects()) return true;
+  const std::vector<effects::EffectPtr> effects = effects_of(report.rounds);
+  const bool open = std::any_of(report.rounds.begin(), report.rounds.end(),
+                                [](const Round& round) { return !round.possible.empty(); });
+  return std::all_of(effects.begin(), effects.end(), of_site) && (open || !is_site_pair(effects));
+}
+
 }  // namespace
 
 void EffectSearch::judge_anew(const fit::joint::JointFit& refit) {
@@ -217,10 +225,29 @@ double residual_of(const fit::joint::JointFit& fit) {
   return fit::joint::pose_residuals(fit.problem, fit.state).residual_nT();
 }
 
+void add_round(Round round, fit::joint::JointOptions wider, const fit::joint::JointFit& refit,
+               EffectSearch& search, ExplainReport& report) {
+  const double table_sd_rad = search.fit.table_sd_rad;
+  round.chi2_before = tests::chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
+  round.rms_before_nT = residual_of(search.fit);
+  search.joint = std::move(wider);
+  round.model = search.joint.effects;
+  search.judge_anew(refit);
+  round.fit = std::make_shared<const fit::joint::JointFit>(search.fit);
+  round.chi2_after = tests::chi2_at_stated_noise(search.fit, search.criticism, table_sd_rad),
+  round.rms_after_nT = residual_of(search.fit);
+  report.rounds.push_back(std::move(round));
+}
+
 bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
+  const auto notes = static_cast<std::ptrdiff_t>(report.notes.size());
   for (int round = 0; round < most && search.criticism.rejects_named(); ++round) {
     search.one_pose.reset();
     if (!add_winner(search, report)) break;
+    if (!may_be_a_pair(search, report)) continue;
+    search.pairs_tried = true;
+    if (site_pair_instead(search, report) || report.rounds.empty())
+      report.notes.erase(report.notes.begin() + notes, report.notes.end());
   }
   if (!search.one_pose || !search.criticism.rejects_named()) return true;
   report.notes.emplace_back(*search.one_pose);

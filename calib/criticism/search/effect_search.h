@@ -29,6 +29,7 @@ struct EffectSearch {
   std::map<std::string, tests::Candidate> absurd{};
   std::optional<EvidenceOfOnePose> one_pose{};  ///< of the first effect whose evidence is that of one pose
   std::set<std::string> unknown{};  ///< axes and sensors with a law of no library: closed to effects
+  bool pairs_tried{false};          ///< site_pair.h
   bool slow{false};                 ///< the residual follows time or temperature: no memory of a turn does
 
   /// Of a fit of `joint`; the rates of false alarms stay those that are known.
@@ -36,6 +37,11 @@ struct EffectSearch {
 };
 
 [[nodiscard]] double residual_of(const fit::joint::JointFit& fit);
+
+/// Takes the fit with what `round` adds as that of the model, which is judged anew. Fills in what the round
+/// did.
+void add_round(Round round, fit::joint::JointOptions wider, const fit::joint::JointFit& refit,
+               EffectSearch& search, ExplainReport& report);
 
 /// Adds what stands out, `most` rounds of it. False: nothing does but what rests on one pose.
 [[nodiscard]] bool add_rounds(int most, EffectSearch& search, ExplainReport& report);

@@ -72,4 +72,16 @@ void refine_place(const fit::joint::JointProblem& problem, const fit::joint::Joi
   family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
 }
 
+void put_at_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                  const Residual& residual, const NoiseReference& noise, const effects::EffectPtr& dipole,
+                  ScoredFamily& family) {
+  CandidateEffect& wider = widened(family);
+  add_variant(wider.values[family.winner().variant], dipole,
+              signature_of(residual, effect_rows(problem, state, dipole)), noise, wider, family);
+  const std::size_t last = family.signatures.size() - 1;
+  for (std::size_t i = 0; i < family.scores.size(); ++i)
+    if (family.scores[i].variant == last) family.best = i;
+  family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
+}
+
 }  // namespace mgtd::calib::criticism::tests

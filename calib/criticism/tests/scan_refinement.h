@@ -17,4 +17,9 @@ void refine(const fit::joint::JointProblem& problem, const fit::joint::JointStat
 void refine_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
                   const Residual& residual, const NoiseReference& noise, ScoredFamily& family);
 
+/// Adds a dipole at its place, with its own best moment, to a family that has one, as its winner.
+void put_at_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                  const Residual& residual, const NoiseReference& noise, const effects::EffectPtr& dipole,
+                  ScoredFamily& family);
+
 }  // namespace mgtd::calib::criticism::tests
