@@ -187,7 +187,8 @@ void tell_coefficients(const FoundFormula& f, std::string& out) {
 std::string shape_text(const discovery::LawShape& s) {
   std::vector<std::string> points;
   double widest = 0;
-  for (std::size_t i = 0; i < s.x.size(); i += (s.x.size() - 1) / 4) {
+  const std::size_t step = std::max<std::size_t>(1, (s.x.size() - 1) / 4);
+  for (std::size_t i = 0; i < s.x.size(); i += step) {
     points.push_back(fmt::format("{:+.2g} nT at {:.4g}", s.y_nT[i], s.x[i]));
     widest = std::max(widest, s.simultaneous * s.sd_nT[i]);
   }

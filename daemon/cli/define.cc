@@ -119,13 +119,6 @@ double disagreement(const store::Definition& before, const calib::criticism::tes
   return out;
 }
 
-Result<void> keep(KeptRun& run, const store::Definition& definition) {
-  std::vector<store::Definition> all = run.source.definitions;
-  std::erase_if(all, [&](const store::Definition& d) { return d.name == definition.name; });
-  all.push_back(definition);
-  return run.file->set_document(store::kFormulasDocument, store::to_text(all));
-}
-
 /// What this run says of a formula from another one.
 struct Confirmation {
   bool asked{false}, given{false};
@@ -152,6 +145,7 @@ void print(const Session& session, const DefineArguments& args,
     out["confirmed"] = c.asked ? json(c.given) : json();
     out["kept"] = !nothing_left(x) && !args.tried;
     out["tried"] = args.tried;
+    out["discovered"] = definition.discovered ? json(definition.discovered->text()) : json();
     out["text"] = calib::report::to_text(x);
     print_json(out);
     return;
@@ -166,6 +160,7 @@ void print(const Session& session, const DefineArguments& args,
     fmt::print("tried: nothing is kept\n");
     return;
   }
+  if (definition.discovered) fmt::print("{}\n", definition.discovered->text());
   if (!c.asked) {
     fmt::print(
         "exploratory: these poses suggested it, so their p-value proves nothing; a second run does\n"
@@ -217,7 +212,7 @@ int run_define(const Session& session, const DefineArguments& args) {
     if (!spec) return report(session, spec.error());
     if (const auto ok = calib::effects::formula::check_angles(args.expression); !ok)
       return report(session, ok.error());
-    definition = {args.name, spec->text(), here, {}, {}};
+    definition = {args.name, spec->text(), here, {}, {}, {}};
   } else {
     auto other = definition_from(args.from, args.name);
     if (!other) return report(session, other.error());
@@ -245,7 +240,7 @@ int run_define(const Session& session, const DefineArguments& args) {
   if (!nothing_left(*x) && !args.tried) {
     for (const store::Definition& d : run->source.definitions)
       if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);
-    if (auto ok = keep(*run, definition); !ok) return report(session, ok.error());
+    if (auto ok = keep_formula(*run->file, run->source, definition); !ok) return report(session, ok.error());
   }
   print(session, args, *x, definition, confirmation);
   return nothing_left(*x) || (confirmation.asked && !confirmation.given) ? 1 : 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -7,11 +8,15 @@
 #include "calib/report/discovery_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/keep_discovery.h"
 #include "daemon/cli/searched_model.h"
 #include "daemon/cli/work_progress.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::daemon::cli {
 namespace {
+
+using nlohmann::json;
 
 constexpr const char* kDiscoverHelp =
     "Looks for a law that is in no library: tries every formula of a fixed grammar on every axis, sensor "
@@ -19,7 +24,8 @@ constexpr const char* kDiscoverHelp =
     "on the array, and says which one the readings follow, how sure that is, and what else it could be.\n\n"
     "  mgt discover run.mgtrun\n"
     "  mgt discover run.mgtrun --with axis.gain.temperature\n"
-    "  mgt discover run.mgtrun --spec        the effects, as mgt fit --with reads them\n\n"
+    "  mgt discover run.mgtrun --spec        the effects, as mgt fit --with reads them\n"
+    "  mgt discover run.mgtrun --keep        the formulas stay in the run file, the search in its report\n\n"
     "PASS         nothing stands out from noise\n"
     "LAW          one formula, nothing left after it\n"
     "LAW-SET      several formulas that these poses do not tell apart\n"
@@ -33,14 +39,28 @@ constexpr const char* kDiscoverHelp =
 struct DiscoverArguments {
   std::string run;
   int draws{2000};
-  bool spec{false}, quick{false};
+  bool spec{false}, quick{false}, keep{false};
   std::shared_ptr<FitFlags> flags;
 };
 
+void tell_kept(const std::string& run, const std::vector<std::string>& names) {
+  if (names.empty()) {
+    fmt::print("the search is kept in {}: mgt report shows it; there is no formula to keep\n", run);
+    return;
+  }
+  fmt::print(
+      "kept in {}: {}; mgt add puts it into the model, mgt define SECOND.mgtrun {} --from {} says "
+      "whether a second run confirms it\n",
+      run, fmt::join(names, ", "), names.front(), shell_word(run));
+}
+
 int run_discover(const Session& session, const DiscoverArguments& args) {
   using calib::discovery::Verdict;
-  const auto source = read_source(args.run, *args.flags);
+  auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
+  if (args.keep) {  // refused before the search, not after it
+    if (const auto file = open_to_keep(args.run, *source); !file) return report(session, file.error());
+  }
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
   const auto found = with_progress("discover", *options, [&](const calib::fit::FitOptions& told) {
@@ -49,14 +69,26 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
   });
   if (!found) return report(session, found.error());
   const auto before = commands_to_model(options->effects, *source, args.run);
+  json object;
+  if (session.json || args.keep) object = calib::report::to_json(*found, args.run, before);
+  std::vector<std::string> names;
+  if (args.keep) {
+    auto file = open_to_keep(args.run, *source);
+    if (!file) return report(session, file.error());
+    auto formulas = keep_discovery(*file, *source, *options, *found, object);
+    if (!formulas) return report(session, formulas.error());
+    names = *std::move(formulas);
+    object["kept"] = names;
+  }
   if (session.json) {
-    print_json(calib::report::to_json(*found, args.run, before));
+    print_json(object);
   } else if (args.spec) {
     for (const auto& law : found->laws)
       for (const std::string& spec : law.formulas.front().specs) fmt::print("{}\n", spec);
   } else {
     fmt::print("{}", calib::report::to_text(*found, args.run, before));
   }
+  if (args.keep && !session.json) tell_kept(args.run, names);
   return found->verdict == Verdict::shape_only || found->verdict == Verdict::noise_like ? 1 : 0;
 }
 
@@ -73,7 +105,13 @@ void add_discover(CLI::App& app, Session& session) {
       ->check(CLI::Range(200, 100'000))
       ->capture_default_str();
   command->add_flag("--spec", args->spec, "only the effects, one a line, as --with reads them");
-  command->add_flag("--quick", args->quick, "without the fit with the law, the folds and the halves");
+  CLI::Option* const quick =
+      command->add_flag("--quick", args->quick, "without the fit with the law, the folds and the halves");
+  command
+      ->add_flag("--keep", args->keep,
+                 "keep the leading formulas, with their probability and what else they could be, and the "
+                 "search for mgt report")
+      ->excludes(quick);
   args->flags = add_model_flags(command);
 }
 

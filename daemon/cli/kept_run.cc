@@ -7,6 +7,7 @@
 
 #include <chrono>
 
+#include "daemon/store/user_formulas.h"
 #include "proto/run_status.h"
 
 namespace mgtd::daemon::cli {
@@ -25,6 +26,24 @@ WallTime now() {
 
 }  // namespace
 
+Result<store::RunFile> open_to_keep(const std::string& path, const store::PoseSource& source) {
+  if (!source.header) {
+    return fail(
+        ErrorCode::usage, path + " is a pose table, which keeps no model",
+        fmt::format("make a run file of it (mgt import {} -o RUN.mgtrun), or use --with in each command",
+                    path));
+  }
+  auto file = store::RunFile::open(path, store::Access::resume);
+  if (!file) return file;
+  const auto state = file->state();
+  if (!state) return tl::unexpected(state.error());
+  if (is_active(state->state)) {
+    return fail(ErrorCode::state, fmt::format("{} is still being measured ({})", path, name(state->state)),
+                "wait for its end, or end it: mgt run finish");
+  }
+  return file;
+}
+
 Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags, Keeping keeping) {
   auto source = store::read_run(path);
   if (!source) return tl::unexpected(source.error());
@@ -34,20 +53,8 @@ Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags, Ke
     if (!options) return tl::unexpected(options.error());
     return KeptRun{std::nullopt, std::move(*source), std::move(*options)};
   }
-  if (!source->header) {
-    return fail(
-        ErrorCode::usage, path + " is a pose table, which keeps no model",
-        fmt::format("make a run file of it (mgt import {} -o RUN.mgtrun), or use --with in each command",
-                    path));
-  }
-  auto file = store::RunFile::open(path, store::Access::resume);
+  auto file = open_to_keep(path, *source);
   if (!file) return tl::unexpected(file.error());
-  const auto state = file->state();
-  if (!state) return tl::unexpected(state.error());
-  if (is_active(state->state)) {
-    return fail(ErrorCode::state, fmt::format("{} is still being measured ({})", path, name(state->state)),
-                "wait for its end, or end it: mgt run finish");
-  }
   auto options = fit_options(flags, *source);
   if (!options) return tl::unexpected(options.error());
   return KeptRun{std::move(*file), std::move(*source), std::move(*options)};
@@ -57,6 +64,14 @@ Result<void> keep_step(KeptRun& run, const std::string& action, const std::strin
                        const nlohmann::json& result) {
   return run.file->append_model_step(
       {now(), who(), action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+}
+
+Result<void> keep_formula(store::RunFile& file, store::PoseSource& source,
+                          const store::Definition& definition) {
+  std::vector<store::Definition>& all = source.definitions;
+  std::erase_if(all, [&](const store::Definition& d) { return d.name == definition.name; });
+  all.push_back(definition);
+  return file.set_document(store::kFormulasDocument, store::to_text(all));
 }
 
 std::string residual_change(const nlohmann::json& result, const std::string& arrow) {

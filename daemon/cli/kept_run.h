@@ -22,12 +22,19 @@ struct KeptRun {
 /// still being measured.
 enum class Keeping { steps, nothing };
 
+/// The file that `source` was read from, to keep something in it. Refuses what KeptRun refuses.
+[[nodiscard]] Result<store::RunFile> open_to_keep(const std::string& path, const store::PoseSource& source);
+
 [[nodiscard]] Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags,
                                             Keeping keeping = Keeping::steps);
 
 /// The next step, by this user with this version, now.
 [[nodiscard]] Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                                      const nlohmann::json& result);
+
+/// Keeps a user's formula in the file and in `source`; one of the same name gives way.
+[[nodiscard]] Result<void> keep_formula(store::RunFile& file, store::PoseSource& source,
+                                        const store::Definition& definition);
 
 /// "0.0911 -> 0.0809 nT" of the result of a step, "0.0911 nT -> refused" where the fit after it is refused;
 /// empty where the step tells no residual.

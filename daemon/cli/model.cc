@@ -211,7 +211,10 @@ int run_model(const Session& session, const ModelArguments& args) {
     for (const store::ModelStep& s : *steps) history.push_back(step_json(s));
     json formulas = json::array();
     for (const store::Definition& d : source->definitions)
-      formulas.push_back({{"name", d.name}, {"spec", d.spec}, {"exploratory", d.exploratory()}});
+      formulas.push_back({{"name", d.name},
+                          {"spec", d.spec},
+                          {"exploratory", d.exploratory()},
+                          {"discovered", d.discovered ? json(d.discovered->text()) : json()}});
     print_json({{"schema", "mgt.model/1"},
                 {"model", model},
                 {"history", std::move(history)},
@@ -228,7 +231,8 @@ int run_model(const Session& session, const ModelArguments& args) {
   fmt::print("the model: {}\n", model_text(model));
   for (const store::MaskedPose& m : masked) fmt::print("masked: pose {}: {}\n", m.number, m.because);
   for (const store::Definition& d : source->definitions)
-    fmt::print("formula: {}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "");
+    fmt::print("formula: {}{}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "",
+               d.discovered ? "; " + d.discovered->text() : "");
   return 0;
 }
 

@@ -2,6 +2,7 @@
 #include "daemon/cli/report_content.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "calib/criticism/search/model_stage.h"
 #include "calib/criticism/tests/pose_points.h"
 #include "calib/fit/joint/effect_impact.h"
+#include "calib/poses/pose_table.h"
 #include "calib/report/explain_figures.h"
 #include "calib/report/panel_figures.h"
 #include "calib/report/run_figures.h"
@@ -17,6 +19,7 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/formulas.h"
+#include "daemon/store/kept_discovery.h"
 #include "daemon/store/run_file.h"
 #include "proto/shell_word.h"
 
@@ -146,6 +149,27 @@ std::vector<run::RunJudgement> judgements_of(const std::string& run, const store
   return judgements ? *std::move(judgements) : std::vector<run::RunJudgement>{};
 }
 
+/// What `mgt discover --keep` found on this run, at whatever model it had then.
+Result<void> read_laws(const ReportWishes& wishes, ReportContent& c) {
+  if (!c.source.header) return {};
+  const auto file = store::RunFile::open(wishes.run, store::Access::read_only);
+  if (!file) return tl::unexpected(file.error());
+  const auto text = file->document(store::kDiscoveryDocument);
+  if (!text) return tl::unexpected(text.error());
+  if (!*text) return {};
+  const auto kept = store::discovery_from_text(**text);
+  if (!kept) return tl::unexpected(kept.error());
+  auto pages = calib::report::law_pages(kept->found);
+  if (!pages) return tl::unexpected(pages.error());
+  c.laws = *std::move(pages);
+  c.laws_note = fmt::format("Searched {} beside {}.", kept->at,
+                            kept->model.empty() ? "the sensors' parameters alone"
+                                                : fmt::format("{}", fmt::join(kept->model, ", ")));
+  if (kept->data_hash != calib::poses::data_hash(c.source.table))
+    c.laws_note += " The poses of this report are others than those that were searched.";
+  return {};
+}
+
 }  // namespace
 
 std::string report_command(const ReportWishes& w, const FitFlags& f) {
@@ -202,6 +226,7 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
   if (!out.explained.model.empty()) draw_effects(*options, out);
   draw_search(search, out);
   if (auto drawn = draw_earlier(wishes, flags, out); !drawn) return tl::unexpected(drawn.error());
+  if (auto read = read_laws(wishes, out); !read) return tl::unexpected(read.error());
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "calib/criticism/tests/comparison.h"
 #include "calib/fit/method_choice/fit.h"
 #include "calib/report/figures/figure.h"
+#include "calib/report/law_pages.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/run/run_judgement.h"
 #include "daemon/store/model_history.h"
@@ -37,6 +38,8 @@ struct ReportContent {
   std::vector<run::RunJudgement> judgements;  ///< of a run that went on until it was explained
   std::vector<store::ModelStep> history;
   std::vector<calib::criticism::search::Choice> doubts;  ///< what is open about effects of the kept model
+  std::vector<calib::report::LawPage> laws{};            ///< that `mgt discover --keep` found
+  std::string laws_note{};                               ///< of which poses, and when, where there are any
   std::string command;                                   ///< that makes this report again
 
   // Figures, in the order of the page.

@@ -229,9 +229,10 @@ std::string report_page(const ReportContent& c) {
       "report</title><style>{1}</style></head><body><header>"
       "<h1>Calibration report</h1><div class=\"quiet\">{0} · calibration {2} · {3}</div></header><main>",
       escaped(c.run), html_style(), escaped(c.fit.calibration.id), escaped(c.fit.calibration.software));
-  for (const auto section : {verdict_section, measured_section, noise_section, limits_section, rounds_section,
-                             waterfall_section, residual_section, candidates_section, errors_section,
-                             parameters_section, next_section, judgements_section, history_section})
+  for (const auto section :
+       {verdict_section, measured_section, noise_section, limits_section, rounds_section, waterfall_section,
+        residual_section, candidates_section, laws_section, errors_section, parameters_section, next_section,
+        judgements_section, history_section})
     out += section(c);
   return out + fmt::format(
                    "</main><footer>Made by <code>{}</code>. This page loads nothing and runs "

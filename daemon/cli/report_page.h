@@ -20,6 +20,7 @@ namespace mgtd::daemon::cli {
 [[nodiscard]] std::string waterfall_section(const ReportContent& content);
 [[nodiscard]] std::string residual_section(const ReportContent& content);
 [[nodiscard]] std::string candidates_section(const ReportContent& content);
+[[nodiscard]] std::string laws_section(const ReportContent& content);
 [[nodiscard]] std::string errors_section(const ReportContent& content);
 [[nodiscard]] std::string parameters_section(const ReportContent& content);
 [[nodiscard]] std::string next_section(const ReportContent& content);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second half of the report: candidates, what is not known, and the history of the model.
+// The second half of the report: candidates, laws, what is not known, and the history of the model.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,6 +27,18 @@ std::string candidates_section(const ReportContent& c) {
              "no candidate of any size. A name is a hypothesis about the cause; what is measured is that the "
              "residual "
              "behaves like it.");
+}
+
+std::string laws_section(const ReportContent& c) {
+  if (c.laws.empty()) return "";
+  std::string out = "<h2>Laws that are in no library</h2><p>" + escaped(c.laws_note) +
+                    " A formula says what the readings depend on, never why.</p>";
+  for (const calib::report::LawPage& law : c.laws) {
+    out += "<h3>" + escaped(law.title) + "</h3>" + calib::report::figures::table_html(law.formulas, true);
+    if (law.curve) out += figures_html({*law.curve});
+    for (const std::string& note : law.notes) out += "<p class=\"quiet\">" + escaped(note) + "</p>";
+  }
+  return out + html_good("one formula with P near 1 that a second run confirms (mgt define --from).");
 }
 
 std::string rounds_section(const ReportContent& c) {

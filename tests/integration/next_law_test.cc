@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/checkout.h"
@@ -127,6 +128,40 @@ TEST_F(NextLaw, NoFormulaIsLookedForWhereNothingRemains) {
   EXPECT_EQ(explained.at("verdict"), "PASS");
   EXPECT_TRUE(explained.at("law").is_null());
   EXPECT_TRUE(ask({"improve", table}).at("law").is_null());
+}
+
+/// A discovered law stays with the run, with its doubt, and a second run confirms it.
+TEST_F(NextLaw, WhatDiscoverKeepsIsConfirmedByASecondRunAndStandsInTheReport) {
+  const std::string first = file("first.csv"), second = file("second.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13), "-o", first}).exit_code, 0);
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(113), "-o", second}).exit_code, 0);
+  const Finished refused = run({"mgt", "discover", first, "--keep"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("is a pose table, which keeps no model"));
+  const std::string run1 = file("first.mgtrun"), run2 = file("second.mgtrun");
+  ASSERT_EQ(run({"mgt", "import", first, "-o", run1}).exit_code, 0);
+  ASSERT_EQ(run({"mgt", "import", second, "-o", run2}).exit_code, 0);
+
+  const json found = ask({"discover", run1, "--keep"});
+  EXPECT_EQ(found.at("kept"), json::array({"law1"}));
+  const json formula = ask({"model", run1}).at("formulas").at(0);
+  EXPECT_EQ(formula.at("name"), "law1");
+  EXPECT_TRUE(formula.at("exploratory"));
+  EXPECT_THAT(formula.at("discovered").get<std::string>(), HasSubstr("(LAW-SET, P 0.8"));
+
+  const json confirmed = ask({"define", run2, "law1", "--from", run1});
+  EXPECT_EQ(confirmed.at("confirmed"), true);
+  EXPECT_EQ(confirmed.at("discovered"), formula.at("discovered"));
+  EXPECT_EQ(ask({"discover", run1, "--keep"}).at("kept"), json::array({"law1"})) << "the same again";
+  ask({"add", "law1", run1});
+  EXPECT_EQ(ask({"model", run1}).at("model").size(), 1U);
+
+  const std::string page = file("report.html");
+  ASSERT_EQ(run({"mgt", "report", run1, "-o", page}).exit_code, 0);
+  std::ifstream in(page);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(text, HasSubstr("<h3>LAW-SET: z^4 at s3.z</h3>"));
+  EXPECT_THAT(text, HasSubstr("Shape of the law at s3.z"));
 }
 
 /// A fit knows what a sensor read at the pose before; a stream does not.

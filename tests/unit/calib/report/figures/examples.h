@@ -9,6 +9,7 @@
 
 #include "calib/report/figures/accuracy_figure.h"
 #include "calib/report/figures/lanes_figure.h"
+#include "calib/report/figures/law_figure.h"
 #include "calib/report/figures/limits_figures.h"
 #include "calib/report/figures/parameter_figures.h"
 #include "calib/report/figures/residual_figure.h"
@@ -279,6 +280,26 @@ inline ImpactValues impact_example() {
           .known_nT_per_m = 0.41};
 }
 
+/// A curve of the third power whose best formula is within the band and whose second is not.
+inline LawValues law_example() {
+  LawValues out{.x_label = "temperature, °C",
+                .where = "s3.z",
+                .x = {},
+                .y_nT = {},
+                .sd_nT = {},
+                .simultaneous = 2.8,
+                .formulas = {{.name = "T^3"}, {.name = "exp(T)"}}};
+  for (int i = 0; i <= 40; ++i) {
+    const double u = i / 20.0 - 1;
+    out.x.push_back(21 + 3 * u);
+    out.y_nT.push_back(2 * u * u * u + 0.05 * noise_at(static_cast<std::size_t>(i)));
+    out.sd_nT.push_back(0.05 + 0.1 * u * u);
+    out.formulas[0].y_nT.push_back(2 * u * u * u);
+    out.formulas[1].y_nT.push_back(1.4 * std::exp(u) - 1.6);
+  }
+  return out;
+}
+
 /// Every figure that there is.
 inline std::vector<Figure> examples(std::size_t poses) {
   return {residual_figure(residual_example(poses)),
@@ -295,7 +316,8 @@ inline std::vector<Figure> examples(std::size_t poses) {
           lanes_figure(lanes_example(poses)),
           history_figure(history_example()),
           price_figure(price_example()),
-          impact_figure(impact_example())};
+          impact_figure(impact_example()),
+          law_figure(law_example())};
 }
 
 }  // namespace mgtd::calib::report::figures::testing
