@@ -25,7 +25,8 @@
 ///   run.redo             what was entered last is asked for again                            -> RUN
 ///   run.course           what the run has gained so far             -> run_course.h
 ///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
-///   calibrations.list    -> {"calibrations":[{"id","state","since","origin","forced","why"}]}
+///   calibrations.list    -> {"calibrations":[{"id","state","since","origin","forced","why","by"}]}
+///   calibrations.history                              -> {"decisions","moves","figure","unreadable"}
 ///   calibrations.show    args: calibration_request.h  -> CAL.json
 ///   calibrations.accept  args: calibration_request.h  -> {"active"}
 ///   calibrations.import  args: calibration_request.h  -> {"id","forced"}, and "active" when accepted
@@ -40,7 +41,7 @@
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 5;
+inline constexpr int kControlProtocolMinor = 6;
 /// A calibration with a hundred coefficients takes 0.4 MB.
 inline constexpr std::size_t kControlLineLimit = 1 << 20;
 
@@ -58,6 +59,7 @@ enum class ControlCommand : std::uint8_t {
   run_redo,
   run_course,
   calibrations_list,
+  calibrations_history,
   calibrations_show,
   calibrations_accept,
   calibrations_import,
@@ -71,7 +73,7 @@ enum class ControlCommand : std::uint8_t {
   control_break,
   console,
 };
-inline constexpr std::array<std::string_view, 25> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 26> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -84,6 +86,7 @@ inline constexpr std::array<std::string_view, 25> kControlCommandNames{"version"
                                                                        "run.redo",
                                                                        "run.course",
                                                                        "calibrations.list",
+                                                                       "calibrations.history",
                                                                        "calibrations.show",
                                                                        "calibrations.accept",
                                                                        "calibrations.import",
@@ -102,6 +105,7 @@ struct ControlRequest {
   ControlCommand command{ControlCommand::version};
   nlohmann::json args = nlohmann::json::object();  ///< always an object
   nlohmann::json id;                               ///< null when the client sent none
+  std::string from{};  ///< who asks, in words; the server says it, never the client
 };
 
 /// A request that could not be read, with the id to answer under as far as it could be told.

@@ -17,7 +17,6 @@
 #include "calib/report/size_text.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
-#include "proto/time.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -49,24 +48,6 @@ double worst_sd(const fit::joint::JointFit& fit) {
   double worst = 0;
   for (const double x : components(sd)) worst = std::fmax(worst, x);
   return worst;
-}
-
-/// Days since 1970; empty where the text is no time.
-std::optional<double> day_of(const std::string& t_utc) {
-  const auto t = parse_utc(t_utc);
-  if (!t) return std::nullopt;
-  constexpr double kNsPerDay = 86400e9;
-  return static_cast<double>(t->ns) / kNsPerDay;
-}
-
-std::vector<std::vector<double>> shifts_of(const validity::DiffReport& diff, std::size_t sensors,
-                                           const std::vector<std::string>& names) {
-  std::vector<std::vector<double>> out(sensors, std::vector<double>(names.size(), std::nan("")));
-  for (const validity::ParameterChange& p : diff.change.parameters)
-    for (std::size_t s = 0; s < sensors; ++s)
-      for (std::size_t k = 0; k < names.size(); ++k)
-        if (p.name == fmt::format("s{} {}", s + 1, names[k])) out[s][k] = p.sigmas;
-  return out;
 }
 
 }  // namespace
@@ -177,22 +158,6 @@ figures::Figure impact_of(const std::vector<std::pair<std::string, fit::joint::E
   figures::ImpactValues v{.rows = {}, .known_nT_per_m = worst_sd(fit)};
   for (const auto& [effect, impact] : impacts) v.rows.push_back({effect, impact.component, impact.nT_per_m});
   return figures::impact_figure(v);
-}
-
-std::optional<figures::Figure> history_of(std::vector<calibration::Calibration> all) {
-  std::erase_if(all, [](const calibration::Calibration& c) { return !day_of(c.reference.t_utc); });
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return *day_of(a.reference.t_utc) < *day_of(b.reference.t_utc);
-  });
-  std::erase_if(all, [&](const auto& c) { return c.sensors.size() != all.back().sensors.size(); });
-  if (all.size() < 2) return std::nullopt;
-  figures::HistoryValues v{.sensors = numbered(all.front().sensors.size()), .parameters = parameter_names()};
-  for (std::size_t i = 1; i < all.size(); ++i)
-    v.points.push_back(
-        {.when = all[i].reference.t_utc.substr(0, 10),
-         .day = *day_of(all[i].reference.t_utc),
-         .shifts = shifts_of(validity::diff(all[i - 1], all[i]), v.sensors.size(), v.parameters)});
-  return figures::history_figure(v);
 }
 
 }  // namespace mgtd::calib::report

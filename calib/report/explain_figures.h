@@ -11,7 +11,6 @@
 #include "calib/criticism/tests/confusion.h"
 #include "calib/fit/joint/effect_impact.h"
 #include "calib/report/figures/figure.h"
-#include "calib/validity/diff.h"
 
 /// Figures of what explain() found: suspects and their evidence, what each effect takes out, costs and
 /// brings, and what the run cannot see or tell apart.
@@ -31,9 +30,5 @@ namespace mgtd::calib::report {
 [[nodiscard]] figures::Figure impact_of(
     const std::vector<std::pair<std::string, fit::joint::EffectImpact>>& impacts,
     const fit::joint::JointFit& fit);
-
-/// Calibrations of one rig in the order of time; the shift of each parameter against the one before. Those
-/// whose start is not known are left out; empty with fewer than two.
-[[nodiscard]] std::optional<figures::Figure> history_of(std::vector<calibration::Calibration> calibrations);
 
 }  // namespace mgtd::calib::report

@@ -46,6 +46,7 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       array_(calib::report::described(config_.geometry())),
       clock_(config_.speed_up),
       store_(std::move(store)),
+      history_(store_),
       worker_(io),
       core_(config_, *this),
       recording_(io, config_, quiet_),

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/app/calibration_history.h"
 #include "daemon/app/epoch_rate.h"
 #include "daemon/app/log.h"
 #include "daemon/app/ports.h"
@@ -84,6 +85,7 @@ class DaemonApp : private core::CoreActions {
   ArrayDescription array_;
   drivers::Clock clock_;
   store::CalibrationStore store_;
+  CalibrationHistory history_;
   store::Worker worker_;
   QuietLog quiet_;
   core::DaemonCore core_;

@@ -46,6 +46,7 @@ Reply DaemonApp::answer(const ControlRequest& request) {
     case ControlCommand::run_redo:
       return answer_run(request);
     case ControlCommand::calibrations_list:
+    case ControlCommand::calibrations_history:
     case ControlCommand::calibrations_show:
     case ControlCommand::calibrations_accept:
     case ControlCommand::calibrations_import:
@@ -139,13 +140,16 @@ Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
                       {"since", format_utc(e.since)},
                       {"origin", e.origin},
                       {"forced", e.forced},
-                      {"why", e.why}});
+                      {"why", e.why},
+                      {"by", e.by}});
     }
     return nlohmann::ordered_json{{"calibrations", std::move(list)}};
   }
+  if (request.command == ControlCommand::calibrations_history) return history_.report();
   if (request.command == ControlCommand::calibrations_rollback) {
-    const auto back = store_.rollback(now);
+    const auto back = store_.rollback(now, request.from);
     if (!back) return tl::unexpected(back.error());
+    spdlog::info("rolled back to calibration {} by {}", *back, request.from);
     use_active_calibration();
     return nlohmann::ordered_json{{"active", *back}};
   }
@@ -160,16 +164,17 @@ Reply DaemonApp::answer_calibrations(const ControlRequest& request) {
   if (request.command == ControlCommand::calibrations_reject) {
     const auto wanted = parse_reject_request(request.args);
     if (!wanted) return tl::unexpected(wanted.error());
-    if (auto rejected = store_.reject(wanted->id, wanted->why, now); !rejected)
+    if (auto rejected = store_.reject(wanted->id, wanted->why, now, request.from); !rejected)
       return tl::unexpected(rejected.error());
-    spdlog::info("calibration {} is rejected: {}", wanted->id, wanted->why);
+    spdlog::info("calibration {} is rejected by {}: {}", wanted->id, request.from, wanted->why);
     return nlohmann::ordered_json{{"rejected", wanted->id}};
   }
   const auto wanted = parse_accept_request(request.args);
   if (!wanted) return tl::unexpected(wanted.error());
-  if (auto accepted = store_.accept(wanted->id, now, wanted->force, wanted->why); !accepted)
+  if (auto accepted = store_.accept(wanted->id, now, wanted->force, wanted->why, request.from); !accepted)
     return tl::unexpected(accepted.error());
-  if (wanted->force) spdlog::info("calibration {} is accepted by force: {}", wanted->id, wanted->why);
+  spdlog::info("calibration {} is accepted by {}{}{}{}", wanted->id, request.from,
+               wanted->force ? ", by force" : "", wanted->why.empty() ? "" : ": ", wanted->why);
   use_active_calibration();
   return nlohmann::ordered_json{{"active", wanted->id}};
 }
@@ -188,12 +193,12 @@ Reply DaemonApp::import_calibration(const ControlRequest& request) {
                 "fit again with --baseline or --array, or correct [rig] baseline_m or [array] of the "
                 "configuration");
   }
-  if (auto done = store_.import(*calibration, wanted->origin, wanted->force, now); !done)
+  if (auto done = store_.import(*calibration, wanted->origin, wanted->force, now, request.from); !done)
     return tl::unexpected(done.error());
-  spdlog::info("calibration {} imported from {}", calibration->id, wanted->origin);
+  spdlog::info("calibration {} is imported from {} by {}", calibration->id, wanted->origin, request.from);
   nlohmann::ordered_json reply{{"id", calibration->id}, {"forced", !calibration->accepted_by_checks}};
   if (wanted->accept) {
-    if (auto done = store_.accept(calibration->id, now, wanted->force); !done)
+    if (auto done = store_.accept(calibration->id, now, wanted->force, {}, request.from); !done)
       return tl::unexpected(done.error());
     use_active_calibration();
   }

@@ -59,6 +59,7 @@ void add_effects(CLI::App& app, Session& session);
 void add_explain(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_fit(CLI::App& app, Session& session);
+void add_history(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_improve(CLI::App& app, Session& session);
 void add_magnet_test(CLI::App& run, Session& session);

@@ -70,7 +70,8 @@ mgtd::Error wrong_words(const CLI::App& app, const CLI::Error& error) {
 
 constexpr const char* kDescription =
     "mgt: the operator's tool for a magnetic gradient tensor rig\n\n"
-    "Live (talks to mgtd):     status, watch, run, calibrations, control, console\n"
+    "Live (talks to mgtd):     status, watch, run, calibrations, history, control,\n"
+    "                          console\n"
     "Offline (files):          plan, fit, apply, check, diff, import, export, replay, check-config, ports\n"
     "What is missing:          compare, explain, why, discover, effects, add, drop, mask, unmask, undo, "
     "model, "
@@ -111,6 +112,7 @@ int main(int argc, char** argv) {
   mgtd::daemon::cli::add_check(app, session);
   mgtd::daemon::cli::add_compare(app, session);
   mgtd::daemon::cli::add_diff(app, session);
+  mgtd::daemon::cli::add_history(app, session);
   mgtd::daemon::cli::add_explain(app, session);
   mgtd::daemon::cli::add_why(app, session);
   mgtd::daemon::cli::add_discover(app, session);

@@ -14,6 +14,7 @@
 #include "calib/poses/pose_table.h"
 #include "calib/report/explain_figures.h"
 #include "calib/report/panel_figures.h"
+#include "calib/report/parameter_history.h"
 #include "calib/report/run_figures.h"
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/calibration_file.h"
@@ -129,7 +130,8 @@ Result<void> draw_earlier(const ReportWishes& wishes, const FitFlags& flags, Rep
     if (!calibration) return tl::unexpected(calibration.error());
     all.push_back(std::move(*calibration));
   }
-  if (auto figure = calib::report::history_of(std::move(all))) c.earlier.push_back(std::move(*figure));
+  if (auto figure = calib::report::history_of(calib::report::moves_among(std::move(all))))
+    c.earlier.push_back(std::move(*figure));
   return {};
 }
 

@@ -17,6 +17,7 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::run_status:
     case ControlCommand::run_course:
     case ControlCommand::calibrations_list:
+    case ControlCommand::calibrations_history:
     case ControlCommand::calibrations_show:
     case ControlCommand::magnet_status:
     case ControlCommand::magnet_stop:

@@ -2,6 +2,7 @@
 #include "daemon/serve/control_server.h"
 
 #include <fmt/format.h>
+#include <pwd.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
 
@@ -26,6 +27,13 @@ ControlPeer peer_of(LineConnection::Socket& socket) {
   socklen_t size = sizeof who;
   if (::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return {0, 0, -1};
   return {0, who.pid, static_cast<std::int64_t>(who.uid)};
+}
+
+/// As it is kept with a decision: "alice", "uid 1000", "the console, from 127.0.0.1".
+std::string person(const ControlPeer& peer) {
+  if (!peer.via.empty()) return peer.via;
+  const passwd* const user = peer.uid < 0 ? nullptr : ::getpwuid(static_cast<uid_t>(peer.uid));
+  return user == nullptr ? fmt::format("uid {}", peer.uid) : user->pw_name;
 }
 
 std::string refusal(const Error& error, const nlohmann::json& id) {
@@ -101,7 +109,8 @@ class ControlServer::State : public std::enable_shared_from_this<State> {
                    fmt::format("disconnected: more than {:g} requests a second", config_.rate.per_s),
                    "ask less often; what changes is told by the stream"});
     }
-    const auto request = parse_control(line);
+    auto request = parse_control(line);
+    if (request && needs_control(request->command)) request->from = person(client.peer);
     client.connection->send(request ? encode_reply(request->id, answer(client.peer, *request, now)) + '\n'
                                     : refusal(request.error().error, request.error().id));
     if (client.connection->backlog() > kControlBacklog)

@@ -82,21 +82,25 @@ Result<void> CalibrationStore::read_log() {
                   fmt::format("{}:{}: not a line of the calibration log", path.string(), number),
                   "restore the file from a backup, or move it away: the calibrations beside it stay");
     }
-    apply({*t, word("event"), word("id"), word("origin"), line.value("forced", json()) == true, word("why")});
+    apply({*t, word("event"), word("id"), word("origin"), line.value("forced", json()) == true, word("why"),
+           word("by")});
   }
   return {};
 }
 
-void CalibrationStore::apply(const Event& event) {
-  if (event.what == "proposed") {
-    entries_.push_back({event.id, CalibrationState::proposed, event.at, event.origin, false});
+void CalibrationStore::apply(const CalibrationDecision& decision) {
+  decisions_.push_back(decision);
+  if (decision.what == "proposed") {
+    entries_.push_back(
+        {decision.id, CalibrationState::proposed, decision.at, decision.origin, false, "", decision.by});
     return;
   }
-  if (event.what == "rejected") {
-    if (CalibrationEntry* entry = find(event.id)) {
+  if (decision.what == "rejected") {
+    if (CalibrationEntry* entry = find(decision.id)) {
       entry->state = CalibrationState::rejected;
-      entry->since = event.at;
-      entry->why = event.why;
+      entry->since = decision.at;
+      entry->why = decision.why;
+      entry->by = decision.by;
     }
     return;
   }
@@ -104,26 +108,31 @@ void CalibrationStore::apply(const Event& event) {
     CalibrationEntry* entry = find(*before);
     if (entry != nullptr) {
       entry->state = CalibrationState::accepted;
-      entry->since = event.at;
+      entry->since = decision.at;
     }
   }
-  if (event.what == "rolled-back") {
+  if (decision.what == "rolled-back") {
     if (!activations_.empty()) activations_.pop_back();
   } else {
-    activations_.push_back(event.id);
+    activations_.push_back(decision.id);
   }
-  if (CalibrationEntry* entry = find(event.id)) {
+  if (CalibrationEntry* entry = find(decision.id)) {
     entry->state = CalibrationState::active;
-    entry->since = event.at;
-    entry->forced = entry->forced || event.forced;
-    if (event.what == "accepted") entry->why = event.why;
+    entry->since = decision.at;
+    entry->forced = entry->forced || decision.forced;
+    entry->by = decision.by;
+    if (decision.what == "accepted") entry->why = decision.why;
   }
 }
 
-Result<void> CalibrationStore::record(const Event& event) {
-  json line{{"t", format_utc(event.at)}, {"event", event.what}, {"id", event.id}, {"origin", event.origin}};
-  if (event.forced) line["forced"] = true;
-  if (!event.why.empty()) line["why"] = event.why;
+Result<void> CalibrationStore::record(const CalibrationDecision& decision) {
+  json line{{"t", format_utc(decision.at)},
+            {"event", decision.what},
+            {"id", decision.id},
+            {"origin", decision.origin}};
+  if (decision.forced) line["forced"] = true;
+  if (!decision.why.empty()) line["why"] = decision.why;
+  if (!decision.by.empty()) line["by"] = decision.by;
   const auto path = directory_ / kLog;
   std::error_code ignored;
   const auto size = std::filesystem::exists(path, ignored) ? std::filesystem::file_size(path, ignored) : 0;
@@ -131,7 +140,7 @@ Result<void> CalibrationStore::record(const Event& event) {
     std::filesystem::resize_file(path, size, ignored);  // no torn line before the next
     return ok;
   }
-  apply(event);
+  apply(decision);
   return {};
 }
 
@@ -146,7 +155,7 @@ std::filesystem::path CalibrationStore::file_of(std::string_view id) const {
 }
 
 Result<void> CalibrationStore::propose(const calib::calibration::Calibration& calibration,
-                                       std::string_view origin, WallTime now) {
+                                       std::string_view origin, WallTime now, std::string_view by) {
   const std::string text = calib::calibration::to_json_text(calibration);
   if (const auto sound = calib::calibration::calibration_from_json_text(text);
       !sound || sound->id != calibration.id) {
@@ -154,17 +163,19 @@ Result<void> CalibrationStore::propose(const calib::calibration::Calibration& ca
   }
   if (find(calibration.id) != nullptr) return {};
   if (auto ok = write_durably(file_of(calibration.id), text); !ok) return ok;
-  return record({now, "proposed", calibration.id, std::string(origin)});
+  return record({now, "proposed", calibration.id, std::string(origin), false, "", std::string(by)});
 }
 
 Result<void> CalibrationStore::import(const calib::calibration::Calibration& calibration,
-                                      std::string_view origin, bool force, WallTime now) {
+                                      std::string_view origin, bool force, WallTime now,
+                                      std::string_view by) {
   if (auto usable = calib::validity::validate(calibration); !usable) return usable;
   if (!calibration.accepted_by_checks && !force) return tl::unexpected(failed_checks(calibration));
-  return propose(calibration, origin, now);
+  return propose(calibration, origin, now, by);
 }
 
-Result<void> CalibrationStore::accept(std::string_view id, WallTime now, bool force, std::string_view why) {
+Result<void> CalibrationStore::accept(std::string_view id, WallTime now, bool force, std::string_view why,
+                                      std::string_view by) {
   const CalibrationEntry* const entry = find(id);
   if (entry == nullptr) return tl::unexpected(unknown(id));
   if (active_id() == id) return {};
@@ -177,10 +188,12 @@ Result<void> CalibrationStore::accept(std::string_view id, WallTime now, bool fo
   const auto calibration = show(id);
   if (!calibration) return tl::unexpected(calibration.error());
   if (!calibration->accepted_by_checks && !force) return tl::unexpected(failed_checks(*calibration));
-  return record({now, "accepted", std::string(id), "", !calibration->accepted_by_checks, std::string(why)});
+  return record({now, "accepted", std::string(id), "", !calibration->accepted_by_checks, std::string(why),
+                 std::string(by)});
 }
 
-Result<void> CalibrationStore::reject(std::string_view id, std::string_view why, WallTime now) {
+Result<void> CalibrationStore::reject(std::string_view id, std::string_view why, WallTime now,
+                                      std::string_view by) {
   const CalibrationEntry* const entry = find(id);
   if (entry == nullptr) return tl::unexpected(unknown(id));
   if (entry->state == CalibrationState::rejected) return {};
@@ -189,17 +202,18 @@ Result<void> CalibrationStore::reject(std::string_view id, std::string_view why,
                 fmt::format("calibration {} is {}: only a proposal is rejected", id, name(entry->state)),
                 "mgt calibrations rollback, or accept another");
   }
-  return record({now, "rejected", std::string(id), "", false, std::string(why)});
+  return record({now, "rejected", std::string(id), "", false, std::string(why), std::string(by)});
 }
 
-Result<std::string> CalibrationStore::rollback(WallTime now) {
+Result<std::string> CalibrationStore::rollback(WallTime now, std::string_view by) {
   if (activations_.size() < 2) {
     return fail(ErrorCode::state, "no calibration was active before this one",
                 "accept another: mgt calibrations list");
   }
   const std::string before = activations_[activations_.size() - 2];
   if (const auto readable = show(before); !readable) return tl::unexpected(readable.error());
-  if (auto ok = record({now, "rolled-back", before, ""}); !ok) return tl::unexpected(ok.error());
+  if (auto ok = record({now, "rolled-back", before, "", false, "", std::string(by)}); !ok)
+    return tl::unexpected(ok.error());
   return before;
 }
 

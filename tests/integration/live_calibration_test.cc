@@ -89,6 +89,13 @@ void becomes_true(Bench& bench, const std::string& effect) {
   EXPECT_LT(left.nT_per_m, 4);
   // And back, on one command.
   ASSERT_EQ(bench.mgt({"calibrations", "rollback"}).exit_code, 0);
+  const json history = bench.ask({"history"});
+  EXPECT_EQ(history.at("decisions").at(0).at("by"), "automatic") << "the run proposed it";
+  EXPECT_EQ(history.at("decisions").back().at("event"), "rolled-back");
+  ASSERT_EQ(history.at("moves").size(), 1U);
+  EXPECT_EQ(history.at("moves").at(0).at("to"),
+            bench.ask({"calibrations", "list"}).at("calibrations").at(1).at("id"));
+  EXPECT_THAT(history.at("figure").at("svg").get<std::string>(), HasSubstr("<svg"));
   EXPECT_GT(deviation(bench, streamed(bench)).nT_per_m, 10);
 }
 
@@ -164,6 +171,14 @@ TEST(LiveCalibration, WhatCannotBeUsedIsRefusedAndNothingChanges) {
   EXPECT_EQ(
       bench.mgt({"calibrations", "accept", listed.at("id"), "--force", "--why", "it was far"}).exit_code, 0);
   EXPECT_FALSE(streamed(bench).forced);
+  const json decisions = bench.ask({"history"}).at("decisions");
+  ASSERT_EQ(decisions.size(), 3U);
+  const std::string me = decisions.at(0).at("by");
+  EXPECT_FALSE(me.empty());
+  for (const json& d : decisions) EXPECT_EQ(d.at("by"), me) << d.dump();
+  EXPECT_EQ(decisions.at(2).at("event"), "accepted");
+  EXPECT_EQ(decisions.at(2).at("why"), "it was far");
+  EXPECT_THAT(bench.mgt({"history"}).out, HasSubstr("rejected    by " + me + ", because: a car stood there"));
 }
 
 }  // namespace

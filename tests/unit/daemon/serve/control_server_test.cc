@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -55,6 +56,23 @@ class ControlServerTest : public ::testing::Test {
   std::string path_ = scratch_ / "control.sock";
   std::unique_ptr<ControlServer> server_;
 };
+
+/// The kernel says who asks; a client cannot.
+TEST_F(ControlServerTest, TellsWhoWantsAChange) {
+  start([](const ControlRequest& request) -> Result<nlohmann::ordered_json> {
+    return nlohmann::ordered_json{{"from", request.from}};
+  });
+  LinePeer peer = LinePeer::unix_socket(path_);
+  peer.send_line(R"({"cmd":"calibrations.rollback","id":1})");
+  peer.send_line(R"({"cmd":"status","id":2})");
+  peer.send_line(R"({"cmd":"calibrations.rollback","from":"somebody else","id":3})");
+  ASSERT_TRUE(wait(peer, [&] { return peer.lines.size() == 3; }));
+  const passwd* const me = getpwuid(getuid());
+  EXPECT_EQ(Json::parse(peer.lines[0]).at("result").at("from"),
+            me == nullptr ? fmt::format("uid {}", getuid()) : std::string(me->pw_name));
+  EXPECT_EQ(Json::parse(peer.lines[1]).at("result").at("from"), "") << "who only looks is not asked";
+  EXPECT_THAT(peer.lines[2], HasSubstr("unknown key 'from'"));
+}
 
 TEST_F(ControlServerTest, AnswersInOrderWithTheIdsItWasGiven) {
   start();

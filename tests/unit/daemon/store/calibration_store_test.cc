@@ -64,6 +64,36 @@ TEST(CalibrationStore, ProposeAcceptRollBackAndRemember) {
   EXPECT_EQ(store.rollback(t(10)).value(), a.id);
 }
 
+/// Who decided is in the log, and read again from it; lines of before name nobody.
+TEST(CalibrationStore, KeepsWhoDecided) {
+  TempDir dir;
+  const auto a = calibration(1), b = calibration(2);
+  {
+    auto store = CalibrationStore::open(dir / "cal").value();
+    ASSERT_TRUE(store.propose(a, "run 1", t(1)));
+    ASSERT_TRUE(store.accept(a.id, t(2), false, "", "anna"));
+    ASSERT_TRUE(store.import(b, "b.json", false, t(3), "bert"));
+    ASSERT_TRUE(store.accept(b.id, t(4), false, "quieter", "the console, from 127.0.0.1"));
+    ASSERT_TRUE(store.rollback(t(5), "anna"));
+  }
+  std::ofstream(dir / "cal" / "calibrations.log", std::ios::app)
+      << R"({"t":"2026-11-21T10:00:06Z","event":"accepted","id":")" << b.id << R"(","origin":""})" << '\n';
+  const auto store = CalibrationStore::open(dir / "cal").value();
+  const auto& decisions = store.decisions();
+  ASSERT_EQ(decisions.size(), 6U);
+  const std::vector<std::pair<std::string, std::string>> expected{
+      {"proposed", std::string(kAutomatic)},       {"accepted", "anna"},    {"proposed", "bert"},
+      {"accepted", "the console, from 127.0.0.1"}, {"rolled-back", "anna"}, {"accepted", ""}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(decisions[i].what, expected[i].first) << i;
+    EXPECT_EQ(decisions[i].by, expected[i].second) << i;
+  }
+  EXPECT_EQ(decisions[2].origin, "b.json");
+  EXPECT_EQ(decisions[3].why, "quieter");
+  EXPECT_EQ(decisions[4].id, a.id);
+  EXPECT_EQ(store.list()[0].by, "anna");
+}
+
 TEST(CalibrationStore, RefusesWhatIsNotProposedOrFailed) {
   TempDir dir;
   auto store = CalibrationStore::open(dir / "cal").value();
