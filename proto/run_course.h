@@ -55,7 +55,7 @@ struct CourseDisturbance {
   int pose{0};
   double change_nT{0}, limit_nT{0};
   std::string seen_by{};             ///< "array", "scalar", or "level": that of the scalar, from pose to pose
-  std::optional<double> lasted_s{};  ///< empty: it lasts
+  std::optional<double> lasted_s{};  ///< empty: not over when last seen
   std::string then{};                ///< what the run did
 };
 

@@ -31,7 +31,7 @@ std::string accuracy_text(const Json& accuracy) {
 std::string disturbance_text(const Json& d) {
   return fmt::format("  {}  pose {}: {:.2g} nT (limit {:.2g} nT), {}; {}\n", text_of(d.at("t")),
                      d.at("pose").get<int>(), d.at("change_nT").get<double>(), d.at("limit_nT").get<double>(),
-                     d.at("lasted_s").is_null() ? std::string("it lasts")
+                     d.at("lasted_s").is_null() ? std::string("not over when last seen")
                                                 : fmt::format("{:.0f} s", d.at("lasted_s").get<double>()),
                      text_of(d.at("then")));
 }

@@ -78,6 +78,7 @@ void CourseRecorder::known(int poses, const Gradient& tensor_sd_nT_per_m) {
   std::erase_if(course_.accuracy, [&](const CourseAccuracy& before) { return before.poses >= poses; });
   course_.accuracy.push_back({poses, tensor_sd_nT_per_m, worst});
   course_.why_unknown.clear();
+  unkept_ = true;
 }
 
 void CourseRecorder::disturbed(int pose, const FieldDisturbance& seen, Stamp now) {
@@ -89,6 +90,7 @@ void CourseRecorder::disturbed(int pose, const FieldDisturbance& seen, Stamp now
                                   .lasted_s = {},
                                   .then = "the run waits for a calm field"});
   disturbed_since_ = now.mono;
+  unkept_ = true;
 }
 
 void CourseRecorder::shows(const RunStatus& status, Stamp now) {
@@ -98,6 +100,23 @@ void CourseRecorder::shows(const RunStatus& status, Stamp now) {
   last.lasted_s = to_seconds(now.mono - *disturbed_since_);
   last.then = what_followed(status, last.pose);
   disturbed_since_.reset();
+  unkept_ = true;
+}
+
+void CourseRecorder::restore(KeptCourse kept) {
+  // An accuracy by poses that were taken out of the file afterwards is not known any more.
+  std::erase_if(kept.accuracy, [&](const CourseAccuracy& a) {
+    return a.poses > static_cast<int>(measured_.size()) || !std::isfinite(a.worst_nT_per_m);
+  });
+  course_.accuracy = std::move(kept.accuracy);
+  course_.disturbances = std::move(kept.disturbances);
+  for (CourseDisturbance& d : course_.disturbances)
+    if (!d.lasted_s) d.then = "the daemon ended before the field was calm";
+}
+
+std::optional<KeptCourse> CourseRecorder::take_unkept() {
+  if (!std::exchange(unkept_, false)) return std::nullopt;
+  return KeptCourse{course_.accuracy, course_.disturbances};
 }
 
 std::optional<Eigen::Vector3d> CourseRecorder::site_direction() const {

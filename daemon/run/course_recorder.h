@@ -10,6 +10,7 @@
 #include "calib/report/figures/sky.h"
 #include "daemon/plan/run_plan.h"
 #include "daemon/run/field_disturbance.h"
+#include "daemon/run/kept_course.h"
 #include "proto/pose.h"
 #include "proto/run_course.h"
 #include "proto/run_status.h"
@@ -27,8 +28,7 @@
 /// turns. Their offsets are in it too: a few tenths of a degree, less than a mark on the map is wide.
 ///
 /// Pure: what happens and the time come in. It fits nothing (accuracy_so_far.h does, on the worker). A run
-/// that is resumed by another life of the daemon has its poses again, not the accuracy and the disturbances
-/// of before: those are in the events of its file.
+/// that another life of the daemon resumes has its poses again, and what its file kept (kept_course.h).
 namespace mgtd::daemon::run {
 
 class CourseRecorder {
@@ -49,6 +49,10 @@ class CourseRecorder {
   void disturbed(int pose, const FieldDisturbance& seen, Stamp now);
   /// The state that the run shows: what follows a disturbance.
   void shows(const RunStatus& status, Stamp now);
+  /// What an earlier life of the daemon kept of this run, whose poses are known already.
+  void restore(KeptCourse kept);
+  /// What is to be kept now; empty where nothing is new since it was asked for last.
+  [[nodiscard]] std::optional<KeptCourse> take_unkept();
 
   [[nodiscard]] RunCourse course() const;
 
@@ -64,7 +68,7 @@ class CourseRecorder {
   std::optional<Eigen::Vector3d> configured_site_;
   calib::report::figures::HoleSearch hole_;
   std::optional<Instant> disturbed_since_;
-  bool active_{false};
+  bool active_{false}, unkept_{false};
 };
 
 }  // namespace mgtd::daemon::run

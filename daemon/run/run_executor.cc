@@ -71,6 +71,12 @@ std::vector<RunJudgement> judgements_of(const store::RunFile& file) {
   return judgements ? *std::move(judgements) : std::vector<RunJudgement>{};
 }
 
+Result<KeptCourse> kept_course_of(const store::RunFile& file) {
+  const auto text = file.document(kCourse);
+  if (!text) return tl::unexpected(text.error());
+  return kept_course_from_json(*text ? **text : std::string());
+}
+
 }  // namespace
 
 RunExecutor::RunExecutor(const config::Config& config, std::filesystem::path directory,
@@ -187,6 +193,11 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
   poses_ = stored ? *std::move(stored) : PoseTable{};
   course_ = CourseRecorder(config.run_id, plan, site_direction(config_), config.until_tensor_sd_nT_per_m);
   for (const Pose& pose : poses_.poses) course_.measured(pose);
+  if (auto kept = kept_course_of(*file_)) {
+    course_.restore(*std::move(kept));
+  } else {
+    hooks_.warn("course of the run", kept.error().text(), now.mono);
+  }
   warm_start_.reset();
   learning_ = false;
   learning_job_.request_stop();

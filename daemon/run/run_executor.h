@@ -98,6 +98,7 @@ class RunExecutor {
              const std::optional<EarlierLife>& earlier);
   void learn_accuracy();
   void expect_accuracy();
+  void keep_course(Stamp now);
   void act(const HomeTable&, Stamp) {}  // the core's, as are the next three
   void act(const MoveTable&, Stamp) {}
   void act(const SetTable&, Stamp) {}
@@ -106,7 +107,10 @@ class RunExecutor {
   void act(const StorePose& action, Stamp now);
   void act(const StorePath& action, Stamp now);
   void act(const StoreChecks& action, Stamp now);
-  void act(const FieldDisturbed& action, Stamp now) { course_.disturbed(action.pose, action.seen, now); }
+  void act(const FieldDisturbed& action, Stamp now) {
+    course_.disturbed(action.pose, action.seen, now);
+    keep_course(now);
+  }
   void act(const JudgeRun&, Stamp now);
   void act(const StoreJudgement& action, Stamp now);
   void act(const StartSolve&, Stamp now);

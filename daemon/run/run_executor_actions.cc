@@ -40,6 +40,13 @@ void RunExecutor::act(const StorePose& action, Stamp) {
   run_.answer(PoseStored{action.pose.number, std::move(stored)});
 }
 
+void RunExecutor::keep_course(Stamp now) {
+  const auto kept = course_.take_unkept();
+  if (!kept) return;
+  if (auto stored = file_->set_document(kCourse, to_json(*kept).dump()); !stored)
+    hooks_.warn("course of the run", stored.error().text(), now.mono);
+}
+
 /// One fit at a time; what was stored meanwhile is fitted after it.
 void RunExecutor::learn_accuracy() {
   if (learning_) return;
@@ -126,7 +133,7 @@ void RunExecutor::act(const StartSolve&, Stamp) {
                       done.result = Solution{c.accepted_by_checks, c.id, calib::report::fit_reasons(*report),
                                              c.checks, calib::report::lack_of_fit_text(*report)};
                       solved_ = c;
-                      course_.known(static_cast<int>(poses_.poses.size()), report->tensor_sd_nT_per_m);
+                      course_.known(c.poses, report->tensor_sd_nT_per_m);
                     } else {
                       done.result = tl::unexpected(report.error());
                     }
@@ -147,6 +154,7 @@ void RunExecutor::act(const ProposeCalibration& action, Stamp now) {
 
 void RunExecutor::act(const PublishStatus& action, Stamp now) {
   course_.shows(action.status, now);
+  keep_course(now);
   // The file knows the state it would be found in after a crash.
   if (const auto known = file_->state();
       known && known->state != action.status.state && is_active(action.status.state)) {

@@ -99,7 +99,7 @@ const kSeen = { array: "array", scalar: "scalar", level: "scalar, against the po
 function disturbances(list) {
   const h3 = make("h3", {}, `Disturbances of the field: ${list.length}`);
   if (list.length === 0) return make("div", { class: "card" }, h3, make("p", { class: "caption" }, "The field stood still at every pose so far."));
-  const lasted = (s) => (s === null ? "it lasts" : `${s.toFixed(0)} s`);
+  const lasted = (s) => (s === null ? "not over when last seen" : `${s.toFixed(0)} s`);
   return make("div", { class: "card scrolls", tabindex: "0", role: "region", "aria-label": "disturbances" }, h3, make("table", {}, rows(["when", "pose", "change, nT", "limit, nT", "seen by", "lasted", "what the run did"],
     [...list].reverse().map((d) => [`${d.t.slice(11, 19)}Z`, d.pose, sig(d.change_nT, 2), sig(d.limit_nT, 2), kSeen[d.seen_by], lasted(d.lasted_s), d.then]))));
 }

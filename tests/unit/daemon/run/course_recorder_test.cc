@@ -158,5 +158,55 @@ TEST(CourseRecorder, PosesOfALongerPlanAreAdded) {
   EXPECT_TRUE(r.recorder.course().poses[5].direction_P);
 }
 
+/// Through the text of the run file and back, in another recorder of the same run.
+TEST(CourseRecorder, WhatIsKeptIsThereAgain) {
+  Recorded r;
+  for (std::size_t i = 0; i < 3; ++i) r.recorder.measured(measured(r.plan.poses[i]));
+  EXPECT_FALSE(r.recorder.take_unkept()) << "the poses are in the file anyway";
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  r.recorder.known(2, {4, 3, 2, 1, unknown, 6});
+  r.recorder.known(3, {2, 1.5, 1, 0.5, unknown, 3});
+  r.recorder.disturbed(3, {.change_nT = 7, .limit_nT = 2}, second(10));
+  r.recorder.shows(showing(RunState::moving), second(14));
+  r.recorder.disturbed(4, {.change_nT = 9, .limit_nT = 2}, second(20));
+  const auto kept = r.recorder.take_unkept();
+  ASSERT_TRUE(kept);
+  EXPECT_FALSE(r.recorder.take_unkept()) << "once";
+  const auto read = kept_course_from_json(to_json(*kept).dump());
+  ASSERT_TRUE(read) << read.error().text();
+
+  Recorded later;
+  for (std::size_t i = 0; i < 3; ++i) later.recorder.measured(measured(later.plan.poses[i]));
+  later.recorder.restore(*read);
+  const RunCourse course = later.recorder.course();
+  ASSERT_EQ(course.accuracy.size(), 2U);
+  EXPECT_EQ(course.accuracy[1].poses, 3);
+  EXPECT_EQ(course.accuracy[1].worst_nT_per_m, 3);
+  EXPECT_TRUE(std::isnan(course.accuracy[1].tensor_sd_nT_per_m.xz));
+  ASSERT_EQ(course.disturbances.size(), 2U);
+  EXPECT_EQ(course.disturbances[0].t, second(10).wall);
+  EXPECT_EQ(course.disturbances[0].lasted_s, 4);
+  EXPECT_EQ(course.disturbances[0].then, "pose 3 is measured again");
+  EXPECT_FALSE(course.disturbances[1].lasted_s);
+  EXPECT_THAT(course.disturbances[1].then, HasSubstr("the daemon ended"));
+}
+
+/// A pose that was dropped before the daemon ended takes its accuracy along.
+TEST(CourseRecorder, AnAccuracyByMorePosesThanThereAreIsNotRestored) {
+  Recorded r;
+  r.recorder.measured(measured(r.plan.poses[0]));
+  r.recorder.restore(
+      {.accuracy = {{1, {1, 1, 1, 1, 1, 1}, 1}, {2, {1, 1, 1, 1, 1, 1}, 1}}, .disturbances = {}});
+  ASSERT_EQ(r.recorder.course().accuracy.size(), 1U);
+  EXPECT_EQ(r.recorder.course().accuracy[0].poses, 1);
+}
+
+TEST(CourseRecorder, AKeptCourseOfAnotherKindIsRefused) {
+  EXPECT_TRUE(kept_course_from_json(""));
+  EXPECT_THAT(kept_course_from_json("{}").error().message, HasSubstr("accuracy"));
+  EXPECT_FALSE(kept_course_from_json(R"({"accuracy":[{"poses":1,"sd_nT_per_m":[1]}],"disturbances":[]})"));
+  EXPECT_FALSE(kept_course_from_json("[1,"));
+}
+
 }  // namespace
 }  // namespace mgtd::daemon::run

@@ -94,5 +94,33 @@ TEST(RunExecutor, TheCourseFollowsWhatTheRunAsksFor) {
   EXPECT_NE(held.executor.course().poses.at(0).state, CourseState::measured);
 }
 
+/// What the daemon knew of a run when it ended is there again when the run is resumed.
+TEST(RunExecutor, AResumedRunHasItsCourseAgain) {
+  HeldFit held;
+  Pose pose;
+  pose.number = 1;
+  pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = 0;
+  pose.y_nT.fill(Eigen::Vector3d(20'000, 0, 45'000));
+  held.executor.carry_out(StorePose{pose}, held.now);
+  held.executor.carry_out(FieldDisturbed{2, {.change_nT = 3, .limit_nT = 0.5}}, held.now);
+  RunStatus measuring;
+  measuring.state = RunState::suspended;
+  held.executor.carry_out(PublishStatus{measuring}, held.now);
+  const std::string id = held.executor.course().run_id;
+  held.executor.abandon();
+
+  CurrentRun run{[](const Action&, Stamp) {}};
+  RunExecutor later{held.config, held.dir / "", held.store, held.worker, run, held.hooks()};
+  later.find_interrupted();
+  const auto resumed = later.request(Request::resume, held.now);
+  ASSERT_TRUE(resumed) << resumed.error().text();
+  const RunCourse course = later.course();
+  EXPECT_EQ(course.run_id, id);
+  EXPECT_EQ(course.poses.at(0).state, CourseState::measured);
+  ASSERT_EQ(course.disturbances.size(), 1U);
+  EXPECT_EQ(course.disturbances[0].change_nT, 3);
+  EXPECT_EQ(course.disturbances[0].then, "the daemon ended before the field was calm");
+}
+
 }  // namespace
 }  // namespace mgtd::daemon::run
