@@ -2,11 +2,11 @@
 #include "calib/validity/diff.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/calibration/scale_gauge.h"
+#include "calib/fit/orientation.h"
 #include "calib/linear/propagation.h"
 #include "proto/units.h"
 
@@ -90,8 +90,7 @@ Eigen::Matrix3d common_turn(const calibration::Calibration& a, const calibration
       if (together(centre, Q)) sum += Q;
     }
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  return fit::nearest_orthogonal(sum, false);
 }
 
 /// The turn of the platform frame, with the uncertainty of the mean of the sensors.

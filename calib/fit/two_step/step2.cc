@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <cmath>
 
+#include "calib/fit/orientation.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "proto/units.h"
 
@@ -87,11 +87,6 @@ Rows rows_of(const Eigen::Matrix3Xd& P, const Eigen::VectorXd& azimuth_rad) {
 
 }  // namespace
 
-Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& M) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
-}
-
 Result<Alignment> align(const Readings& readings, const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                         std::optional<double> bz_sign) {
   const auto turn = standard_turn(readings);
@@ -125,7 +120,7 @@ Result<Alignment> align(const Readings& readings, const PerSensor<Eigen::Matrix3
   const double sign = bz_sign.value_or(handedness >= 0 ? 1.0 : -1.0);
   for (std::size_t i = 0; i < b_S_nT.size(); ++i) {
     rows[i].T.row(2) *= sign;
-    out.R_PS[i] = nearest_orthogonal(rows[i].T);
+    out.R_PS[i] = nearest_orthogonal(rows[i].T, false);
   }
   out.bz_nT = sign * bz;
   out.bh_nT = std::sqrt(std::max(0.0, f * f - bz * bz));

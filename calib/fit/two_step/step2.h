@@ -35,7 +35,4 @@ struct Alignment {
 [[nodiscard]] Result<Alignment> align(const Readings& readings, const PerSensor<Eigen::Matrix3Xd>& b_S_nT,
                                       std::optional<double> bz_sign);
 
-/// The orthogonal matrix nearest to M (Frobenius), determinant of either sign.
-[[nodiscard]] Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& M);
-
 }  // namespace mgtd::calib::fit::two_step
