@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/report/choice_text.h"
+#include "daemon/run/law_rivals.h"
 #include "daemon/store/run_file.h"
 
 namespace mgtd::daemon::cli {
@@ -16,6 +17,21 @@ Result<std::vector<store::ModelStep>> history_of(const std::string& run, const s
   const auto file = store::RunFile::open(run, store::Access::read_only);
   if (!file) return tl::unexpected(file.error());
   return file->model_steps();
+}
+
+calib::criticism::search::Choice choice_by_discovery(const store::PoseSource& source,
+                                                     const calib::effects::Effect& effect,
+                                                     const calib::fit::FitOptions& options) {
+  const auto definition = std::find_if(source.definitions.begin(), source.definitions.end(),
+                                       [&](const store::Definition& d) { return d.spec == effect.spec(); });
+  if (definition == source.definitions.end() || !definition->discovered) return {};
+  const store::Discovered& discovered = *definition->discovered;
+  calib::criticism::search::Choice out{
+      .spec = effect.spec(), .finding = discovered.word, .alternatives = {}, .data = discovered.data_hash};
+  for (const store::Discovered::Other& other : discovered.others)
+    if (!other.spec.empty() && out.alternatives.size() + 1 < run::kMostRivals)
+      out.alternatives.push_back(other.spec);
+  return calib::criticism::search::on_these_poses(std::move(out), source.table, options);
 }
 
 Result<std::vector<calib::criticism::search::Choice>> doubts_of(const std::string& run,

@@ -32,8 +32,10 @@ store::Discovered discovered(const FoundLaw& law, std::string_view word, const s
                         .others = {},
                         .more = law.more,
                         .data_hash = data_hash};
-  for (std::size_t i = 1; i < law.formulas.size(); ++i)
-    out.others.push_back({law.formulas[i].formula, law.formulas[i].where, law.formulas[i].P});
+  for (std::size_t i = 1; i < law.formulas.size(); ++i) {
+    const FoundFormula& f = law.formulas[i];
+    out.others.push_back({f.formula, f.where, f.P, f.specs.size() == 1 ? f.specs.front() : std::string()});
+  }
   return out;
 }
 

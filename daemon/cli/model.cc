@@ -18,6 +18,7 @@
 #include "calib/report/model_change_report.h"
 #include "calib/report/waterfall_report.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/doubts.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/kept_run.h"
 #include "daemon/cli/work_progress.h"
@@ -120,7 +121,10 @@ int run_add(const Session& session, const ModelArguments& args) {
                "mgt: {0} looks back over the poses of a run, and samples of a stream have none before them: "
                "mgtd leaves\n     {0} out of the stream and counts its size as uncertainty there\n",
                (*found)->name());
-  calib::criticism::search::Choice choice;
+  calib::fit::FitOptions options = run->options;
+  options.effects.push_back(*found);
+  calib::criticism::search::Choice choice = choice_by_discovery(run->source, **found, options);
+  if (!choice.spec.empty()) return conclude(session, args, *run, *change, change->spec, options, choice);
   calib::criticism::search::ExplainOptions without{.fit = run->options,
                                                    .also = formulas_of(run->source, run->options)};
   if (const auto before = with_progress("explain", run->options, [&](const calib::fit::FitOptions& told) {
@@ -128,8 +132,6 @@ int run_add(const Session& session, const ModelArguments& args) {
         return calib::criticism::search::explain(run->source.table, without);
       }))
     choice = calib::criticism::search::choice_of(*before, run->source.table, *found);
-  calib::fit::FitOptions options = run->options;
-  options.effects.push_back(*found);
   return conclude(session, args, *run, *change, change->spec, options, choice);
 }
 

@@ -20,7 +20,8 @@ constexpr const char* kRemedy = "read it with the version of mgt that wrote it";
 json to_json(const Discovered& d) {
   json others = json::array();
   for (const Discovered::Other& other : d.others)
-    others.push_back({{"formula", other.formula}, {"where", other.where}, {"P", other.P}});
+    others.push_back(
+        {{"formula", other.formula}, {"where", other.where}, {"P", other.P}, {"spec", other.spec}});
   return {{"word", d.word},
           {"P", d.P},
           {"others", std::move(others)},
@@ -38,7 +39,7 @@ std::optional<Discovered> discovered_from(const json& definition) {
                  .more = found->at("more"),
                  .data_hash = found->at("data_hash")};
   for (const json& other : found->at("others"))
-    out.others.push_back({other.at("formula"), other.at("where"), other.at("P")});
+    out.others.push_back({other.at("formula"), other.at("where"), other.at("P"), other.at("spec")});
   return out;
 }
 

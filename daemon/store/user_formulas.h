@@ -21,6 +21,8 @@ struct Discovered {
   struct Other {
     std::string formula, where;
     double P{0};
+    std::string
+        spec{};  ///< as make_effect reads it; empty where it takes several effects, or none can say it
   };
   std::vector<Other> others{};  ///< of the 99 % set, best first
   std::size_t more{0};          ///< that are in the set beside these

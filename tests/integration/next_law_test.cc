@@ -153,8 +153,12 @@ TEST_F(NextLaw, WhatDiscoverKeepsIsConfirmedByASecondRunAndStandsInTheReport) {
   EXPECT_EQ(confirmed.at("confirmed"), true);
   EXPECT_EQ(confirmed.at("discovered"), formula.at("discovered"));
   EXPECT_EQ(ask({"discover", run1, "--keep"}).at("kept"), json::array({"law1"})) << "the same again";
-  ask({"add", "law1", run1});
+  const json added = ask({"add", "law1", run1});
+  EXPECT_THAT(added.at("open").get<std::string>(), HasSubstr("max(0"));
   EXPECT_EQ(ask({"model", run1}).at("model").size(), 1U);
+  const json next = ask({"next", run1});
+  EXPECT_THAT(next.at("rivals").dump(), HasSubstr("max(0")) << "the doubt stays with the model";
+  EXPECT_FALSE(next.at("next").empty());
 
   const std::string page = file("report.html");
   ASSERT_EQ(run({"mgt", "report", run1, "-o", page}).exit_code, 0);

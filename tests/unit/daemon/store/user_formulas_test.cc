@@ -30,8 +30,11 @@ TEST(Definitions, ReadBackAsTheyWereWritten) {
 
 TEST(Definitions, KeepHowTheyWereDiscovered) {
   std::vector<Definition> one{kTwo.front()};
-  one.front().discovered = Discovered{
-      .word = "LAW-SET", .P = 0.82, .others = {{"z^6", "s3.z", 0.15}}, .more = 2, .data_hash = "h1"};
+  one.front().discovered = Discovered{.word = "LAW-SET",
+                                      .P = 0.82,
+                                      .others = {{"z^6", "s3.z", 0.15, "law1@s3.z,expr=(u/50000)^6"}},
+                                      .more = 2,
+                                      .data_hash = "h1"};
   const auto read = definitions_from_text(to_text(one));
   ASSERT_TRUE(read) << read.error().text();
   ASSERT_TRUE(read->front().discovered);
