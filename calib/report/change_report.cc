@@ -21,6 +21,10 @@ json parameter_json(const validity::ParameterChange& p) {
            {"unit", p.unit},
            {"sigmas", p.sigmas},
            {"log10_p", p.log10_p}};
+  if (p.moved_sd > 0) {
+    out["moved"] = number_or_null(p.moved);
+    out["moved_sd"] = number_or_null(p.moved_sd);
+  }
   if (p.seen > 0 && std::isfinite(p.seen)) out["smallest_seen"] = p.seen;
   return out;
 }

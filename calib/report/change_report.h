@@ -9,7 +9,7 @@
 namespace mgtd::calib::report {
 
 /// {"chi2","dof","log10_p","log10_p_single","p","sensors":[...],"named":[...],"parameters":[...]}; angles in
-/// degrees, each parameter with its unit.
+/// degrees, each parameter with its unit; `change` as if it alone had changed, `moved` as it differs.
 [[nodiscard]] nlohmann::json to_json(const validity::Change& change);
 
 /// "s3 iz +7.9 nT (8.1 sigma), s1 cx ..."

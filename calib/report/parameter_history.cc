@@ -36,16 +36,21 @@ const validity::ParameterChange* change_of(const ParameterMoves& moves, std::siz
   return found == all.end() ? nullptr : &*found;
 }
 
+/// In standard errors of the difference; NaN where that is not known.
+double shift_of(const validity::ParameterChange& p) {
+  return p.moved_sd > 0 ? p.moved / p.moved_sd : std::nan("");
+}
+
 struct Kind {
   const char* heading;
   std::array<std::string_view, 3> parameters;
   double factor;  ///< from the unit of the change to that of the heading
   int width;
 };
-constexpr std::array<Kind, 4> kKinds{{{"offset, nT", {"ix", "iy", "iz"}, 1, 17},
+constexpr std::array<Kind, 4> kKinds{{{"offset, nT", {"ix", "iy", "iz"}, 1, 18},
                                       {"scale, ppm", {"cx", "cy", "cz"}, 1e6, 16},
                                       {"axes, mdeg", {"theta", "phi", "psi"}, 1e3, 21},
-                                      {"turn, mdeg", {"alpha", "beta", "gamma"}, 1e3, 20}}};
+                                      {"turn, mdeg", {"alpha", "beta", "gamma"}, 1e3, 21}}};
 
 /// "iz +0.8 ± 0.2": as many decimals as show one digit of the standard error.
 std::string largest_of(const ParameterMoves& moves, std::size_t sensor, const Kind& kind) {
@@ -53,13 +58,13 @@ std::string largest_of(const ParameterMoves& moves, std::size_t sensor, const Ki
   std::string_view name;
   for (const std::string_view parameter : kind.parameters) {
     const validity::ParameterChange* const p = change_of(moves, sensor, parameter);
-    if (p == nullptr || !std::isfinite(p->sd) || p->sd <= 0) continue;
-    if (most == nullptr || std::abs(p->sigmas) > std::abs(most->sigmas)) most = p, name = parameter;
+    if (p == nullptr || !std::isfinite(shift_of(*p))) continue;
+    if (most == nullptr || std::abs(shift_of(*p)) > std::abs(shift_of(*most))) most = p, name = parameter;
   }
   if (most == nullptr) return "not told";
-  const double sd = kind.factor * most->sd;
+  const double sd = kind.factor * most->moved_sd;
   const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(sd))), 0, 9);
-  return fmt::format("{} {:+.{}f} ± {:.{}f}", name, kind.factor * most->change, decimals, sd, decimals);
+  return fmt::format("{} {:+.{}f} ± {:.{}f}", name, kind.factor * most->moved, decimals, sd, decimals);
 }
 
 std::string row_of(std::string heading, const std::array<std::string, kKinds.size()>& cells) {
@@ -128,7 +133,7 @@ std::optional<figures::Figure> history_of(const std::vector<ParameterMoves>& mov
       std::vector<double>& row = point.shifts.emplace_back();
       for (const std::string& parameter : v.parameters) {
         const validity::ParameterChange* const p = change_of(m, s, parameter);
-        row.push_back(p == nullptr ? std::nan("") : p->sigmas);
+        row.push_back(p == nullptr ? std::nan("") : shift_of(*p));
       }
     }
     v.points.push_back(std::move(point));

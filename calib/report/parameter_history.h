@@ -12,8 +12,7 @@
 /// How the parameters of one array moved from calibration to calibration: as JSON, as text and as a figure.
 namespace mgtd::calib::report {
 
-/// What changed from one calibration to the next of the same array, each parameter as if it alone had
-/// changed.
+/// What changed from one calibration to the next of the same array.
 struct ParameterMoves {
   std::string from, to;  ///< ids
   std::string t_utc;     ///< start of the run that `to` is from
@@ -27,7 +26,7 @@ struct ParameterMoves {
 [[nodiscard]] std::vector<ParameterMoves> moves_among(std::vector<calibration::Calibration> calibrations);
 
 /// {"from","to","t_utc","changed","conclusion","remarks":[..],"text": moves_text,
-///  "parameters":[{"name","change","sd","unit","sigmas",..}]}: change_report.h says what stands in these.
+///  "parameters":[{"name","moved","moved_sd","unit",..}]}: change_report.h says what stands in these.
 [[nodiscard]] nlohmann::json to_json(const ParameterMoves& moves);
 /// A heading, then for each sensor the parameter of each kind (offset, scale, angle between axes, turn) that
 /// moved most in standard errors, with its change and the standard error.

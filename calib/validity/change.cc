@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/fit/orientation.h"
 #include "calib/linear/qr.h"
@@ -96,6 +97,15 @@ std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::Matri
         shown(e.slots[static_cast<std::size_t>(chosen[n])], x[at], std::sqrt(C(at, at)), e.gain.cols()));
   }
   return out;
+}
+
+/// The difference with the common freedoms fitted and taken out, and its covariance.
+std::pair<Eigen::VectorXd, Eigen::MatrixXd> without_common(const Evidence& e) {
+  if (e.common.cols() == 0) return {e.difference, e.covariance};
+  const Eigen::MatrixXd WX = inverse_of(e.covariance).W * e.common;
+  const Eigen::MatrixXd C = inverse_of(e.common.transpose() * WX).W;
+  return {e.difference - e.common * (C * (WX.transpose() * e.difference)),
+          e.covariance - e.common * C * e.common.transpose()};
 }
 
 /// What is left when one sensor may have changed in any way.
@@ -199,12 +209,18 @@ Change judge(const Evidence& e) {
   for (std::size_t i = 0; i < e.sensors; ++i)
     out.others_log10_p[i] = others_log10_p(e, W, rank, static_cast<int>(i));
   const double limit = std::sqrt(stats::chi_square_limit(kChanged / 2 / static_cast<double>(choices), 1));
+  // Only where each parameter has a row of its own is there a difference of it.
+  const bool own_rows = e.gain.rows() == choices && e.gain.isIdentity();
+  const auto [moved, C] = own_rows ? without_common(e) : std::pair<Eigen::VectorXd, Eigen::MatrixXd>{};
   for (Eigen::Index j = 0; j < choices; ++j) {
     const auto a = e.gain.col(j);
     const double information = a.dot(W * a), sd = 1 / std::sqrt(information);
     const ShownSlot& slot = e.slots[static_cast<std::size_t>(j)];
     out.parameters.push_back(shown(slot, a.dot(W * e.difference) / information, sd, choices));
     out.parameters.back().seen = (limit + kPower80) * sd * slot.factor;
+    if (!own_rows) continue;
+    out.parameters.back().moved = moved[j] * slot.factor;
+    out.parameters.back().moved_sd = std::sqrt(std::max(0.0, C(j, j))) * slot.factor;
   }
   std::stable_sort(out.parameters.begin(), out.parameters.end(),
                    [](const auto& a, const auto& b) { return std::abs(a.sigmas) > std::abs(b.sigmas); });

@@ -21,6 +21,9 @@ struct ParameterChange {
   double sigmas{0};   ///< change / sd, signed
   double log10_p{0};  ///< of so many sigmas or more somewhere among all parameters compared
   double seen{0};     ///< smallest change that is found in 80 of 100 cases; infinite when it cannot show
+  /// The difference as it is, whatever else changed, and its standard error; the common freedoms are taken
+  /// out. 0 and 0 where the difference is no parameter's alone.
+  double moved{0}, moved_sd{0};
 };
 
 struct Change {

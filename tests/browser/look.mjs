@@ -131,8 +131,9 @@ async function running() {
   await look("reject");
   await browser.click("reason-cancel");
   rig.mgt("calibrations", "accept", "latest", "--force", "--why", "the run was ended early");
+  earlier();
   await browser.click("tab-calibrations");
-  await is("document.getElementById('calibration-list').innerText.includes('active')", "the calibration in use");
+  await is("document.getElementById('calibration-list').innerText.includes('active') && document.querySelectorAll('#calibration-history svg').length === 4", "the calibrations and how they moved");
   await look("calibrations");
   await browser.click("tab-workbench");
   await is("document.querySelector('[data-run]') !== null", "the run in the list");
@@ -141,6 +142,23 @@ async function running() {
   await is("!document.getElementById('calibration').innerText.includes('no calibration')", "the calibrated stream");
   if (pictures) await new Promise((resolve) => setTimeout(resolve, 20000));  // the lanes fill
   await look("live");
+}
+
+/** Calibrations of the same rig from other days, the later two after a knock against the second sensor. */
+function earlier() {
+  for (const [day, begin, knock_nT] of [["2026-03-02", 864000, 0], ["2026-07-20", 2864000, 0.02], ["2026-09-07", 4864000, 0.02]]) {
+    const table = join(scratch, `${day}.csv`), cal = join(scratch, `${day}.json`);
+    execFileSync(join(bin, "mgt-rig"), ["table", "--rig", "table6", "--begin", String(begin), "-o", table]);
+    const [head, ...lines] = readFileSync(table, "utf8").trim().split("\n").map((line) => line.split(",")), t = head.indexOf("t_s"), y = head.indexOf("s2_y_nT"), t0 = Number(lines[0][t]);
+    const dated = lines.map((line) => {
+      line[y] = String(Number(line[y]) + knock_nT);
+      line[t] = String(Number(line[t]) - t0);
+      return [...line, new Date(Date.parse(`${day}T08:00:00Z`) + 1000 * Number(line[t])).toISOString()];
+    });
+    writeFileSync(table, [[...head, "t_utc"], ...dated].map((line) => line.join(",")).join("\n") + "\n");
+    execFileSync(join(bin, "mgt"), ["fit", table, "-o", cal], { stdio: "ignore" });
+    rig.mgt("calibrations", "import", cal);
+  }
 }
 
 /** What the check is for is planted in the page, and has to be found. */

@@ -52,6 +52,13 @@ assert.ok(Math.abs(inner / all - 0.25) < 0.01, `${inner / all} of the directions
 assert.deepEqual(mollweide([1, 0, 0]).map((v) => Math.abs(v)), [0, 0]);
 assert.ok(Math.abs(mollweide([0, 0, 1])[1] - 0.5) < 1e-9);
 
+const { apart, movesBySensor } = await load("history.js");
+const moved = movesBySensor([{ t_utc: "2026-05-11T08:00:00.000Z", parameters: [{ name: "s12 cx", moved: -1, moved_sd: 1 }, { name: "s3 iz", moved: 1.5, moved_sd: 0.5, unit: "nT" }, { name: "s3 alpha", moved: 0 }, { name: "site.gradient Gxx", moved: 2, moved_sd: 1 }] }]);
+assert.deepEqual(Object.keys(moved), ["s3", "s12"], "an effect is no parameter of a sensor");
+assert.deepEqual([moved.s3.length, moved.s3[0].sigmas], [1, 3], "what these runs cannot tell is no dot");
+assert.deepEqual([moved.s3[0].parameter, moved.s3[0].when, moved.s3[0].t_ms], ["iz", "2026-05-11 08:00", Date.UTC(2026, 4, 11, 8)]);
+assert.deepEqual(apart([[0, 0], [10, 5], [10, 40], [200, 1]], (p) => p), [[0, 0], [10, 40], [200, 1]], "a name over another is left out");
+
 // The lanes, on a canvas that is not drawn: what their table says of a minute, and of what was not measured.
 globalThis.requestAnimationFrame = () => {};
 const { Lanes } = await load("lanes.js");

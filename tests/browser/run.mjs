@@ -191,6 +191,9 @@ try {
   holds("what is in use is not rejected", refused.status !== 0 && refused.stderr.includes("only a proposal"), refused.stderr);
   await until(() => controls.run(`${of("calibration-list")}.innerText.includes("active")`), "the list of calibrations");
   await picture(controls, "accepted");
+  const [decided] = rig.ask("history").decisions.slice(-1);
+  holds("the history says who decided", decided.event === "accepted" && decided.by === "the console, from 127.0.0.1", decided);
+  await until(() => controls.run(`${of("calibration-history")}.innerText.includes("the console, from 127.0.0.1")`), "who decided, on the page");
 
   const complaints = () => [...controls.log, ...looks.log];
   holds("the browsers have nothing to complain of", complaints().length === 0, complaints());

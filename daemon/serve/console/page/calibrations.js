@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The calibrations of the rig, and what a person decides about them: accept, reject, roll back.
 import { by, fill, make, rows } from "./elements.js";
+import { decisionTable, historyFigure } from "./history.js";
 import { askReason } from "./reason.js";
 
 export class Calibrations {
@@ -20,9 +21,13 @@ export class Calibrations {
     if (!answer) return;
     this.#list = answer.calibrations.reverse();
     fill(by("calibration-list"), make("caption", {}, this.#list.length ? "Calibrations, newest first" : "No calibration yet: a run proposes one"),
-         rows(["id", "state", "since", "from", "because", ""],
-              this.#list.map((c) => [c.id, c.state + (c.forced ? ", forced" : ""), `${c.since.slice(0, 19)}Z`, c.origin, c.why, make("span", {}, this.buttons(c.id))])));
+         rows(["id", "state", "since", "by", "from", "because", ""],
+              this.#list.map((c) => [c.id, c.state + (c.forced ? ", forced" : ""), `${c.since.slice(0, 19)}Z`, c.by || "not recorded", c.origin, c.why, make("span", {}, this.buttons(c.id))])));
     this.#changed();
+    const history = await this.#do("calibrations.history");
+    if (!history) return;
+    fill(by("calibration-history"), historyFigure(history), history.decisions.length ? decisionTable(history.decisions) : null,
+         history.unreadable.length ? make("p", { class: "warn" }, `The files of these cannot be read: ${history.unreadable.join(", ")}`) : null);
   }
   /** What can be decided about one. */
   buttons(id) {

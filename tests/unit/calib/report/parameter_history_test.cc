@@ -26,7 +26,12 @@ TEST(ParameterHistory, TellsWhichParameterMovedAndHowFar) {
   const auto& parameters = told.at("parameters");
   ASSERT_EQ(parameters.size(), 48U);
   EXPECT_EQ(parameters.at(0).at("name"), "s3 iz");
-  EXPECT_NEAR(parameters.at(0).at("sigmas").get<double>(), 10, 0.3);
+  EXPECT_NEAR(parameters.at(0).at("moved").get<double>(), 10 * std::sqrt(2.0) * mgtd::testing::kOffsetSd_nT,
+              1e-9);
+  EXPECT_NEAR(parameters.at(0).at("moved_sd").get<double>(), std::sqrt(2.0) * mgtd::testing::kOffsetSd_nT,
+              0.005);
+  for (std::size_t i = 1; i < parameters.size(); ++i)
+    EXPECT_NEAR(parameters.at(i).at("moved").get<double>(), 0, 1e-9) << parameters.at(i).dump();
   const std::string text = moves_text(moves);
   EXPECT_THAT(text, HasSubstr("iz +1.4 ± 0.1"));
   EXPECT_THAT(text, HasSubstr("measured 2026-05-11T08:00Z"));
