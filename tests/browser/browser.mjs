@@ -83,6 +83,7 @@ export class Browser {
     if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description ?? exceptionDetails.text}`);
     return result.value;
   }
+  get pid() { return this.#child.pid; }
   text(id) { return this.run(`document.getElementById(${JSON.stringify(id)}).innerText`); }
   click(id) { return this.run(`document.getElementById(${JSON.stringify(id)}).click()`); }
   async picture(path, whole = true) {

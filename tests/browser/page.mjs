@@ -59,6 +59,15 @@ assert.deepEqual([moved.s3.length, moved.s3[0].sigmas], [1, 3], "what these runs
 assert.deepEqual([moved.s3[0].parameter, moved.s3[0].when, moved.s3[0].t_ms], ["iz", "2026-05-11 08:00", Date.UTC(2026, 4, 11, 8)]);
 assert.deepEqual(apart([[0, 0], [10, 5], [10, 40], [200, 1]], (p) => p), [[0, 0], [10, 40], [200, 1]], "a name over another is left out");
 
+// A column covers what a line through all its samples does, with the way from the column before.
+const { Columns, kColumn_s } = await load("columns.js");
+const columns = new Columns(10), at = (column, part) => (column + part) * kColumn_s;
+for (const [t_s, v] of [[at(100, 0.1), 5], [at(100, 0.5), -2], [at(100, 0.9), 1], [at(101, 0.2), 3], [at(102, 0.1), null], [at(102, 0.3), 7], [at(140, 0.5), 8]]) columns.add(t_s, v);
+assert.deepEqual(columns.all.map(({ least, greatest, low, high, last, joined }) => [least, greatest, low, high, last, joined]),
+                 [[-2, 5, -2, 5, 1, false], [3, 3, 1, 3, 3, true], [7, 7, 7, 7, 7, false], [8, 8, 8, 8, 8, false]], "neither over what was not measured nor over a long silence");
+columns.add(at(140, 0.5) + 11, 0);
+assert.equal(columns.all.length, 1, "what is older than the span is forgotten");
+
 // The lanes, on a canvas that is not drawn: what their table says of a minute, and of what was not measured.
 globalThis.requestAnimationFrame = () => {};
 const { Lanes } = await load("lanes.js");

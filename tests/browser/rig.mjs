@@ -21,12 +21,13 @@ function freePort() {
 export class Rig {
   #bin; #folder; #words; #rig = null; #daemon = null; #said = "";
 
-  /** `bin`: the folder of the programs; `speed`: how much faster time runs than on a real rig. */
-  static async start(bin, speed) {
+  /** `bin`: the folder of the programs; `speed`: how much faster time runs than on a real rig; `scenario`: of the rig, as text. */
+  static async start(bin, speed, scenario = `[rig]\nname = "table6"\nparameters = "table6"\n`) {
     const rig = new Rig();
     rig.#bin = bin;
     rig.#folder = mkdtempSync(join(tmpdir(), "mgtd-rig-"));
-    rig.#words = ["--rig", "table6", "--dir", join(rig.#folder, "ports"), "--speed-up", String(speed)];
+    writeFileSync(join(rig.#folder, "scenario.toml"), scenario);
+    rig.#words = ["--scenario", join(rig.#folder, "scenario.toml"), "--dir", join(rig.#folder, "ports"), "--speed-up", String(speed)];
     rig.#rig = spawn(join(bin, "mgt-rig"), ["run", ...rig.#words], { stdio: "ignore" });
     await until(() => existsSync(join(rig.#folder, "ports/ready")), "the ports of the rig");
     const config = spawnSync(join(bin, "mgt-rig"), ["config", ...rig.#words, "--state", rig.#folder, "--tcp", "127.0.0.1:0"], { encoding: "utf8" }).stdout;
@@ -55,6 +56,8 @@ export class Rig {
     const done = spawnSync(join(this.#bin, "mgt-rig"), ["fault", join(this.#folder, "ports"), ...words], { encoding: "utf8" });
     if (done.status !== 0) throw new Error(`mgt-rig fault ${words.join(" ")}: ${done.stderr}`);
   }
+  /** Of the daemon. */
+  get pid() { return this.#daemon.pid; }
   /** What the daemon has printed since it was started. */
   get said() { return this.#said; }
   async stop() {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lanes: one trace each over one time axis, drawn on a canvas. The last minute has every sample; longer windows come
-// decimated from the daemon, as mean within the range of each column. What was not measured is hatched, with its reason.
+// decimated from the daemon, as mean within the range of each column. What was not measured is hatched, with its reason. The
+// last minute is drawn by columns of a pixel (columns.js), not by samples.
 
-const kHeight = 52, kAxis = 26, kRight = 12;
+import { Columns, kColumn_s } from "./columns.js";
+
+const kHeight = 52, kAxis = 26, kRight = 12, kFrame_ms = 250;
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 export const windows = [["1 min", 60], ["10 min", 600], ["1 h", 3600], ["6 h", 21600], ["24 h", 86400]];
 
@@ -16,7 +19,7 @@ export function shown(value, span) {
 const clock = (t_s) => new Date(1000 * t_s).toISOString().slice(11, 19) + "Z";
 
 export class Lanes {
-  #canvas; #say; #channels = []; #window_s = 60; #recent = new Map(); #gaps = []; #lanes = new Map(); #now_s = 0; #cursor = null;
+  #canvas; #say; #channels = []; #window_s = 60; #recent = new Map(); #columns = new Map(); #gaps = []; #lanes = new Map(); #now_s = 0; #cursor = null;
   #asked_ms = 0; #dirty = true; #left = 200;
   constructor(canvas, say) {
     this.#canvas = canvas;
@@ -32,7 +35,7 @@ export class Lanes {
     });
     const frame = () => {
       if (this.#dirty) this.#draw();
-      setTimeout(() => requestAnimationFrame(frame), this.#window_s > 60 ? 250 : 100);
+      setTimeout(() => requestAnimationFrame(frame), kFrame_ms);
     };
     requestAnimationFrame(frame);
   }
@@ -54,8 +57,12 @@ export class Lanes {
     this.#now_s = t_s;
     for (const { name } of this.#channels) {
       let trace = this.#recent.get(name);
-      if (!trace) this.#recent.set(name, trace = []);
+      if (!trace) {
+        this.#recent.set(name, trace = []);
+        this.#columns.set(name, new Columns(61));
+      }
       trace.push([t_s, values[name] ?? null]);
+      this.#columns.get(name).add(t_s, values[name] ?? null);
       let old = 0;
       while (old < trace.length && trace[old][0] < t_s - 61) ++old;
       if (old > 64) trace.splice(0, old);
@@ -123,26 +130,28 @@ export class Lanes {
     const canvas = this.#canvas, scale = devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
     if (width === 0 || this.#now_s === 0) return;
     this.#left = width < 600 ? 112 : 200;  // room for names and numbers
-    canvas.width = width * scale;
-    canvas.height = height * scale;
+    if (canvas.width !== Math.round(width * scale) || canvas.height !== Math.round(height * scale)) {
+      canvas.width = Math.round(width * scale);
+      canvas.height = Math.round(height * scale);
+    }
     const g = canvas.getContext("2d");
-    g.scale(scale, scale);
+    g.setTransform(scale, 0, 0, scale, 0, 0);
     g.clearRect(0, 0, width, height);
     const to_s = this.#now_s, from_s = to_s - this.#window_s;
     const x = (t_s) => this.#left + ((t_s - from_s) / this.#window_s) * (width - this.#left - kRight);
-    const ink = css("--ink"), soft = css("--soft"), line = css("--line");
+    const colour = { ink: css("--ink"), soft: css("--soft"), line: css("--line"), band: css("--band"), trace: css("--trace"), card: css("--card"), stroke: Number(css("--stroke")) };
     g.font = "12px 'DejaVu Sans', sans-serif";
     const at = [];
-    this.#channels.forEach((channel, i) => at.push(this.#lane(g, channel, i * kHeight, x, from_s, width, { ink, soft, line })));
-    this.#axis(g, x, from_s, to_s, width, height, soft, line);
-    if (this.#cursor !== null && this.#cursor >= this.#left) this.#showCursor(g, at, from_s, width, height, soft);
+    this.#channels.forEach((channel, i) => at.push(this.#lane(g, channel, i * kHeight, x, from_s, width, colour)));
+    this.#axis(g, x, from_s, to_s, width, height, colour.soft, colour.line);
+    if (this.#cursor !== null && this.#cursor >= this.#left) this.#showCursor(g, at, from_s, width, height, colour.soft);
   }
 
   #lane(g, channel, top, x, from_s, width, colour) {
     const { t, band, gaps } = this.#points(channel.name);
-    const seen = t.filter(([t_s, v]) => v !== null && t_s >= from_s);
+    const columns = band ? null : (this.#columns.get(channel.name)?.all ?? []).filter((c) => c.t_s >= from_s);
     let least = Infinity, greatest = -Infinity;
-    for (const [, v] of seen) { least = Math.min(least, v); greatest = Math.max(greatest, v); }
+    for (const c of columns ?? []) { least = Math.min(least, c.least); greatest = Math.max(greatest, c.greatest); }
     if (band) for (let i = 0; i < band.least.length; ++i) if (band.least[i] !== null) {
       least = Math.min(least, band.least[i]); greatest = Math.max(greatest, band.greatest[i]);
     }
@@ -156,28 +165,15 @@ export class Lanes {
     g.save();
     g.beginPath(); g.rect(this.#left, top, width - this.#left - kRight, kHeight); g.clip();
     if (band) {
-      g.fillStyle = css("--band");
+      g.fillStyle = colour.band;
       for (let i = 0; i < band.mean.length; ++i) if (band.mean[i] !== null) {
         const left = x(band.from_s + i * band.step_s), right = x(band.from_s + (i + 1) * band.step_s);
         g.fillRect(left, y(band.greatest[i]), Math.max(1, right - left), Math.max(1, y(band.least[i]) - y(band.greatest[i])));
       }
     }
-    g.strokeStyle = css("--trace");
-    g.lineWidth = Number(css("--stroke"));
-    g.beginPath();
-    let pen = false, before_s = null;
-    const bridge_s = band ? 1.5 * band.step_s : 0.5;
-    for (const [t_s, v] of t) {
-      if (t_s < from_s) continue;
-      if (v === null || (before_s !== null && t_s - before_s > bridge_s)) pen = false;
-      if (v === null) continue;
-      pen ? g.lineTo(x(t_s), y(v)) : g.moveTo(x(t_s), y(v));
-      pen = true;
-      before_s = t_s;
-    }
-    g.stroke();
+    columns ? this.#spans(g, columns, x, y, colour) : this.#line(g, t, x, y, 1.5 * band.step_s, colour);
     g.restore();
-    const now = seen.at(-1)?.[1];
+    const now = columns ? columns.at(-1)?.last : t.findLast(([, v]) => v !== null)?.[1];
     g.fillStyle = colour.ink;
     g.textAlign = "left";
     g.fillText(`${channel.label}`, 8, top + 18);
@@ -191,6 +187,43 @@ export class Lanes {
     return { channel, t, room };
   }
 
+  /** Each column from the least to the greatest value that the line takes in it. */
+  #spans(g, columns, x, y, colour) {
+    const half = colour.stroke / 2, wide = x(kColumn_s) - x(0) > 1.5;
+    g.fillStyle = g.strokeStyle = colour.trace;
+    g.lineWidth = colour.stroke;
+    g.beginPath();
+    const pixel = 1 / (devicePixelRatio || 1), whole = (v) => Math.round(v / pixel) * pixel, thick = Math.max(pixel, whole(colour.stroke));
+    for (const c of columns) {  // whole pixels are filled at a fraction of the cost of their parts
+      const top = whole(y(c.high) - half);
+      g.rect(whole(x(c.t_s) - half), top, thick, Math.max(thick, whole(y(c.low) + half) - top));
+    }
+    g.fill();
+    g.beginPath();
+    columns.forEach((c, i) => {
+      const before = columns[i - 1];
+      if (!c.joined || !before || (c.k - before.k < 2 && !wide)) return;
+      g.moveTo(x(before.t_s), y(before.last));  // samples that come slowly, or a wide screen: the columns stand apart
+      g.lineTo(x(c.t_s), y(c.last));
+    });
+    g.stroke();
+  }
+
+  #line(g, points, x, y, bridge_s, colour) {
+    g.strokeStyle = colour.trace;
+    g.lineWidth = colour.stroke;
+    g.beginPath();
+    let pen = false, before_s = null;
+    for (const [t_s, v] of points) {
+      if (v === null || (before_s !== null && t_s - before_s > bridge_s)) pen = false;
+      if (v === null) continue;
+      pen ? g.lineTo(x(t_s), y(v)) : g.moveTo(x(t_s), y(v));
+      pen = true;
+      before_s = t_s;
+    }
+    g.stroke();
+  }
+
   #hatch(g, from, to, top, why, colour) {
     if (to <= this.#left) return;
     const left = Math.max(this.#left, from), wide = Math.max(2, to - left);
@@ -202,7 +235,7 @@ export class Lanes {
     for (let k = -kHeight; k < wide; k += 6) { g.moveTo(left + k, top + kHeight); g.lineTo(left + k + kHeight, top); }
     g.stroke();
     if (wide > 90) {
-      g.fillStyle = css("--card");
+      g.fillStyle = colour.card;
       g.fillRect(left + 4, top + kHeight / 2 - 9, Math.min(wide - 8, g.measureText(why).width + 8), 18);
       g.fillStyle = colour.ink;
       g.textAlign = "left";

@@ -106,7 +106,7 @@ function takeSample(message) {
   lanes.add(t_s, values);
   if (message.closure.chi2 !== null && closureLimit) { judged += 1; alarms += message.closure.chi2 > closureLimit ? 1 : 0; }
   const now = performance.now();
-  if (now - sampled_ms < 250 || screen !== "live" || !status) return;
+  if (now - sampled_ms < 500 || screen !== "live" || !status) return;
   sampled_ms = now;
   fill(by("cards"), cards(status, sample, false));
   showNumbers(now);
