@@ -142,6 +142,24 @@ async function running() {
   await is("!document.getElementById('calibration').innerText.includes('no calibration')", "the calibrated stream");
   if (pictures) await new Promise((resolve) => setTimeout(resolve, 20000));  // the lanes fill
   await look("live");
+  rig.fault("unplug", "fluxgate2");
+  await is("document.getElementById('cards').innerText.includes('gone')", "the sensor that is not there");
+  await look("unplugged");
+}
+
+/** A run at a table that is turned by hand: what it asks for. */
+async function byHand() {
+  await browser.open("about:blank", ...kSizes[0], "true");  // a page would miss the daemon that ends
+  await rig.stop();
+  rig = null;
+  rig = await Rig.start(bin, kSpeed, `[rig]\nname = "by hand"\nparameters = "table6"\n[table]\nhands = "table"\n`);
+  await rig.startDaemon();
+  await browser.open(rig.ask("console").url, ...kSizes[0]);
+  await browser.click("tab-run");
+  const begun = rig.mgt("run", "start", "--random", "10", "--detach");
+  if (begun.status !== 0) throw new Error(`no run by hand: ${begun.stderr}`);
+  await is("!document.getElementById('run-asking').hidden", "what the run asks a hand to do");
+  await look("asking");
 }
 
 /** Calibrations of the same rig from other days, the later two after a knock against the second sensor. */
@@ -192,6 +210,7 @@ try {
   rig = await Rig.start(bin, kSpeed);
   await rig.startDaemon();
   await running();
+  await byHand();
   for (const line of browser.log) console.error(`the browser says: ${line}`);
   wrong += browser.log.length;
   console.log(`${views} views, ${wrong} faults`);

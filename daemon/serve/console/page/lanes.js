@@ -189,21 +189,21 @@ export class Lanes {
 
   /** Each column from the least to the greatest value that the line takes in it. */
   #spans(g, columns, x, y, colour) {
-    const half = colour.stroke / 2, wide = x(kColumn_s) - x(0) > 1.5;
+    const half = colour.stroke / 2;
     g.fillStyle = g.strokeStyle = colour.trace;
     g.lineWidth = colour.stroke;
     g.beginPath();
     const pixel = 1 / (devicePixelRatio || 1), whole = (v) => Math.round(v / pixel) * pixel, thick = Math.max(pixel, whole(colour.stroke));
     for (const c of columns) {  // whole pixels are filled at a fraction of the cost of their parts
-      const top = whole(y(c.high) - half);
-      g.rect(whole(x(c.t_s) - half), top, thick, Math.max(thick, whole(y(c.low) + half) - top));
+      const left = whole(x(c.t_s) - half), next = whole(x(c.t_s + kColumn_s) - half), top = whole(y(c.high) - half);
+      g.rect(left, top, Math.max(thick, next - left), Math.max(thick, whole(y(c.low) + half) - top));
     }
     g.fill();
     g.beginPath();
     columns.forEach((c, i) => {
       const before = columns[i - 1];
-      if (!c.joined || !before || (c.k - before.k < 2 && !wide)) return;
-      g.moveTo(x(before.t_s), y(before.last));  // samples that come slowly, or a wide screen: the columns stand apart
+      if (!c.joined || !before || c.k - before.k < 2) return;
+      g.moveTo(x(before.t_s), y(before.last));  // samples that come slowly: the columns stand apart
       g.lineTo(x(c.t_s), y(c.last));
     });
     g.stroke();
