@@ -48,9 +48,9 @@ bool in_model(const fit::joint::JointProblem& problem, const CandidateEffect& ca
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
 
 /// Rates hardly move from one model to the next: those of the one before decide where the best p-value is a
-/// factor of a hundred from its alarm.
+/// factor of ten from its alarm.
 void rate(const Rates* before, std::uint64_t seed, Criticism& out) {
-  constexpr double kClear = 2;
+  constexpr double kClear = 1;
   if (before != nullptr && calibrate(out.families, *before)) {
     double best = 0;
     for (const ScoredFamily& family : out.families) best = std::min(best, family.calibrated);
