@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "calib/fit/dwell_motion.h"
+#include "calib/fit/site_difference.h"
 
 namespace mgtd::calib::fit {
 namespace {
@@ -12,6 +16,9 @@ namespace {
 /// Times the median spread of the axis. A dwell that is above it was disturbed and tells nothing of the
 /// noise.
 constexpr double kDisturbed = 5;
+
+/// Of the variance within the dwells: what is left of it when the motion of the field is taken off.
+constexpr double kLeastOfSpread = 0.1;
 
 std::size_t sensors_of(const PoseTable& table) {
   return table.poses.empty() ? kSensorCount : table.poses.front().y_nT.size();
@@ -60,7 +67,11 @@ calibration::AxisNoise pooled(const PoseTable& table, Weight weight) {
 }  // namespace
 
 calibration::AxisNoise pooled_sample_noise(const PoseTable& table) {
-  return pooled(table, [](const Pose&) { return 1.0; });
+  const calibration::AxisNoise spread = pooled(table, [](const Pose&) { return 1.0; });
+  const auto motion = dwell_motion(table);
+  if (!motion || !motion->vector) return spread;
+  const double square = std::pow(motion->component_nT, 2);
+  return (spread.array().square() - square).max(kLeastOfSpread * spread.array().square()).sqrt();
 }
 
 Readings Readings::subset(const std::vector<Eigen::Index>& which) const {
@@ -93,6 +104,7 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
   for (auto& y : out.y_nT) y.resize(3, n);
   out.f_nT.resize(n);
   out.f_sd_nT.resize(n);
+  const SiteDifference difference = site_difference(table);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Pose& pose = *used[static_cast<std::size_t>(k)];
     if (!pose.f_nT && !pose.ref_nT && !options.field_nT) {
@@ -100,10 +112,10 @@ Result<Readings> readings_of(const PoseTable& table, const FitOptions& options, 
           ErrorCode::refused, fmt::format("pose {} has no f_nT and no field is given", pose.number),
           "give the total field of the site with --field NT, or measure it with a scalar magnetometer");
     }
-    out.f_nT[k] = pose.f_nT ? *pose.f_nT : pose.ref_nT ? pose.ref_nT->norm() : options.field_nT.value_or(0);
-    out.f_sd_nT[k] = pose.f_nT     ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
-                     : pose.ref_nT ? pose.ref_sd_nT.value_or(kDefaultScalarSd_nT)
-                                   : 0.0;
+    const TotalField field = pose.f_nT || pose.ref_nT ? total_field(pose, difference)
+                                                      : TotalField{options.field_nT.value_or(0), 0.0};
+    out.f_nT[k] = field.f_nT;
+    out.f_sd_nT[k] = field.sd_nT;
     if (!pose.ref_nT && !(out.f_nT[k] > 1000 && out.f_nT[k] < 200'000)) {
       return fail(ErrorCode::refused,
                   fmt::format("pose {}: a total field of {} nT", pose.number, out.f_nT[k]),

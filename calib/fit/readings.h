@@ -39,7 +39,8 @@ enum class PoseUse { fit, check };
                                            PoseUse use = PoseUse::fit);
 
 /// Noise of one sample per axis, pooled over the poses (root mean square of their spreads, without those
-/// above five times the median: something moved there); zero where no pose tells.
+/// above five times the median: something moved there), without what a vector reference beside the table says
+/// that the field moved meanwhile (dwell_motion.h); zero where no pose tells.
 [[nodiscard]] calibration::AxisNoise pooled_sample_noise(const PoseTable& table);
 
 }  // namespace mgtd::calib::fit

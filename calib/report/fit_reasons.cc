@@ -14,6 +14,7 @@
 #include "calib/fit/checks/identifiability_text.h"
 #include "calib/fit/joint/joint_findings.h"
 #include "calib/report/outlier_text.h"
+#include "calib/report/reference_text.h"
 #include "calib/report/wandering_text.h"
 #include "proto/units.h"
 
@@ -87,6 +88,14 @@ std::vector<std::string> remarks_on_joint(const fit::FitReport& report) {
     out.push_back(fmt::format("readings stand in steps of {:.3g} nT: the uncertainties contain it",
                               found.quantisation.step_nT));
   }
+  if (found.dwell_motion)
+    if (std::string moves = dwell_motion_text(
+            *found.dwell_motion, calibration::root_mean_square(report.calibration.sample_noise_nT));
+        !moves.empty())
+      out.push_back(std::move(moves));
+  if (found.reference_scatter)
+    if (std::string off = reference_scatter_remark(*found.reference_scatter); !off.empty())
+      out.push_back(std::move(off));
   return out;
 }
 

@@ -110,6 +110,11 @@ void add_joint(const fit::FitReport& report, json& out) {
   out["outliers"] = outliers_json(report.outliers);
   if (report.joint->samples_per_effective > 1)
     out["samples_per_effective"] = report.joint->samples_per_effective;
+  if (const auto& reference = report.joint->reference_scatter)
+    out["reference"] = {{"measured_sd_nT", reference->measured_nT},
+                        {"stated_sd_nT", reference->stated_nT},
+                        {"against", reference->by_scalar ? "f_nT" : "sensors"},
+                        {"differs", reference->differs}};
   out["weak"] = weak_texts(report);
   out["tensor_sd_nT_per_m"] = components_json(report.tensor_sd_nT_per_m);
 }

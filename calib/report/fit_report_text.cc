@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "calib/calibration/tensor.h"
+#include "calib/fit/joint/joint_findings.h"
 #include "calib/report/calibration_text.h"
 #include "calib/report/column_blocks.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_summary_text.h"
+#include "calib/report/reference_text.h"
 #include "calib/report/residual_words.h"
 #include "calib/report/shown_number.h"
 #include "proto/units.h"
@@ -138,6 +140,8 @@ std::string heading(const fit::FitReport& report) {
     out += fmt::format("table: each angle good to {:.4f} deg, estimated; chi-square {:.4g} for {:.0f}\n",
                        to_deg(report.table_sd_rad), report.chi2_table, report.dof_table);
   }
+  if (report.joint && report.joint->reference_scatter)
+    out += fmt::format("reference: {}\n", reference_scatter_text(*report.joint->reference_scatter));
   return out;
 }
 

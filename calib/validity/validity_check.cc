@@ -9,6 +9,7 @@
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/outliers.h"
+#include "calib/fit/site_difference.h"
 #include "calib/linear/propagation.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/poses/run_time.h"
@@ -29,12 +30,15 @@ constexpr double kMostLeftOut = 0.1;
 /// reference beside the table the size of the field is then what is left.
 PoseTable prepared(const PoseTable& table, bool needs_angles) {
   PoseTable out = table;
+  const fit::SiteDifference difference = fit::site_difference(table);
   for (Pose& pose : out.poses) {
     pose.set = "check";  // predicted, never fitted: as few as there are
     if (needs_angles || !pose.angles()) continue;
+    if (pose.ref_nT) {
+      const fit::TotalField field = fit::total_field(pose, difference);
+      pose.f_nT = field.f_nT, pose.f_sd_nT = field.sd_nT;
+    }
     pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
-    if (!pose.ref_nT) continue;
-    if (!pose.f_nT) pose.f_nT = pose.ref_nT->norm(), pose.f_sd_nT = pose.ref_sd_nT;
     pose.ref_nT = std::nullopt, pose.ref_sd_nT = std::nullopt;
   }
   return out;

@@ -2,9 +2,11 @@
 #pragma once
 #include <array>
 
+#include "calib/fit/dwell_motion.h"
 #include "calib/fit/joint/agreement.h"
 #include "calib/fit/joint/identifiability.h"
 #include "calib/fit/joint/joint_setup.h"
+#include "calib/fit/joint/reference_scatter.h"
 #include "calib/fit/joint/wandering_estimate.h"
 #include "calib/fit/quantisation.h"
 
@@ -20,6 +22,8 @@ struct JointFindings {
   Agreement agreement;                             ///< whether the readings that were kept agree
   WanderingEstimate wandering;                     ///< the covariance of the calibration contains it
   Quantisation quantisation;                       ///< the weights of the fit contain it
+  std::optional<ReferenceScatter> reference_scatter;
+  std::optional<DwellMotion> dwell_motion;  ///< where the noise is that of the dwells
 };
 
 }  // namespace mgtd::calib::fit::joint

@@ -61,6 +61,19 @@ Eigen::MatrixXd widened_information(const JointFit& fit) {
   return reduce(wide, fit.state, 0).S;
 }
 
+/// The common error D of the total fields that were filled in moves the solution by S^-1 dg/dD.
+void add_site_difference(const JointFit& fit, const Reduced& reduced, Eigen::MatrixXd& covariance) {
+  JointProblem shifted = fit.problem;
+  bool any = false;
+  for (JointPose& pose : shifted.poses)
+    if (pose.by_site_difference) pose.f_nT += fit.problem.site_difference_sd_nT, any = true;
+  const auto information = linear::Cholesky::of(reduced.S);
+  if (!any || !information) return;
+  const Eigen::VectorXd pull = reduce(shifted, fit.state, 0).g - reduced.g;
+  const Eigen::VectorXd moved = information->solve(pull);
+  covariance += moved * moved.transpose();
+}
+
 /// Of the mean alpha, beta and gamma of all sensors.
 std::array<double, 3> common_rotation_sd(int sensors, const Eigen::MatrixXd& covariance) {
   const auto sd = [&](int parameter) {
@@ -115,8 +128,9 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   Reduced& reduced = found->solution.reduced;
   if (fit.gauge.beside_table) fit.gauge.reference_turn_sd_rad = reference_turn_sd_rad(fit.problem, reduced.S);
   fill_statistics(found->residuals, reduced, fit);
-  auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : std::move(reduced.S));
+  auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : reduced.S);
   if (!covariance) return tl::unexpected(covariance.error());
+  add_site_difference(fit, reduced, *covariance);
   fit.covariance = *std::move(covariance);
   if (is_recording(fit.problem)) {
     fit.samples_per_effective = sample_correlation(fit.problem, fit.state).samples_per_effective();

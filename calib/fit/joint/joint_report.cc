@@ -223,7 +223,9 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
                     .known = identifiability(fit->problem, fit->state, reduced.S, report.site.f_nT),
                     .agreement = agreement(*fit, report.residual_nT, report.held_out_residual_nT),
                     .wandering = wandering,
-                    .quantisation = fit->quantisation});
+                    .quantisation = fit->quantisation,
+                    .reference_scatter = reference_scatter(table, *fit),
+                    .dwell_motion = fit->sample_noise_nT ? dwell_motion(table) : std::nullopt});
   return report;
 }
 

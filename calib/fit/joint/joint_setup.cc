@@ -8,6 +8,7 @@
 
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/reference_turn.h"
+#include "calib/fit/site_difference.h"
 #include "calib/poses/run_time.h"
 #include "calib/sensor/sensor_equations.h"
 
@@ -23,27 +24,38 @@ constexpr double kMostOfField = 2;
 /// Weights of constraints that define a gauge: far stiffer than any data, far softer than rounding.
 constexpr double kAngleConstraint = 1 / 1e-7, kScaleConstraint = 1 / 1e-7;
 
-double reference_sd_nT(const Pose& pose) {
-  return std::max(pose.ref_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
+double reference_sd_nT(const Pose& pose) { return std::max(fit::reference_sd_nT(pose), kMinFieldSd_nT); }
+
+/// The vector reference of a pose that has one, and the total field beside it.
+void set_reference(const Pose& pose, const SiteDifference& difference, JointPose& out) {
+  const double sd_nT = reference_sd_nT(pose);
+  const TotalField total = total_field(pose, difference);
+  out.reference_nT = *pose.ref_nT;
+  out.f_nT = total.f_nT;
+  if (pose.f_nT) out.f_weight = 1 / std::max(total.sd_nT, kMinFieldSd_nT);
+  if (!pose.angles()) {
+    out.reference_weight = 1 / sd_nT;
+    return;
+  }
+  out.reference_sd_rad = sd_nT / pose.ref_nT->norm();
+  if (pose.f_nT) return;  // two places, two sizes: that of the array counts
+  if (difference.known()) {
+    out.by_site_difference = true;
+    out.f_weight = 1 / std::max(total.sd_nT, kMinFieldSd_nT);
+  } else {
+    out.reference_weight = 1 / sd_nT;
+  }
 }
 
 JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_field,
-                     const poses::RunTime& time) {
+                     const SiteDifference& difference, const poses::RunTime& time) {
   JointPose out;
   out.pose = &pose;
   out.t_h = time.hours(pose);
   out.y_nT = calibration::stacked(pose.y_nT);
   out.weight = Channels::Constant(out.y_nT.size(), 1 / kStartNoise_nT);
   if (pose.ref_nT) {
-    const double sd_nT = reference_sd_nT(pose);
-    out.reference_nT = *pose.ref_nT;
-    out.reference_weight = 1 / sd_nT;
-    out.f_nT = pose.f_nT.value_or(pose.ref_nT->norm());
-    if (pose.angles()) {
-      out.reference_sd_rad = sd_nT / pose.ref_nT->norm();
-      if (pose.f_nT) out.reference_weight = 0;  // two places, two sizes: that of the array counts
-    }
-    if (pose.f_nT) out.f_weight = 1 / std::max(pose.f_sd_nT.value_or(kDefaultScalarSd_nT), kMinFieldSd_nT);
+    set_reference(pose, difference, out);
   } else if (common_field) {
     out.f_weight = 1 / kCommonFieldSpread_nT;
   } else {
@@ -150,22 +162,24 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
                 fmt::format("{} poses to fit; the joint fit needs at least {}", total, kFewestPoses),
                 "measure at least 12 poses in general position, better 60");
   }
-  if (with_f != 0 && with_f != total && !options.field_nT) {
-    return fail(ErrorCode::refused, fmt::format("{} of {} poses have a scalar reference f_nT", with_f, total),
-                "give f_nT for every pose, or give the field of the others with --field");
-  }
   const auto with_reference = std::count_if(table.poses.begin(), table.poses.end(),
                                             [&](const Pose& p) { return fitted(p) && p.ref_nT; });
   if (auto ok = check_reference(table, with_reference, total, fitted); !ok) return tl::unexpected(ok.error());
+  if (with_f != 0 && with_f != total && with_reference == 0 && !options.field_nT) {
+    return fail(ErrorCode::refused, fmt::format("{} of {} poses have a scalar reference f_nT", with_f, total),
+                "give f_nT for every pose, or give the field of the others with --field");
+  }
   problem.has_reference = with_reference > 0;
   problem.common_field = with_f == 0 && !problem.has_reference;
   problem.means = std::make_shared<const effects::CovariateMeans>(effects::covariate_means(table));
+  const SiteDifference difference = site_difference(table);
+  problem.site_difference_sd_nT = difference.sd_nT;
   const poses::RunTime time = poses::RunTime::of(table);
   const Pose* previous = nullptr;
   problem.poses.reserve(static_cast<std::size_t>(total));
   for (const Pose& pose : table.poses) {
     if (fitted(pose)) {
-      problem.poses.push_back(joint_pose(pose, options, problem.common_field, time));
+      problem.poses.push_back(joint_pose(pose, options, problem.common_field, difference, time));
       problem.poses.back().means = problem.means.get();
       problem.poses.back().previous = previous;
       problem.has_angles = problem.has_angles || problem.poses.back().has_angles;

@@ -40,10 +40,10 @@ inline constexpr double kCommonFieldSpread_nT = 0.05;
 /// Noise of a pose mean until something better is known.
 inline constexpr double kStartNoise_nT = 1.0;
 
-/// Poses of set "check" are left out. Refuses too few poses; a scalar or vector reference in only a part of
-/// them; with a vector reference, table angles in only a part of them; a vector reference beside the table
-/// that is too weak for its noise to have a direction; and effects whose needs the poses do not meet. Keeps
-/// pointers into `table`.
+/// Poses of set "check" are left out. Refuses too few poses; a vector reference in only a part of them, or a
+/// scalar one where no vector fills the others in (site_difference.h); with a vector reference, table angles
+/// in only a part of them; a vector reference beside the table that is too weak for its noise to have a
+/// direction; and effects whose needs the poses do not meet. Keeps pointers into `table`.
 [[nodiscard]] Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& options,
                                                  PoseUse use = PoseUse::fit);
 

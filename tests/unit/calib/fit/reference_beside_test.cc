@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "calib/criticism/search/explain.h"
+#include "calib/fit/joint/joint_findings.h"
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/reference_turn.h"
+#include "calib/report/fit_reasons.h"
 #include "calib/validity/validity_check.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
@@ -18,8 +20,10 @@ namespace mgtd::calib {
 namespace {
 
 using testing::band;
+using ::testing::Contains;
 using testing::fitted;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::options_of;
 using testing::Places;
 using testing::squared_error;
@@ -48,6 +52,20 @@ fit::joint::JointFit joint_fit(const PoseTable& table, const Places& places) {
 std::string refusal(const PoseTable& table) {
   const auto report = fit::method_choice::fit(table, options_of(testing::one_sensor()));
   return report ? "fitted" : report.error().text();
+}
+
+/// The vector is measured where the field is 18 nT smaller; a scalar magnetometer, 0.2 nT good, is at the
+/// array.
+constexpr const char* kElsewhere =
+    "[reference]\nvector = true\nframe = \"site\"\nscalar = true\nsd_nT = 0.2\nat_m = [8, -3, 0.5]\n"
+    "misalignment_deg = [4, -7, 130]\n[scalar]\nnoise_nT = 0.2\n"
+    "[[effect]]\nname = \"site.gradient\"\nnT_per_m = [6, -2, 1.5, -3, 2]\n";
+
+PoseTable run_elsewhere(std::uint64_t seed, std::size_t scalar_every) {
+  PoseTable table = testing::turned_run(testing::one_sensor(), seed, kElsewhere + std::string(kStorm));
+  for (std::size_t k = 0; k < table.poses.size(); ++k)
+    if (k % scalar_every != 0) table.poses[k].f_nT = table.poses[k].f_sd_nT = std::nullopt;
+  return table;
 }
 
 /// Without the vector, what a scalar magnetometer at the same place would have read.
@@ -129,6 +147,102 @@ TEST(ReferenceBeside, TheScenarioIsFittedDownToTheNoise) {
   EXPECT_TRUE(report.calibration.accepted_by_checks);
   EXPECT_NEAR(report.chi2 / report.dof, 1, 5 * std::sqrt(2 / report.dof));
   EXPECT_LT(squared_error(report.calibration, scenario.truth), 12 + band(12, 1));
+}
+
+/// In every fortieth pose: the difference of the two places is known to a tenth of a nanotesla, and that
+/// error is common to the total fields of all the other poses.
+TEST(ReferenceBeside, ATotalFieldInSomePosesCountsForAll) {
+  constexpr int kRuns = 20;
+  double sum = 0;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    const auto at = static_cast<std::uint64_t>(seed);
+    const PoseTable table = run_elsewhere(at, 40);
+    EXPECT_GT(std::abs(*table.poses[0].f_nT - table.poses[0].ref_nT->norm()), 5);
+    const fit::FitReport report = fitted(table, testing::one_sensor());
+    EXPECT_TRUE(report.calibration.accepted_by_checks);
+    EXPECT_LT(report.after.total_field_rmse_nT[0], 0.5);
+    sum += squared_error(
+        report.calibration,
+        testing::scenario_of(testing::one_sensor(), at, kElsewhere + std::string(kStorm)).truth);
+  }
+  EXPECT_NEAR(sum / kRuns, 12, band(12, kRuns));
+}
+
+TEST(ReferenceBeside, ACalibrationIsCheckedByARunWithSomeTotalFields) {
+  const calibration::Calibration c = fitted(run_elsewhere(8, 1), testing::one_sensor()).calibration;
+  PoseTable later = run_elsewhere(8, 5);
+  later.poses.resize(40);
+  const auto valid = validity::check(c, later, options_of(testing::one_sensor()));
+  ASSERT_TRUE(valid) << valid.error().text();
+  EXPECT_TRUE(valid->valid);
+}
+
+std::string reasons_of(const PoseTable& table) {
+  std::string out;
+  for (const std::string& reason : report::fit_reasons(fitted(table, testing::one_sensor())))
+    out += reason + "\n";
+  return out;
+}
+
+/// The samples of a dwell have a noise of 0.3 nT, and the field moves by more than that meanwhile.
+TEST(ReferenceBeside, WhatTheFieldDoesInADwellIsNoNoise) {
+  const std::string fast =
+      "[[effect]]\nname = \"hidden.site-oscillation\"\nnT = [360, 300, 600]\nperiod_s = 6000\n";
+  const Places one = testing::one_sensor();
+  const fit::FitReport report = fitted(run_beside(one, 6, fast), one);
+  EXPECT_NEAR(calibration::root_mean_square(report.calibration.sample_noise_nT), 0.3, 0.03);
+  EXPECT_NEAR(report.chi2 / report.dof, 1, 5 * std::sqrt(2 / report.dof));
+  EXPECT_THAT(report::fit_reasons(report), Contains(HasSubstr("is taken off the spread of the samples")));
+  const fit::FitReport scalar = fitted(with_its_size_alone(run_beside(one, 6, fast)), one);
+  EXPECT_GT(calibration::root_mean_square(scalar.calibration.sample_noise_nT), 0.4);
+  EXPECT_THAT(report::fit_reasons(scalar), Contains(HasSubstr("the spread of the samples contains it")));
+  EXPECT_THAT(report::fit_reasons(fitted(run_beside(one, 6, ""), one)),
+              Not(Contains(HasSubstr("within a dwell"))));
+}
+
+/// Against the sensors where the table has no f_nT, else against that.
+TEST(ReferenceBeside, AVectorThatScattersOtherThanStatedIsTold) {
+  const Places one = testing::one_sensor();
+  for (const PoseTable& honest : {run_beside(one, 3), run_elsewhere(3, 1)}) {
+    EXPECT_THAT(reasons_of(honest), Not(HasSubstr("the vector reference scatters")));
+    PoseTable overstated = honest, understated = honest;
+    for (Pose& pose : overstated.poses) pose.ref_sd_nT = 5;
+    for (Pose& pose : understated.poses) pose.ref_sd_nT = 0.02;
+    EXPECT_THAT(reasons_of(overstated), HasSubstr("and ref_sd_nT says 5 nT: the fit trusts it too little"));
+    EXPECT_THAT(reasons_of(overstated), HasSubstr("give ref_sd_nT = 0.2"));
+    EXPECT_THAT(reasons_of(understated), HasSubstr("and ref_sd_nT says 0.02 nT: either its noise"));
+  }
+  PoseTable assumed = run_beside(one, 3);
+  for (Pose& pose : assumed.poses) pose.ref_sd_nT = std::nullopt;
+  EXPECT_THAT(reasons_of(assumed), HasSubstr("and 0.05 nT is assumed, since ref_sd_nT is not given"));
+}
+
+PoseTable caged(const rig::Scenario& scenario) {
+  return rig::simulated_table(scenario, rig::cage_fields(*scenario.cage, 4), 4);
+}
+
+/// In a cage all three components are compared.
+TEST(ReferenceBeside, TheScatterInACageIsMeasured) {
+  const Places one = testing::one_sensor();
+  PoseTable table = caged(testing::scenario_of(
+      one, 4, "[reference]\nvector = true\nscalar = false\nsd_nT = 0.5\n[cage]\nposes = 200\n"));
+  const auto told = fitted(table, one).joint->reference_scatter;
+  ASSERT_TRUE(told.has_value());
+  EXPECT_NEAR(told->measured_nT, 0.5, 0.1);  // 3 % one sigma
+  EXPECT_FALSE(told->differs);
+  for (Pose& pose : table.poses) pose.ref_sd_nT = 0.05;
+  EXPECT_TRUE(fitted(table, one).joint->reference_scatter->more());
+}
+
+/// In a cage the vector stands for the total field in the poses that have none.
+TEST(ReferenceBeside, SomeTotalFieldsInACageAreUsed) {
+  const Places one = testing::one_sensor();
+  const std::string text = "[reference]\nvector = true\nscalar = true\nsd_nT = 0.5\n[cage]\nposes = 100\n";
+  PoseTable table = caged(testing::scenario_of(one, 4, text));
+  for (std::size_t k = 0; k < 50; ++k) table.poses[k].f_nT = table.poses[k].f_sd_nT = std::nullopt;
+  const fit::FitReport report = fitted(table, one);
+  EXPECT_NEAR(report.chi2 / report.dof, 1, 5 * std::sqrt(2 / report.dof));
+  EXPECT_LT(squared_error(report.calibration, testing::scenario_of(one, 4, text).truth), 12 + band(12, 1));
 }
 
 TEST(ReferenceBeside, ALawIsNamedAndACleanStormPasses) {
