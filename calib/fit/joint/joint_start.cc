@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "calib/fit/joint/angle_sense.h"
 #include "calib/fit/joint/data_faults.h"
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/joint/reference_turn.h"
@@ -182,6 +183,7 @@ Result<Placement> best_placement(const JointProblem& problem, const std::vector<
   if (coverage != AngleCoverage::none && problem.site_reference()) {
     const ReferencePlacement beside = place_beside(problem, u);
     if (auto ok = check_reference_stands(problem, u, beside); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_angle_sense(problem, u, beside); !ok) return tl::unexpected(ok.error());
     p = beside_table(beside, problem);
   } else if (coverage != AngleCoverage::none) {
     p = place(problem, u);

@@ -299,6 +299,46 @@ TEST(ReferenceBeside, OneThatTurnsWithTheSensorsIsRefused) {
               HasSubstr("the vector of the reference turns with the table"));
 }
 
+/// The sensor of this rig stands along the platform's axes, so the angle itself is named.
+TEST(ReferenceBeside, AnAngleCountedBackwardsIsNamed) {
+  const PoseTable table = run_beside(testing::one_sensor(), 9);
+  PoseTable turned = table;
+  for (Pose& pose : turned.poses) *pose.azimuth_rad *= -1;
+  EXPECT_THAT(refusal(turned), HasSubstr("the table's azimuth turns against the vector reference"));
+  EXPECT_THAT(refusal(turned), HasSubstr("(rms; limit 1 deg), with that angle of the other sign 0."));
+  EXPECT_THAT(refusal(turned), HasSubstr("change the sign of azimuth_deg in every pose"));
+  turned = table;
+  for (Pose& pose : turned.poses) *pose.pitch_rad *= -1;
+  EXPECT_THAT(refusal(turned), HasSubstr("the table's pitch turns against the vector reference"));
+  turned = table;
+  for (Pose& pose : turned.poses) *pose.roll_rad *= -1;
+  EXPECT_THAT(refusal(turned), HasSubstr("the table's roll turns against the vector reference"));
+}
+
+/// Half a turn about X, azimuth and pitch of the other sign: the same run. So a sensor that hangs upside down
+/// makes the azimuth look like the pitch, and one that stands on edge leaves all three open.
+TEST(ReferenceBeside, WhichAngleIsCountedBackwardsIsSaidWhereTheMountingTells) {
+  PoseTable table = run_beside(testing::one_sensor(), 9);
+  for (Pose& pose : table.poses) *pose.azimuth_rad *= -1;
+  PoseTable hanging = table, on_edge = table;
+  for (Pose& pose : hanging.poses) pose.y_nT[0] = Eigen::Vector3d(1, -1, -1).cwiseProduct(pose.y_nT[0]);
+  EXPECT_THAT(refusal(hanging), HasSubstr("the table's pitch turns against"));
+  EXPECT_THAT(refusal(hanging), HasSubstr("half a turn round, it would be about X azimuth_deg"));
+  for (Pose& pose : on_edge.poses)
+    pose.y_nT[0] = Eigen::Vector3d(pose.y_nT[0].y(), pose.y_nT[0].z(), pose.y_nT[0].x());
+  EXPECT_THAT(refusal(on_edge), HasSubstr("one of the table's angles turns against"));
+}
+
+/// The error of a table, rough as scales read by hand, is no wrong sense, and neither are a few poses that
+/// are gross.
+TEST(ReferenceBeside, ARoughTableIsNotTakenForOneThatCountsBackwards) {
+  const Places one = testing::one_sensor();
+  EXPECT_EQ(refusal(run_beside(one, 9, kStorm + std::string("[table]\naccuracy_deg = 3\n"))), "fitted");
+  PoseTable gross = run_beside(one, 9);
+  for (std::size_t k = 0; k < 8; ++k) *gross.poses[20 * k].azimuth_rad += 2;
+  EXPECT_THAT(refusal(gross), Not(HasSubstr("turns against")));
+}
+
 TEST(ReferenceBeside, TheSmallestTurnBringsOneDirectionToAnother) {
   const Eigen::Vector3d from = Eigen::Vector3d(1, 2, 3).normalized(),
                         to = Eigen::Vector3d(-2, 0, 1).normalized();
