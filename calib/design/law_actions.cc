@@ -174,6 +174,11 @@ AngleRange angle_range(const PoseTable& run, const std::optional<double> Pose::*
 
 std::span<const LawAction> law_actions() { return kLawActions; }
 
+bool has_table(const PoseTable& run) {
+  return std::any_of(run.poses.begin(), run.poses.end(),
+                     [](const Pose& p) { return p.azimuth_rad.has_value(); });
+}
+
 bool turnable(const PoseTable& run) {
   const std::optional<int>& mount = run.poses.front().mount;
   return std::all_of(run.poses.begin(), run.poses.end(),

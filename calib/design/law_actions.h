@@ -42,6 +42,9 @@ struct LawAction {
 /// The table turned the array, and nobody else: attitudes other than those of the run can be asked for.
 [[nodiscard]] bool turnable(const PoseTable& run);
 
+/// A table was there, and told an angle: without one nobody but a hand repeats an attitude.
+[[nodiscard]] bool has_table(const PoseTable& run);
+
 /// Of one angle over a run that has it at every pose.
 struct AngleRange {
   double least_rad{0}, most_rad{0};

@@ -190,7 +190,7 @@ Result<RivalMenu> rival_menu(const PoseTable& run, const fit::joint::JointFit& f
                                          .lambda_before = out.lambda_before,
                                          .lambda_after = after},
                          .poses = std::move(one.poses),
-                         .by_the_rig = one.action->by_the_rig,
+                         .by_the_rig = one.action->by_the_rig && has_table(run),
                          .other_day = one.action->other_day});
   }
   std::stable_sort(out.steps.begin(), out.steps.end(),

@@ -8,6 +8,7 @@
 
 #include "calib/criticism/tests/detectable.h"
 #include "calib/design/actions.h"
+#include "calib/design/law_actions.h"
 #include "calib/design/next_measurement.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/fit/joint/joint_report.h"
@@ -80,7 +81,7 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<design:
     NextStep step{.measurement = m, .poses = added(table, *action, fit)};
     // What the run has no column for cannot be changed, and would be more of the same.
     if (action != design::actions().begin() && !action->moved && alike(step.poses, same)) continue;
-    step.by_the_rig = !action->moved && by_the_rig(step.poses, same);
+    step.by_the_rig = !action->moved && design::has_table(table) && by_the_rig(step.poses, same);
     step.of_another_run = action->moved;
     out.push_back(std::move(step));
   }

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/field_direction.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::fit::checks {
@@ -33,6 +35,27 @@ std::string to_text(const joint::FieldCoverage& coverage) {
 std::string to_text(const TableAngles& a) {
   return fmt::format("azimuth {:.0f}, pitch {:.0f}, roll {:.0f} deg", to_deg(a.azimuth_rad),
                      to_deg(a.pitch_rad), to_deg(a.roll_rad));
+}
+
+std::string field_directions_text(const std::vector<TableAngles>& poses) {
+  constexpr double kOnAxis = 1 - 1e-9;
+  std::vector<std::string> texts;
+  for (const TableAngles& a : poses) {
+    const Eigen::Vector3d b = joint::field_direction(a);
+    Eigen::Index nearest = 0;
+    const double along = b.cwiseAbs().maxCoeff(&nearest);
+    const auto shown = [&b](int i) { return std::abs(b[i]) < 0.005 ? 0.0 : b[i]; };  // no -0.00
+    std::string text = along > kOnAxis
+                           ? fmt::format("{}{}", b[nearest] < 0 ? '-' : '+', "XYZ"[nearest])
+                           : fmt::format("({:.2f}, {:.2f}, {:.2f})", shown(0), shown(1), shown(2));
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(std::move(text));
+  }
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+std::string additions_text(const std::vector<TableAngles>& poses, bool table) {
+  return table ? "add poses: " + to_text(poses)
+               : "hold the array so that the field points along platform " + field_directions_text(poses);
 }
 
 std::string to_text(const std::vector<TableAngles>& poses) {

@@ -29,16 +29,16 @@ Check coverage_check(const FitReport& r, const joint::Identifiability& known) {
               ? std::string("every combination of parameters to better than 0.1 % of the field")
               : fmt::format("{}: {} of field uncertainty; {}", to_text(known.weak.front()),
                             sd_text(known.worst_nT()), to_text(known.coverage)),
-          sd_text(limit), known.add.empty() ? std::string() : "add poses: " + to_text(known.add)};
+          sd_text(limit), known.add.empty() ? std::string() : additions_text(known.add, r.table_sd_rad > 0)};
 }
 
-Check condition_check(const joint::Identifiability& known) {
+Check condition_check(const FitReport& r, const joint::Identifiability& known) {
   return {
       "condition", known.condition <= kMaxCondition,
       fmt::format("{:.2g} between the best and the worst known combination of parameters", known.condition),
       fmt::format("{:.0e}", kMaxCondition),
       known.add.empty() ? std::string("turn the rig about a second and a third axis")
-                        : "add poses: " + to_text(known.add)};
+                        : additions_text(known.add, r.table_sd_rad > 0)};
 }
 
 /// The turn from a sensor to the signed permutation that names its mounting: half way to the next one the
@@ -115,7 +115,7 @@ std::vector<Check> joint_checks(const FitReport& r, const FitOptions& options) {
   const joint::Identifiability& known = r.joint->known;
   std::vector<Check> out = common_checks(r);
   out.push_back(coverage_check(r, known));
-  out.push_back(condition_check(known));
+  out.push_back(condition_check(r, known));
   out.push_back(mounting_check(r));
   if (r.table_sd_rad > 0) {
     out.push_back(table_check(r, options));

@@ -132,7 +132,7 @@ FieldCoverage field_coverage(const JointProblem& problem, const JointState& stat
   return out;
 }
 
-/// Greedy: each time the attitude that takes most variance out of the weak directions.
+/// Greedy: each time the attitude that takes most variance out of the weak directions, none twice.
 std::vector<TableAngles> best_additions(const JointProblem& problem, const JointState& state,
                                         const Eigen::MatrixXd& S, const Eigen::MatrixXd& weak,
                                         const Eigen::VectorXd& d, double f_nT,
@@ -146,18 +146,22 @@ std::vector<TableAngles> best_additions(const JointProblem& problem, const Joint
                      d.cwiseInverse().asDiagonal());
   }
   std::vector<TableAngles> out;
+  std::vector<std::size_t> taken;
   while (!offers.empty() && static_cast<int>(out.size()) < kMaxAdd) {
     const Eigen::MatrixXd x =
         linear::solve_by_ldlt(information, weak);  // C w: rate of the variances with information
     std::size_t best = 0;
     double best_gain = -1;
     for (std::size_t c = 0; c < offers.size(); ++c) {
+      if (std::find(taken.begin(), taken.end(), c) != taken.end()) continue;
       const double gain = (x.transpose() * offers[c] * x).trace();
       if (gain > best_gain) {
         best_gain = gain;
         best = c;
       }
     }
+    if (best_gain < 0) break;
+    taken.push_back(best);
     information += offers[best];
     out.push_back(candidates[best]);
   }

@@ -138,6 +138,16 @@ TEST(RivalMenu, WhatTheColumnsCannotExpressIsLeftOutWithTheReason) {
   EXPECT_THAT(why("turned in their mounts"), HasSubstr("another array"));
 }
 
+/// Of a recording that was turned by hand no rig repeats anything.
+TEST(RivalMenu, WithoutATableNothingIsDoneByTheRig) {
+  PoseTable run = quartic();
+  for (Pose& pose : run.poses) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
+  const auto menu = asked(run, kQuartic);
+  ASSERT_TRUE(menu) << menu.error().text();
+  ASSERT_FALSE(menu->steps.empty());
+  for (const RivalStep& one : menu->steps) EXPECT_FALSE(one.by_the_rig) << one.measurement.action;
+}
+
 TEST(RivalMenu, LawsThatKnowThePoseBeforeHaveThePosesInOrder) {
   const auto menu = asked(quartic(), {formula("abs(prev_u/50000)"), formula("(prev_u/50000)^2")});
   ASSERT_TRUE(menu) << menu.error().text();

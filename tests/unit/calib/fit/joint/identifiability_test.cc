@@ -2,6 +2,7 @@
 #include "calib/fit/joint/identifiability.h"
 #include "calib/fit/checks/identifiability_text.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "calib/fit/joint/joint_fit.h"
@@ -62,6 +63,32 @@ TEST(Identifiability, LevelPosesLeaveTheVerticalWeakAndTheAdvicePays) {
   ASSERT_TRUE(again);
   const Identifiability after = of(*again, sim.f_nT);
   EXPECT_LT(after.worst_nT(), before.worst_nT() / 3);
+}
+
+TEST(Identifiability, WithoutATableTheAdviceIsADirectionOfTheField) {
+  const Simulation sim{.noise_nT = 3, .table_sd_rad = to_rad(0.1)};
+  PoseTable table = at(sim, nearly_level(8, 60), 2);
+  for (Pose& pose : table.poses) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
+  const auto fit = fit_joint(table, {});
+  ASSERT_TRUE(fit) << fit.error().text();
+  const Identifiability id = of(*fit, sim.f_nT);
+  ASSERT_FALSE(id.add.empty());
+  for (std::size_t k = 0; k < id.add.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j)
+      EXPECT_FALSE(id.add[j].azimuth_rad == id.add[k].azimuth_rad &&
+                   id.add[j].pitch_rad == id.add[k].pitch_rad && id.add[j].roll_rad == id.add[k].roll_rad)
+          << "twice: " << checks::to_text(id.add[k]);
+  EXPECT_THAT(checks::additions_text(id.add, false),
+              ::testing::StartsWith("hold the array so that the field points along platform "));
+  EXPECT_THAT(checks::additions_text(id.add, true), ::testing::StartsWith("add poses: azimuth "));
+}
+
+/// By hand, the frame turns and the field stays: at a pitch of 90 degrees a field along +Z lies along -X of
+/// the platform, at a roll of 45 degrees half way to +Y. An azimuth leaves it where it is.
+TEST(Identifiability, DirectionsOfTheFieldAreWrittenOnce) {
+  const double half = to_rad(45), whole = to_rad(90);
+  EXPECT_EQ(checks::field_directions_text({{0, 0, 0}, {half, 0, 0}, {0, whole, 0}, {0, 0, half}}),
+            "+Z; -X; (0.00, 0.71, 0.71)");
 }
 
 }  // namespace
