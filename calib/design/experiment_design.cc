@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/fit/joint/field_uncertainty.h"
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
 #include "calib/sensor/shown_parameters.h"
@@ -25,13 +26,12 @@ Gradient unknown() {
   return {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
 }
 
-/// Over the components that the array can tell; of an array that can tell none what is asked is the field.
-double mean_square(const Gradient& g) {
-  const auto all = components(g);
+/// Over the components that the array can tell; empty where it can tell none.
+std::optional<double> mean_square(const Gradient& g) {
   double sum = 0, count = 0;
-  for (const double x : all)
+  for (const double x : components(g))
     if (!std::isnan(x)) sum += x * x, ++count;
-  return sum / std::max(1.0, count);
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 /// A room that warms up: fast at first, all of it by the end, so that temperature and time are not the same.
@@ -116,14 +116,17 @@ std::vector<Separation> separations(const fit::joint::JointProblem& problem, con
   return out;
 }
 
-/// Tried one by one: the tensor variance with each candidate added.
+/// Tried one by one: the variance of the tensor, or of the field, with each candidate added.
 std::vector<DesignReport::Helpful> most_helpful(const fit::joint::JointProblem& problem,
                                                 const fit::joint::JointState& state, const Eigen::MatrixXd& S,
                                                 double f_nT, const std::vector<TableAngles>& candidates) {
   const auto variance = [&](const Eigen::MatrixXd& information) {
     const auto covariance = fit::joint::covariance_of(information);
     if (!covariance) return std::numeric_limits<double>::infinity();
-    return mean_square(fit::joint::calibration_tensor_sd(state.sensors, problem.geometry, *covariance, f_nT));
+    if (const auto tensor = mean_square(
+            fit::joint::calibration_tensor_sd(state.sensors, problem.geometry, *covariance, f_nT)))
+      return *tensor;
+    return std::pow(fit::joint::calibration_field_sd_nT(state.sensors, *covariance, f_nT), 2);
   };
   const double now = variance(S);
   std::vector<DesignReport::Helpful> out;
@@ -141,6 +144,8 @@ Gradient noise_of_tensor(const DesignRequest& request) {
 }
 
 }  // namespace
+
+bool DesignReport::sees_gradient() const { return mean_square(noise_sd_nT_per_m).has_value(); }
 
 Result<DesignReport> evaluate_design(const DesignRequest& request) {
   const PoseTable table = measured_in_thought(request);
@@ -176,6 +181,7 @@ Result<DesignReport> evaluate_design(const DesignRequest& request) {
   report.separations = separations(problem, S, *covariance);
   report.tensor_sd_nT_per_m =
       fit::joint::calibration_tensor_sd(request.sensors, request.geometry, *covariance, request.f_nT);
+  report.field_sd_nT = fit::joint::calibration_field_sd_nT(request.sensors, *covariance, request.f_nT);
   report.helpful = most_helpful(problem, state, S, request.f_nT, request.candidates);
   return report;
 }

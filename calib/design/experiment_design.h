@@ -73,17 +73,23 @@ struct DesignReport {
   std::vector<Separation> separations;
   Gradient tensor_sd_nT_per_m;  ///< by the calibration alone, rms over attitudes; NaN unless determined
   Gradient noise_sd_nT_per_m;   ///< of a tensor from pose means, for comparison
+  /// Of a component of the corrected field by the calibration alone, rms over sensors and attitudes; empty
+  /// unless determined.
+  std::optional<double> field_sd_nT;
   DesignAssumptions assumed;
   fit::joint::Gauge gauge;            ///< what holds the common rotation and the scale
   fit::joint::Identifiability known;  ///< weak directions, coverage, poses that would help
-  /// The attitudes that lower the mean tensor variance most, each with the share of the variance it takes
-  /// away.
+  /// The attitudes that lower the mean variance of the tensor most (of the field, where the array sees no
+  /// gradient), each with the share of the variance it takes away.
   struct Helpful {
     TableAngles angles;
     double share{0};
   };
   std::vector<Helpful> helpful;
   std::optional<DesignPower> power;
+
+  /// The array sees components of the gradient.
+  [[nodiscard]] bool sees_gradient() const;
 };
 
 /// Refuses fewer poses than the fit would accept, and an effect that cannot act on them.

@@ -36,6 +36,20 @@ std::string tensor_row(std::string_view what, const Gradient& g) {
   return row + "\n";
 }
 
+std::string tensor_table(const design::DesignReport& r) {
+  return fmt::format("{:<34}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "standard error of the tensor, nT/m", "xx",
+                     "yy", "zz", "xy", "xz", "yz") +
+         tensor_row("by the calibration", r.tensor_sd_nT_per_m) +
+         tensor_row("by the noise of one pose mean", r.noise_sd_nT_per_m);
+}
+
+/// Of an array that sees no gradient.
+std::string field_table(const design::DesignReport& r) {
+  return fmt::format("{:<39}each component\n{:<34}{:>19.3g}\n{:<34}{:>19.3g}\n",
+                     "standard error of the field, nT", "by the calibration", r.field_sd_nT.value_or(0),
+                     "by the noise of one pose mean", r.assumed.pose_noise_nT);
+}
+
 /// Scale factors in parts per million.
 std::string amount(const design::Expected& e) {
   return e.unit.empty() ? fmt::format("{:.3g} ppm", 1e6 * e.sd) : fmt::format("{:.3g} {}", e.sd, e.unit);
@@ -77,8 +91,8 @@ std::string help_list(const design::DesignReport& r) {
     return out;
   }
   for (const design::DesignReport::Helpful& h : r.helpful) {
-    out += fmt::format("  {:<44} takes {:.1f} % off the tensor's variance\n", fit::checks::to_text(h.angles),
-                       100 * h.share);
+    out += fmt::format("  {:<44} takes {:.1f} % off the variance of the {}\n", fit::checks::to_text(h.angles),
+                       100 * h.share, r.sees_gradient() ? "tensor" : "field");
   }
   return out;
 }
@@ -141,6 +155,7 @@ json to_json(const design::DesignReport& r) {
            {"separations", std::move(separations)},
            {"tensor_sd_nT_per_m", tensor_components(r.tensor_sd_nT_per_m)},
            {"noise_sd_nT_per_m", tensor_components(r.noise_sd_nT_per_m)},
+           {"field_sd_nT", r.field_sd_nT ? json(*r.field_sd_nT) : json()},
            {"weak", std::move(weak)},
            {"coverage", fit::checks::to_text(r.known.coverage)},
            {"add", std::move(add)},
@@ -155,11 +170,7 @@ std::string to_text(const design::DesignReport& r) {
                                              : "NOT ENOUGH, some parameters would stay unknown");
   out += fmt::format("assumed: {}\ngauge: {}\n", assumed_text(r.assumed), gauge_text(r.gauge));
   if (r.determined) {
-    out += fmt::format("\n{:<34}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "standard error of the tensor, nT/m", "xx",
-                       "yy", "zz", "xy", "xz", "yz");
-    out += tensor_row("by the calibration", r.tensor_sd_nT_per_m);
-    out += tensor_row("by the noise of one pose mean", r.noise_sd_nT_per_m);
-    out += "\n" + parameter_table(r);
+    out += "\n" + (r.sees_gradient() ? tensor_table(r) : field_table(r)) + "\n" + parameter_table(r);
   }
   const std::string weak = weak_list(r);
   out += (weak.empty() ? "" : "\n" + weak) + "\n" + help_list(r);

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kPlanHelp =
     R"(Prints the standard error that every parameter and the tensor would have, what stays weakly known and which
 poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg and
-whatever an effect needs; readings are not looked at), or those of the run that a configuration describes, or
+whatever an effect needs; of readings only how many sensors they are of), or those of the run that a configuration describes, or
 of the default run. With an effect: how well its coefficients would be known, and told from the rest.
 With a configuration whose table does not reach every attitude: what its limits cost, and what to do.
 
@@ -81,6 +81,14 @@ Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   }
   const auto text = read_file(args.poses);
   if (!text) return tl::unexpected(text.error());
+  if (args.calibration.empty() && args.array.array.empty()) {
+    // A table that was measured tells its own sensors; a list of poses is for the cross.
+    if (const auto measured = calib::poses::parse_pose_table(*text, args.poses)) {
+      const auto array = array_for(args.array, calib::poses::sensors_of(*measured), args.poses, std::nullopt);
+      if (!array) return tl::unexpected(array.error());
+      request.geometry = *array;
+    }
+  }
   auto poses = calib::poses::parse_pose_list(*text, args.poses, request.geometry.sensors());
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);

@@ -104,5 +104,21 @@ TEST_F(Validity, APlanBeforeAnythingIsMeasured) {
   EXPECT_THAT(one_axis.out, HasSubstr("needs t_s"));
 }
 
+/// A table that was measured says how many sensors it is of.
+TEST_F(Validity, APlanForTheTableOfOneSensor) {
+  std::ofstream(dir_ / "one.toml")
+      << "[rig]\nparameters = \"random\"\nseed = 3\n[array]\npositions_m = [[0, 0, 0]]\n";
+  const Finished made = run_program(
+      {program("mgt-rig"), "table", "--scenario", dir_ / "one.toml", "-o", dir_ / "one.csv"}, dir_.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const Finished plan = mgt({"plan", dir_ / "one.csv", "--json"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  const json report = json::parse(plan.out);
+  EXPECT_EQ(report.at("parameters").size(), 12U);
+  EXPECT_TRUE(report.at("tensor_sd_nT_per_m").at("xx").is_null());
+  EXPECT_GT(report.at("field_sd_nT"), 0.0);
+  for (const json& pose : report.at("helpful")) EXPECT_GT(pose.at("variance_share"), 0.0);
+}
+
 }  // namespace
 }  // namespace mgtd::testing

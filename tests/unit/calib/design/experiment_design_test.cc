@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/design/experiment_design.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "calib/effects/library/library.h"
+#include "calib/fit/joint/field_uncertainty.h"
 #include "calib/fit/joint/joint_fit.h"
+#include "calib/report/experiment_design_report.h"
+#include "tests/unit/calib/fit/fitted_arrays.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib::design {
@@ -147,6 +151,49 @@ TEST(Plan, WhatAnEffectNeedsMustBeInTheList) {
   for (Pose& pose : request.poses.poses) pose.roll_rad = std::nullopt;
   request.effects = {*effects::library::make_effect("site.gradient")};
   EXPECT_FALSE(evaluate_design(request));
+}
+
+/// One sensor sees no gradient: what counts is its field.
+TEST(Plan, ForetellsTheFieldOfOneSensor) {
+  const testing::Places one = testing::one_sensor();
+  const PoseTable table = testing::turned_run(one, 3);
+  const fit::FitReport fitted = testing::fitted(table, one);
+  DesignRequest request;
+  request.poses = table;
+  request.sensors = fitted.calibration.sensors;
+  request.geometry = testing::geometry_of(one);
+  request.f_nT = fitted.site.f_nT;
+  request.inclination_rad = fitted.site.inclination_rad;
+  request.declination_rad = fitted.site.declination_rad;
+  request.pose_noise_nT = fitted.noise_nT;
+  request.scalar_sd_nT = 0.01;
+  const auto foretold = evaluate_design(request);
+  ASSERT_TRUE(foretold) << foretold.error().text();
+  ASSERT_TRUE(foretold->field_sd_nT.has_value());
+  EXPECT_FALSE(foretold->sees_gradient());
+  const double stated = fit::joint::calibration_field_sd_nT(fitted.calibration.sensors,
+                                                            fitted.calibration.covariance, fitted.site.f_nT);
+  EXPECT_NEAR(*foretold->field_sd_nT / stated, 1, 0.25);  // the fit estimates noise and table from the data
+  ASSERT_FALSE(foretold->helpful.empty());
+  for (const auto& helpful : foretold->helpful) {
+    EXPECT_GT(helpful.share, 0);
+    EXPECT_LT(helpful.share, 0.2);
+  }
+  const std::string text = report::to_text(*foretold);
+  EXPECT_THAT(text, ::testing::HasSubstr("standard error of the field, nT"));
+  EXPECT_THAT(text, ::testing::HasSubstr("off the variance of the field"));
+  EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("nan")));
+}
+
+/// By hand: an offset shifts its component whatever the attitude; a scale factor shifts it by F dc in two of
+/// six directions.
+TEST(Plan, TheFieldIsAsUncertainAsItsParameters) {
+  const PerSensor<sensor::SensorModel> nominal(1);
+  Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(12, 12), scales = offsets;
+  for (const int p : {sensor::ix, sensor::iy, sensor::iz}) offsets(p, p) = 4;
+  for (const int p : {sensor::cx, sensor::cy, sensor::cz}) scales(p, p) = 1e-12;
+  EXPECT_NEAR(fit::joint::calibration_field_sd_nT(nominal, offsets, 50'000), 2, 1e-9);
+  EXPECT_NEAR(fit::joint::calibration_field_sd_nT(nominal, scales, 50'000), 0.05 / std::sqrt(3.0), 1e-9);
 }
 
 }  // namespace
