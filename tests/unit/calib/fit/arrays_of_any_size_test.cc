@@ -4,11 +4,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "calib/calibration/apply.h"
 #include "calib/criticism/search/explain.h"
+#include "calib/effects/library/library.h"
 #include "calib/fit/joint/sample_correlation.h"
 #include "calib/report/fit_report_text.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
@@ -63,6 +65,49 @@ TEST(ArraysOfAnySize, TheUncertaintiesAreHonest) {
                            testing::scenario_of(places, at).truth);
     }
     const double unknowns = 12.0 * static_cast<double>(places.size());
+    EXPECT_NEAR(sum / runs, unknowns, band(unknowns, runs)) << name;
+    if (more != nullptr)
+      fmt::print("| {} | {} | {:.2f} of {:.0f} | {:.2f} |\n", name, runs, sum / runs, unknowns,
+                 std::sqrt(2 * unknowns / runs));
+  }
+}
+
+/// Errors of all parameters and of the five components of the gradient at the site over their joint
+/// covariance.
+double squared_error_with_gradient(const calibration::Calibration& c, const rig::RigTruth& truth,
+                                   const std::array<double, 5>& gradient_nT_per_m) {
+  const Eigen::Index parameters = c.covariance.rows();
+  Eigen::VectorXd off(parameters + 5);
+  off << testing::parameter_errors(c, truth), Eigen::VectorXd::Zero(5);
+  for (std::size_t j = 0; j < 5; ++j)
+    off[parameters + static_cast<Eigen::Index>(j)] =
+        c.effects.at(0).coefficients.at(j).value - gradient_nT_per_m.at(j);
+  Eigen::MatrixXd C(parameters + 5, parameters + 5);
+  C.topLeftCorner(parameters, parameters) = c.covariance;
+  C.bottomRows(5) = c.effect_covariance;
+  C.topRightCorner(parameters, 5) = c.effect_covariance.leftCols(parameters).transpose();
+  return off.dot(C.ldlt().solve(off));
+}
+
+/// In a field that is not uniform it matters where the sensors stand.
+TEST(ArraysOfAnySize, TheUncertaintiesAreHonestBesideAGradientOfTheSite) {
+  const std::array<double, 5> gradient_nT_per_m{30, -20, 10, -15, 25};  // xx, yy, xy, xz, yz
+  const std::string planted = "[[effect]]\nname = \"site.gradient\"\nnT_per_m = [30, -20, 10, -15, 25]\n";
+  const char* const more = std::getenv("MGTD_ARRAY_RUNS");
+  for (const auto& [name, places, few] : {Honest{"four in a plane", testing::cross_of_four(), 12},
+                                          Honest{"four as a tetrahedron", testing::tetrahedron(), 12}}) {
+    const int runs = more != nullptr ? std::max(few, std::atoi(more)) : few;
+    fit::FitOptions options = testing::options_of(places);
+    options.effects = {*effects::library::make_effect("site.gradient")};
+    double sum = 0;
+    for (int seed = 1; seed <= runs; ++seed) {
+      const auto at = static_cast<std::uint64_t>(seed);
+      const auto report = fit::method_choice::fit(testing::turned_run(places, at, planted), options);
+      ASSERT_TRUE(report) << report.error().text();
+      sum += squared_error_with_gradient(report->calibration, testing::scenario_of(places, at, planted).truth,
+                                         gradient_nT_per_m);
+    }
+    const double unknowns = 53;
     EXPECT_NEAR(sum / runs, unknowns, band(unknowns, runs)) << name;
     if (more != nullptr)
       fmt::print("| {} | {} | {:.2f} of {:.0f} | {:.2f} |\n", name, runs, sum / runs, unknowns,

@@ -23,9 +23,8 @@ inline fit::FitReport fitted(const PoseTable& table, const Places& places) {
   return *std::move(report);
 }
 
-/// Errors of all parameters of an array over their covariance (NEES): 12 a sensor on average where it is
-/// honest.
-inline double squared_error(const calibration::Calibration& c, const rig::RigTruth& truth) {
+/// Of all parameters of an array, in their order.
+inline Eigen::VectorXd parameter_errors(const calibration::Calibration& c, const rig::RigTruth& truth) {
   Eigen::VectorXd off(c.covariance.rows());
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const sensor::SensorModel& s = c.sensors[i];
@@ -35,6 +34,13 @@ inline double squared_error(const calibration::Calibration& c, const rig::RigTru
         s.offset_nT - t.offset_nT, s.alpha_rad - to_rad(t.alpha_deg), s.beta_rad - to_rad(t.beta_deg),
         s.gamma_rad - to_rad(t.gamma_deg);
   }
+  return off;
+}
+
+/// Errors of all parameters of an array over their covariance (NEES): 12 a sensor on average where it is
+/// honest.
+inline double squared_error(const calibration::Calibration& c, const rig::RigTruth& truth) {
+  const Eigen::VectorXd off = parameter_errors(c, truth);
   return off.dot(c.covariance.ldlt().solve(off));
 }
 
