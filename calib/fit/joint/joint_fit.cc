@@ -63,12 +63,13 @@ Eigen::MatrixXd widened_information(const JointFit& fit) {
 
 /// The common error D of the total fields that were filled in moves the solution by S^-1 dg/dD.
 void add_site_difference(const JointFit& fit, const Reduced& reduced, Eigen::MatrixXd& covariance) {
-  JointProblem shifted = fit.problem;
-  bool any = false;
-  for (JointPose& pose : shifted.poses)
-    if (pose.by_site_difference) pose.f_nT += fit.problem.site_difference_sd_nT, any = true;
+  const auto filled_in = [](const JointPose& pose) { return pose.by_site_difference; };
+  if (std::none_of(fit.problem.poses.begin(), fit.problem.poses.end(), filled_in)) return;
   const auto information = linear::Cholesky::of(reduced.S);
-  if (!any || !information) return;
+  if (!information) return;
+  JointProblem shifted = fit.problem;
+  for (JointPose& pose : shifted.poses)
+    if (pose.by_site_difference) pose.f_nT += fit.problem.site_difference_sd_nT;
   const Eigen::VectorXd pull = reduce(shifted, fit.state, 0).g - reduced.g;
   const Eigen::VectorXd moved = information->solve(pull);
   covariance += moved * moved.transpose();
