@@ -15,6 +15,7 @@
 #include "calib/criticism/tests/judgement.h"
 #include "calib/design/next_measurement.h"
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/linear/qr.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -173,9 +174,32 @@ bool accounts_for_all(const tests::Candidate& candidate, const tests::Criticism&
   return candidate.d * candidate.d >= kMost * criticism.residual.chi2();
 }
 
+/// Columns of the winning question of a family, its own combination of the axes.
+Eigen::MatrixXd winning_columns(const tests::ScoredFamily& family) {
+  return family.signatures[family.winner().variant].columns * family.where().combine;
+}
+
+/// Most of the evidence of `other` is that of `leader`, which has much more: a look-alike of something that
+/// was not named because of its size, and no name of its own.
+bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& other,
+              const tests::Residual& residual) {
+  constexpr double kDecisive = 25;   // in chi-square
+  constexpr double kMostOfIt = 0.5;  // of its score, that falls away beside the leader
+  if (leader.winner().S < other.winner().S + kDecisive) return false;
+  const Eigen::MatrixXd L = winning_columns(leader), Z = winning_columns(other);
+  const Eigen::VectorXd& r = residual.value();
+  const Eigen::VectorXd beside = r - L * linear::least_squares(L, r);
+  Eigen::MatrixXd own = Z;
+  for (Eigen::Index j = 0; j < Z.cols(); ++j)
+    own.col(j) -= L * linear::least_squares(L, Eigen::VectorXd(Z.col(j)));
+  const double left = (own * linear::least_squares(own, beside)).squaredNorm();
+  return left < (1 - kMostOfIt) * other.winner().S;
+}
+
 /// Adds the best family that can be fitted; those that cannot are noted, as is the first that rests on one
-/// pose.
+/// pose. What only looks like one of an absurd size is left out with it.
 bool add_winner(EffectSearch& search, ExplainReport& report) {
+  std::vector<std::size_t> absurd;
   for (std::size_t f = 0; f < search.criticism.families.size() && search.criticism.rejects_named(f); ++f) {
     if (search.failed.contains(search.criticism.families[f].candidate_effect->name)) continue;
     if (search.unknown.contains(search.criticism.families[f].where().where)) continue;
@@ -187,8 +211,14 @@ bool add_winner(EffectSearch& search, ExplainReport& report) {
         tests::candidate_of(search.criticism.families[f], search.criticism, search.fit.noise_inflation);
     if (!c.plausible && !accounts_for_all(c, search.criticism)) {
       search.absurd[c.effect] = c;
+      absurd.push_back(f);
       continue;  // for now: beside what is still missing a size may be absurd that later is none
     }
+    if (std::any_of(absurd.begin(), absurd.end(), [&](std::size_t leader) {
+          return lives_on(search.criticism.families[leader], search.criticism.families[f],
+                          search.criticism.residual);
+        }))
+      continue;
     if (!add(search, f, report)) continue;
     if (!c.plausible) report.notes.emplace_back(SizeUnusual{c});
     return true;
