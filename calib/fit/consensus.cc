@@ -10,6 +10,7 @@
 
 #include "calib/linear/ldlt.h"
 #include "calib/linear/symmetric_eigen.h"
+#include "calib/stats/median.h"
 
 namespace mgtd::calib::fit {
 namespace {
@@ -27,11 +28,7 @@ constexpr double kNearPlane = 3, kNearEllipsoid = 6;
 /// One axis may be that much noisier than another, in variance, before its misfit is more than noise.
 constexpr double kUneven = 16;
 
-double median(Eigen::VectorXd values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+double median(const Eigen::VectorXd& values) { return stats::median({values.begin(), values.end()}); }
 
 /// The plane of some poses: its mean, the directions in it and across it.
 struct Plane {

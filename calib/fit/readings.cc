@@ -9,6 +9,7 @@
 
 #include "calib/fit/dwell_motion.h"
 #include "calib/fit/site_difference.h"
+#include "calib/stats/median.h"
 
 namespace mgtd::calib::fit {
 namespace {
@@ -35,10 +36,7 @@ calibration::AxisNoise median_spread(const PoseTable& table) {
       std::vector<double> values;
       for (const Pose& pose : table.poses)
         if (pose.sd_nT[i][a]) values.push_back(*pose.sd_nT[i][a]);
-      if (values.empty()) continue;
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = *middle;
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(a)) = stats::median(std::move(values));
     }
   }
   return out;

@@ -14,6 +14,7 @@
 #include "calib/report/figures/sky_figures.h"
 #include "calib/sensor/channels.h"
 #include "calib/stats/chi_square.h"
+#include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib::report {
@@ -44,10 +45,7 @@ std::vector<figures::Gap> gaps_of(const std::vector<double>& t_h) {
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 1; i < sorted.size(); ++i) steps.push_back(sorted[i] - sorted[i - 1]);
   if (steps.size() < 4) return {};
-  std::vector<double> ordered = steps;
-  std::nth_element(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2),
-                   ordered.end());
-  const double usual = ordered[ordered.size() / 2];
+  const double usual = stats::median(steps);
   std::vector<figures::Gap> out;
   for (std::size_t i = 0; i < steps.size(); ++i)
     if (usual > 0 && steps[i] > 5 * usual)

@@ -16,7 +16,7 @@ CALIB = {
                               "calib/sensor"],
     "calib/calibration": ["calib/effects/library", "calib/effects/laws", "calib/effects", "calib/poses",
                           "calib/sensor", "calib/linear"],
-    "calib/fit": ["calib/calibration", "calib/effects", "calib/poses", "calib/sensor", "calib/linear"],
+    "calib/fit": ["calib/calibration", "calib/effects", "calib/poses", "calib/sensor", "calib/stats", "calib/linear"],
     "calib/fit/two_step": ["calib/fit", "calib/calibration", "calib/sensor", "calib/linear"],
     "calib/fit/joint": ["calib/stats", "calib/fit/two_step", "calib/fit", "calib/calibration", "calib/effects/library",
                         "calib/effects/formula", "calib/effects", "calib/poses", "calib/sensor", "calib/linear"],

@@ -13,6 +13,7 @@
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/chi_square.h"
+#include "calib/stats/median.h"
 
 namespace mgtd::calib::criticism::live {
 namespace {
@@ -22,12 +23,6 @@ constexpr double kLeastSpread = 0.02;     // of b/F0, rms: one degree
 constexpr double kLeastRange_degC = 0.3;  // below it the thermometer's own steps count
 constexpr double kLeastSpan = 60;         // blocks, to distinguish a drift from noise
 constexpr double kMostCorrelation = 0.95;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Blocks as rows: closure whitened by the noise of one sample, times the root of the number of samples.
 struct Rows {
@@ -96,13 +91,13 @@ struct Noise {
 Noise noise_of(const Rows& r, const std::deque<ClosureBlock>& blocks, const Eigen::MatrixXd& everything) {
   std::vector<double> within, between;
   for (const ClosureBlock& b : blocks) within.push_back(b.excess);
-  Noise out{std::max(1.0, median(within)), 1};
+  Noise out{std::max(1.0, stats::median(within)), 1};
   if (r.n() < everything.cols() + 6) return out;
   const Eigen::MatrixXd e = residual(r.weighted(everything), r.c);
   const double spent = static_cast<double>(r.n()) / static_cast<double>(r.n() - everything.cols());
   for (Eigen::Index k = 0; k < r.n(); ++k) between.push_back(spent * e.row(k).squaredNorm());
   const auto d = static_cast<double>(r.c.cols());
-  out.median = std::max(out.median, median(between) / stats::chi_square_limit(0.5, d));
+  out.median = std::max(out.median, stats::median(between) / stats::chi_square_limit(0.5, d));
   const double mean = spent * e.squaredNorm() / (d * static_cast<double>(r.n()));
   const double lagged = e.topRows(r.n() - 1).cwiseProduct(e.bottomRows(r.n() - 1)).sum() / e.squaredNorm();
   const double correlation = std::clamp(lagged, 0.0, kMostCorrelation);

@@ -8,6 +8,7 @@
 
 #include "calib/poses/pose_columns.h"
 #include "calib/poses/run_time.h"
+#include "calib/stats/median.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -35,10 +36,7 @@ double spread_of(const std::array<std::optional<double>, 3>& sd_nT) {
 double median_of_finite(const Eigen::RowVectorXd& row) {
   std::vector<double> values;
   std::copy_if(row.begin(), row.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
-  if (values.empty()) return kNotMeasured;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kNotMeasured : stats::median(std::move(values));
 }
 
 }  // namespace

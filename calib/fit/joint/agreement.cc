@@ -7,6 +7,7 @@
 
 #include "calib/fit/joint/without_poses.h"
 #include "calib/linear/cholesky.h"
+#include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib::fit::joint {
@@ -66,9 +67,7 @@ Scatter scatter_of(const JointFit& fit) {
     }
     if (misfits.empty()) continue;
     for (const double x : misfits) squares += x * x, ++count;
-    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
-    std::nth_element(misfits.begin(), middle, misfits.end());
-    typical += std::pow(stats::kMadToSd * *middle, 2) / fit.problem.channels();
+    typical += std::pow(stats::kMadToSd * stats::median(misfits), 2) / fit.problem.channels();
   }
   out.residual_nT = std::sqrt(squares / std::max(1.0, count));
   out.typical_nT = std::sqrt(typical);

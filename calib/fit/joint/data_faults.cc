@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/stats/median.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::fit::joint {
@@ -22,12 +23,6 @@ constexpr double kFewest_nT = 10, kMost_nT = 200;
 constexpr double kNearlyAll = 0.9;  ///< of the poses
 /// A scale factor off by half turns a direction by 15 degrees at the most.
 const double kTurnedApart_rad = to_rad(30);
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// "s2", "s1, s2 and s4", "all sensors".
 std::string sensors_text(const std::vector<std::size_t>& which, std::size_t of) {
@@ -67,15 +62,15 @@ double size_of(const JointProblem& problem, std::size_t sensor) {
     sizes.push_back(reading(pose).norm());
     ways.push_back((reading(pose) - mean).norm());
   }
-  const double size = median(std::move(sizes));
-  return median(std::move(ways)) > kMoves * size ? size : 0;
+  const double size = stats::median(std::move(sizes));
+  return stats::median(std::move(ways)) > kMoves * size ? size : 0;
 }
 
 double field_of(const JointProblem& problem, double f_nT) {
   if (problem.common_field) return f_nT;
   std::vector<double> fields;
   for (const JointPose& pose : problem.poses) fields.push_back(pose.f_nT);
-  return median(std::move(fields));
+  return stats::median(std::move(fields));
 }
 
 tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, std::size_t of, double size_nT,
@@ -148,7 +143,7 @@ Result<void> check_turned_together(const PerSensor<Eigen::Matrix3Xd>& b_nT,
     std::vector<double> angles;
     for (Eigen::Index k = 0; k < own.cols(); ++k)
       angles.push_back(std::acos(std::clamp(own.col(k).dot(reference.col(k)), -1.0, 1.0)));
-    const double middle = median(std::move(angles));
+    const double middle = stats::median(std::move(angles));
     if (middle > kTurnedApart_rad) apart.push_back(i);
     worst_rad = std::max(worst_rad, middle);
   }

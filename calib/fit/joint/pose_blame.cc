@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib::fit::joint {
@@ -27,18 +28,11 @@ constexpr double kOverstated = 0.7;
 /// Two more readings must explain so much more of chi-square before a sensor is blamed instead of a reading.
 constexpr double kSensorInstead = 25;
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double limit_of(const std::vector<double>& roots, double gaussian) {
   std::vector<double> values = roots;
-  const double centre = median(values);
+  const double centre = stats::median(values);
   for (double& x : values) x = std::abs(x - centre);
-  const double spread = stats::kMadToSd * median(values);
+  const double spread = stats::kMadToSd * stats::median(values);
   if (!std::isfinite(spread)) return gaussian;
   const double limit = std::max(gaussian, centre + kAboveMedian * spread), low = centre + kLow * spread;
   const auto above = [&](double x) {
@@ -77,7 +71,7 @@ BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows
       if (is_out(k, row)) values.push_back(kBeyond);
       if (residuals.t(row, k) > 0) values.push_back(residuals.t(row, k));
     }
-    const double spread = stats::kMadToSd * median(values);
+    const double spread = stats::kMadToSd * stats::median(values);
     if ((spread > 1 || (spread > 0 && spread < kOverstated)) && std::isfinite(spread))
       out.spread[row] = spread;
   }

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "calib/fit/consensus.h"
+#include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib::fit::joint {
@@ -152,9 +153,7 @@ double cost(const JointProblem& problem, const RobustFit& fit) {
         ++left_out;
       }
     }
-    const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
-    std::nth_element(misfits.begin(), middle, misfits.end());
-    const double spread = std::max(stats::kMadToSd * *middle, kNoiseFloor_nT);
+    const double spread = std::max(stats::kMadToSd * stats::median(misfits), kNoiseFloor_nT);
     sum += static_cast<double>(misfits.size()) * std::log(spread) + squares / (2 * spread * spread) +
            kLeftOut * left_out;
   }
