@@ -3,43 +3,63 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "calib/fit/site_difference.h"
+#include "calib/stats/median.h"
 
 namespace mgtd::calib::fit {
 namespace {
 
 constexpr double kLongestGap_s = 60;
-constexpr int kFewestPairs = 12;
+constexpr std::size_t kFewestPairs = 12;
 
-/// Square of the move of one component between two poses, less what the noise of the reference makes of it.
-std::optional<double> squared_move_nT2(const Pose& from, const Pose& to, bool vector) {
+constexpr double kGross = 25;  ///< times the median square
+
+/// Squares of a component, of its move between two poses and of what the noise of the reference makes of
+/// that.
+struct Move {
+  double square_nT2, noise_nT2;
+};
+
+std::optional<Move> move_between(const Pose& from, const Pose& to, bool vector) {
   if (vector) {
     if (!from.ref_nT || !to.ref_nT || !from.angles() || !to.angles()) return std::nullopt;
-    const double noise = std::pow(reference_sd_nT(from), 2) + std::pow(reference_sd_nT(to), 2);
-    return (*to.ref_nT - *from.ref_nT).squaredNorm() / 3 - noise;
+    return Move{(*to.ref_nT - *from.ref_nT).squaredNorm() / 3,
+                std::pow(reference_sd_nT(from), 2) + std::pow(reference_sd_nT(to), 2)};
   }
   if (!from.f_nT || !to.f_nT) return std::nullopt;
-  const double noise = std::pow(from.f_sd_nT.value_or(kDefaultScalarSd_nT), 2) +
-                       std::pow(to.f_sd_nT.value_or(kDefaultScalarSd_nT), 2);
-  return std::pow(*to.f_nT - *from.f_nT, 2) - noise;
+  return Move{std::pow(*to.f_nT - *from.f_nT, 2),
+              std::pow(scalar_sd_nT(from), 2) + std::pow(scalar_sd_nT(to), 2)};
+}
+
+/// A gross reading of the reference makes two moves that are none.
+double mean_without_gross(const std::vector<Move>& moves) {
+  std::vector<double> squares;
+  for (const Move& move : moves) squares.push_back(move.square_nT2);
+  const double limit = kGross * stats::median(squares);
+  double sum = 0;
+  int count = 0;
+  for (const Move& move : moves)
+    if (move.square_nT2 <= limit) sum += move.square_nT2 - move.noise_nT2, ++count;
+  return std::max(0.0, sum / count);
 }
 
 std::optional<double> mean_square_nT2(const PoseTable& table, bool vector) {
-  double sum = 0;
-  int pairs = 0;
+  std::vector<Move> in_dwells;
   for (std::size_t k = 1; k < table.poses.size(); ++k) {
     const Pose &from = table.poses[k - 1], &to = table.poses[k];
     if (!from.t_s || !to.t_s || !from.dwell_s || !to.dwell_s) continue;
     const double gap_s = *to.t_s - *from.t_s;
     if (!(gap_s > 0) || gap_s > kLongestGap_s) continue;
-    const auto square = squared_move_nT2(from, to, vector);
-    if (!square) continue;
+    const auto move = move_between(from, to, vector);
+    if (!move) continue;
     const double dwells_s2 = (std::pow(*from.dwell_s, 2) + std::pow(*to.dwell_s, 2)) / 2;
-    sum += *square / (gap_s * gap_s) * dwells_s2 / 12;
-    ++pairs;
+    const double in_dwell = dwells_s2 / (12 * gap_s * gap_s);
+    in_dwells.push_back({move->square_nT2 * in_dwell, move->noise_nT2 * in_dwell});
   }
-  return pairs < kFewestPairs ? std::nullopt : std::optional(std::max(0.0, sum / pairs));
+  if (in_dwells.size() < kFewestPairs) return std::nullopt;
+  return mean_without_gross(in_dwells);
 }
 
 }  // namespace

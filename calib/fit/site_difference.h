@@ -8,14 +8,15 @@
 ///
 ///     F_k = |r_k| + D,   D = mean(f - |r|),   sd of one pose: the scatter of f - |r|, no less than ref_sd_nT
 ///
-/// The error of D is common to all poses filled in.
+/// The error of D is common to all poses filled in. Differences that are gross, further from the median than
+/// five of their robust standard deviations and of the stated one, do not count.
 namespace mgtd::calib::fit {
 
 struct SiteDifference {
   double mean_nT{0};     ///< D
   double scatter_nT{0};  ///< standard deviation of one difference; 0 of fewer than two
   double sd_nT{0};       ///< of D: the scatter, no less than the stated uncertainties, over root of the poses
-  int poses{0};          ///< that have both; 0: nothing is known of D
+  int poses{0};          ///< that have both and are not gross; 0: nothing is known of D
 
   [[nodiscard]] bool known() const { return poses > 0; }
 };
@@ -29,6 +30,8 @@ struct TotalField {
 
 /// Stated uncertainty of each component of the vector reference; kDefaultScalarSd_nT where none is.
 [[nodiscard]] double reference_sd_nT(const Pose& pose);
+/// Stated uncertainty of f_nT, by the same rule.
+[[nodiscard]] double scalar_sd_nT(const Pose& pose);
 
 /// Total field of a pose that has the vector, at the array: f_nT where it is there, else |r| + D.
 [[nodiscard]] TotalField total_field(const Pose& pose, const SiteDifference& difference);

@@ -59,8 +59,7 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
   } else if (common_field) {
     out.f_weight = 1 / kCommonFieldSpread_nT;
   } else {
-    const double sd = pose.f_nT ? pose.f_sd_nT.value_or(kDefaultScalarSd_nT)
-                                : options.field_sd_nT.value_or(kCommonFieldSpread_nT);
+    const double sd = pose.f_nT ? scalar_sd_nT(pose) : options.field_sd_nT.value_or(kCommonFieldSpread_nT);
     out.f_nT = pose.f_nT ? *pose.f_nT : *options.field_nT;
     out.f_weight = 1 / std::max(sd, kMinFieldSd_nT);
   }

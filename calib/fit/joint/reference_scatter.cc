@@ -25,12 +25,13 @@ struct Differences {
 Differences from_scalar(const PoseTable& table) {
   Differences out;
   const SiteDifference difference = site_difference(table);
-  for (const Pose& pose : table.poses) {
-    if (!pose.f_nT || !pose.ref_nT || !pose.angles()) continue;
-    out.squares += std::pow(*pose.f_nT - pose.ref_nT->norm() - difference.mean_nT, 2);
-    out.others += std::pow(pose.f_sd_nT.value_or(kDefaultScalarSd_nT), 2);
-    ++out.count;
-  }
+  double others = 0, both = 0;
+  for (const Pose& pose : table.poses)
+    if (pose.f_nT && pose.ref_nT && pose.angles()) others += std::pow(scalar_sd_nT(pose), 2), ++both;
+  if (!difference.known()) return out;
+  out.count = difference.poses;
+  out.squares = std::pow(difference.scatter_nT, 2) * (out.count - 1);
+  out.others = others / both * out.count;
   return out;
 }
 

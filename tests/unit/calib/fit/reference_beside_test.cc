@@ -217,6 +217,36 @@ TEST(ReferenceBeside, AVectorThatScattersOtherThanStatedIsTold) {
   EXPECT_THAT(reasons_of(assumed), HasSubstr("and 0.05 nT is assumed, since ref_sd_nT is not given"));
 }
 
+TEST(ReferenceBeside, AVectorThatScattersLessThanTheScalarIsGivenNoScatterOfZero) {
+  PoseTable table = run_elsewhere(3, 1);
+  for (Pose& pose : table.poses) pose.ref_sd_nT = 5, pose.f_sd_nT = 1;
+  EXPECT_THAT(reasons_of(table), HasSubstr("scatters no more against f_nT than that itself does"));
+  EXPECT_THAT(reasons_of(table), HasSubstr("give a smaller ref_sd_nT"));
+}
+
+/// One reading of the reference that is off changes neither what is said of it nor the noise of the samples.
+TEST(ReferenceBeside, AGrossReadingOfTheReferenceSpoilsNothing) {
+  const Places one = testing::one_sensor();
+  for (const std::size_t every : {1U, 4U}) {
+    const PoseTable honest = run_elsewhere(7, every);
+    PoseTable vector = honest, scalar = honest;
+    vector.poses[40].ref_nT->x() += 1000;
+    *scalar.poses[40].f_nT += 400;
+    const fit::FitReport clean = fitted(honest, one);
+    for (const PoseTable& table : {vector, scalar}) {
+      const fit::FitReport report = fitted(table, one);
+      EXPECT_TRUE(report.calibration.accepted_by_checks);
+      EXPECT_NEAR(calibration::root_mean_square(report.calibration.sample_noise_nT),
+                  calibration::root_mean_square(clean.calibration.sample_noise_nT), 0.005);
+      EXPECT_NEAR(report.chi2 / report.dof, 1, 5 * std::sqrt(2 / report.dof));
+      EXPECT_THAT(report::fit_reasons(report), Not(Contains(HasSubstr("scatters"))));
+      EXPECT_LT(squared_error(report.calibration,
+                              testing::scenario_of(one, 7, kElsewhere + std::string(kStorm)).truth),
+                12 + band(12, 1));
+    }
+  }
+}
+
 PoseTable caged(const rig::Scenario& scenario) {
   return rig::simulated_table(scenario, rig::cage_fields(*scenario.cage, 4), 4);
 }
