@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/tensor_uncertainty.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
 #include "calib/calibration/tensor.h"
-#include "calib/fit/joint/pose_model.h"
+#include "calib/fit/joint/field_response.h"
 #include "calib/linear/propagation.h"
 
 namespace mgtd::calib::fit::joint {
@@ -25,26 +24,16 @@ Gradient component_roots(const Components& variance) {
 
 TensorResponse::TensorResponse(const PerSensor<sensor::SensorModel>& sensors,
                                const sensor::Geometry& geometry, double f_nT) {
-  JointProblem problem;
-  problem.geometry = geometry;
-  JointState state;
-  state.sensors = sensors;
-  const PoseModel model(problem, state);
-  const JointPose anywhere;  // without table angles: the field itself is given
   const auto rows = calibration::gradient_rows(geometry);
-  PoseLinear linear;
-  const int block = problem.slots().sensor_block();
-  for (int direction = 0; direction < 6; ++direction) {
-    Nuisance b = Nuisance::Zero();
-    b[direction / 2] = direction % 2 == 0 ? f_nT : -f_nT;
-    model.linearise(anywhere, b, linear);
-    Eigen::MatrixXd& J = by_parameters_[static_cast<std::size_t>(direction)];
-    J.resize(6, block);
-    for (int i = 0; i < problem.sensors(); ++i) {
-      const sensor::SensorModel& sensor = sensors[static_cast<std::size_t>(i)];
-      const Eigen::Matrix3d gain = sensor.R_PS() * sensor.response().inverse();
+  const auto responses = field_responses(sensors, f_nT);
+  const auto n = static_cast<Eigen::Index>(sensors.size());
+  for (std::size_t direction = 0; direction < responses.size(); ++direction) {
+    Eigen::MatrixXd& J = by_parameters_[direction];
+    J.resize(6, sensor::kSensorParameters * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const FieldResponse& response = responses[direction][static_cast<std::size_t>(i)];
       J.middleCols<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
-          rows.middleCols<3>(3 * i) * gain * linear.d_sensor.middleRows<3>(3 * i);
+          rows.middleCols<3>(3 * i) * response.gain * response.by_parameters;
     }
   }
 }
