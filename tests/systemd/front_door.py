@@ -146,7 +146,7 @@ def check_manual(options, root):
 
 def check_keys(options, root):
     del root
-    sources = [options.source / "daemon/config/config.cc", *sorted((options.source / "drivers").glob("*.cc"))]
+    sources = [source for room in ("daemon/config", "drivers") for source in sorted((options.source / room).glob("*.cc"))]
     keys = set()
     for source in sources:
         for match in KEY_CALL.finditer(source.read_text()):
