@@ -23,8 +23,8 @@ namespace {
 constexpr const char* kPlanHelp =
     R"(Prints the standard error that every parameter and the tensor would have, what stays weakly known and which
 poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg and
-whatever an effect needs; of readings only how many sensors they are of), or those of the run that a configuration describes, or
-of the default run. With an effect: how well its coefficients would be known, and told from the rest.
+whatever an effect needs; of its readings only the number of sensors counts), or those of the run that a
+configuration describes, or of the default run. With an effect: how well its coefficients would be known, and told from the rest.
 With a configuration whose table does not reach every attitude: what its limits cost, and what to do.
 
 Then, for every effect of the library that is not planned for: the smallest size that the run would show, and

@@ -189,9 +189,7 @@ bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& othe
   const Eigen::MatrixXd L = winning_columns(leader), Z = winning_columns(other);
   const Eigen::VectorXd& r = residual.value();
   const Eigen::VectorXd beside = r - L * linear::least_squares(L, r);
-  Eigen::MatrixXd own = Z;
-  for (Eigen::Index j = 0; j < Z.cols(); ++j)
-    own.col(j) -= L * linear::least_squares(L, Eigen::VectorXd(Z.col(j)));
+  const Eigen::MatrixXd own = Z - L * linear::least_squares(L, Z);
   const double left = (own * linear::least_squares(own, beside)).squaredNorm();
   return left < (1 - kMostOfIt) * other.winner().S;
 }

@@ -16,13 +16,12 @@ namespace mgtd::calib::fit::checks {
 [[nodiscard]] std::string to_text(const joint::FieldCoverage& coverage);
 /// "azimuth 90, pitch -45, roll 0 deg"
 [[nodiscard]] std::string to_text(const TableAngles& angles);
+/// The same for several, with semicolons between them.
+[[nodiscard]] std::string to_text(const std::vector<TableAngles>& poses);
 /// Where no table turned the array: the direction of the field in the platform frame at each of these
-/// attitudes,
-/// "+X; (0.00, 0.71, -0.71)", none twice.
+/// attitudes, "+X; (0.00, 0.71, -0.71)", none twice.
 [[nodiscard]] std::string field_directions_text(const std::vector<TableAngles>& poses);
 /// What to do about them: poses for a table, directions of the field for an array that is turned by hand.
 [[nodiscard]] std::string additions_text(const std::vector<TableAngles>& poses, bool table);
-/// The same for several, with semicolons between them.
-[[nodiscard]] std::string to_text(const std::vector<TableAngles>& poses);
 
 }  // namespace mgtd::calib::fit::checks
