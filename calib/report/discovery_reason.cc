@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/stats/probability.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -112,7 +113,8 @@ std::string reason_text(const DiscoveryReport& r) {
   return {};
 }
 
-std::string what_next(const DiscoveryReport& r, const std::string& run) {
+std::string what_next(const DiscoveryReport& r, const std::string& run,
+                      const std::vector<std::string>& kept) {
   const std::string repeat = "repeat the run: what walks does not repeat, and a law does";
   const std::string record =
       "record what switches between the poses (supplies, loads, presence) and run again";
@@ -139,6 +141,11 @@ std::string what_next(const DiscoveryReport& r, const std::string& run) {
       return "mgt explain " + run + " names it, with its rivals and what it costs";
     case Rule::formulas_open:
     case Rule::none:
+      if (!kept.empty())
+        return fmt::format(
+            "the formula stays exploratory until a second run confirms it: mgt define SECOND.mgtrun {} "
+            "--from {}",
+            kept.front(), shell_word(run));
       return r.laws.front().formulas.front().specs.empty()
                  ? "measure again, and look whether the same formula leads"
                  : "keep the formula with the commands below; it stays exploratory until a second run "

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calib/discovery/discovery_report.h"
 
@@ -13,7 +14,9 @@ namespace mgtd::calib::report {
 [[nodiscard]] std::string_view rule_name(discovery::VerdictReason::Rule rule);
 /// One sentence; empty where no rule kept the verdict from being LAW.
 [[nodiscard]] std::string reason_text(const discovery::DiscoveryReport& report);
-/// What a person does next. `run` as the person typed it.
-[[nodiscard]] std::string what_next(const discovery::DiscoveryReport& report, const std::string& run);
+/// What a person does next. `run` as the person typed it; `kept`: names under which it keeps the formulas
+/// already.
+[[nodiscard]] std::string what_next(const discovery::DiscoveryReport& report, const std::string& run,
+                                    const std::vector<std::string>& kept = {});
 
 }  // namespace mgtd::calib::report

@@ -122,12 +122,14 @@ json law_json(const FoundLaw& law) {
   return out;
 }
 
-/// The commands that keep what leads.
+/// The commands that put what leads into the model.
 std::vector<std::string> commands(const DiscoveryReport& r, const std::string& run,
-                                  const std::vector<std::string>& before) {
+                                  const std::vector<std::string>& before,
+                                  const std::vector<std::string>& kept) {
   std::vector<std::string> out;
   if (r.verdict != Verdict::law && r.verdict != Verdict::law_set) return out;
-  for (const FoundLaw& law : r.laws) {
+  for (const std::string& name : kept) out.push_back(fmt::format("mgt add {} {}", name, shell_word(run)));
+  for (const FoundLaw& law : kept.empty() ? r.laws : std::vector<FoundLaw>{}) {
     for (const Definition& d : definitions(law.formulas.front())) {
       out.push_back(fmt::format("mgt define {} {} {} --scale {}", shell_word(run), d.name,
                                 shell_word(d.formula), d.scale));
@@ -255,7 +257,8 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
 
 }  // namespace
 
-json to_json(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before) {
+json to_json(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before,
+             const std::vector<std::string>& kept) {
   json laws = json::array();
   for (const FoundLaw& law : r.laws) laws.push_back(law_json(law));
   json out{{"schema", "mgt.discover/1"},
@@ -283,9 +286,9 @@ json to_json(const DiscoveryReport& r, const std::string& run, const std::vector
            {"left", {{"where", r.left_on}, {"sigmas", r.left_sigmas}}},
            {"laws", laws},
            {"after", json()},
-           {"next", json::array({what_next(r, run)})},
-           {"commands", commands(r, run, before)},
-           {"text", to_text(r, run, before)}};
+           {"next", json::array({what_next(r, run, kept)})},
+           {"commands", commands(r, run, before, kept)},
+           {"text", to_text(r, run, before, kept)}};
   // The strongest law once more, where a reader of one law looks for it.
   const json first = laws.empty() ? json::object() : laws.front();
   for (const char* key : {"log10_p_search", "stands_out", "d", "covariates", "where", "formulas",
@@ -298,8 +301,8 @@ json to_json(const DiscoveryReport& r, const std::string& run, const std::vector
   return out;
 }
 
-std::string to_text(const DiscoveryReport& r, const std::string& run,
-                    const std::vector<std::string>& before) {
+std::string to_text(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before,
+                    const std::vector<std::string>& kept) {
   std::string out = wrapped(headline(r));
   const auto to = std::back_inserter(out);
   out += wrapped(fmt::format(
@@ -327,8 +330,9 @@ std::string to_text(const DiscoveryReport& r, const std::string& run,
   }
   out += "\n";
   if (const std::string reason = reason_text(r); !reason.empty()) out += wrapped("why: " + reason);
-  out += wrapped("next: " + what_next(r, run));
-  for (const std::string& command : commands(r, run, before)) out += "  " + command + "\n";
+  if (!kept.empty()) out += wrapped(fmt::format("kept in {}: {}", run, fmt::join(kept, ", ")));
+  out += wrapped("next: " + what_next(r, run, kept));
+  for (const std::string& command : commands(r, run, before, kept)) out += "  " + command + "\n";
   return out;
 }
 

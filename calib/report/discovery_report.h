@@ -8,12 +8,14 @@
 
 /// What discover() found, as an object (schema mgt.discover/1) and for a person. `run` as the person typed
 /// it, for the commands that the text proposes; `before`: those that come first, so that the kept model is
-/// the one that was searched.
+/// the one that was searched; `kept`: names under which the run keeps the formulas already.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const discovery::DiscoveryReport& report, const std::string& run,
-                                     const std::vector<std::string>& before = {});
+                                     const std::vector<std::string>& before = {},
+                                     const std::vector<std::string>& kept = {});
 [[nodiscard]] std::string to_text(const discovery::DiscoveryReport& report, const std::string& run,
-                                  const std::vector<std::string>& before = {});
+                                  const std::vector<std::string>& before = {},
+                                  const std::vector<std::string>& kept = {});
 
 }  // namespace mgtd::calib::report

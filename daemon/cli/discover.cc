@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -11,7 +10,6 @@
 #include "daemon/cli/keep_discovery.h"
 #include "daemon/cli/searched_model.h"
 #include "daemon/cli/work_progress.h"
-#include "proto/shell_word.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -43,17 +41,6 @@ struct DiscoverArguments {
   std::shared_ptr<FitFlags> flags;
 };
 
-void tell_kept(const std::string& run, const std::vector<std::string>& names) {
-  if (names.empty()) {
-    fmt::print("the search is kept in {}: mgt report shows it; there is no formula to keep\n", run);
-    return;
-  }
-  fmt::print(
-      "kept in {}: {}; mgt add puts it into the model, mgt define SECOND.mgtrun {} --from {} says "
-      "whether a second run confirms it\n",
-      run, fmt::join(names, ", "), names.front(), shell_word(run));
-}
-
 int run_discover(const Session& session, const DiscoverArguments& args) {
   using calib::discovery::Verdict;
   auto source = read_source(args.run, *args.flags);
@@ -69,26 +56,27 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
   });
   if (!found) return report(session, found.error());
   const auto before = commands_to_model(options->effects, *source, args.run);
-  json object;
-  if (session.json || args.keep) object = calib::report::to_json(*found, args.run, before);
   std::vector<std::string> names;
   if (args.keep) {
     auto file = open_to_keep(args.run, *source);
     if (!file) return report(session, file.error());
-    auto formulas = keep_discovery(*file, *source, *options, *found, object);
+    auto formulas =
+        keep_discovery(*file, *source, *options, *found, calib::report::to_json(*found, args.run, before));
     if (!formulas) return report(session, formulas.error());
     names = *std::move(formulas);
-    object["kept"] = names;
   }
   if (session.json) {
+    json object = calib::report::to_json(*found, args.run, before, names);
+    if (args.keep) object["kept"] = names;
     print_json(object);
   } else if (args.spec) {
     for (const auto& law : found->laws)
       for (const std::string& spec : law.formulas.front().specs) fmt::print("{}\n", spec);
   } else {
-    fmt::print("{}", calib::report::to_text(*found, args.run, before));
+    fmt::print("{}", calib::report::to_text(*found, args.run, before, names));
   }
-  if (args.keep && !session.json) tell_kept(args.run, names);
+  if (args.keep && !session.json && names.empty())
+    fmt::print("the search is kept in {}: mgt report shows it; there is no formula to keep\n", args.run);
   return found->verdict == Verdict::shape_only || found->verdict == Verdict::noise_like ? 1 : 0;
 }
 

@@ -14,6 +14,7 @@ namespace mgtd::testing {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -144,6 +145,9 @@ TEST_F(NextLaw, WhatDiscoverKeepsIsConfirmedByASecondRunAndStandsInTheReport) {
 
   const json found = ask({"discover", run1, "--keep"});
   EXPECT_EQ(found.at("kept"), json::array({"law1"}));
+  EXPECT_EQ(found.at("commands"), json::array({"mgt add law1 " + run1})) << "it is kept already";
+  EXPECT_THAT(found.at("text").get<std::string>(),
+              AllOf(HasSubstr("kept in "), HasSubstr("SECOND.mgtrun"), Not(HasSubstr("mgt define " + run1))));
   const json formula = ask({"model", run1}).at("formulas").at(0);
   EXPECT_EQ(formula.at("name"), "law1");
   EXPECT_TRUE(formula.at("exploratory"));
