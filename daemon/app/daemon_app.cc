@@ -60,7 +60,8 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
                     .hosts = config_.console_hosts,
                     .control_from_network = config_.console_control_from_network,
                     .workbench = serve::console::WorkbenchConfig{.runs = runs_directory(config_),
-                                                                 .mgt = serve::console::mgt_beside_us()}},
+                                                                 .mgt = serve::console::mgt_beside_us(),
+                                                                 .for_others = true}},
                    console_source())},
       run_(
           config_, runs_directory(config_), store_, worker_, core_.run(),

@@ -13,9 +13,9 @@
 namespace mgtd::daemon::cli {
 namespace {
 
-std::string who() {
+std::string this_user() {
   const passwd* const user = getpwuid(getuid());
-  return fmt::format("{}, mgt {}", user != nullptr ? user->pw_name : std::to_string(getuid()), MGTD_VERSION);
+  return user != nullptr ? user->pw_name : std::to_string(getuid());
 }
 
 WallTime now() {
@@ -51,19 +51,24 @@ Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags, Ke
   if (keeping == Keeping::nothing) {
     auto options = fit_options(flags, *source);
     if (!options) return tl::unexpected(options.error());
-    return KeptRun{std::nullopt, std::move(*source), std::move(*options)};
+    return KeptRun{std::nullopt, std::move(*source), std::move(*options), {}};
   }
   auto file = open_to_keep(path, *source);
   if (!file) return tl::unexpected(file.error());
   auto options = fit_options(flags, *source);
   if (!options) return tl::unexpected(options.error());
-  return KeptRun{std::move(*file), std::move(*source), std::move(*options)};
+  return KeptRun{std::move(*file), std::move(*source), std::move(*options), {}};
+}
+
+void add_who_option(CLI::App* command, std::string& who) {
+  command->add_option("--who", who, "who makes this step, where it is not the user")->group("");
 }
 
 Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                        const nlohmann::json& result) {
+  const std::string who = fmt::format("{}, mgt {}", run.who.empty() ? this_user() : run.who, MGTD_VERSION);
   return run.file->append_model_step(
-      {now(), who(), action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+      {now(), who, action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
 Result<void> keep_formula(store::RunFile& file, store::PoseSource& source,

@@ -16,6 +16,7 @@ struct KeptRun {
   std::optional<store::RunFile> file;  ///< empty: nothing is kept
   store::PoseSource source;
   calib::fit::FitOptions options;  ///< with the kept model
+  std::string who{};               ///< makes the steps; empty: the user of this process
 };
 
 /// Whether a command leaves a step behind, or only tries it: then a pose table will do, and a run that is
@@ -28,7 +29,11 @@ enum class Keeping { steps, nothing };
 [[nodiscard]] Result<KeptRun> open_kept_run(const std::string& path, const FitFlags& flags,
                                             Keeping keeping = Keeping::steps);
 
-/// The next step, by this user with this version, now.
+/// --who: whoever this process works for where its user is another, as the console's jobs are. Not in the
+/// help.
+void add_who_option(CLI::App* command, std::string& who);
+
+/// The next step, by `run.who` with this version, now.
 [[nodiscard]] Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                                      const nlohmann::json& result);
 

@@ -34,7 +34,7 @@ constexpr const char* kMaskHelp =
     "Exit code 0.";
 
 struct MaskArguments {
-  std::string run, why;
+  std::string run, why, who;
   std::vector<std::string> poses;
   std::shared_ptr<FitFlags> flags;
 };
@@ -99,6 +99,7 @@ int run_mask(const Session& session, const MaskArguments& args) {
   if (!numbers) return report(session, numbers.error());
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
+  run->who = args.who;
   const auto table = store::without_poses(run->source.table, *numbers);
   if (!table) return report(session, table.error());
   return keep_mask(session, args, "mask", *numbers, *table, *run);
@@ -109,6 +110,7 @@ int run_unmask(const Session& session, const MaskArguments& args) {
   if (!numbers) return report(session, numbers.error());
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
+  run->who = args.who;
   const std::set<int> masked = masked_in(run->source);
   if (!std::includes(masked.begin(), masked.end(), numbers->begin(), numbers->end())) {
     return report(
@@ -139,6 +141,7 @@ CLI::App* add_mask_command(CLI::App& app, Session& session, const std::string& n
     return text.find_first_not_of(' ') == std::string::npos ? "say why in a few words" : std::string{};
   });
   if (name == "mask") why->required();
+  add_who_option(command, args->who);
   args->flags = add_kept_model_flags(command);
   return command;
 }

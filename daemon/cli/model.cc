@@ -43,7 +43,7 @@ constexpr const char* kAddHelp =
     "Exit code 0: kept, or worth keeping. 1: not kept.";
 
 struct ModelArguments {
-  std::string effect, run;
+  std::string effect, run, who;
   bool force{false}, tried{false};
   [[nodiscard]] Keeping keeping() const { return tried ? Keeping::nothing : Keeping::steps; }
   std::shared_ptr<FitFlags> flags;
@@ -106,6 +106,7 @@ bool is_left_out_of_stream(const calib::effects::Effect& effect) {
 int run_add(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags, args.keeping());
   if (!run) return report(session, run.error());
+  run->who = args.who;
   const int sensors = calib::effects::EffectContext{.table = &run->source.table, .offset_nT = {}}.sensors();
   const auto effect =
       calib::effects::library::make_effect(store::whole_spec(args.effect, run->source.definitions), sensors);
@@ -148,6 +149,7 @@ Result<std::size_t> place_of(const KeptRun& run, const std::string& effect) {
 int run_drop(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags, args.keeping());
   if (!run) return report(session, run.error());
+  run->who = args.who;
   const auto place = place_of(*run, args.effect);
   if (!place) return report(session, place.error());
   const auto change = with_progress("drop", run->options, [&](const calib::fit::FitOptions& told) {
@@ -162,6 +164,7 @@ int run_drop(const Session& session, const ModelArguments& args) {
 int run_undo(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
   if (!run) return report(session, run.error());
+  run->who = args.who;
   const auto steps = run->file->model_steps();
   if (!steps) return report(session, steps.error());
   const auto last = store::undoable(*steps);
@@ -254,6 +257,7 @@ void add_add(CLI::App& app, Session& session) {
   add_run_argument(command, *args);
   command->add_flag("--force", args->force, "keep it even if these poses speak against it");
   command->add_flag("--try", args->tried, "fit and tell, keep nothing");
+  add_who_option(command, args->who);
   args->flags = add_kept_model_flags(command);
 }
 
@@ -266,6 +270,7 @@ void add_drop(CLI::App& app, Session& session) {
   add_run_argument(command, *args);
   command->add_flag("--force", args->force, "take it out even if held-out poses get worse");
   command->add_flag("--try", args->tried, "fit and tell, keep nothing");
+  add_who_option(command, args->who);
   args->flags = add_kept_model_flags(command);
 }
 
@@ -275,6 +280,7 @@ void add_undo(CLI::App& app, Session& session) {
       app, session, "undo", "take the last step back (add, drop, mask, unmask); repeat it for the one before",
       [args, &session] { return run_undo(session, *args); });
   add_run_argument(command, *args);
+  add_who_option(command, args->who);
   args->flags = std::make_shared<FitFlags>();
 }
 

@@ -2,6 +2,8 @@
 // Compare, explain, add, and the error falls: the operator's loop with the real programs.
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +17,7 @@ using nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 const std::string kScenario = source_path("tests/scenarios/hidden_temperature.toml");
 
@@ -79,6 +82,18 @@ TEST_F(Loop, HistoryIsKeptAndUndoGoesBack) {
   EXPECT_EQ(model.at("history").at(1).at("action"), "undo");
   EXPECT_THAT(model.at("history").at(0).at("who").get<std::string>(), HasSubstr("mgt "));
   EXPECT_EQ(mgt({"undo", run_file()}).exit_code, 1) << "there is nothing left to undo";
+}
+
+/// A job of the console runs as the daemon's user and works for somebody else.
+TEST_F(Loop, AStepIsOfWhomItIsMadeFor) {
+  ASSERT_EQ(mgt({"add", kEffect, run_file(), "--who", "the console, from ::1"}).exit_code, 0);
+  ASSERT_EQ(mgt({"mask", run_file(), "3", "--why", "a car", "--who", "the console, from ::2"}).exit_code, 0);
+  ASSERT_EQ(mgt({"undo", run_file(), "--who", "the console, from ::3"}).exit_code, 0);
+  const json history = ask({"model", run_file()}).at("history");
+  ASSERT_EQ(history.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(history.at(i).at("who"), fmt::format("the console, from ::{}, mgt {}", i + 1, MGTD_VERSION));
+  EXPECT_THAT(mgt({"add", "--help"}).out, Not(HasSubstr("--who")));
 }
 
 TEST_F(Loop, WhatIsNeededIsNotDroppedUnlessForced) {

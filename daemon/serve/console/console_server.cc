@@ -72,10 +72,11 @@ class ConsoleServer::State : public std::enable_shared_from_this<State> {
  private:
   class Session;
   void admit(Listener::Socket socket);
-  [[nodiscard]] Response answered(const Request& request);
+  /// `who`: for people, where the request came from.
+  [[nodiscard]] Response answered(const Request& request, const std::string& who);
   [[nodiscard]] Response content(const Request& request, std::string_view target);
   [[nodiscard]] Result<void> may_come(const Request& request);
-  [[nodiscard]] Response of_job(const Request& request);
+  [[nodiscard]] Response of_job(const Request& request, const std::string& who);
 
   asio::io_context& io_;
   ConsoleConfig config_;
@@ -157,7 +158,7 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     if (asks_for_job(request) && server_->desk_) {
       if (auto allowed = may_ask_for_jobs(request); !allowed) return refuse_job(request, allowed.error());
     }
-    answer(server_->answered(request), host, keep_alive);
+    answer(server_->answered(request, who()), host, keep_alive);
   }
 
   [[nodiscard]] Result<void> may_ask_for_jobs(const Request& request) const {
@@ -177,6 +178,10 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
     timer_.emplace(stream_.get_executor(), server_->config_.wrong_token_wait);
     timer_->async_wait(
         [self = shared_from_this()](error_code) { self->answer(std::move(self->response_), "", false); });
+  }
+
+  [[nodiscard]] std::string who() const {
+    return "the console, from " + (from_ ? from_->to_string() : std::string("this computer"));
   }
 
   void note_refusal(const Error& why) {
@@ -227,8 +232,7 @@ class ConsoleServer::State::Session : public std::enable_shared_from_this<Sessio
       const bool right = line.is_object() && line.contains("token") && line["token"].is_string() &&
                          self->server_->token_.is(line["token"].get_ref<const std::string&>());
       if (!right) return self->refuse_token();
-      const std::string where = self->from_ ? self->from_->to_string() : std::string("this computer");
-      self->server_->source_.control(self->handed_over(kControlLineLimit), "the console, from " + where);
+      self->server_->source_.control(self->handed_over(kControlLineLimit), self->who());
     });
   }
 
@@ -306,21 +310,21 @@ void ConsoleServer::State::admit(Listener::Socket socket) {
 
 Result<void> ConsoleServer::State::may_come(const Request& request) { return rule_->admit(head_of(request)); }
 
-Response ConsoleServer::State::answered(const Request& request) {
+Response ConsoleServer::State::answered(const Request& request, const std::string& who) {
   if (!rate_.admit(clock_.now().mono))
     return refusal(request, {ErrorCode::refused, "too many requests a second", "ask less often"},
                    http::status::too_many_requests);
   if (auto allowed = may_come(request); !allowed) return refusal(request, allowed.error());
-  if (asks_for_job(request) && desk_) return of_job(request);
+  if (asks_for_job(request) && desk_) return of_job(request, who);
   if (request.method() != http::verb::get)
     return refusal(request, {ErrorCode::bad_input, "only GET is answered", ""},
                    http::status::method_not_allowed);
   return content(request, {request.target().data(), request.target().size()});
 }
 
-Response ConsoleServer::State::of_job(const Request& request) {
+Response ConsoleServer::State::of_job(const Request& request, const std::string& who) {
   JobAnswer given = desk_->answer({request.method_string().data(), request.method_string().size()},
-                                  path_of(request), request.body());
+                                  path_of(request), request.body(), who);
   Response response{static_cast<http::status>(given.status), request.version()};
   response.set(http::field::content_type, given.type);
   response.body() = std::move(given.body);

@@ -39,9 +39,10 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
 
   std::string runs() { return to_json(folder_.list()); }
 
-  JobAnswer answer(std::string_view method, std::string_view path, std::string_view body) {
+  JobAnswer answer(std::string_view method, std::string_view path, std::string_view body,
+                   const std::string& who) {
     if (path == "/jobs") {
-      if (method == "POST") return post(body);
+      if (method == "POST") return post(body, who);
       return refused(kMethodNotAllowed, {ErrorCode::usage, "/jobs takes POST", ""});
     }
     std::string_view rest = path.substr(std::string_view("/jobs/").size());
@@ -70,7 +71,7 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
  private:
   [[nodiscard]] Instant now() const { return clock_.now().mono; }
 
-  JobAnswer post(std::string_view body) {
+  JobAnswer post(std::string_view body, const std::string& who) {
     if (stopped_) return refused(kBadRequest, {ErrorCode::state, "the server ends", ""});
     const auto request = parse_job_request(body);
     if (!request) return refused(kBadRequest, request.error());
@@ -87,13 +88,13 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
                                    "make a run file of it first"});
     auto made = *run;
     made.replace_extension(".mgtrun");
-    const auto words = [&](const std::string& source, const std::string& target) {
-      return job_words(*request, source, target, config_.model_options);
+    const auto words = [&](const std::string& source, const std::string& target, const std::string& by) {
+      return job_words(*request, source, target, config_.model_options, by);
     };
     JobTask task;
-    task.command = "mgt " + typed(words(request->run, made.filename().string()));
+    task.command = "mgt " + typed(words(request->run, made.filename().string(), {}));
     task.question = task.command + '\n' + folder_.stamp(request->run);
-    task.words = words(run->string(), made.string());
+    task.words = words(run->string(), made.string(), config_.for_others ? who : std::string());
     task.changes = request->changes();
     task.words.insert(task.words.begin(), config_.mgt.string());
     if (request->verb->name == "report") task.type = "text/plain; charset=utf-8";
@@ -179,8 +180,9 @@ JobDesk::JobDesk(boost::asio::io_context& io, WorkbenchConfig config)
     : state_(std::make_shared<State>(io, std::move(config))) {}
 JobDesk::~JobDesk() { state_->stop(); }
 std::string JobDesk::runs() { return state_->runs(); }
-JobAnswer JobDesk::answer(std::string_view method, std::string_view path, std::string_view body) {
-  return state_->answer(method, path, body);
+JobAnswer JobDesk::answer(std::string_view method, std::string_view path, std::string_view body,
+                          const std::string& who) {
+  return state_->answer(method, path, body, who);
 }
 void JobDesk::stop() { state_->stop(); }
 

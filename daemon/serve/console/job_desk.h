@@ -32,6 +32,7 @@ struct WorkbenchConfig {
   std::filesystem::path runs;                ///< folder, or one file (run_folder.h)
   std::filesystem::path mgt;                 ///< the program
   std::vector<std::string> model_options{};  ///< for every job that fits: --field=50000
+  bool for_others{false};  ///< the user of the jobs is not who asks: steps are kept under `who`
   JobLimits limits{};
   JobBounds bounds{};
 };
@@ -50,8 +51,9 @@ class JobDesk {
   JobDesk& operator=(const JobDesk&) = delete;
 
   [[nodiscard]] std::string runs();
-  /// `path`: "/jobs" and what is below it.
-  [[nodiscard]] JobAnswer answer(std::string_view method, std::string_view path, std::string_view body);
+  /// `path`: "/jobs" and what is below it; `who` asks, for people: "the console, from 127.0.0.1".
+  [[nodiscard]] JobAnswer answer(std::string_view method, std::string_view path, std::string_view body,
+                                 const std::string& who);
   /// Ends what runs.
   void stop();
 

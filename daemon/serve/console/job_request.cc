@@ -64,16 +64,37 @@ constexpr std::array kVerbs{
             .fixed = "--json",
             .of_tables = false,
             .takes_model_options = false},
-    JobVerb{.name = "add", .arguments = kChange, .fixed = "--json", .changes = true, .of_tables = true},
-    JobVerb{.name = "drop", .arguments = kChange, .fixed = "--json", .changes = true, .of_tables = false},
+    JobVerb{.name = "add",
+            .arguments = kChange,
+            .fixed = "--json",
+            .changes = true,
+            .of_tables = true,
+            .takes_who = true},
+    JobVerb{.name = "drop",
+            .arguments = kChange,
+            .fixed = "--json",
+            .changes = true,
+            .of_tables = false,
+            .takes_who = true},
     JobVerb{.name = "undo",
             .arguments = kRunAlone,
             .fixed = "--json",
             .changes = true,
             .of_tables = false,
-            .takes_model_options = false},
-    JobVerb{.name = "mask", .arguments = kMask, .fixed = "--json", .changes = true, .of_tables = false},
-    JobVerb{.name = "unmask", .arguments = kUnmask, .fixed = "--json", .changes = true, .of_tables = false},
+            .takes_model_options = false,
+            .takes_who = true},
+    JobVerb{.name = "mask",
+            .arguments = kMask,
+            .fixed = "--json",
+            .changes = true,
+            .of_tables = false,
+            .takes_who = true},
+    JobVerb{.name = "unmask",
+            .arguments = kUnmask,
+            .fixed = "--json",
+            .changes = true,
+            .of_tables = false,
+            .takes_who = true},
     JobVerb{.name = "define", .arguments = kDefine, .fixed = "--json", .changes = true, .of_tables = true},
     JobVerb{.name = "import",
             .arguments = kImport,
@@ -221,7 +242,7 @@ Result<JobRequest> parse_job_request(std::string_view body) {
 }
 
 std::vector<std::string> job_words(const JobRequest& request, const std::string& run, const std::string& made,
-                                   const std::vector<std::string>& model_options) {
+                                   const std::vector<std::string>& model_options, const std::string& who) {
   std::vector<std::string> alone{std::string(request.verb->name)}, options;
   for (const JobArgument& a : request.verb->arguments) {
     if (a.kind == ArgumentKind::run) {
@@ -244,6 +265,7 @@ std::vector<std::string> job_words(const JobRequest& request, const std::string&
   std::vector<std::string> out = std::move(alone);
   out.insert(out.end(), options.begin(), options.end());
   if (request.verb->takes_model_options) out.insert(out.end(), model_options.begin(), model_options.end());
+  if (request.verb->takes_who && request.changes() && !who.empty()) out.push_back("--who=" + who);
   for (std::string& word : split(request.verb->fixed)) out.push_back(std::move(word));
   return out;
 }

@@ -46,6 +46,7 @@ struct JobVerb {
   bool changes{false};             ///< writes to the run file, unless it is tried only
   bool of_tables{true};            ///< also on a pose table
   bool takes_model_options{true};  ///< --field and its like, as the server was started with
+  bool takes_who{false};           ///< leaves a step in the run file, with who made it
 };
 
 [[nodiscard]] std::span<const JobVerb> job_verbs();
@@ -63,10 +64,12 @@ struct JobRequest {
 [[nodiscard]] Result<JobRequest> parse_job_request(std::string_view body);
 
 /// The words of the command without the program: verb, what stands alone, options. `run`: the path, or in a
-/// command that a person reads, the name; `made`: of the run file that import makes.
+/// command that a person reads, the name; `made`: of the run file that import makes; `who`: makes the step
+/// that is kept, empty for the user of the process.
 [[nodiscard]] std::vector<std::string> job_words(const JobRequest& request, const std::string& run,
                                                  const std::string& made,
-                                                 const std::vector<std::string>& model_options);
+                                                 const std::vector<std::string>& model_options,
+                                                 const std::string& who = {});
 
 /// The words as one types them into a shell.
 [[nodiscard]] std::string typed(const std::vector<std::string>& words);

@@ -106,8 +106,9 @@ class ConsoleServerWithRuns : public ConsoleServerTest {
  protected:
   void SetUp() override {
     std::ofstream(dir_ / "a.csv") << "pose,s1_x_nT\n1,2\n";
+    std::ofstream(dir_ / "b.mgtrun") << "no run";
     start({.rate = {.per_s = 1000, .burst = 1000},
-           .workbench = WorkbenchConfig{.runs = dir_ / "", .mgt = "/bin/echo"}});
+           .workbench = WorkbenchConfig{.runs = dir_ / "", .mgt = "/bin/echo", .for_others = true}});
   }
   [[nodiscard]] std::string job(const std::string& method, const std::string& target, const std::string& body,
                                 const std::string& more = "") const {
@@ -121,6 +122,18 @@ class ConsoleServerWithRuns : public ConsoleServerTest {
   mgtd::testing::ScratchDirectory dir_;
   const std::string body_ = R"({"verb":"explain","run":"a.csv"})";
 };
+
+TEST_F(ConsoleServerWithRuns, StepsAreKeptUnderWhereTheRequestCameFrom) {
+  ask(job("POST", "/jobs", R"({"verb":"undo","run":"b.mgtrun"})", bearer()), R"({"job":1})");
+  ASSERT_TRUE(run_until(io_, [this] {
+    LinePeer peer = connect();
+    peer.send(get("/jobs/1", bearer()));
+    return wait(peer, R"("state":)") && peer.count(R"("state":"done")") == 1;
+  }));
+  ask(get("/jobs/1/result", bearer()),
+      "undo " + (dir_ / "b.mgtrun") + " --who=the console, from 127.0.0.1 --json");
+  ask(get("/jobs/1", bearer()), R"("command":"mgt undo b.mgtrun --json")");
+}
 
 TEST_F(ConsoleServerWithRuns, ComputesForWhoHasTheToken) {
   ask(get("/runs"), R"("name":"a.csv")");

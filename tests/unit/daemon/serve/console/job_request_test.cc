@@ -9,13 +9,16 @@
 namespace mgtd::daemon::serve::console {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-std::vector<std::string> words(const std::string& body, const std::vector<std::string>& model_options = {}) {
+std::vector<std::string> words(const std::string& body, const std::vector<std::string>& model_options = {},
+                               const std::string& who = {}) {
   const auto request = parse_job_request(body);
   EXPECT_TRUE(request) << request.error().text();
-  return request ? job_words(*request, "/runs/a.mgtrun", "/runs/a.new", model_options)
+  return request ? job_words(*request, "/runs/a.mgtrun", "/runs/a.new", model_options, who)
                  : std::vector<std::string>{};
 }
 
@@ -45,6 +48,17 @@ TEST(JobRequest, CarriesTheServersOwnModelOptions) {
                     {"--field=50000"}),
               ElementsAre("compare", "/runs/a.mgtrun", "--with=axis.cubic", "--without=4", "--field=50000",
                           "--poses", "--json"));
+}
+
+TEST(JobRequest, OnlyWhatLeavesAStepSaysWhoMadeIt) {
+  const std::string who = "the console, from ::1";
+  EXPECT_THAT(words(R"({"verb":"undo","run":"a"})", {}, who),
+              ElementsAre("undo", "/runs/a.mgtrun", "--who=" + who, "--json"));
+  EXPECT_THAT(words(R"({"verb":"drop","run":"a","args":{"effect":"axis.cubic","try":true}})", {}, who),
+              ElementsAre("drop", "axis.cubic", "/runs/a.mgtrun", "--try", "--json"));
+  for (const char* verb : {"compare", "import", "model"})
+    EXPECT_THAT(words(std::string(R"({"run":"a","verb":")") + verb + "\"}", {}, who),
+                Not(Contains(HasSubstr("--who"))));
 }
 
 /// What a client writes is a value and never an option, however it looks.
