@@ -12,6 +12,8 @@ nlohmann::ordered_json to_json(const ArrayDescription& array) {
           {"line", array.line ? nlohmann::ordered_json{array.line->x(), array.line->y(), array.line->z()}
                               : nlohmann::ordered_json()},
           {"closure", array.closure},
+          {"closure_limit",
+           array.closure_limit ? nlohmann::ordered_json(*array.closure_limit) : nlohmann::ordered_json()},
           {"tells", array.tells}};
 }
 

@@ -5,8 +5,11 @@
 
 #include "calib/calibration/field_expansion.h"
 #include "calib/report/array_text.h"
+#include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::report {
+
+double closure_limit(double dof) { return stats::chi_square_limit(1e-3, dof); }
 
 ArrayDescription described(const sensor::Geometry& array) {
   const auto& places = array.positions_P_m();
@@ -15,7 +18,9 @@ ArrayDescription described(const sensor::Geometry& array) {
                        .gradient = {},
                        .line = {},
                        .closure = static_cast<int>(expansion.closure_dof()),
+                       .closure_limit = {},
                        .tells = what_it_tells(expansion)};
+  if (out.closure > 0) out.closure_limit = closure_limit(out.closure);
   if (expansion.derivatives_along().size() == 1) out.line = expansion.derivatives_along().front().direction_P;
   for (std::size_t i = 0; i < expansion.determined().size(); ++i)
     if (expansion.determined()[i]) out.gradient.push_back(calibration::kGradientNames[i].substr(1));

@@ -13,4 +13,8 @@ namespace mgtd::calib::report {
 /// "the cross of four sensors, 0.4 m from arm to arm", "an array of 8 sensors".
 [[nodiscard]] std::string array_name(const sensor::Geometry& array);
 
+/// Of chi-square of so many closure numbers: a good sample is beyond it once in a thousand. Wherever a
+/// closure is shown, this is its limit.
+[[nodiscard]] double closure_limit(double dof);
+
 }  // namespace mgtd::calib::report

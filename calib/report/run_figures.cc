@@ -9,11 +9,11 @@
 #include <map>
 
 #include "calib/calibration/tensor.h"
+#include "calib/report/described_array.h"
 #include "calib/report/figures/accuracy_figure.h"
 #include "calib/report/figures/lanes_figure.h"
 #include "calib/report/figures/sky_figures.h"
 #include "calib/sensor/channels.h"
-#include "calib/stats/chi_square.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
@@ -170,7 +170,7 @@ std::optional<figures::Figure> closure_figure(const PanelModel& model) {
       {.name = "closure", .unit = "nT", .series = std::move(parts), .limit = {}, .limit_text = {}});
   const auto dof = static_cast<double>(p.closure_nT.rows());
   const std::vector<double> chi2 = closure_chi2(model);
-  const double limit = stats::chi_square_limit(0.001, dof);
+  const double limit = closure_limit(dof);
   v.lanes.push_back({.name = "chi-square",
                      .unit = fmt::format("{:.0f} d.o.f.", dof),
                      .series = {time_series(p, "chi-square", chi2, 0)},

@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "calib/report/described_array.h"
-#include "calib/stats/chi_square.h"
 #include "daemon/app/service_notify.h"
 #include "daemon/serve/console/lane_request.h"
 #include "daemon/serve/console/metrics.h"
@@ -17,16 +16,6 @@ namespace mgtd::daemon::app {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(20);
-constexpr double kRareClosure = 1e-3;  ///< of the samples of a good stream have a larger chi-square
-
-/// With the closure that a page shall count as an alarm.
-nlohmann::ordered_json with_closure_limit(const ArrayDescription& array) {
-  auto out = to_json(array);
-  out["closure_limit"] =
-      array.closure > 0 ? nlohmann::ordered_json(calib::stats::chi_square_limit(kRareClosure, array.closure))
-                        : nlohmann::ordered_json();
-  return out;
-}
 
 serve::StreamConfig stream_config(const config::Config& config) {
   serve::StreamConfig out;
@@ -111,7 +100,7 @@ serve::console::ConsoleSource DaemonApp::console_source() {
                 const nlohmann::ordered_json hello{
                     {"software", "mgtd " MGTD_VERSION}, {"mode", "rig"},
                     {"rig", config_.rig_name},          {"speed_up", config_.speed_up},
-                    {"rate_hz", config_.rate_hz},       {"array", with_closure_limit(array_)}};
+                    {"rate_hz", config_.rate_hz},       {"array", to_json(array_)}};
                 return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
               },
           .metrics = [this] { return serve::console::metrics(report(), console_.server.refused()); },

@@ -88,6 +88,15 @@ double seconds_between(const nlohmann::json& earlier, const nlohmann::json& late
   return from && to ? to_seconds(Duration(to->ns - from->ns)) : 0;
 }
 
+/// " (limit 18.5)", once a STATUS has said so.
+std::string closure_limit_text(const nlohmann::json& status) {
+  const nlohmann::json limit =
+      status.is_object()
+          ? status.value(nlohmann::json::json_pointer("/array/closure_limit"), nlohmann::json())
+          : nlohmann::json();
+  return limit.is_number() ? fmt::format(" (limit {})", number_text(limit, 1)) : "";
+}
+
 }  // namespace
 
 void WatchPanel::take(const nlohmann::json& object) {
@@ -116,7 +125,8 @@ std::string WatchPanel::sample_text() const {
   out += gradient_table(sample_);
   if (const auto closure = sample_.find("closure");
       closure != sample_.end() && closure->is_object() && closure->at("chi2").is_number())
-    out += fmt::format("{:<10}chi-square {}\n", "closure", number_text(closure->at("chi2"), 1));
+    out += fmt::format("{:<10}chi-square {}{}\n", "closure", number_text(closure->at("chi2"), 1),
+                       closure_limit_text(status_));
   return out + fmt::format("{:<10}{}\n", "flags", flags_text(sample_.at("flags")));
 }
 

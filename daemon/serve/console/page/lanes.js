@@ -139,7 +139,7 @@ export class Lanes {
     g.clearRect(0, 0, width, height);
     const to_s = this.#now_s, from_s = to_s - this.#window_s;
     const x = (t_s) => this.#left + ((t_s - from_s) / this.#window_s) * (width - this.#left - kRight);
-    const colour = { ink: css("--ink"), soft: css("--soft"), line: css("--line"), band: css("--band"), trace: css("--trace"), card: css("--card"), stroke: Number(css("--stroke")) };
+    const colour = { ink: css("--ink"), soft: css("--soft"), line: css("--line"), band: css("--band"), trace: css("--trace"), bad: css("--bad"), card: css("--card"), stroke: Number(css("--stroke")) };
     g.font = "12px 'DejaVu Sans', sans-serif";
     const at = [];
     this.#channels.forEach((channel, i) => at.push(this.#lane(g, channel, i * kHeight, x, from_s, width, colour)));
@@ -172,6 +172,12 @@ export class Lanes {
       }
     }
     columns ? this.#spans(g, columns, x, y, colour) : this.#line(g, t, x, y, 1.5 * band.step_s, colour);
+    if (channel.limit) {
+      g.strokeStyle = colour.bad;
+      g.setLineDash([6, 4]);
+      g.beginPath(); g.moveTo(this.#left, y(channel.limit)); g.lineTo(width - kRight, y(channel.limit)); g.stroke();
+      g.setLineDash([]);
+    }
     g.restore();
     const now = columns ? columns.at(-1)?.last : t.findLast(([, v]) => v !== null)?.[1];
     g.fillStyle = colour.ink;

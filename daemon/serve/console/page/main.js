@@ -11,7 +11,7 @@ import { active, chip, showRun, wanted } from "./run.js";
 
 const token = takeToken(), control = new Control(token);
 const lanes = new Lanes(by("canvas"), (text) => { by("cursor").textContent = text; });
-let status = null, run = null, sample = null, heard_ms = 0, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, closureLimit = null, numbers_ms = 0;
+let status = null, run = null, sample = null, heard_ms = 0, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, numbers_ms = 0;
 
 function banner(text, note = false) {
   by("banner").textContent = text;
@@ -91,7 +91,7 @@ const kGradient = ["xx", "yy", "zz", "xy", "xz", "yz"];
 function channelsOf(array, inputs) {
   const gradient = kGradient.filter((c) => array.gradient.includes(c)).map((c) => ({ name: c, label: `G${c}`, unit: "nT/m", least_span: 0.5 }));
   const field = ["bx", "by", "bz"].map((b) => ({ name: b, label: `B${b[1]}`, unit: "nT", least_span: 0.5 }));
-  const closure = array.closure > 0 ? [{ name: "chi2", label: "closure χ²", unit: "", least_span: 20 }] : [];
+  const closure = array.closure > 0 ? [{ name: "chi2", label: "closure χ²", unit: "", least_span: 20, limit: array.closure_limit }] : [];
   const heads = inputs.filter((i) => i.unit === "degC").slice(0, 1).map((i) => ({ name: i.name, label: i.name, unit: "degC", least_span: 0.2 }));
   return [...gradient, ...field, { name: "f", label: "F", unit: "nT", least_span: 0.5 }, ...closure, ...heads];
 }
@@ -104,7 +104,7 @@ function takeSample(message) {
   const values = { f: message.f_nT, bx: message.b_nT[0], by: message.b_nT[1], bz: message.b_nT[2], chi2: message.closure.chi2,
                    ...message.g_nT_per_m, ...(message.inputs ?? {}) };
   lanes.add(t_s, values);
-  if (message.closure.chi2 !== null && closureLimit) { judged += 1; alarms += message.closure.chi2 > closureLimit ? 1 : 0; }
+  if (message.closure.chi2 !== null && status?.array.closure_limit) { judged += 1; alarms += message.closure.chi2 > status.array.closure_limit ? 1 : 0; }
   const now = performance.now();
   if (now - sampled_ms < 500 || screen !== "live" || !status) return;
   sampled_ms = now;
@@ -135,7 +135,7 @@ function takeStatus(message) {
     (holder ? `Control is with ${holder.via || `pid ${holder.pid}`}${holder.why ? `: ${holder.why}` : ""}.` : "Nobody has control.") +
     (control.possible ? "" : " This page may look; mgt console prints the address with which it may control.");
   by("caption").textContent = judged > 0
-    ? `A good stream has no hatching, and a closure χ² above ${closureLimit.toFixed(1)} (${message.array.closure === 1 ? "of one number" : `of ${message.array.closure} numbers`}) in one sample of a thousand; since this page was opened ${(1000 * alarms / judged).toFixed(1)} of a thousand.`
+    ? `A good stream has no hatching, and a closure χ² above ${message.array.closure_limit.toFixed(1)} (${message.array.closure === 1 ? "of one number" : `of ${message.array.closure} numbers`}) in one sample of a thousand; since this page was opened ${(1000 * alarms / judged).toFixed(1)} of a thousand.`
     : "A good stream has no hatching: what was not measured is hatched, with its reason.";
   const now = performance.now();  // without samples, as after a pulled cable, the instruments are told all the same
   if (screen === "live" && now - sampled_ms > kQuiet_ms) {
@@ -164,7 +164,6 @@ function takeRun(message) {
 
 /** The rig behind the page. */
 function followRig(hello) {
-  closureLimit = hello.array.closure_limit;
   openStream({
     message: (message) => {
       if (message.class === "TENSOR") takeSample(message);

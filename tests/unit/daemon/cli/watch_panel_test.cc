@@ -23,6 +23,7 @@ json status(const std::string& t) {
     "devices":[{"name":"s1","state":"live","detail":""},
                {"name":"s2","state":"silent","detail":"no byte for 12 s"}],"run":{}})");
   out["t"] = t;
+  out["array"] = {{"closure_limit", 18.467}};
   return out;
 }
 
@@ -49,6 +50,7 @@ TEST(WatchPanel, NamesTheDeviceThatIsLostAndWhatItMissed) {
   panel.take(status("2026-11-21T10:00:00.200000Z"));
   panel.take({{"class", "GAP"}, {"from_seq", 5300}, {"to_seq", 5325}, {"why", "s2: silent"}});
   const std::string text = panel.text(80);
+  EXPECT_THAT(text, HasSubstr("closure   chi-square 3.1 (limit 18.5)\n"));
   EXPECT_THAT(text, HasSubstr("judged    ok\n"));
   EXPECT_THAT(text, HasSubstr("devices   s1 live, s2 silent\n          s2: no byte for 12 s\n"));
   EXPECT_THAT(text, HasSubstr("missed    26 epochs; the last: s2: silent\n"));
