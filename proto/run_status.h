@@ -34,6 +34,12 @@ enum class RunState : std::uint8_t {
 /// True while a run has the table.
 [[nodiscard]] bool is_active(RunState state);
 
+/// How far the field has changed so far while the table stands. Above the limit, and where noise does not
+/// account for it, the pose is measured again.
+struct FieldChange {
+  double change_nT{0}, limit_nT{0};
+};
+
 struct RunStatus {
   std::string run_id;
   RunState state{RunState::idle};
@@ -49,7 +55,8 @@ struct RunStatus {
   std::vector<Check> checks;  ///< of the preflight and of the calibration
   /// Of the tensor by the calibration, from the poses so far, worst component; empty until they tell.
   std::optional<double> tensor_sd_nT_per_m;
-  std::optional<OperatorPrompt> prompt;  ///< while asking
+  std::optional<OperatorPrompt> prompt;       ///< while asking
+  std::optional<FieldChange> field_change{};  ///< while the field is watched
   std::string judged{};  ///< what the poses said when the plan was measured, and what followed from it
   std::optional<double> wanted_tensor_sd_nT_per_m;  ///< at which the run ends early
 };

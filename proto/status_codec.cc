@@ -176,6 +176,9 @@ OrderedJson to_json(const RunStatus& run) {
           {"message", run.message},
           {"goes_on", run.goes_on},
           {"prompt", run.prompt ? to_json(*run.prompt) : OrderedJson(nullptr)},
+          {"field_change", run.field_change ? OrderedJson{{"change_nT", number(run.field_change->change_nT)},
+                                                          {"limit_nT", number(run.field_change->limit_nT)}}
+                                            : OrderedJson(nullptr)},
           {"tensor_sd_nT_per_m", optional(run.tensor_sd_nT_per_m)},
           {"wanted_tensor_sd_nT_per_m", optional(run.wanted_tensor_sd_nT_per_m)},
           {"judged", run.judged.empty() ? OrderedJson(nullptr) : OrderedJson(run.judged)},
@@ -248,6 +251,13 @@ Result<RunStatus> run_status_from_json(const nlohmann::json& object) {
     auto prompt = prompt_from_json(object["prompt"]);
     if (!prompt) return tl::unexpected(prompt.error());
     run.prompt = *std::move(prompt);
+  }
+  if (const auto seen = object.find("field_change"); seen != object.end() && seen->is_object()) {
+    Reader inner(*seen);
+    run.field_change.emplace();
+    inner.read("change_nT", run.field_change->change_nT);
+    inner.read("limit_nT", run.field_change->limit_nT);
+    if (!inner.objection().empty()) return not_a_status("field_change: " + inner.objection());
   }
   if (!reader.objection().empty()) return not_a_status(reader.objection());
   const auto parsed = state_from_name(state);

@@ -9,8 +9,9 @@
 /// STATUS and RUN have the same JSON on the stream, on the control socket and in `mgt status --json`.
 ///
 /// RUN:    {"run_id","state","set","pose","poses","retries","elapsed_s","remaining_s","message","goes_on",
-///          "prompt": operator_prompt.h or null,"tensor_sd_nT_per_m","wanted_tensor_sd_nT_per_m",
-///          "proposed": id or null,"checks":[{"name","passed","measured","limit","remedy"}]}
+///          "prompt": operator_prompt.h or null,"field_change":{"change_nT","limit_nT"} or
+///          null,"tensor_sd_nT_per_m","wanted_tensor_sd_nT_per_m", "proposed": id or
+///          null,"checks":[{"name","passed","measured","limit","remedy"}]}
 /// STATUS: {"t","t_ns","uptime_s","software","rig","speed_up","cal": id or null,
 ///          "calibration":{"forced","left_out":[{"effect","lacks"}]},
 ///          "criticism":{"state","measured","limit","remedy"},

@@ -78,39 +78,52 @@ std::string FieldDisturbance::in_words() const {
 struct DisturbanceStatistic {
   const FieldBlocks& field;
   const FieldNoise& noise;
-  double log10_p;  ///< limit of one look at one of the two
-  double limit_nT;
 
-  [[nodiscard]] std::optional<FieldDisturbance> array() const {
+  struct Look {
+    double change_nT, f, k, nu;  ///< F with its degrees of freedom
+    FieldDisturbance::SeenBy seen_by;
+  };
+
+  [[nodiscard]] std::optional<Look> array() const {
     if (field.blocks() < 2 || !noise.known()) return std::nullopt;
     const double n = static_cast<double>(field.blocks()) - 1;
     const FieldBlocks::Axes scatter_nT2 = field.scatter_nT2();
     const double f = scatter_nT2.cwiseQuotient(noise.weight_nT2_).mean() / n / (noise.sum_ / noise.dof_);
     const double noise_nT = noise.block_nT();
     const double change_nT = std::sqrt(std::max(0.0, per_sensor(scatter_nT2) / n - noise_nT * noise_nT));
-    return disturbance(change_nT, f, dof_of(field.blocks()), noise.dof_, FieldDisturbance::SeenBy::array);
+    return Look{change_nT, f, dof_of(field.blocks()), noise.dof_, FieldDisturbance::SeenBy::array};
   }
-  [[nodiscard]] std::optional<FieldDisturbance> scalar() const {
+  [[nodiscard]] std::optional<Look> scalar() const {
     if (field.scalar_nT().size() < kScalarReadings) return std::nullopt;
     const double n = static_cast<double>(field.scalar_nT().size()) - 1;
     const double square_nT2 = square_sum(field.scalar_nT()) / n,
                  at_rest_nT2 = noise.scalar_sum_nT2_ / noise.scalar_dof_;
-    return disturbance(std::sqrt(std::max(0.0, square_nT2 - at_rest_nT2)), square_nT2 / at_rest_nT2, n,
-                       noise.scalar_dof_, FieldDisturbance::SeenBy::scalar);
-  }
-  [[nodiscard]] std::optional<FieldDisturbance> disturbance(double change_nT, double f, double k, double nu,
-                                                            FieldDisturbance::SeenBy seen_by) const {
-    if (change_nT <= limit_nT || calib::stats::f_log10_p(f, k, nu) > log10_p) return std::nullopt;
-    return FieldDisturbance{.change_nT = change_nT, .limit_nT = limit_nT, .seen_by = seen_by};
+    return Look{std::sqrt(std::max(0.0, square_nT2 - at_rest_nT2)), square_nT2 / at_rest_nT2, n,
+                noise.scalar_dof_, FieldDisturbance::SeenBy::scalar};
   }
 };
 
+std::optional<FieldChange> change_in(const FieldBlocks& field, const FieldNoise& noise,
+                                     const DisturbanceLimits& limits) {
+  const DisturbanceStatistic statistic{field, noise};
+  const auto array = statistic.array();
+  if (!array) return std::nullopt;
+  const auto scalar = statistic.scalar();
+  return FieldChange{std::max(array->change_nT, scalar ? scalar->change_nT : 0), limits.limit_nT};
+}
+
 std::optional<FieldDisturbance> disturbance_in(const FieldBlocks& field, const FieldNoise& noise,
                                                const DisturbanceLimits& limits, std::size_t looks) {
-  const double share = limits.false_alarm / (2 * static_cast<double>(std::max<std::size_t>(looks, 1)));
-  const DisturbanceStatistic statistic{field, noise, std::log10(share), limits.limit_nT};
-  if (auto seen = statistic.array()) return seen;
-  return statistic.scalar();
+  const double log10_p =  // of one look at one of the two
+      std::log10(limits.false_alarm / (2 * static_cast<double>(std::max<std::size_t>(looks, 1))));
+  const DisturbanceStatistic statistic{field, noise};
+  for (const auto& look : {statistic.array(), statistic.scalar()}) {
+    if (look && look->change_nT > limits.limit_nT &&
+        calib::stats::f_log10_p(look->f, look->k, look->nu) <= log10_p)
+      return FieldDisturbance{
+          .change_nT = look->change_nT, .limit_nT = limits.limit_nT, .seen_by = look->seen_by};
+  }
+  return std::nullopt;
 }
 
 }  // namespace mgtd::daemon::run

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "daemon/run/field_blocks.h"
+#include "proto/run_status.h"
 
 /// Tests whether the field changes while the table stands, because something magnetic passes by.
 ///
@@ -56,6 +57,11 @@ struct FieldDisturbance {
   [[nodiscard]] std::string in_words() const;
 };
 [[nodiscard]] std::string_view name(FieldDisturbance::SeenBy seen_by);
+
+/// The larger change of the two, with or without significance. Nothing before the noise is known, or while
+/// there are fewer than two blocks.
+[[nodiscard]] std::optional<FieldChange> change_in(const FieldBlocks& field, const FieldNoise& noise,
+                                                   const DisturbanceLimits& limits);
 
 /// `looks`: how often one dwell is judged. Nothing while there are fewer than two blocks.
 [[nodiscard]] std::optional<FieldDisturbance> disturbance_in(const FieldBlocks& field,

@@ -12,11 +12,13 @@ FieldGuard::FieldGuard(const FieldGuardConfig& config, Instant now)
 void FieldGuard::watch(Instant from) {
   blocks_ = FieldBlocks(config_.rate_hz, from, config_.sensors);
   judged_ = 0;
+  change_.reset();
 }
 
 std::optional<FieldDisturbance> FieldGuard::disturbed(double length_s) {
   if (blocks_.blocks() == judged_) return std::nullopt;
   judged_ = blocks_.blocks();
+  change_ = change_in(blocks_, noise_, config_.limits);
   return disturbance_in(blocks_, noise_, config_.limits,
                         static_cast<std::size_t>(std::ceil(length_s / FieldBlocks::kBlock_s)));
 }

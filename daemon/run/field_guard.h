@@ -34,6 +34,8 @@ class FieldGuard {
 
   /// Judged once for every block; `length_s`: of all that will be judged together.
   [[nodiscard]] std::optional<FieldDisturbance> disturbed(double length_s);
+  /// As the last of these looks saw it; empty since watch().
+  [[nodiscard]] const std::optional<FieldChange>& change() const { return change_; }
   /// What came while the table moved, and stands there now, is not seen within a dwell.
   [[nodiscard]] std::optional<FieldDisturbance> at_another_level(std::optional<double> f_nT) const;
 
@@ -55,6 +57,7 @@ class FieldGuard {
   FieldGuardConfig config_;
   FieldBlocks blocks_;     ///< since watch()
   std::size_t judged_{0};  ///< blocks
+  std::optional<FieldChange> change_;
   FieldNoise noise_;
   std::optional<double> level_nT_;  ///< of the scalar reference at the last good pose
   std::optional<Instant> since_;    ///< this pose is disturbed, by whatever comes and goes

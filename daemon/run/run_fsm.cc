@@ -223,6 +223,7 @@ RunStatus RunFsm::status(Instant now) const {
   s.pose = static_cast<int>(progress_.done());
   s.poses = static_cast<int>(plan_.poses.size());
   s.retries = progress_.retries();
+  if (watches_field()) s.field_change = field_.change();
   s.elapsed_s = to_seconds(now - run_start_.mono);
   s.remaining_s = ended() ? 0 : progress_.remaining_s(now);
   s.message = in_status();

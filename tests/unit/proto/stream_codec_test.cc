@@ -73,10 +73,24 @@ TEST(StreamCodec, RunComesBackWhole) {
   EXPECT_EQ(back->remaining_s, run.remaining_s);
   EXPECT_EQ(back->tensor_sd_nT_per_m, 1.25);
   EXPECT_FALSE(back->wanted_tensor_sd_nT_per_m);
+  EXPECT_FALSE(back->field_change);
   EXPECT_EQ(back->message, run.message);
   EXPECT_EQ(back->proposed, run.proposed);
   ASSERT_EQ(back->checks.size(), run.checks.size());
   for (std::size_t i = 0; i < run.checks.size(); ++i) EXPECT_TRUE(back->checks[i] == run.checks[i]);
+}
+
+TEST(StreamCodec, ARunThatWatchesTheFieldSaysHowFarItChanged) {
+  RunStatus run = run_status();
+  run.field_change = FieldChange{0.25, 0.5};
+  Json object = Json::parse(encode(run));
+  EXPECT_EQ(object["field_change"].dump(), R"({"change_nT":0.25,"limit_nT":0.5})");
+  const auto back = run_status_from_json(object);
+  ASSERT_TRUE(back && back->field_change);
+  EXPECT_EQ(back->field_change->change_nT, 0.25);
+  EXPECT_EQ(back->field_change->limit_nT, 0.5);
+  object["field_change"].erase("limit_nT");
+  EXPECT_NE(run_status_from_json(object).error().message.find("field_change: 'limit_nT'"), std::string::npos);
 }
 
 TEST(StreamCodec, EveryRunStateHasAName) {

@@ -2,6 +2,7 @@
 // The cards beside the lanes: the tensor, the instruments, what the stream says of its calibration, what is recorded.
 import { make, table } from "./elements.js";
 import { shown } from "./lanes.js";
+import { fieldChange } from "./run.js";
 
 const kComponents = ["xx", "yy", "zz", "xy", "xz", "yz"];
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
@@ -50,6 +51,13 @@ function recording(status) {
   return card(table(`Recording${free}`, ["", "state", "since the start", ""], body));
 }
 
+function field({ run }) {
+  const words = fieldChange(run);
+  if (!words) return null;
+  const over = run.field_change.change_nT > run.field_change.limit_nT;
+  return card(make("h2", {}, `Field at pose ${run.pose + 1} of ${run.poses}`), make("p", { class: over ? "warn" : "", id: "field-change" }, words));
+}
+
 export function cards(status, sample, old) {
-  return [sample ? tensor(sample, old) : [], judged(status), instruments(status), inputs(status), recording(status)].flat();
+  return [sample ? tensor(sample, old) : [], judged(status), field(status), instruments(status), inputs(status), recording(status)].flat();
 }

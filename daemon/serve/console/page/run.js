@@ -15,7 +15,13 @@ function progress(run) {
   return [make("h2", {}, `Run ${run.run_id}: ${run.state}`), make("progress", { max: run.poses || 1, value: run.pose }),
           make("p", {}, `${run.pose} of ${run.poses} poses${run.set ? `, set ${run.set}` : ""}${run.remaining_s ? `, ${minutes(run.remaining_s)} left` : ""}` +
                `${run.retries ? `, ${run.retries} repeated` : ""}`),
-          make("p", {}, run.message), run.judged ? make("p", { id: "run-judged" }, `The poses say: ${run.judged}`) : null];
+          make("p", {}, run.message), make("p", { id: "run-field" }), run.judged ? make("p", { id: "run-judged" }, `The poses say: ${run.judged}`) : null];
+}
+
+/** How far the field has changed while the table stands, against its limit; null while it is not watched. */
+export function fieldChange(run) {
+  const seen = run?.field_change;
+  return seen ? `The field has changed by ${seen.change_nT.toFixed(2)} nT while the table stands; limit ${seen.limit_nT.toFixed(2)} nT.` : null;
 }
 
 /** A hand-turned table: what to do now, and three numbers. */
@@ -46,11 +52,16 @@ function proposal(id, calibrations, active) {
 let shownPrompt = "", shownNow = "";
 /** `calibrations`: calibrations.js; `used`: the id of the one in use. */
 export function showRun(run, act, calibrations, used) {
-  const now = JSON.stringify([{ ...run, elapsed_s: null, checks: null }, calibrations.of(run?.proposed), used]);
+  const now = JSON.stringify([{ ...run, elapsed_s: null, field_change: null, checks: null }, calibrations.of(run?.proposed), used]);
   if (now !== shownNow) {  // a button stays the same one while a finger is on it
     shownNow = now;
     fill(by("run-now"), progress(run), run?.proposed ? proposal(run.proposed, calibrations, used) : null,
          run?.state === "paused" ? make("button", { onclick: () => act("run.resume") }, "Resume") : null);
+  }
+  const field = by("run-field");
+  if (field) {
+    field.textContent = fieldChange(run) ?? "";
+    field.className = run.field_change?.change_nT > run.field_change?.limit_nT ? "warn" : "";
   }
   const prompt = JSON.stringify(run?.prompt ?? null);
   if (prompt !== shownPrompt) {  // what a person types is not overwritten

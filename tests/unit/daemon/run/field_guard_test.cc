@@ -44,8 +44,15 @@ TEST(FieldGuard, GoesOnWhenTheFieldWasCalmForLongEnough) {
   field.pass(5);
   g.begin_noise();
   g.watch(at(field.t_s));
+  EXPECT_FALSE(g.change());
+  field.pass(1.1);
+  EXPECT_FALSE(g.disturbed(5));
+  ASSERT_TRUE(g.change()) << "it is told before it is a disturbance";
+  EXPECT_LT(g.change()->change_nT, 0.5);
+  EXPECT_EQ(g.change()->limit_nT, DisturbanceLimits{}.limit_nT);
   field.pass(3, 20);
   EXPECT_TRUE(g.disturbed(5));
+  EXPECT_GT(g.change()->change_nT, 5);
   g.given_up(at(field.t_s));
   const double given_up_s = field.t_s;
   field.pass(2);
