@@ -24,6 +24,7 @@
 ///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
 ///   run.redo             what was entered last is asked for again                            -> RUN
 ///   run.course           what the run has gained so far             -> run_course.h
+///   run.events           what the run wrote down of itself          -> run_log.h
 ///   magnet-test.start, magnet-test.status, magnet-test.stop        -> magnet_status.h
 ///   calibrations.list    -> {"calibrations":[{"id","state","since","origin","forced","why","by"}]}
 ///   calibrations.history                              -> {"decisions","moves","figure","unreadable"}
@@ -41,7 +42,7 @@
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 6;
+inline constexpr int kControlProtocolMinor = 7;
 /// A calibration with a hundred coefficients takes 0.4 MB.
 inline constexpr std::size_t kControlLineLimit = 1 << 20;
 
@@ -58,6 +59,7 @@ enum class ControlCommand : std::uint8_t {
   run_enter,
   run_redo,
   run_course,
+  run_events,
   calibrations_list,
   calibrations_history,
   calibrations_show,
@@ -73,7 +75,7 @@ enum class ControlCommand : std::uint8_t {
   control_break,
   console,
 };
-inline constexpr std::array<std::string_view, 26> kControlCommandNames{"version",
+inline constexpr std::array<std::string_view, 27> kControlCommandNames{"version",
                                                                        "status",
                                                                        "run.start",
                                                                        "run.dry-run",
@@ -85,6 +87,7 @@ inline constexpr std::array<std::string_view, 26> kControlCommandNames{"version"
                                                                        "run.enter",
                                                                        "run.redo",
                                                                        "run.course",
+                                                                       "run.events",
                                                                        "calibrations.list",
                                                                        "calibrations.history",
                                                                        "calibrations.show",

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "proto/units.h"
 
@@ -12,6 +13,12 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 6> kComponents{"xx", "yy", "zz", "xy", "xz", "yz"};
+
+constexpr std::array<std::pair<const char*, double (*)(const FitSoFar&)>, 4> kOfFit{
+    {{"residual_nT", [](const FitSoFar& f) { return f.residual_nT; }},
+     {"offset_sd_nT", [](const FitSoFar& f) { return f.offset_sd_nT; }},
+     {"scale_sd_ppm", [](const FitSoFar& f) { return 1e6 * f.scale_sd; }},
+     {"angle_sd_deg", [](const FitSoFar& f) { return to_deg(f.angle_sd_rad); }}}};
 
 OrderedJson direction(const Eigen::Vector3d& d) {
   const auto rounded = [](double x) { return std::round(x * 1e4) / 1e4; };
@@ -51,6 +58,10 @@ OrderedJson accuracy(const RunCourse& course) {
     out["worst_nT_per_m"].push_back(finite_or_null(known.worst_nT_per_m));
     const std::array<double, 6> sd = components(known.tensor_sd_nT_per_m);
     for (std::size_t i = 0; i < sd.size(); ++i) out[kComponents.at(i)].push_back(finite_or_null(sd.at(i)));
+  }
+  for (const auto& [key, value] : kOfFit) {
+    auto& column = out[key] = OrderedJson::array();
+    for (const CourseAccuracy& known : course.accuracy) column.push_back(finite_or_null(value(known.fit)));
   }
   out["wanted_nT_per_m"] =
       course.wanted_nT_per_m ? OrderedJson(*course.wanted_nT_per_m) : OrderedJson(nullptr);

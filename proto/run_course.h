@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proto/fit_so_far.h"
 #include "proto/tensor.h"
 #include "proto/time.h"
 
@@ -18,7 +19,8 @@
 ///   {"run_id",
 ///    "coverage":{"pose":[1,..],"state":["measured","next","planned",..],"direction":[[x,y,z] or null,..],
 ///                "hole":{"direction":[x,y,z],"radius_deg"} or null,"good"},
-///    "accuracy":{"poses":[18,..],"worst_nT_per_m":[..],"xx":[..],..,"yz":[..],"wanted_nT_per_m","why",
+///    "accuracy":{"poses":[18,..],"worst_nT_per_m":[..],"xx":[..],..,"yz":[..],"residual_nT":[..],
+///                "offset_sd_nT":[..],"scale_sd_ppm":[..],"angle_sd_deg":[..],"wanted_nT_per_m","why",
 ///                "expected":{"poses","worst_nT_per_m"},"good"},
 ///    "disturbances":[{"t","pose","change_nT","limit_nT","seen_by","lasted_s","then"}]}
 ///
@@ -47,6 +49,7 @@ struct CourseAccuracy {
   int poses{0};
   Gradient tensor_sd_nT_per_m{};  ///< NaN: the array cannot tell the component
   double worst_nT_per_m{0};
+  FitSoFar fit{};
 };
 
 /// The field did not stand still at a pose.

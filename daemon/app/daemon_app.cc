@@ -109,6 +109,11 @@ serve::console::ConsoleSource DaemonApp::console_source() {
                 return to_json(run_.course()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
                        '\n';
               },
+          .events = [this]() -> Result<std::string> {
+            const auto log = run_.log();
+            if (!log) return tl::unexpected(log.error());
+            return to_json(*log).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+          },
           .lane = [this](std::string_view query) -> Result<std::string> {
             const auto request = serve::console::parse_lane_request(query);
             if (!request) return tl::unexpected(request.error());

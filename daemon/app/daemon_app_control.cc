@@ -35,6 +35,11 @@ Reply DaemonApp::answer(const ControlRequest& request) {
           {"refused", console_.server.refused()}};
     case ControlCommand::run_course:
       return to_json(run_.course());
+    case ControlCommand::run_events: {
+      const auto log = run_.log();
+      if (!log) return tl::unexpected(log.error());
+      return to_json(*log);
+    }
     case ControlCommand::run_start:
     case ControlCommand::run_dry_run:
     case ControlCommand::run_pause:

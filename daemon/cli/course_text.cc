@@ -18,12 +18,15 @@ std::string text_of(const Json& value) {
 constexpr std::size_t kMostLines = 10;
 
 std::string accuracy_text(const Json& accuracy) {
-  const Json &poses = accuracy.at("poses"), &worst = accuracy.at("worst_nT_per_m");
+  const Json &poses = accuracy.at("poses"), &worst = accuracy.at("worst_nT_per_m"),
+             &residual = accuracy.at("residual_nT");
   std::string out;
   const std::size_t lines = std::min(poses.size(), kMostLines);
   for (std::size_t i = 0; i < lines; ++i) {
     const std::size_t k = lines < 2 ? 0 : i * (poses.size() - 1) / (lines - 1);
-    out += fmt::format("  {:>5} poses  {:.3g} nT/m\n", poses.at(k).get<int>(), worst.at(k).get<double>());
+    out += fmt::format(
+        "  {:>5} poses  {:.3g} nT/m{}\n", poses.at(k).get<int>(), worst.at(k).get<double>(),
+        residual.at(k).is_null() ? "" : fmt::format(", residual {:.3g} nT", residual.at(k).get<double>()));
   }
   return out;
 }
@@ -56,6 +59,17 @@ std::string course_text(const Json& course) {
   out +=
       fmt::format("disturbances: {}\n", disturbances.empty() ? "none" : std::to_string(disturbances.size()));
   for (const Json& d : disturbances) out += disturbance_text(d);
+  return out;
+}
+
+std::string events_text(const Json& log) {
+  if (text_of(log.at("run_id")).empty()) return "no run yet\n";
+  std::string out = fmt::format("run {}\n", text_of(log.at("run_id")));
+  const auto left_out = log.at("left_out").get<std::size_t>();
+  if (left_out > 0) out += fmt::format("{} earlier entries are in the run file only\n", left_out);
+  for (const Json& event : log.at("events"))
+    out += fmt::format("  {:.19}Z  {}\n", text_of(event.at("t")), text_of(event.at("what")));
+  if (log.at("events").empty()) out += "  nothing out of the ordinary\n";
   return out;
 }
 

@@ -225,6 +225,16 @@ int course(const Session& session) {
   return 0;
 }
 
+int events(const Session& session) {
+  const auto reply = ask(session, ControlCommand::run_events);
+  if (!reply) return report(session, reply.error());
+  if (session.json)
+    print_json(*reply);
+  else
+    fmt::print("{}", events_text(*reply));
+  return 0;
+}
+
 int enter(const Session& session, const RunArguments& args) {
   const auto reply = ask(session, ControlCommand::run_enter,
                          {{"azimuth_deg", args.scales_deg[0]},
@@ -256,7 +266,7 @@ void add_plan_options(CLI::App* command, RunArguments& args) {
 void add_run(CLI::App& app, Session& session) {
   CLI::App* const group = app.add_subcommand("run",
                                              "a calibration run: start, dry-run, magnet-test, follow, "
-                                             "course, enter, redo, pause, resume, finish, abort");
+                                             "course, events, enter, redo, pause, resume, finish, abort");
   group->require_subcommand(1);
   auto args = std::make_shared<RunArguments>();
   CLI::App* const begin = add_command(
@@ -284,6 +294,9 @@ void add_run(CLI::App& app, Session& session) {
   add_command(*group, session, "course",
               "what the run has gained so far: directions of the field, accuracy, disturbances",
               [&session] { return course(session); });
+  add_command(*group, session, "events",
+              "what the run wrote down: bad poses, pauses, lost devices, decisions",
+              [&session] { return events(session); });
   add_command(*group, session, "pause", "stop the table; the present pose will be measured again",
               [&session] { return simple(session, ControlCommand::run_pause, false); });
   add_command(*group, session, "resume",

@@ -71,12 +71,12 @@ void CourseRecorder::dropped(const std::vector<int>& numbers) {
     if (m.d_P) hole_.add(*m.d_P);
 }
 
-void CourseRecorder::known(int poses, const Gradient& tensor_sd_nT_per_m) {
+void CourseRecorder::known(int poses, const Gradient& tensor_sd_nT_per_m, const FitSoFar& fit) {
   const double worst = calib::fit::joint::worst_component(tensor_sd_nT_per_m).value;
   if (!std::isfinite(worst)) return not_known("the array tells no component of the gradient");
   // Poses that were dropped are not known any more.
   std::erase_if(course_.accuracy, [&](const CourseAccuracy& before) { return before.poses >= poses; });
-  course_.accuracy.push_back({poses, tensor_sd_nT_per_m, worst});
+  course_.accuracy.push_back({poses, tensor_sd_nT_per_m, worst, fit});
   course_.why_unknown.clear();
   unkept_ = true;
 }

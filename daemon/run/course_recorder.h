@@ -43,7 +43,7 @@ class CourseRecorder {
   /// To be measured again.
   void dropped(const std::vector<int>& numbers);
   /// By a calibration from so many poses; replaces what was known from as many or more.
-  void known(int poses, const Gradient& tensor_sd_nT_per_m);
+  void known(int poses, const Gradient& tensor_sd_nT_per_m, const FitSoFar& fit = {});
   void expects(std::vector<CourseAccuracy> of_plan) { course_.expected = std::move(of_plan); }
   void not_known(std::string why) { course_.why_unknown = std::move(why); }
   void disturbed(int pose, const FieldDisturbance& seen, Stamp now);

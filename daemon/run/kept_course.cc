@@ -18,11 +18,20 @@ double number_of(const json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
+/// Not known where an earlier version did not keep it.
+double number_at(const json& object, const char* key) {
+  return object.contains(key) ? number_of(object.at(key)) : std::numeric_limits<double>::quiet_NaN();
+}
+
 CourseAccuracy accuracy_of(const json& a) {
   const json& sd = a.at("sd_nT_per_m");
   CourseAccuracy out{.poses = a.at("poses").get<int>()};
   out.tensor_sd_nT_per_m = {number_of(sd.at(0)), number_of(sd.at(1)), number_of(sd.at(2)),
                             number_of(sd.at(3)), number_of(sd.at(4)), number_of(sd.at(5))};
+  out.fit = {.residual_nT = number_at(a, "residual_nT"),
+             .offset_sd_nT = number_at(a, "offset_sd_nT"),
+             .scale_sd = number_at(a, "scale_sd"),
+             .angle_sd_rad = number_at(a, "angle_sd_rad")};
   out.worst_nT_per_m = calib::fit::joint::worst_component(out.tensor_sd_nT_per_m).value;
   return out;
 }
@@ -46,7 +55,12 @@ json to_json(const KeptCourse& course) {
   for (const CourseAccuracy& a : course.accuracy) {
     json sd = json::array();
     for (const double component : components(a.tensor_sd_nT_per_m)) sd.push_back(number(component));
-    accuracy.push_back({{"poses", a.poses}, {"sd_nT_per_m", std::move(sd)}});
+    accuracy.push_back({{"poses", a.poses},
+                        {"sd_nT_per_m", std::move(sd)},
+                        {"residual_nT", number(a.fit.residual_nT)},
+                        {"offset_sd_nT", number(a.fit.offset_sd_nT)},
+                        {"scale_sd", number(a.fit.scale_sd)},
+                        {"angle_sd_rad", number(a.fit.angle_sd_rad)}});
   }
   for (const CourseDisturbance& d : course.disturbances)
     disturbances.push_back({{"t_ns", d.t.ns},

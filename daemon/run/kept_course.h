@@ -11,7 +11,8 @@
 /// many of them, and what disturbed it. It is kept as a document of the run file, so that a run that another
 /// life of the daemon resumes still has it:
 ///
-///   {"accuracy":[{"poses":18,"sd_nT_per_m":[xx,yy,zz,xy,xz,yz]}, ...],
+///   {"accuracy":[{"poses":18,"sd_nT_per_m":[xx,yy,zz,xy,xz,yz],"residual_nT",
+///                 "offset_sd_nT","scale_sd","angle_sd_rad"}, ...],
 ///    "disturbances":[{"t_ns","pose","change_nT","limit_nT","seen_by","lasted_s","then"}, ...]}
 ///
 /// null in the place of a number: not known.

@@ -77,6 +77,14 @@ Result<KeptCourse> kept_course_of(const store::RunFile& file) {
   return kept_course_from_json(*text ? **text : std::string());
 }
 
+Result<RunLog> log_of(const store::RunFile& file) {
+  const auto events = file.events();
+  if (!events) return tl::unexpected(events.error());
+  std::vector<RunLogEntry> entries;
+  for (const store::RunEvent& event : *events) entries.push_back({event.at.wall, event.what});
+  return latest_of(file.header().run_id, std::move(entries));
+}
+
 }  // namespace
 
 RunExecutor::RunExecutor(const config::Config& config, std::filesystem::path directory,
@@ -301,6 +309,15 @@ RunStatus RunExecutor::status(Instant now) const {
     return status_of(*failed_, RunState::failed,
                      "the last run failed: mgt run resume goes on with it, mgt run start begins another");
   return given_up_.value_or(RunStatus{});
+}
+
+Result<RunLog> RunExecutor::log() const {
+  if (file_) return log_of(*file_);
+  const std::optional<Interrupted>& waiting = interrupted_ ? interrupted_ : failed_;
+  if (!waiting) return RunLog{};
+  const auto file = store::RunFile::open(waiting->file, store::Access::read_only);
+  if (!file) return tl::unexpected(file.error());
+  return log_of(*file);
 }
 
 void RunExecutor::abandon() {

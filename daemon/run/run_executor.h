@@ -20,6 +20,7 @@
 #include "daemon/store/run_file.h"
 #include "daemon/store/worker.h"
 #include "proto/journal_note.h"
+#include "proto/run_log.h"
 #include "proto/run_request.h"
 
 /// RunExecutor begins runs and carries out what they ask for: it keeps the run file, has the worker solve,
@@ -68,6 +69,9 @@ class RunExecutor {
   [[nodiscard]] bool active() const { return run_.active(); }
   /// Of the run under way, or of the last one of this life of the daemon.
   [[nodiscard]] RunCourse course() const { return course_.course(); }
+  /// What its file has written down: of the run under way, the last one of this life of the daemon, or the
+  /// one that waits to be resumed.
+  [[nodiscard]] Result<RunLog> log() const;
   /// The daemon ends: the run file is left to be resumed.
   void abandon();
 

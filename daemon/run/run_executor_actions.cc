@@ -63,7 +63,7 @@ void RunExecutor::learn_accuracy() {
         learning_ = false;
         if (!known) course_.not_known(known.error().message);
         if (known) {
-          course_.known(known->poses, known->tensor_sd_nT_per_m);
+          course_.known(known->poses, known->tensor_sd_nT_per_m, known->fit);
           if (std::isfinite(known->worst_nT_per_m()))
             run_.answer(AccuracyKnown{known->poses, known->worst_nT_per_m()});
           warm_start_ = std::make_shared<const calib::fit::joint::JointState>(std::move(known->state));
@@ -120,25 +120,27 @@ void RunExecutor::act(const StoreJudgement& action, Stamp now) {
 void RunExecutor::act(const StartSolve&, Stamp) {
   learning_job_.request_stop();  // what it would say is part of what follows
   expecting_job_.request_stop();
-  solving_job_ =
-      worker_.run([path = file_->path(),
-                   solve = hooks_.solve](std::stop_token stop) { return solve(path, std::move(stop)); },
-                  [this, generation = generation_](Result<calib::fit::FitReport> report) {
-                    if (generation != generation_ || !active()) return;
-                    SolveDone done{tl::unexpected(Error{})};
-                    if (const auto active = store_.active(); report && active && *active)
-                      acquire::hold_against(**active, *report);
-                    if (report) {
-                      const calib::calibration::Calibration& c = report->calibration;
-                      done.result = Solution{c.accepted_by_checks, c.id, calib::report::fit_reasons(*report),
-                                             c.checks, calib::report::lack_of_fit_text(*report)};
-                      solved_ = c;
-                      course_.known(c.poses, report->tensor_sd_nT_per_m);
-                    } else {
-                      done.result = tl::unexpected(report.error());
-                    }
-                    run_.answer(std::move(done));
-                  });
+  solving_job_ = worker_.run(
+      [path = file_->path(), solve = hooks_.solve](std::stop_token stop) {
+        return solve(path, std::move(stop));
+      },
+      [this, generation = generation_](Result<calib::fit::FitReport> report) {
+        if (generation != generation_ || !active()) return;
+        SolveDone done{tl::unexpected(Error{})};
+        if (const auto active = store_.active(); report && active && *active)
+          acquire::hold_against(**active, *report);
+        if (report) {
+          const calib::calibration::Calibration& c = report->calibration;
+          done.result = Solution{c.accepted_by_checks, c.id, calib::report::fit_reasons(*report), c.checks,
+                                 calib::report::lack_of_fit_text(*report)};
+          solved_ = c;
+          course_.known(c.poses, report->tensor_sd_nT_per_m,
+                        calib::fit::joint::fit_so_far(c.covariance, c.sensors.size(), report->residual_nT));
+        } else {
+          done.result = tl::unexpected(report.error());
+        }
+        run_.answer(std::move(done));
+      });
 }
 
 void RunExecutor::act(const CancelSolve&, Stamp) { solving_job_.request_stop(); }

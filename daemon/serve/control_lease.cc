@@ -16,6 +16,7 @@ bool needs_control(ControlCommand command) {
     case ControlCommand::run_abort:
     case ControlCommand::run_status:
     case ControlCommand::run_course:
+    case ControlCommand::run_events:
     case ControlCommand::calibrations_list:
     case ControlCommand::calibrations_history:
     case ControlCommand::calibrations_show:

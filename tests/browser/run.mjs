@@ -155,6 +155,12 @@ try {
   holds("coverage and accuracy on both are those of the terminal", shown.every(([measured, worst, words]) => measured === String(coverage.pose.length) &&
         Number(worst) === Number(accuracy.worst_nT_per_m.at(-1).toFixed((worst.split(".")[1] ?? "").length)) && words.includes(coverage.good) && words.includes(accuracy.good) &&
         words.includes(`Disturbances of the field: ${disturbances.length}`)), [shown, coverage, accuracy, disturbances]);
+  const left = await both((browser) => browser.run(key("accuracy.residual_nT")));
+  holds("so is the residual of the fit", left.every((nT) => Number(nT) === Number(accuracy.residual_nT.at(-1).toFixed((nT.split(".")[1] ?? "").length))), [left, accuracy.residual_nT]);
+  const { events } = rig.ask("run", "events"), log = `[...document.querySelectorAll("#run-events tbody tr")]`;
+  await agreed(`${log}.length === ${events.length}`, "the entries of the run");
+  const entries = await both((browser) => browser.run(`${log}.map((row) => row.lastChild.textContent)`));
+  holds("what the run wrote down is that of the terminal, the newest first", events.length > 0 && entries.every((of_one) => of_one.every((words, i) => words === events.at(-1 - i).what)), [entries, events]);
   holds("the accuracy has shrunk, to what the plan led one to expect", accuracy.poses.length > 1 && accuracy.worst_nT_per_m.at(-1) < accuracy.worst_nT_per_m[0] &&
         Math.abs(Math.log(accuracy.worst_nT_per_m.at(-1) / accuracy.expected.worst_nT_per_m.at(-1))) < Math.log(3), accuracy);
   await picture(controls, "proposed");

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/accuracy_so_far.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/pose_residuals.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
 
 namespace mgtd::calib::fit::joint {
@@ -13,6 +15,19 @@ double AccuracySoFar::worst_nT_per_m() const {
   double worst = std::numeric_limits<double>::quiet_NaN();
   for (const double sd : components(tensor_sd_nT_per_m)) worst = std::fmax(worst, sd);  // passes over NaN
   return worst;
+}
+
+FitSoFar fit_so_far(const Eigen::MatrixXd& covariance, std::size_t sensors, double residual_nT) {
+  FitSoFar out{.residual_nT = residual_nT, .offset_sd_nT = 0, .scale_sd = 0, .angle_sd_rad = 0};
+  for (std::size_t at = 0; at < sensors * sensor::kSensorParameters; ++at) {
+    const auto kind = static_cast<int>(at % sensor::kSensorParameters);
+    const auto k = static_cast<Eigen::Index>(at);
+    double& largest = kind >= sensor::ix && kind <= sensor::iz   ? out.offset_sd_nT
+                      : kind >= sensor::cx && kind <= sensor::cz ? out.scale_sd
+                                                                 : out.angle_sd_rad;
+    largest = std::max(largest, std::sqrt(std::max(0.0, covariance(k, k))));
+  }
+  return out;
 }
 
 Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& options,
@@ -27,6 +42,8 @@ Result<AccuracySoFar> accuracy_so_far(const PoseTable& table, const FitOptions& 
   return AccuracySoFar{
       static_cast<int>(fit->problem.poses.size()),
       calibration_tensor_sd(fit->state.sensors, fit->problem.geometry, fit->covariance, f_nT),
+      fit_so_far(fit->covariance, fit->state.sensors.size(),
+                 pose_residuals(fit->problem, fit->state).residual_nT()),
       std::move(fit->state)};
 }
 

@@ -346,12 +346,14 @@ Response ConsoleServer::State::content(const Request& request, std::string_view 
   if (path == "/runs" && desk_) return with(kJson, desk_->runs());
   if (path == "/metrics" && source_.metrics) return with("text/plain; version=0.0.4", source_.metrics());
   if (path == "/run/course" && source_.course) return with(kJson, source_.course());
-  if (path == "/lane" && source_.lane) {
-    auto lane = source_.lane(query);
-    if (lane) return with(kJson, *std::move(lane));
-    response.result(http::status::bad_request);
-    return with(kJson, in_json(lane.error()));
-  }
+  const auto with_result = [&](Result<std::string> answer, http::status otherwise) {
+    if (answer) return with(kJson, *std::move(answer));
+    response.result(otherwise);
+    return with(kJson, in_json(answer.error()));
+  };
+  if (path == "/run/events" && source_.events)
+    return with_result(source_.events(), http::status::internal_server_error);
+  if (path == "/lane" && source_.lane) return with_result(source_.lane(query), http::status::bad_request);
   const std::string_view name = path == "/"                ? std::string_view("index.html")
                                 : path.starts_with(kPages) ? path.substr(kPages.size())
                                                            : std::string_view();

@@ -24,6 +24,7 @@
 ///     GET /metrics             Prometheus text
 ///     GET /lane?...            history of one channel (lane_request.h)
 ///     GET /run/course          what the run has gained so far (proto/run_course.h)
+///     GET /run/events          what it wrote down of itself (proto/run_log.h)
 ///     GET /runs                run files and pose tables (job_desk.h)
 ///     POST /jobs, GET and DELETE /jobs/N, GET /jobs/N/result
 ///                              computations on them, with the token in Authorization: Bearer ..
@@ -54,6 +55,7 @@ struct ConsoleConfig {
 /// What the owner answers; what is empty is not there.
 struct ConsoleSource {
   std::function<std::string()> hello, metrics, course;
+  std::function<Result<std::string>()> events;
   std::function<Result<std::string>(std::string_view query)> lane;
   std::function<void(std::shared_ptr<Peer>)> stream;
   std::function<void(std::shared_ptr<Peer>, std::string via)> control;

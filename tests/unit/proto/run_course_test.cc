@@ -14,6 +14,7 @@ TEST(RunCourse, WithoutARunIsEmptyAndHasEveryKey) {
       to_json(RunCourse{}).dump(),
       R"({"run_id":"","coverage":{"pose":[],"state":[],"direction":[],"hole":null,"good":null},)"
       R"("accuracy":{"poses":[],"worst_nT_per_m":[],"xx":[],"yy":[],"zz":[],"xy":[],"xz":[],"yz":[],)"
+      R"("residual_nT":[],"offset_sd_nT":[],"scale_sd_ppm":[],"angle_sd_deg":[],)"
       R"("wanted_nT_per_m":null,"why":null,"expected":{"poses":[],"worst_nT_per_m":[]},"good":null},"disturbances":[]})");
 }
 
@@ -23,7 +24,7 @@ TEST(RunCourse, HasItsDocumentedForm) {
   course.run_id = "monday";
   course.poses = {{1, CourseState::measured, Eigen::Vector3d(1, 2, -2) / 3}, {2, CourseState::next, {}}};
   course.hole = CourseHole{{0, 0, 1}, std::numbers::pi / 2};
-  course.accuracy = {{18, {1, 2, 3, 4, kNone, 6}, 6}};
+  course.accuracy = {{18, {1, 2, 3, 4, kNone, 6}, 6, {.residual_nT = 0.5, .scale_sd = 0.25}}};
   course.expected = {{24, {}, 5}};
   course.wanted_nT_per_m = 2.5;
   course.good_coverage = "no hole.";
@@ -41,7 +42,8 @@ TEST(RunCourse, HasItsDocumentedForm) {
   EXPECT_EQ(
       json["accuracy"].dump(),
       R"({"poses":[18],"worst_nT_per_m":[6.0],"xx":[1.0],"yy":[2.0],"zz":[3.0],"xy":[4.0],"xz":[null],)"
-      R"("yz":[6.0],"wanted_nT_per_m":2.5,"why":null,"expected":{"poses":[24],"worst_nT_per_m":[5.0]},"good":null})");
+      R"("yz":[6.0],"residual_nT":[0.5],"offset_sd_nT":[null],"scale_sd_ppm":[250000.0],"angle_sd_deg":[null],)"
+      R"("wanted_nT_per_m":2.5,"why":null,"expected":{"poses":[24],"worst_nT_per_m":[5.0]},"good":null})");
   EXPECT_EQ(json["disturbances"].dump(),
             R"([{"t":"2026-11-21T10:00:00.000000Z","pose":2,"change_nT":12.5,"limit_nT":0.5,)"
             R"("seen_by":"array","lasted_s":null,"then":"waits"}])");

@@ -6,6 +6,7 @@ import { logTicks, sig, ticks } from "./numbers.js";
 import { mollweide } from "./skies.js";
 
 const kComponents = ["xx", "yy", "zz", "xy", "xz", "yz"];
+const kParameters = [["offset_sd_nT", "worst offset ±, nT"], ["scale_sd_ppm", "worst scale ±, ppm"], ["angle_sd_deg", "worst angle ±, deg"]];
 const kWidth = 410, kHeight = 236;  // of a drawing; its page scales it
 const kManyPoses = 600;
 const kNames = { measured: "measured", next: "under way", planned: "planned" };
@@ -88,10 +89,14 @@ function coverage(c) {
 
 function accuracy(a, planned) {
   const known = a.poses.length > 0, at = kComponents.filter((c) => a[c].some((v) => v !== null));
-  const numbers = known ? make("details", {}, make("summary", {}, "Every component, nT/m"),
-    make("div", { class: "data", tabindex: "0", role: "region", "aria-label": "standard errors pose by pose" }, table("", ["poses", ...at], a.poses.map((p, i) => [p, ...at.map((c) => sig(a[c][i]))]).reverse()))) : null;
+  const value = (v) => (v === null ? "" : sig(v)), residual = a.residual_nT.at(-1);
+  const numbers = known ? make("details", {}, make("summary", {}, "Every component in nT/m, the residual in nT, and the parameters"),
+    make("div", { class: "data", tabindex: "0", role: "region", "aria-label": "standard errors pose by pose" },
+      table("", ["poses", ...at, "residual", ...kParameters.map(([, label]) => label)],
+            a.poses.map((p, i) => [p, ...at.map((c) => sig(a[c][i])), value(a.residual_nT[i]), ...kParameters.map(([key]) => value(a[key][i]))]).reverse()))) : null;
+  const left = known && residual !== null ? ["; the fit of these leaves a residual of ", number("accuracy.residual_nT", sig(residual)), " nT"] : [];
   return figure("Accuracy", fall(a, planned), known
-    ? ["The worst component of the tensor is known to ", number("accuracy.worst_nT_per_m", sig(a.worst_nT_per_m.at(-1))), " nT/m by a calibration from ", number("accuracy.poses", String(a.poses.at(-1))), " poses. Dots: after each fit; dashes: expected of the plan; thin dots: 1/√n through the last."]
+    ? ["The worst component of the tensor is known to ", number("accuracy.worst_nT_per_m", sig(a.worst_nT_per_m.at(-1))), " nT/m by a calibration from ", number("accuracy.poses", String(a.poses.at(-1))), " poses", ...left, ". Dots: after each fit; dashes: expected of the plan; thin dots: 1/√n through the last."]
     : ["The standard error of the tensor's worst component by a calibration from the poses so far. Dashes: expected of the plan.", a.why ? ` Not measured yet: ${a.why}.` : ""], a.good, numbers);
 }
 
@@ -104,23 +109,34 @@ function disturbances(list) {
     [...list].reverse().map((d) => [`${d.t.slice(11, 19)}Z`, d.pose, sig(d.change_nT, 2), sig(d.limit_nT, 2), kSeen[d.seen_by], lasted(d.lasted_s), d.then]))));
 }
 
+/** What the run wrote down, the newest first; folded away. */
+function events({ events: list, left_out }) {
+  const earlier = left_out ? ` and ${left_out} earlier ones in the run file` : "";
+  return make("details", { class: "card", id: "run-events" }, make("summary", {}, `What the run wrote down: ${list.length} entries${earlier}`),
+    make("div", { class: "data", tabindex: "0", role: "region", "aria-label": "what the run wrote down" },
+      make("table", {}, rows(["when", "what"], [...list].reverse().map((e) => [`${e.t.slice(0, 19).replace("T", " ")}Z`, e.what])))));
+}
+
 let shown = { run_id: "", text: "" }, asked = "", asking = false;
+async function asObject(path) {
+  const answer = await fetch(path);
+  if (!answer.ok) throw new Error(String(answer.status));
+  return answer.json();
+}
 /** Asks for the course whenever the run has moved on, one question at a time. */
 export async function showCourse(run) {
-  const at = JSON.stringify([run?.run_id, run?.state, run?.pose, run?.poses, run?.tensor_sd_nT_per_m]);
+  const at = JSON.stringify([run?.run_id, run?.state, run?.pose, run?.poses, run?.tensor_sd_nT_per_m, run?.message]);
   by("course").hidden = !run?.run_id || shown.run_id !== run.run_id;
   if (asking || !run?.run_id || at === asked) return;
   asking = true;
   try {
-    const answer = await fetch("/run/course");
-    if (!answer.ok) throw new Error(String(answer.status));
-    const course = await answer.json(), text = JSON.stringify(course);
+    const [course, log] = await Promise.all(["/run/course", "/run/events"].map(asObject)), text = JSON.stringify([course, log]);
     asked = at;
     if (text === shown.text || course.run_id !== run.run_id) return;
     shown = { run_id: course.run_id, text };
-    const open = by("course").querySelector("details")?.open ?? false;
-    fill(by("course"), coverage(course.coverage), accuracy(course.accuracy, course.coverage.pose.length), disturbances(course.disturbances));
-    if (open) by("course").querySelector("details")?.setAttribute("open", "");
+    const open = [...by("course").querySelectorAll("details")].map((d) => d.open);
+    fill(by("course"), coverage(course.coverage), accuracy(course.accuracy, course.coverage.pose.length), disturbances(course.disturbances), events(log));
+    [...by("course").querySelectorAll("details")].forEach((d, i, all) => { d.open = open.at(i - all.length) ?? false; });
     by("course").hidden = false;
   } catch { /* the daemon does not answer: asked again with its next word */ } finally { asking = false; }
 }

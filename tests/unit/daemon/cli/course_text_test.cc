@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "proto/run_course.h"
+#include "proto/run_log.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -19,6 +20,7 @@ TEST(CourseText, SaysWhatWasGainedAndWhatDisturbed) {
   EXPECT_THAT(course_text(to_json(course)), HasSubstr("1 of 3 poses measured\n"));
   EXPECT_THAT(course_text(to_json(course)), HasSubstr("not known yet: too few\ndisturbances: none\n"));
   for (int n = 18; n <= 60; ++n) course.accuracy.push_back({n, {}, 9.0 / n});
+  course.accuracy.back().fit.residual_nT = 0.0234;
   course.good_accuracy = "the curve ends low.";
   course.disturbances = {{.pose = 2,
                           .change_nT = 12.5,
@@ -28,8 +30,16 @@ TEST(CourseText, SaysWhatWasGainedAndWhatDisturbed) {
                           .then = "pose 2 is measured again"}};
   const std::string text = course_text(to_json(course));
   EXPECT_THAT(text, HasSubstr("     18 poses  0.5 nT/m\n")) << text;
-  EXPECT_THAT(text, HasSubstr("     60 poses  0.15 nT/m\n")) << text;
+  EXPECT_THAT(text, HasSubstr("     60 poses  0.15 nT/m, residual 0.0234 nT\n")) << text;
   EXPECT_THAT(text, HasSubstr("pose 2: 12 nT (limit 0.5 nT), 7 s; pose 2 is measured again\n")) << text;
+}
+
+TEST(CourseText, SaysWhatTheRunWroteDown) {
+  EXPECT_EQ(events_text(to_json(RunLog{})), "no run yet\n");
+  EXPECT_EQ(events_text(to_json(RunLog{.run_id = "monday"})), "run monday\n  nothing out of the ordinary\n");
+  const RunLog log{.run_id = "monday", .left_out = 7, .entries = {{{0}, "s1 is back"}}};
+  EXPECT_EQ(events_text(to_json(log)),
+            "run monday\n7 earlier entries are in the run file only\n  1970-01-01T00:00:00Z  s1 is back\n");
 }
 
 }  // namespace

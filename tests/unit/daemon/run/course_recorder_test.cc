@@ -165,7 +165,7 @@ TEST(CourseRecorder, WhatIsKeptIsThereAgain) {
   EXPECT_FALSE(r.recorder.take_unkept()) << "the poses are in the file anyway";
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   r.recorder.known(2, {4, 3, 2, 1, unknown, 6});
-  r.recorder.known(3, {2, 1.5, 1, 0.5, unknown, 3});
+  r.recorder.known(3, {2, 1.5, 1, 0.5, unknown, 3}, {.residual_nT = 0.7, .scale_sd = 1e-4});
   r.recorder.disturbed(3, {.change_nT = 7, .limit_nT = 2}, second(10));
   r.recorder.shows(showing(RunState::moving), second(14));
   r.recorder.disturbed(4, {.change_nT = 9, .limit_nT = 2}, second(20));
@@ -183,6 +183,9 @@ TEST(CourseRecorder, WhatIsKeptIsThereAgain) {
   EXPECT_EQ(course.accuracy[1].poses, 3);
   EXPECT_EQ(course.accuracy[1].worst_nT_per_m, 3);
   EXPECT_TRUE(std::isnan(course.accuracy[1].tensor_sd_nT_per_m.xz));
+  EXPECT_EQ(course.accuracy[1].fit.residual_nT, 0.7);
+  EXPECT_EQ(course.accuracy[1].fit.scale_sd, 1e-4);
+  EXPECT_TRUE(std::isnan(course.accuracy[1].fit.offset_sd_nT));
   ASSERT_EQ(course.disturbances.size(), 2U);
   EXPECT_EQ(course.disturbances[0].t, second(10).wall);
   EXPECT_EQ(course.disturbances[0].lasted_s, 4);

@@ -59,6 +59,17 @@ struct HeldFit {
   RunExecutor executor{config, dir / "", store, worker, run, hooks()};
 };
 
+TEST(RunExecutor, TellsWhatTheRunWroteDown) {
+  HeldFit held;
+  held.executor.carry_out(Record{"s1 is back"}, held.now);
+  const auto log = held.executor.log();
+  ASSERT_TRUE(log) << log.error().text();
+  EXPECT_FALSE(log->run_id.empty());
+  ASSERT_FALSE(log->entries.empty());
+  EXPECT_EQ(log->entries.back().what, "s1 is back");
+  EXPECT_EQ(log->entries.back().t, held.now.wall);
+}
+
 TEST(RunExecutor, AFitThatNobodyCancelsIsNotStopped) {
   HeldFit held;
   held.executor.carry_out(StartSolve{}, held.now);

@@ -33,8 +33,9 @@ TEST(ControlLease, LookingAndStoppingAreForEveryone) {
   ASSERT_TRUE(lease.take(kAnna, {}, at(0)));
   for (const ControlCommand command :
        {ControlCommand::version, ControlCommand::status, ControlCommand::run_status,
-        ControlCommand::run_course, ControlCommand::run_dry_run, ControlCommand::calibrations_list,
-        ControlCommand::calibrations_show, ControlCommand::run_pause, ControlCommand::run_abort}) {
+        ControlCommand::run_course, ControlCommand::run_events, ControlCommand::run_dry_run,
+        ControlCommand::calibrations_list, ControlCommand::calibrations_show, ControlCommand::run_pause,
+        ControlCommand::run_abort}) {
     EXPECT_TRUE(lease.admit(kBert, command, at(1))) << name(command);
   }
   EXPECT_EQ(lease.holder(at(1).mono)->pid, kAnna.pid);

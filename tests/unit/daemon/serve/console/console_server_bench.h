@@ -35,6 +35,9 @@ class ConsoleServerBench : public ::testing::Test {
             .hello = [] { return std::string(R"({"rig":"bench"})"); },
             .metrics = [] { return std::string("mgtd_up 1\n"); },
             .course = [] { return std::string("{\"run_id\":\"monday\"}\n"); },
+            .events = []() -> Result<std::string> {
+              return fail(ErrorCode::io, "the run file cannot be read");
+            },
             .lane = [](std::string_view query) -> Result<std::string> { return std::string(query); },
             .stream = [this](const std::shared_ptr<Peer>& peer) { feed(peer); },
             .control = [this](const std::shared_ptr<Peer>& peer,

@@ -30,6 +30,7 @@ TEST_F(ConsoleServerTest, HandsOutThePageAndForbidsItAllElse) {
   ask(get("/page/main.js"), "openStream");
   ask(get("/metrics"), "mgtd_up 1");
   ask(get("/run/course"), R"({"run_id":"monday"})");
+  ask(get("/run/events"), "500 Internal Server Error");
   ask(get("/nothing"), "404 Not Found");
   ask(get("/page/../console_server.cc"), "404 Not Found");
 }
