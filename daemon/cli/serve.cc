@@ -39,6 +39,9 @@ constexpr const char* kServeHelp =
     "keeps no model; the page offers to make a run file of it.\n\n"
     "Ctrl-C ends it. Exit code 0.";
 
+/// Nothing is acquired here: two processors may compute.
+constexpr std::size_t kAtOnce = 2;
+
 struct ServeArguments {
   std::string what{"."};
   std::uint16_t port{0};
@@ -84,9 +87,13 @@ int run_serve(const Session& session, const ServeArguments& args) {
   serve::console::ConsoleServer server(
       io,
       {.listen = fmt::format("127.0.0.1:{}", args.port),
-       .workbench = serve::console::WorkbenchConfig{.runs = args.what,
-                                                    .mgt = serve::console::mgt_beside_us(),
-                                                    .model_options = model_options(*args.flags)}},
+       .workbench =
+           serve::console::WorkbenchConfig{
+               .runs = args.what,
+               .mgt = serve::console::mgt_beside_us(),
+               .model_options = model_options(*args.flags),
+               .limits = {.at_once = kAtOnce},
+               .bounds = {.memory_bytes = serve::console::memory_bytes() / 2 / kAtOnce}}},
       std::move(source));
   if (auto started = server.start(); !started) return report(session, started.error());
   const std::string url = server.address() + "#token=" + server.token().text();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
@@ -65,7 +66,7 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
   void stop() {
     stopped_ = true;
     timer_.cancel();
-    if (process_) process_->kill();
+    for (const auto& [id, process] : processes_) process->kill();
   }
 
  private:
@@ -109,7 +110,8 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
     ordered_json out{{"job", id}, {"state", name(job.state)}, {"command", job.task.command}};
     if (job.state == JobState::waiting) out["before"] = queue_.before(id);
     if (job.begun != Instant{}) out["elapsed_s"] = to_seconds(job.ended.value_or(now()) - job.begun);
-    if (job.state == JobState::running && process_) out["said"] = std::string(process_->said());
+    if (const auto process = processes_.find(id); process != processes_.end())
+      out["said"] = std::string(process->second->said());
     if (job.state == JobState::done) {
       out["exit_code"] = job.exit_code;
       out["bytes"] = job.result.size();
@@ -119,28 +121,33 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
   }
 
   JobAnswer cancel(JobQueue::Id id) {
-    if (queue_.cancel(id, now()) && process_ && process_id_ == id) process_->kill();
+    if (const auto process = processes_.find(id); queue_.cancel(id, now()) && process != processes_.end())
+      process->second->kill();
     return {.body = dumped({{"job", id}, {"state", "cancelled"}})};
   }
 
   void begin_next() {
-    if (stopped_ || process_) return;  // one that was ended is waited for
-    const auto id = queue_.next(now());
-    if (!id) return;
-    auto process = JobProcess::start(io_, queue_.ask(*id, now())->task.words, config_.bounds,
-                                     [weak = weak_from_this(), id = *id](JobEnd end) {
+    // One that was ended is waited for.
+    while (!stopped_ && processes_.size() == queue_.running()) {
+      const auto id = queue_.next(now());
+      if (!id) return;
+      begin(*id);
+    }
+  }
+
+  void begin(JobQueue::Id id) {
+    auto process = JobProcess::start(io_, queue_.ask(id, now())->task.words, config_.bounds,
+                                     [weak = weak_from_this(), id](JobEnd end) {
                                        if (const auto self = weak.lock()) self->ended(id, std::move(end));
                                      });
-    if (!process) {
-      queue_.failed(*id, process.error().text(), now());
-      return begin_next();
-    }
-    process_ = *std::move(process);
-    process_id_ = *id;
+    if (process)
+      processes_.emplace(id, *std::move(process));
+    else
+      queue_.failed(id, process.error().text(), now());
   }
 
   void ended(JobQueue::Id id, JobEnd end) {
-    process_.reset();
+    processes_.erase(id);
     if (!end.why.empty()) {
       queue_.failed(id, std::move(end.why), now());
     } else {
@@ -161,7 +168,7 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
       if (ec) return;
       for (const JobQueue::Id id : self->queue_.forgotten(self->now())) (void)self->cancel(id);
       self->begin_next();
-      if (self->queue_.running()) self->watch();
+      if (self->queue_.running() > 0) self->watch();
     });
   }
 
@@ -171,8 +178,7 @@ class JobDesk::State : public std::enable_shared_from_this<State> {
   JobQueue queue_;
   drivers::Clock clock_;
   boost::asio::steady_timer timer_;
-  std::shared_ptr<JobProcess> process_;
-  JobQueue::Id process_id_{0};
+  std::map<JobQueue::Id, std::shared_ptr<JobProcess>> processes_;
   bool watching_{false}, stopped_{false};
 };
 

@@ -41,9 +41,17 @@ Result<JobQueue::Id> JobQueue::put(JobTask task, Instant now) {
 }
 
 std::optional<JobQueue::Id> JobQueue::next(Instant now) {
-  if (running()) return std::nullopt;
+  std::size_t run = 0;
+  bool writes = false;
+  for (const auto& [id, job] : jobs_) {
+    if (job.state != JobState::running) continue;
+    ++run;
+    writes = writes || job.task.changes;
+  }
   for (auto& [id, job] : jobs_) {
     if (job.state != JobState::waiting) continue;
+    const bool may = run == 0 || (run < limits_.at_once && !writes && !job.task.changes);
+    if (!may) return std::nullopt;
     job.state = JobState::running;
     job.begun = now;
     return id;
@@ -96,10 +104,9 @@ const Job* JobQueue::ask(Id id, Instant now) {
   return &found->second;
 }
 
-std::optional<JobQueue::Id> JobQueue::running() const {
-  for (const auto& [id, job] : jobs_)
-    if (job.state == JobState::running) return id;
-  return std::nullopt;
+std::size_t JobQueue::running() const {
+  return static_cast<std::size_t>(std::count_if(
+      jobs_.begin(), jobs_.end(), [](const auto& each) { return each.second.state == JobState::running; }));
 }
 
 std::size_t JobQueue::before(Id id) const {

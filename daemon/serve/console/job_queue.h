@@ -10,16 +10,18 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// The job queue decides which computation runs: one at a time, so that the other processor is free for the
-/// acquisition; a few wait in their order, more are refused. What was computed is kept, in bounded memory,
-/// and given again while neither the question nor the file has changed. A job that only reads and that nobody
-/// has asked about for a while has lost its page, and ends. Pure: time comes in.
+/// The job queue decides which computations run: one at a time where the other processor is for the
+/// acquisition, a few where there is none, but what writes to a run file runs alone. A few wait in their
+/// order, more are refused. What was computed is kept, in bounded memory, and given again while neither the
+/// question nor the file has changed. A job that only reads and that nobody has asked about for a while has
+/// lost its page, and ends. Pure: time comes in.
 namespace mgtd::daemon::serve::console {
 
 enum class JobState { waiting, running, done, failed, cancelled };
 [[nodiscard]] std::string_view name(JobState state);
 
 struct JobLimits {
+  std::size_t at_once{1};  ///< of those that only read
   std::size_t waiting{8};
   std::size_t kept_bytes{64'000'000};             ///< of results
   std::size_t kept_jobs{64};                      ///< that have ended
@@ -53,18 +55,18 @@ class JobQueue {
   /// A new job, or one with the same question that only reads and has not failed. Refused while too many
   /// wait.
   [[nodiscard]] Result<Id> put(JobTask task, Instant now);
-  /// The next one to run, which runs from now on; nothing while one runs or none waits.
+  /// The next one to run, which runs from now on; nothing while it has to wait, or none does.
   [[nodiscard]] std::optional<Id> next(Instant now);
   void done(Id id, int exit_code, std::string result, Instant now);
   void failed(Id id, std::string why, Instant now);
   /// True where the job runs, and is to be ended by the owner.
   [[nodiscard]] bool cancel(Id id, Instant now);
-  /// Jobs that lost their page; the running one among them is to be ended by the owner.
+  /// Jobs that lost their page; those that run are to be ended by the owner.
   [[nodiscard]] std::vector<Id> forgotten(Instant now) const;
 
   /// Counts as a question about it; null: there is none, or no longer.
   [[nodiscard]] const Job* ask(Id id, Instant now);
-  [[nodiscard]] std::optional<Id> running() const;
+  [[nodiscard]] std::size_t running() const;
   /// How many run or wait before it.
   [[nodiscard]] std::size_t before(Id id) const;
 

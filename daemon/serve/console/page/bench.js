@@ -113,25 +113,26 @@ export class Bench {
     by("bench-run").classList.toggle("veiled", keep);
     delete by("bench-run").dataset.shown;
     const long = (this.#run.poses ?? 0) > kLong && !keep;
-    const asked = { compare: this.#ask("compare"), fit: this.#ask("fit"), model: this.#run.kind === "run" ? this.#ask("model") : null };
-    const explain = long ? null : this.#ask("explain");
-    const then = async (verb, promise, show) => {
+    // In the order in which they are begun, one or two at a time; each part is shown when it is there.
+    const part = async (promise, verb, show) => {
       const answer = await promise;
       if (opened !== this.#opened) return;
       this.#answers[verb] = answer;
-      if (answer) show();
+      show(answer);
     };
-    await then("compare", asked.compare, () => { this.#channels(); this.#drawPanels(keep); by("bench-run").classList.remove("veiled"); });
+    const panels = part(this.#ask("compare"), "compare", (answer) => {
+      by("bench-run").classList.toggle("refused", Boolean(this.#answers.measured));
+      if (answer || this.#answers.measured) { this.#channels(); this.#drawPanels(answer ? keep : false); }
+      if (answer) by("bench-run").classList.remove("veiled");
+    });
+    const search = long ? null : part(this.#ask("explain"), "explain", (answer) => { if (answer) this.#drawSearch(); });
+    const fit = part(this.#ask("fit"), "fit", () => {}), model = part(this.#run.kind === "run" ? this.#ask("model") : null, "model", () => {});
+    await Promise.all([panels, fit, model]);
     if (opened !== this.#opened) return;
-    by("bench-run").classList.toggle("refused", Boolean(this.#answers.measured));
-    if (this.#answers.measured) { this.#channels(); this.#drawPanels(false); }
-    await then("fit", asked.fit, () => {});
-    if (opened === this.#opened && this.#refusals.fit && this.#refusals.fit !== this.#refusals.compare) this.#say(this.#refusals.fit);
-    await then("model", asked.model, () => {});
-    if (opened !== this.#opened) return;
+    if (this.#refusals.fit && this.#refusals.fit !== this.#refusals.compare) this.#say(this.#refusals.fit);
     this.#drawFall();
     if (long) this.#offerSearch();
-    await then("explain", explain, () => this.#drawSearch());
+    await search;
     if (opened !== this.#opened) return;
     by("bench-run").classList.remove("veiled");
     this.#show(this.#tool);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computations on runs: commands of mgt that the server starts, asked about until they end.
 
-const kFirst_ms = 60, kMost_ms = 400;
+const kFirst_ms = 40, kMost_ms = 400, kShare = 0.06;  // of the time that has passed: an answer is seen a few per cent late
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 export class Jobs {
@@ -31,7 +31,7 @@ export class Jobs {
   async ask(verb, run, args = {}, text = false) {
     if (!this.possible) throw { message: "this page may look and not compute", remedy: "open the address that mgt serve or mgt console prints" };
     const { job: id } = await (await this.#send("POST", "/jobs", JSON.stringify({ verb, run, args }))).json();
-    for (let wait = kFirst_ms; ; wait = Math.min(kMost_ms, 1.3 * wait)) {
+    for (const began = performance.now(); ; ) {
       const job = await (await this.#send("GET", `/jobs/${id}`)).json().catch((error) => { this.#alive.delete(id); throw error; });
       const over = job.state !== "waiting" && job.state !== "running";
       over ? this.#alive.delete(id) : this.#alive.set(id, { id, ...job });
@@ -45,7 +45,7 @@ export class Jobs {
         if (result.error) throw { ...result.error, command: job.command, beside: result };
         return { answer: result, exit_code: job.exit_code, command: job.command };
       }
-      await pause(wait);
+      await pause(Math.min(kMost_ms, Math.max(kFirst_ms, kShare * (performance.now() - began))));
     }
   }
   cancel(id) { return this.#send("DELETE", `/jobs/${id}`).catch(() => {}); }

@@ -36,6 +36,25 @@ TEST(JobQueue, RunsOneAfterTheOther) {
   EXPECT_EQ(queue.before(*b), 0U);
 }
 
+TEST(JobQueue, ReadersRunBesideEachOtherAndAWriterAlone) {
+  JobQueue queue({.at_once = 2});
+  const auto a = queue.put(reading("a"), {}), b = queue.put(reading("b"), {}),
+             c = queue.put(reading("c"), {}), d = queue.put(change("d"), {}), e = queue.put(reading("e"), {});
+  EXPECT_EQ(queue.next({}), *a);
+  EXPECT_EQ(queue.next({}), *b);
+  EXPECT_FALSE(queue.next({})) << "two run";
+  EXPECT_EQ(queue.running(), 2U);
+  queue.done(*a, 0, "A", {});
+  EXPECT_EQ(queue.next({}), *c);
+  queue.done(*b, 0, "B", {});
+  EXPECT_FALSE(queue.next({})) << "the change waits for the last reader, and nobody passes it";
+  queue.done(*c, 0, "C", {});
+  EXPECT_EQ(queue.next({}), *d);
+  EXPECT_FALSE(queue.next({})) << "nobody reads while it writes";
+  queue.done(*d, 0, "D", {});
+  EXPECT_EQ(queue.next({}), *e);
+}
+
 TEST(JobQueue, EightWaitAndTheNinthIsRefused) {
   JobQueue queue;
   ASSERT_TRUE(queue.put(reading("runs"), {}));
