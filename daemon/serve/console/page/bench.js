@@ -65,6 +65,8 @@ export class Bench {
     this.#channel = this.#chosen = null;
     this.#answers = {};
     this.#refusals = {};
+    this.#commands = {};
+    fill(by("commands"));
     this.#say("");
     this.#map = null;
     this.#state.selected.clear();
@@ -84,18 +86,22 @@ export class Bench {
     this.#load(false);
   }
 
+  #tellCommand(verb, command) {
+    this.#commands[verb] = command;
+    fill(by("commands"), Object.values(this.#commands).map((c) => make("code", {}, c)));
+  }
   /** An answer of mgt about the run; nothing where it was refused, which is said. */
   async #ask(verb, args = {}, quiet = false) {
     const opened = this.#opened;
     try {
       const { answer, command } = await this.#jobs.ask(verb, this.#run.name, args);
       if (opened !== this.#opened) throw { cancelled: true };
-      this.#commands[verb] = command;
-      fill(by("commands"), Object.values(this.#commands).map((c) => make("code", {}, c)));
+      this.#tellCommand(verb, command);
       return answer;
     } catch (error) {
       if (quiet) throw error;
       if (opened !== this.#opened || error.cancelled) return null;
+      if (error.command) this.#tellCommand(verb, error.command);
       const said = this.#refusals[verb] = `${error.message}${error.remedy ? `: ${error.remedy}` : ""}`;
       if (verb === "compare" && error.beside?.poses) this.#answers.measured = error.beside;
       if (verb === "compare" || verb === "explain") fill(by("verdict"), make("p", { class: "bad", id: "refusal" }, said));

@@ -24,16 +24,16 @@ export function draw(tag, attributes = {}, ...children) {
 
 export function fill(element, ...children) { element.replaceChildren(...children.flat().filter((c) => c !== null && c !== undefined)); }
 
-/** Rows of a table: the first one its head; numbers to the right; {wide, columns} is a text over several columns. */
+/** A sentence as parts, in which no number with an exponent is broken into two lines. */
+export const unbroken = (text) => text.split(/(\S*\de-\d+)/).map((part, i) => (i % 2 ? make("span", { class: "unbroken" }, part) : part));
+
+/** Rows of a table: the first one its head; a column of numbers stands to the right, with its head; {wide, columns} is a text over several columns. */
 export function rows(head, body) {
-  const cell = (tag) => (value) => {
-    if (value?.wide) return make(tag, { class: "wide", colspan: value.columns }, value.wide);
-    const node = value instanceof Node;
-    const isNumber = typeof value === "number" || (typeof value === "string" && /^[+-]?\d+(\.\d+)?(e[+-]?\d+)?( ± \S+)?$/.test(value));
-    return make(tag, { class: isNumber ? "number" : "", scope: tag === "th" ? "col" : null }, node ? value : String(value ?? ""));
-  };
-  return [make("thead", {}, make("tr", {}, head.map(cell("th")))),
-          make("tbody", {}, body.map((row) => make("tr", {}, row.map(cell("td")))))];
+  const isNumber = (value) => typeof value === "number" || (typeof value === "string" && /^[+-]?\d+(\.\d+)?(e[+-]?\d+)?( ± \S+)?$/.test(value));
+  const cell = (tag, value, number) => make(tag, { class: number ? "number" : "", scope: tag === "th" ? "col" : null }, value instanceof Node ? value : String(value ?? ""));
+  const full = body.filter((row) => !row[0]?.wide), ofNumbers = head.map((_, i) => full.some((row) => isNumber(row[i])) && full.every((row) => isNumber(row[i]) || ["--", "", null, undefined].includes(row[i])));
+  return [make("thead", {}, make("tr", {}, head.map((value, i) => cell("th", value, ofNumbers[i])))),
+          make("tbody", {}, body.map((row) => make("tr", {}, row.map((value, i) => (value?.wide ? make("td", { class: "wide", colspan: value.columns }, value.wide) : cell("td", value, ofNumbers[i]))))))];
 }
 
 export function table(caption, head, body) { return make("table", {}, make("caption", {}, caption), rows(head, body)); }

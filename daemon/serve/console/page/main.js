@@ -217,7 +217,7 @@ const kThemes = ["", "light", "dark", "sun"];
 by("theme").addEventListener("click", () => {
   const next = kThemes[(kThemes.indexOf(document.documentElement.dataset.theme ?? "") + 1) % kThemes.length];
   next ? (document.documentElement.dataset.theme = next) : delete document.documentElement.dataset.theme;
-  by("theme").textContent = `Theme${next ? `: ${next}` : ""}`;
+  by("theme").title = `${next || "as the computer has it"}; light, dark, or black on white for the sun`;
   lanes.redraw();
   bench.recolour();
 });

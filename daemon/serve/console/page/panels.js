@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nine panels of a run: what the model leaves, by pose, linked. Their sentences are those of mgt.
-import { fill, make, table } from "./elements.js";
+import { fill, make, table, unbroken } from "./elements.js";
 import { Panel } from "./panel.js";
 import { Memory, Skies } from "./skies.js";
 
@@ -99,7 +99,7 @@ export class Panels {
       const drawn = p.spec.series?.[0]?.name;
       own.say = () => {
         const wide = own.figure.classList.contains("wide"), of = p.judged && drawn !== p.judged ? `${p.judged}: ` : "";
-        own.good.textContent = wide ? `${p.words.caption} Good: ${of}${p.words.good}` : of + short(p.words);
+        fill(own.good, unbroken(wide ? `${p.words.caption} Good: ${of}${p.words.good}` : of + short(p.words)));
       };
       own.say();
       own.table = () => dataOf(p);
