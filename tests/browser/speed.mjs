@@ -10,7 +10,7 @@
 // Exit code 0: measured. 1: something could not be done. 77: not measured, because chromium is missing.
 import { execFileSync, spawn } from "node:child_process";
 import { randomBytes } from "node:crypto";
-import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { connect } from "node:net";
 import { cpus, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
@@ -163,11 +163,25 @@ async function workbench() {
   }
 }
 
+/** From the last byte of a sample to its TENSOR line, by the benchmark that is built beside the release. */
+function latency() {
+  const bench = join(bin, "bench");
+  if (smoke || !existsSync(bench)) return;
+  const { benchmarks } = JSON.parse(execFileSync(bench, ["--benchmark_filter=sixteen_clients", "--benchmark_format=json"], { stdio: ["ignore", "pipe", "ignore"] }));
+  for (const b of benchmarks) {
+    if (b.error_occurred) throw new Error(`${b.name}: ${b.error_message}`);
+    const job = b.name.includes("job:1");
+    measured(`last byte of a sample to TENSOR, 16 clients${job ? ", a computation runs" : ""}`, `${(b.p99_us / 1000).toFixed(1)} ms in 99 of 100, ${(b.median_us / 1000).toFixed(1)} ms in the median`, "5 ms",
+             `\`bench --benchmark_filter=sixteen_clients\`: 50 Hz, 14 read, one is dead, one reads a byte a second${job ? `; \`mgt explain\` of 157 poses over and over, ${b.searches} times` : ""}`);
+  }
+}
+
 try {
   const gzipped = readdirSync(page).reduce((sum, name) => sum + gzipSync(readFileSync(join(page, name)), { level: 9 }).length, 0);
   measured("size of the page", `${(gzipped / 1000).toFixed(1)} kB gzipped`, "100 kB", "all of its files, level 9");
   await live();
   await workbench();
+  latency();
   const text = `# How fast the console is
 
 Written by \`node tests/browser/speed.mjs build/release/bin docs/console/speed.md\` on ${cpus().length} cores (${cpus()[0].model.trim()}), Chromium without a GPU, while other work may have been going on: times are upper bounds.
