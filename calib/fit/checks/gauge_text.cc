@@ -60,6 +60,10 @@ std::string gauge_text(const joint::Gauge& gauge, std::size_t sensors, double ta
   } else if (gauge.angles == joint::AngleCoverage::none) {
     text = fmt::format("no table angles: {}; the common rotation against the platform is unknown",
                        common_rotation_zero(sensors));
+    if (gauge.turns_held)
+      text += sensors == 1 ? "; how the sensor turns with its temperature is unknown and set to zero"
+                           : "; of turns with the temperature only those against s1 are known: that of s1 is "
+                             "set to zero";
   } else {
     const bool convention = gauge.angles == joint::AngleCoverage::one_axis && !gauge.declination_known;
     text = fmt::format(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/effects/library/common_turn.h"
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/reference_turn.h"
 #include "calib/fit/site_difference.h"
@@ -94,6 +95,25 @@ void add_coefficient_priors(JointProblem& problem) {
       if (c.prior_sd > 0) problem.priors.push_back(about_slot(problem, slot, 0, c.prior_sd));
       ++slot;
     }
+  }
+}
+
+/// Without attitudes, a turn that all sensors make with the temperature is one of the array: s1 makes none.
+void hold_common_turns(JointProblem& problem, Gauge& gauge) {
+  constexpr double kHeld = 1e-4;  // of the size that occurs
+  int slot = problem.slots().effects();
+  for (const effects::EffectPtr& effect : problem.effects) {
+    const Eigen::MatrixXd turn = effects::library::turn_of_first_sensor(*effect, problem.sensors());
+    for (Eigen::Index k = 0; k < turn.rows(); ++k) {
+      LinearPrior prior{.row = Eigen::VectorXd::Zero(problem.fixed()),
+                        .target = 0,
+                        .weight = 1 / (kHeld * effect->coefficients().front().typical)};
+      prior.row.segment(slot, turn.cols()) = turn.row(k);
+      problem.priors.push_back(std::move(prior));
+      ++gauge.constraints;
+      gauge.turns_held = true;
+    }
+    slot += static_cast<int>(effect->coefficients().size());
   }
 }
 
@@ -210,6 +230,7 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options) {
     for (const int p : {sensor::alpha, sensor::beta, sensor::gamma})
       problem.priors.push_back(mean_of(problem, {p}, 0, kAngleConstraint));
     gauge.constraints += 3;
+    hold_common_turns(problem, gauge);
   } else if (gauge.angles == AngleCoverage::one_axis && !gauge.declination_known) {
     problem.priors.push_back(mean_of(problem, {sensor::gamma}, 0, kAngleConstraint));
     gauge.constraints += 1;

@@ -56,7 +56,8 @@ struct Gauge {
   /// Of its turn about the field; empty where the field kept its direction and nothing tells it.
   std::optional<double> reference_turn_sd_rad{};
   bool scale_known{false};
-  int constraints{0};  ///< freedoms fixed by convention
+  bool turns_held{false};  ///< s1 is taken not to turn with its temperature (common_turn.h)
+  int constraints{0};      ///< freedoms fixed by convention
 };
 /// Adds the constraints to `problem`.
 Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
