@@ -54,7 +54,7 @@ Shape shape_of(const DesignProblem& design, const criticism::tests::Residual& re
   for (const criticism::tests::Hypothesis& h : candidate_effect.hypotheses) {
     std::vector<Eigen::MatrixXd>& bases = out.basis.emplace_back();
     for (const criticism::tests::Signature& s : out.signatures)
-      bases.emplace_back(s.columns * criticism::tests::one_step(s, h).basis);
+      bases.emplace_back(s.columns * criticism::tests::orthonormal_combinations(s, h));
   }
   return out;
 }

@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
+#include "calib/linear/product.h"
+
 namespace mgtd::calib::linear {
 namespace {
 
@@ -87,8 +89,7 @@ Eigen::MatrixXd Cholesky::whiten_rows(const Eigen::MatrixXd& B) const {
 }
 
 Eigen::MatrixXd Cholesky::colour(const Eigen::MatrixXd& Z) const {
-  const Eigen::MatrixXd x = lower_.triangularView<Eigen::Lower>() * Z;
-  return scale_.cwiseInverse().asDiagonal() * x;
+  return scale_.cwiseInverse().asDiagonal() * triangle_product(lower_, Z);
 }
 
 double Cholesky::log_determinant() const {

@@ -50,9 +50,8 @@ Eigen::MatrixXd columns_of(const fit::joint::JointFit& fit, const tests::Residua
   const tests::Signature s =
       tests::signature_of(residual, tests::effect_rows(fit.problem, fit.state, effect));
   const auto n = static_cast<Eigen::Index>(effect->coefficients().size());
-  const tests::OneStep step =
-      tests::one_step(s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(n, n), .names = {}});
-  return s.columns * step.basis;
+  return s.columns * tests::orthonormal_combinations(
+                         s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(n, n), .names = {}});
 }
 
 /// The two effects of a pair, dipoles at the places that fit best; empty where the run cannot test them.

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "calib/linear/normal_draws.h"
+#include "calib/linear/product.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -57,13 +58,13 @@ std::vector<RankedAlternative> nearest(const std::vector<ScoredFamily>& families
 
 AlternativeRanking::AlternativeRanking(const std::vector<ScoredFamily>& families, std::size_t a)
     : families_(families.size()), all_(nearest(families, a)) {
-  std::vector<OneStep> steps;
+  std::vector<Eigen::MatrixXd> bases;
   Eigen::Index columns = 0;
   for (RankedAlternative& c : all_) {
     const ScoredFamily& family = families[c.family];
-    steps.push_back(one_step(family.signatures[c.score->variant],
-                             family.candidate_effect->hypotheses[c.score->hypothesis]));
-    c.first = columns, c.count = steps.back().basis.cols();
+    bases.push_back(orthonormal_combinations(family.signatures[c.score->variant],
+                                             family.candidate_effect->hypotheses[c.score->hypothesis]));
+    c.first = columns, c.count = bases.back().cols();
     columns += c.count;
   }
   U_.resize(families[a].signatures.front().columns.rows(), columns);
@@ -71,13 +72,13 @@ AlternativeRanking::AlternativeRanking(const std::vector<ScoredFamily>& families
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const RankedAlternative& c = all_[i];
     const Signature& s = families[c.family].signatures[c.score->variant];
-    U_.middleCols(c.first, c.count) = s.columns * steps[i].basis;
-    t_.segment(c.first, c.count) = steps[i].basis.transpose() * s.by_residual;
+    U_.middleCols(c.first, c.count) = s.columns * bases[i];
+    t_.segment(c.first, c.count) = bases[i].transpose() * s.by_residual;
   }
 }
 
 void AlternativeRanking::draw(std::uint64_t seed, int draws) {
-  Eigen::MatrixXd gram = U_.transpose() * U_;
+  Eigen::MatrixXd gram = linear::gram(U_);
   gram.diagonal().array() += kRankingJitter;
   noise_ = linear::normal_draws(gram, draws, seed);
 }

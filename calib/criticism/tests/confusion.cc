@@ -13,8 +13,8 @@ namespace {
 /// The fitted form of a family's best question, of length one; zero where it left nothing.
 Eigen::VectorXd fitted_form(const ScoredFamily& family) {
   const Signature& s = family.signatures[family.winner().variant];
-  const OneStep step = one_step(s, family.where());
-  const Eigen::VectorXd form = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
+  const Eigen::MatrixXd basis = orthonormal_combinations(s, family.where());
+  const Eigen::VectorXd form = s.columns * (basis * (basis.transpose() * s.by_residual));
   const double length = form.norm();
   return length > 0 ? Eigen::VectorXd(form / length) : form;
 }
@@ -26,9 +26,9 @@ Eigen::VectorXd shares_inside(const Eigen::MatrixXd& forms, const ScoredFamily& 
     const Eigen::MatrixXd products = family.signatures[v].columns.transpose() * forms;
     for (const Score& score : family.scores) {
       if (score.variant != v) continue;
-      const OneStep step =
-          one_step(family.signatures[v], family.candidate_effect->hypotheses[score.hypothesis]);
-      out = out.cwiseMax((step.basis.transpose() * products).colwise().squaredNorm().transpose());
+      const Eigen::MatrixXd basis = orthonormal_combinations(
+          family.signatures[v], family.candidate_effect->hypotheses[score.hypothesis]);
+      out = out.cwiseMax((basis.transpose() * products).colwise().squaredNorm().transpose());
     }
   }
   return out.cwiseMin(1.0);

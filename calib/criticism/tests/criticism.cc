@@ -165,8 +165,8 @@ fit::joint::JointFit weighed_by_residual(const fit::joint::JointFit& fit) {
 std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
   const ScoredFamily& f = families[family];
   const Signature& s = f.signatures[f.winner().variant];
-  const OneStep step = one_step(s, f.where());
-  const Eigen::VectorXd fit = s.columns * (step.basis * (step.basis.transpose() * s.by_residual));
+  const Eigen::MatrixXd basis = orthonormal_combinations(s, f.where());
+  const Eigen::VectorXd fit = s.columns * (basis * (basis.transpose() * s.by_residual));
   const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
   std::vector<double> out;
   for (Eigen::Index k = 0; k < residual.poses(); ++k)

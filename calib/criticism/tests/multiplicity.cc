@@ -7,6 +7,7 @@
 #include <span>
 
 #include "calib/linear/normal_draws.h"
+#include "calib/linear/product.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -74,8 +75,7 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
   out.length = all.colwise().norm();
   const Eigen::VectorXd inverse = (out.length.array() > 0).select(out.length.cwiseInverse(), 0.0);
   all = all * inverse.asDiagonal();
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
+  Eigen::MatrixXd gram = linear::gram(all);
   gram.diagonal().array() += kJitter;
   gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
   out.sums = linear::normal_draws(gram, kDraws, seed);
@@ -93,7 +93,7 @@ std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std
     const Eigen::Index m = s.columns.cols();
     const Eigen::MatrixXd sums = draws.length.segment(at, m).asDiagonal() * draws.sums.middleRows(at, m);
     for (const Hypothesis& h : family.candidate_effect->hypotheses) {
-      const Eigen::MatrixXd basis = one_step(s, h).basis;
+      const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
       if (basis.cols() == 0) continue;
       const Eigen::ArrayXd S = (basis.transpose() * sums).colwise().squaredNorm().transpose().array();
       auto& top = largest[{static_cast<int>(basis.cols()), h.alike}];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/fit/joint/single_samples.h"
+#include "calib/linear/product.h"
 #include "calib/linear/qr.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -68,7 +69,8 @@ Residual::Columns Residual::project(const Eigen::MatrixXd& rows) const {
   Columns out{.projected = Eigen::MatrixXd::Zero(value_.size(), rows.cols()), .norms = {}};
   out.norms = white.colwise().norm();
   out.projected.topRows(white.rows()) = white;
-  out.projected.noalias() -= basis_ * (basis_.topRows(white.rows()).transpose() * white);
+  linear::subtract_product(basis_, linear::transposed_product(basis_.topRows(white.rows()), white),
+                           out.projected);
   out.projected /= unit_;
   out.norms /= unit_;
   return out;

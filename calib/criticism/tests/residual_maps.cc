@@ -256,15 +256,15 @@ std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& r
     double scales = 0;
     for (const Hypothesis& h : map.hypotheses) {
       scales += 1.0 / h.alike;
-      const OneStep step = one_step(s, h);
-      const auto k = static_cast<int>(step.basis.cols());
+      const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
+      const auto k = static_cast<int>(basis.cols());
       if (k == 0) continue;
-      const Eigen::VectorXd t = step.basis.transpose() * s.by_residual;
+      const Eigen::VectorXd t = basis.transpose() * s.by_residual;
       const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
       if (h.alike > 1) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
       if (log10_p >= best.log10_p) continue;
       best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
-      best.fit = s.columns * (step.basis * t);
+      best.fit = s.columns * (basis * t);
     }
     if (best.k == 0) continue;
     best.log10_p = std::min(0.0, best.log10_p + std::log10(scales));

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "calib/linear/cholesky.h"
+#include "calib/linear/product.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/f_distribution.h"
 
@@ -25,27 +27,72 @@ Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows) {
                 .gram = {},
                 .by_residual = {},
                 .absorbed = residual.absorbed()};
-  const Eigen::Index m = out.columns.cols();
-  out.gram = Eigen::MatrixXd::Zero(m, m);
-  out.gram.selfadjointView<Eigen::Lower>().rankUpdate(out.columns.transpose());
-  out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
+  out.gram = linear::gram(out.columns);
   out.by_residual = out.columns.transpose() * residual.value();
   return out;
 }
 
-OneStep one_step(const Signature& s, const Hypothesis& h) {
-  const Eigen::MatrixXd& T = h.combine;
-  // Lengths of the combined columns before projection, as if those combined did not overlap.
-  const Eigen::VectorXd length = (T.cwiseAbs2().transpose() * s.norms.cwiseAbs2()).cwiseSqrt();
-  const Eigen::VectorXd scale = (length.array() > 0).select(length.cwiseInverse(), 0.0);
-  const Eigen::MatrixXd M = scale.asDiagonal() * (T.transpose() * s.gram * T) * scale.asDiagonal();
+namespace {
+
+/// An entry of `combine` that is not zero: most are.
+struct Entry {
+  Eigen::Index finest, combined;
+  double value;
+};
+
+std::vector<Entry> entries_of(const Eigen::MatrixXd& combine) {
+  std::vector<Entry> out;
+  for (Eigen::Index j = 0; j < combine.cols(); ++j)
+    for (Eigen::Index i = 0; i < combine.rows(); ++i)
+      if (combine(i, j) != 0) out.push_back({i, j, combine(i, j)});
+  return out;
+}
+
+/// The V with V'MV = 1 that spans what of M is above `absorbed2`. Where that is all of M, by Cholesky:
+/// the smallest eigenvalue is no less than 1 / |L^-1|^2.
+Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& M, double absorbed2) {
+  if (const auto cholesky = linear::Cholesky::of_unscaled(M)) {
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(M.rows(), M.cols()),
+                          inverse = cholesky->whiten(one);
+    if (inverse.squaredNorm() * absorbed2 < 1) return inverse.transpose();
+  }
   const linear::SymmetricEigen eigen = linear::symmetric_eigen(M);
-  const Eigen::VectorXd& values = eigen.values;
-  const auto absorbed = (values.array() < s.absorbed * s.absorbed).count();
-  const Eigen::Index rank = values.size() - absorbed;
-  const Eigen::MatrixXd V = scale.asDiagonal() * eigen.vectors.rightCols(rank) *
-                            values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd basis = T * V;
+  const auto rank = eigen.values.size() - (eigen.values.array() < absorbed2).count();
+  return eigen.vectors.rightCols(rank) * eigen.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+/// Of the combined columns, the combinations that are orthonormal after projection.
+Eigen::MatrixXd whitening_of(const Signature& s, const std::vector<Entry>& entries, Eigen::Index combined) {
+  // Lengths of the combined columns before projection, as if those combined did not overlap.
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(combined);
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(combined, combined);
+  for (const Entry& a : entries) {
+    squares[a.combined] += std::pow(a.value * s.norms[a.finest], 2);
+    for (const Entry& b : entries)
+      M(a.combined, b.combined) += a.value * s.gram(a.finest, b.finest) * b.value;
+  }
+  const Eigen::VectorXd scale = (squares.array() > 0).select(squares.cwiseSqrt().cwiseInverse(), 0.0);
+  return scale.asDiagonal() *
+         whitening_of(scale.asDiagonal() * M * scale.asDiagonal(), s.absorbed * s.absorbed);
+}
+
+Eigen::MatrixXd spread(const std::vector<Entry>& entries, const Eigen::MatrixXd& V, Eigen::Index finest) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(finest, V.cols());
+  for (const Entry& a : entries) out.row(a.finest) += a.value * V.row(a.combined);
+  return out;
+}
+
+}  // namespace
+
+Eigen::MatrixXd orthonormal_combinations(const Signature& s, const Hypothesis& h) {
+  const std::vector<Entry> entries = entries_of(h.combine);
+  return spread(entries, whitening_of(s, entries, h.combine.cols()), h.combine.rows());
+}
+
+OneStep one_step(const Signature& s, const Hypothesis& h) {
+  const std::vector<Entry> entries = entries_of(h.combine);
+  const Eigen::MatrixXd V = whitening_of(s, entries, h.combine.cols());
+  const Eigen::MatrixXd basis = spread(entries, V, h.combine.rows());
   return {.value = V * (basis.transpose() * s.by_residual), .covariance = V * V.transpose(), .basis = basis};
 }
 
@@ -54,9 +101,9 @@ namespace {
 Score score_one(const Signature& s, const Hypothesis& h) {
   Score out;
   if (h.combine.cols() > 1) {
-    const OneStep step = one_step(s, h);
-    out.k = static_cast<int>(step.basis.cols());
-    out.S = (step.basis.transpose() * s.by_residual).squaredNorm();
+    const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
+    out.k = static_cast<int>(basis.cols());
+    out.S = (basis.transpose() * s.by_residual).squaredNorm();
     return out;
   }
   const auto t = h.combine.col(0);

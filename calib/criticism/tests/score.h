@@ -75,6 +75,9 @@ struct ScoredFamily {
 
 [[nodiscard]] Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows);
 [[nodiscard]] OneStep one_step(const Signature& signature, const Hypothesis& hypothesis);
+/// The basis of that step alone.
+[[nodiscard]] Eigen::MatrixXd orthonormal_combinations(const Signature& signature,
+                                                       const Hypothesis& hypothesis);
 [[nodiscard]] ScoredFamily score_family(const fit::joint::JointProblem& problem,
                                         const fit::joint::JointState& state, const Residual& residual,
                                         const NoiseReference& noise, const CandidateEffect& candidate_effect);

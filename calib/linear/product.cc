@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/linear/product.h"
+
+#include <cblas.h>
+
+#include <algorithm>
+
+namespace mgtd::calib::linear {
+namespace {
+
+/// A run is judged beside the acquisition, and its digits must not depend on the number of processors.
+[[maybe_unused]] const bool kOneThread = (openblas_set_num_threads(1), true);
+
+using Columns = Eigen::Ref<const Eigen::MatrixXd>;
+
+/// The leading dimension that BLAS takes, at least one.
+blasint lead(const Columns& A) { return static_cast<blasint>(std::max<Eigen::Index>(1, A.outerStride())); }
+
+blasint size(Eigen::Index n) { return static_cast<blasint>(n); }
+
+}  // namespace
+
+Eigen::MatrixXd gram(const Columns& A) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(A.cols(), A.cols());
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, size(A.cols()), size(A.rows()), 1, A.data(), lead(A), 0,
+              out.data(), lead(out));
+  out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+  return out;
+}
+
+Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(A.cols(), B.cols());
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
+              A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
+  return out;
+}
+
+void subtract_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), -1,
+              A.data(), lead(A), B.data(), lead(B), 1, C.data(), lead(C));
+}
+
+Eigen::MatrixXd triangle_product(const Columns& L, Eigen::MatrixXd Z) {
+  cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, size(Z.rows()),
+              size(Z.cols()), 1, L.data(), lead(L), Z.data(), lead(Z));
+  return Z;
+}
+
+}  // namespace mgtd::calib::linear

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+/// Products of large matrices, by OpenBLAS, which has kernels for each kind of processor and takes those of
+/// the one it runs on. Eigen's are compiled for the oldest that the program runs on, and take three times as
+/// long. One thread. The last digits differ between kinds of processors, so no calibration is made of these
+/// products: they are for tests and draws.
+namespace mgtd::calib::linear {
+
+/// A'A, n x n of A with n columns.
+[[nodiscard]] Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& A);
+/// A'B; both have the same number of rows.
+[[nodiscard]] Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& A,
+                                                 const Eigen::Ref<const Eigen::MatrixXd>& B);
+/// C becomes C - A B.
+void subtract_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
+                      Eigen::MatrixXd& C);
+/// L Z of the lower triangle of L, with its diagonal.
+[[nodiscard]] Eigen::MatrixXd triangle_product(const Eigen::Ref<const Eigen::MatrixXd>& L, Eigen::MatrixXd Z);
+
+}  // namespace mgtd::calib::linear
