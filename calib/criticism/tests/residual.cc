@@ -30,6 +30,13 @@ double absorbed_in(const fit::joint::JointProblem& problem) {
   return std::clamp(kNoises * std::sqrt(noise_nT2 / field_nT2), kAbsorbed, kMost);
 }
 
+/// What the unknowns of the poses take whole is rounding, and no direction.
+Eigen::MatrixXd without_rounding(Eigen::MatrixXd white, const Eigen::RowVectorXd& before) {
+  for (Eigen::Index j = 0; j < white.cols(); ++j)
+    if (white.col(j).norm() < kRankTolerance * before[j]) white.col(j).setZero();
+  return white;
+}
+
 }  // namespace
 
 Residual::Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
@@ -65,7 +72,7 @@ void Residual::measure_by(double scale2) {
 }
 
 Residual::Columns Residual::project(const Eigen::MatrixXd& rows) const {
-  const Eigen::MatrixXd white = whitener_.apply(rows);
+  const Eigen::MatrixXd white = without_rounding(whitener_.apply(rows), rows.colwise().norm());
   Columns out{.projected = Eigen::MatrixXd::Zero(value_.size(), rows.cols()), .norms = {}};
   out.norms = white.colwise().norm();
   out.projected.topRows(white.rows()) = white;
