@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calib/calibration/tensor.h"
+#include "daemon/run/angles_text.h"
 #include "daemon/run/wiring.h"
 
 namespace mgtd::daemon::run {
@@ -253,16 +254,15 @@ Check Preflight::table(const drivers::TableLimits& limits, Instant now) const {
                  fmt::format("one every {:.0f} s", kTableSilence_s), kRemedy);
   const TableAngles& a = table_->angles;
   const std::string outside = table_->referenced ? outside_limits(a, limits) : "";
-  return check("table", outside.empty() && !table_->moving,
-               fmt::format("azimuth {:.2f}, pitch {:.2f}, roll {:.2f} deg, {}, {}", to_deg(a.azimuth_rad),
-                           to_deg(a.pitch_rad), to_deg(a.roll_rad),
-                           table_->referenced ? "referenced" : "not referenced yet",
-                           table_->moving ? "moving" : "at rest"),
-               "at rest within its limits",
-               outside.empty() ? kRemedy
-                               : outside +
-                                     ": see that no cable is wound up, then switch the controller off "
-                                     "and on: the run begins with a reference move");
+  return check(
+      "table", outside.empty() && !table_->moving,
+      fmt::format("{}, {}, {}", angles_text(a), table_->referenced ? "referenced" : "not referenced yet",
+                  table_->moving ? "moving" : "at rest"),
+      "at rest within its limits",
+      outside.empty() ? kRemedy
+                      : outside +
+                            ": see that no cable is wound up, then switch the controller off "
+                            "and on: the run begins with a reference move");
 }
 
 std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant now) const {

@@ -7,17 +7,10 @@
 #include <utility>
 
 #include "daemon/plan/approach.h"
+#include "daemon/run/angles_text.h"
 #include "daemon/run/run_fsm.h"
 
 namespace mgtd::daemon::run {
-namespace {
-
-std::string in_words(const TableAngles& a) {
-  return fmt::format("azimuth {:.2f}, pitch {:.2f}, roll {:.2f} deg", to_deg(a.azimuth_rad),
-                     to_deg(a.pitch_rad), to_deg(a.roll_rad));
-}
-
-}  // namespace
 
 void RunFsm::go_on() {
   const auto next = progress_.next();
@@ -58,7 +51,7 @@ void RunFsm::begin_pose(std::size_t index) {
     hold(fmt::format(
         "pose {} asks for {}, outside the table's limits; widen the limits in the configuration to "
         "what they were when the run was planned, or abort",
-        planned().number, in_words(planned().target)));
+        planned().number, angles_text(planned().target)));
     return;
   }
   if (hands_.ask_before(planned())) return ask();
@@ -67,7 +60,7 @@ void RunFsm::begin_pose(std::size_t index) {
   if (!by_way_of) return move_to_target();
   table_.set_sense(planned().sense);
   enter(phase::Approaching{*by_way_of},
-        fmt::format("{}: approaching {}", pose_of(), in_words(planned().target)));
+        fmt::format("{}: approaching {}", pose_of(), angles_text(planned().target)));
   act(MoveTable{*by_way_of});
 }
 
@@ -85,7 +78,7 @@ void RunFsm::move_to_target() {
       table_.latest() ? plan::sense_of(table_.latest()->angles.azimuth_rad, goal.azimuth_rad) : 0;
   if (sense != 0) table_.set_sense(sense);
   enter(phase::Moving{goal, Settle(config_.settle, now_.mono)},
-        fmt::format("{}: moving to {}", pose_of(), in_words(goal)));
+        fmt::format("{}: moving to {}", pose_of(), angles_text(goal)));
   act(MoveTable{goal});
 }
 
@@ -93,7 +86,7 @@ void RunFsm::settle_at_scales() {
   const TableAngles goal = hands_.scales();
   table_.set_sense(std::nullopt);
   enter(phase::Moving{goal, Settle(config_.settle, now_.mono)},
-        fmt::format("{}: settling at {}", pose_of(), in_words(goal)));
+        fmt::format("{}: settling at {}", pose_of(), angles_text(goal)));
   act(SetTable{goal});
 }
 
@@ -148,10 +141,10 @@ void RunFsm::advance(phase::Approaching& now) {
   if (table_.reported_after(entered_) && !table_.latest()->moving && reached(*table_.latest(), now.goal)) {
     move_to_target();
   } else if (timed_out(config_.settle.move_max_s)) {
-    bad_pose(
-        {ErrorCode::protocol,
-         fmt::format("the table is not at {} after {:.0f} s", in_words(now.goal), config_.settle.move_max_s),
-         "look whether the table is blocked, and at its error register"});
+    bad_pose({ErrorCode::protocol,
+              fmt::format("the table is not at {} after {:.0f} s", angles_text(now.goal),
+                          config_.settle.move_max_s),
+              "look whether the table is blocked, and at its error register"});
   }
 }
 
@@ -198,7 +191,7 @@ void RunFsm::advance(phase::Dwelling& now) {
   const bool in_dwell = table && table->arrival.mono >= now.dwell.begin();
   if (in_dwell && (table->moving || furthest_rad(table->angles, now.goal) > config_.reach_rad))
     return bad_pose({ErrorCode::refused,
-                     "the table moved during the dwell: it reports " + in_words(table->angles),
+                     "the table moved during the dwell: it reports " + angles_text(table->angles),
                      "clamp or balance the table, or keep its servo on during the dwell"});
   if (const auto seen = field_.disturbed(planned().dwell_s)) return suspend(*seen);
   if (!now.dwell.complete(now_.mono)) return;

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "proto/reading.h"
+
+namespace mgtd::daemon::run {
+
+/// "azimuth 90.00, pitch -45.00, roll 0.00 deg": to a hundredth of a degree, zero without a sign.
+[[nodiscard]] std::string angles_text(const TableAngles& angles);
+
+}  // namespace mgtd::daemon::run
