@@ -20,10 +20,14 @@ blasint size(Eigen::Index n) { return static_cast<blasint>(n); }
 
 }  // namespace
 
+void add_gram(const Columns& A, Eigen::MatrixXd& G) {
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, size(A.cols()), size(A.rows()), 1, A.data(), lead(A), 1,
+              G.data(), lead(G));
+}
+
 Eigen::MatrixXd gram(const Columns& A) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(A.cols(), A.cols());
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, size(A.cols()), size(A.rows()), 1, A.data(), lead(A), 0,
-              out.data(), lead(out));
+  add_gram(A, out);
   out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
   return out;
 }

@@ -10,6 +10,8 @@ namespace mgtd::calib::linear {
 
 /// A'A, n x n of A with n columns.
 [[nodiscard]] Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& A);
+/// G becomes G + A'A, in its lower triangle alone.
+void add_gram(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::MatrixXd& G);
 /// A'B; both have the same number of rows.
 [[nodiscard]] Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& A,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& B);

@@ -215,8 +215,7 @@ double chi2_at_stated_noise(const fit::joint::JointFit& fit, const Criticism& c,
 
 void look_at_maps(Criticism& criticism) {
   const fit::joint::JointFit& fit = *criticism.tested;
-  criticism.maps =
-      score_maps(residual_maps(fit.problem, fit.state), criticism.residual, criticism.noise.reference);
+  criticism.maps = score_maps(fit.problem, fit.state, criticism.residual, criticism.noise.reference);
 }
 
 }  // namespace mgtd::calib::criticism::tests

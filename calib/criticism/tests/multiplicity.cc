@@ -20,6 +20,8 @@ constexpr std::size_t kTogether = 3;
 /// Share of the draws that decides about m.
 constexpr double kLower = 1.0 / 3;
 constexpr double kJitter = 1e-9;
+/// Of the columns that stand side by side: all of a usual run, and no second copy of a long one.
+constexpr Eigen::Index kRowsAtOnce = 4096;
 
 std::vector<std::size_t> drawn(const ScoredFamily& family, std::size_t most) {
   const std::size_t n = family.signatures.size(), m = std::min(n, most);
@@ -65,17 +67,20 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
       rows = family.signatures[v].columns.rows();
     }
   }
-  Eigen::MatrixXd all(rows, m);
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    for (const auto& [v, at] : out.first[f]) {
-      const Eigen::MatrixXd& columns = families[f].signatures[v].columns;
-      all.middleCols(at, columns.cols()) = columns;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
+  for (Eigen::Index row = 0; row < rows; row += kRowsAtOnce) {
+    Eigen::MatrixXd all(std::min(kRowsAtOnce, rows - row), m);
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      for (const auto& [v, at] : out.first[f]) {
+        const Eigen::MatrixXd& columns = families[f].signatures[v].columns;
+        all.middleCols(at, columns.cols()) = columns.middleRows(row, all.rows());
+      }
     }
+    linear::add_gram(all, gram);
   }
-  out.length = all.colwise().norm();
+  out.length = gram.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (out.length.array() > 0).select(out.length.cwiseInverse(), 0.0);
-  all = all * inverse.asDiagonal();
-  Eigen::MatrixXd gram = linear::gram(all);
+  gram = inverse.asDiagonal() * gram * inverse.asDiagonal();
   gram.diagonal().array() += kJitter;
   gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
   out.sums = linear::normal_draws(gram, kDraws, seed);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -17,6 +18,13 @@
 
 namespace mgtd::calib::criticism::tests {
 namespace {
+
+struct Map {
+  std::string name{};
+  Eigen::MatrixXd rows{};                ///< as effect_rows()
+  std::vector<Hypothesis> hypotheses{};  ///< all channels; each axis where the map is by channel
+};
+using Visit = std::function<void(const Map&)>;
 
 /// Values of the functions of a map at a pose for one channel; empty where the pose cannot feed it.
 using ChannelFunctions = std::function<std::vector<double>(const fit::joint::JointPose& pose, int channel)>;
@@ -76,24 +84,24 @@ std::vector<double> powers(double x, int n) {
   return out;
 }
 
-void add_time(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
+void add_time(const fit::joint::JointProblem& problem, const Visit& visit) {
   Range range;
   for (const fit::joint::JointPose& pose : problem.poses) range.add(pose.t_h);
   if (!range.varies()) return;
-  out.push_back(by_channel(problem, "time", kCosines, [range](const fit::joint::JointPose& pose, int) {
+  visit(by_channel(problem, "time", kCosines, [range](const fit::joint::JointPose& pose, int) {
     std::vector<double> v;
     for (int j = 1; j <= kCosines; ++j) v.push_back(time_cosine(range.scaled(pose.t_h), j));
     return v;
   }));
 }
 
-void add_azimuth(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
+void add_azimuth(const fit::joint::JointProblem& problem, const Visit& visit) {
   constexpr int kHarmonics = 4;
   const bool any =
       std::any_of(problem.poses.begin(), problem.poses.end(),
                   [](const fit::joint::JointPose& p) { return p.pose->azimuth_rad.has_value(); });
   if (!any) return;
-  out.push_back(by_channel(problem, "azimuth", 2 * kHarmonics, [](const fit::joint::JointPose& pose, int) {
+  visit(by_channel(problem, "azimuth", 2 * kHarmonics, [](const fit::joint::JointPose& pose, int) {
     std::vector<double> v;
     if (!pose.pose->azimuth_rad) return v;
     for (int j = 1; j <= kHarmonics; ++j) {
@@ -137,75 +145,71 @@ class Readings {
 };
 
 /// Chebyshev polynomials of the axis' own part of the field.
-void add_own_reading(const fit::joint::JointProblem& problem, const Readings& readings,
-                     std::vector<Map>& out) {
+void add_own_reading(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
   constexpr int kFirst = 2, kLast = 6;
-  out.push_back(of_channels(problem, "own reading", kLast - kFirst + 1,
-                            [&readings](const fit::joint::JointPose& pose, int c) {
-                              const Eigen::Vector3d u = readings.direction(pose, c / 3);
-                              std::vector<double> v;
-                              for (int j = kFirst; j <= kLast; ++j)
-                                v.push_back(std::cos(j * std::acos(u[c % 3])));
-                              return v;
-                            }));
+  visit(of_channels(problem, "own reading", kLast - kFirst + 1,
+                    [&readings](const fit::joint::JointPose& pose, int c) {
+                      const Eigen::Vector3d u = readings.direction(pose, c / 3);
+                      std::vector<double> v;
+                      for (int j = kFirst; j <= kLast; ++j) v.push_back(std::cos(j * std::acos(u[c % 3])));
+                      return v;
+                    }));
 }
 
-void add_direction(const fit::joint::JointProblem& problem, const Readings& readings, std::vector<Map>& out) {
+void add_direction(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
   constexpr Eigen::Index kMonomials = 5 + 7 + 9;
-  out.push_back(
-      by_channel(problem, "direction", kMonomials, [&readings](const fit::joint::JointPose& pose, int i) {
-        const Eigen::Vector3d u = readings.direction(pose, i);
-        std::vector<double> v;
-        // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
-        for (int degree = 2; degree <= 4; ++degree) {
-          for (int z = 0; z <= 1; ++z) {
-            for (int x = 0; x <= degree - z; ++x)
-              v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
-          }
-        }
-        return v;
-      }));
+  visit(by_channel(problem, "direction", kMonomials, [&readings](const fit::joint::JointPose& pose, int i) {
+    const Eigen::Vector3d u = readings.direction(pose, i);
+    std::vector<double> v;
+    // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
+    for (int degree = 2; degree <= 4; ++degree) {
+      for (int z = 0; z <= 1; ++z) {
+        for (int x = 0; x <= degree - z; ++x)
+          v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
+      }
+    }
+    return v;
+  }));
 }
 
-void add_temperature(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
+void add_temperature(const fit::joint::JointProblem& problem, const Visit& visit) {
   Range range;
   for (const fit::joint::JointPose& pose : problem.poses) {
     for (const auto& T : pose.pose->T_degC)
       if (T) range.add(*T);
   }
   if (!range.varies()) return;
-  out.push_back(by_channel(problem, "temperature", 3, [range](const fit::joint::JointPose& pose, int i) {
+  visit(by_channel(problem, "temperature", 3, [range](const fit::joint::JointPose& pose, int i) {
     const auto& T = pose.pose->T_degC[static_cast<std::size_t>(i)];
     return T ? powers(range.scaled(*T), 3) : std::vector<double>{};
   }));
 }
 
-void add_previous(const fit::joint::JointProblem& problem, const Readings& readings, std::vector<Map>& out) {
-  out.push_back(
-      by_channel(problem, "previous pose", 3, [&readings](const fit::joint::JointPose& pose, int i) {
-        std::vector<double> v;
-        if (pose.previous == nullptr) return v;
-        const Eigen::Vector3d y = readings.before_nT(pose, i);
-        const double size = pose.y_nT.segment<3>(3 * i).norm();
-        for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
-        return v;
-      }));
+void add_previous(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
+  visit(by_channel(problem, "previous pose", 3, [&readings](const fit::joint::JointPose& pose, int i) {
+    std::vector<double> v;
+    if (pose.previous == nullptr) return v;
+    const Eigen::Vector3d y = readings.before_nT(pose, i);
+    const double size = pose.y_nT.segment<3>(3 * i).norm();
+    for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
+    return v;
+  }));
 }
 
-void add_mount(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
+void add_mount(const fit::joint::JointProblem& problem, const Visit& visit) {
   std::set<int> mounts;
   for (const fit::joint::JointPose& pose : problem.poses)
     if (pose.pose->mount) mounts.insert(*pose.pose->mount);
   if (mounts.size() < 2) return;
-  out.push_back(by_channel(problem, "mount", static_cast<Eigen::Index>(mounts.size()),
-                           [mounts](const fit::joint::JointPose& pose, int) {
-                             std::vector<double> v;
-                             for (const int m : mounts) v.push_back(pose.pose->mount == m ? 1 : 0);
-                             return v;
-                           }));
+  visit(by_channel(problem, "mount", static_cast<Eigen::Index>(mounts.size()),
+                   [mounts](const fit::joint::JointPose& pose, int) {
+                     std::vector<double> v;
+                     for (const int m : mounts) v.push_back(pose.pose->mount == m ? 1 : 0);
+                     return v;
+                   }));
 }
 
-void add_columns(const fit::joint::JointProblem& problem, std::vector<Map>& out) {
+void add_columns(const fit::joint::JointProblem& problem, const Visit& visit) {
   std::map<std::string, Range> columns;
   for (const fit::joint::JointPose& pose : problem.poses) {
     for (const auto& [name, value] : pose.pose->covariates)
@@ -213,63 +217,67 @@ void add_columns(const fit::joint::JointProblem& problem, std::vector<Map>& out)
   }
   for (const auto& [name, range] : columns) {
     if (!range.varies()) continue;
-    out.push_back(
-        by_channel(problem, name, 2, [name = name, range = range](const fit::joint::JointPose& pose, int) {
-          const auto found = pose.pose->covariates.find(name);
-          return found == pose.pose->covariates.end() ? std::vector<double>{}
-                                                      : powers(range.scaled(found->second), 2);
-        }));
+    visit(by_channel(problem, name, 2, [name = name, range = range](const fit::joint::JointPose& pose, int) {
+      const auto found = pose.pose->covariates.find(name);
+      return found == pose.pose->covariates.end() ? std::vector<double>{}
+                                                  : powers(range.scaled(found->second), 2);
+    }));
   }
+}
+
+void each_map(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+              const Visit& visit) {
+  const Readings readings(problem, state);
+  add_time(problem, visit);
+  add_azimuth(problem, visit);
+  add_own_reading(problem, readings, visit);
+  add_direction(problem, readings, visit);
+  add_temperature(problem, visit);
+  add_previous(problem, readings, visit);
+  add_mount(problem, visit);
+  add_columns(problem, visit);
+  for (SiteRows& site : site_map_rows(problem, state)) {
+    const Eigen::Index m = site.rows.cols();
+    visit({.name = std::move(site.name),
+           .rows = std::move(site.rows),
+           .hypotheses = {picked("site", problem.channels(), 1, 0, m, m)}});
+  }
+}
+
+/// Empty where nothing of the map is left after the model's own parameters.
+std::optional<MapScore> score_of(const Map& map, const Residual& residual, const NoiseReference& noise) {
+  const Signature s = signature_of(residual, map.rows);
+  MapScore best{.map = map.name,
+                .where = {},
+                .log10_p = 1,
+                .by_channel = std::vector<double>(static_cast<std::size_t>(residual.channels())),
+                .fit = {}};
+  double scales = 0;
+  for (const Hypothesis& h : map.hypotheses) {
+    scales += 1.0 / h.alike;
+    const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
+    const auto k = static_cast<int>(basis.cols());
+    if (k == 0) continue;
+    const Eigen::VectorXd t = basis.transpose() * s.by_residual;
+    const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
+    if (h.alike > 1) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
+    if (log10_p >= best.log10_p) continue;
+    best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
+    best.fit = s.columns * (basis * t);
+  }
+  if (best.k == 0) return std::nullopt;
+  best.log10_p = std::min(0.0, best.log10_p + std::log10(scales));
+  return best;
 }
 
 }  // namespace
 
-std::vector<Map> residual_maps(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
-  std::vector<Map> out;
-  const Readings readings(problem, state);
-  add_time(problem, out);
-  add_azimuth(problem, out);
-  add_own_reading(problem, readings, out);
-  add_direction(problem, readings, out);
-  add_temperature(problem, out);
-  add_previous(problem, readings, out);
-  add_mount(problem, out);
-  add_columns(problem, out);
-  for (SiteRows& site : site_map_rows(problem, state)) {
-    const Eigen::Index m = site.rows.cols();
-    out.push_back({.name = std::move(site.name), .rows = std::move(site.rows), .hypotheses = {}});
-    out.back().hypotheses.push_back(picked("site", problem.channels(), 1, 0, m, m));
-  }
-  return out;
-}
-
-std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& residual,
-                                 const NoiseReference& noise) {
+std::vector<MapScore> score_maps(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                                 const Residual& residual, const NoiseReference& noise) {
   std::vector<MapScore> out;
-  for (const Map& map : maps) {
-    const Signature s = signature_of(residual, map.rows);
-    MapScore best{.map = map.name,
-                  .where = {},
-                  .log10_p = 1,
-                  .by_channel = std::vector<double>(static_cast<std::size_t>(residual.channels())),
-                  .fit = {}};
-    double scales = 0;
-    for (const Hypothesis& h : map.hypotheses) {
-      scales += 1.0 / h.alike;
-      const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
-      const auto k = static_cast<int>(basis.cols());
-      if (k == 0) continue;
-      const Eigen::VectorXd t = basis.transpose() * s.by_residual;
-      const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
-      if (h.alike > 1) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
-      if (log10_p >= best.log10_p) continue;
-      best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
-      best.fit = s.columns * (basis * t);
-    }
-    if (best.k == 0) continue;
-    best.log10_p = std::min(0.0, best.log10_p + std::log10(scales));
-    out.push_back(std::move(best));
-  }
+  each_map(problem, state, [&](const Map& map) {
+    if (auto score = score_of(map, residual, noise)) out.push_back(*std::move(score));
+  });
   std::sort(out.begin(), out.end(),
             [](const MapScore& a, const MapScore& b) { return a.log10_p < b.log10_p; });
   return out;

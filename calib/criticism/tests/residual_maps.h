@@ -20,16 +20,6 @@
 ///     <column>        quadratic of every extra numeric column, a channel
 namespace mgtd::calib::criticism::tests {
 
-struct Map {
-  std::string name{};
-  Eigen::MatrixXd rows{};                ///< as effect_rows()
-  std::vector<Hypothesis> hypotheses{};  ///< all channels; each axis where the map is by channel
-};
-
-/// Those that the poses can feed.
-[[nodiscard]] std::vector<Map> residual_maps(const fit::joint::JointProblem& problem,
-                                             const fit::joint::JointState& state);
-
 struct MapScore {
   std::string map{};
   std::string where{};  ///< of the hypothesis that shows it best
@@ -40,7 +30,9 @@ struct MapScore {
   Eigen::VectorXd fit{};             ///< the residual that the map explains, rows as Residual::value()
 };
 
-[[nodiscard]] std::vector<MapScore> score_maps(const std::vector<Map>& maps, const Residual& residual,
+/// Of the maps that the poses can feed, the smallest p first. One map is held at a time.
+[[nodiscard]] std::vector<MapScore> score_maps(const fit::joint::JointProblem& problem,
+                                               const fit::joint::JointState& state, const Residual& residual,
                                                const NoiseReference& noise);
 
 }  // namespace mgtd::calib::criticism::tests

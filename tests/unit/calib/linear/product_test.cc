@@ -23,6 +23,15 @@ TEST(Product, GramIsTheProductOfTheColumns) {
   EXPECT_EQ(gram(A), gram(A).transpose().eval());
 }
 
+TEST(Product, GramsOfPartsAddUp) {
+  const Eigen::MatrixXd A = some(70, 33, 0.3);
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(33, 33);
+  add_gram(A.topRows(50), G);
+  add_gram(A.bottomRows(20), G);
+  EXPECT_TRUE(Eigen::MatrixXd(G.triangularView<Eigen::Lower>())
+                  .isApprox(Eigen::MatrixXd(gram(A).triangularView<Eigen::Lower>()), kRounding));
+}
+
 TEST(Product, TransposedTimesAnother) {
   const Eigen::MatrixXd A = some(41, 7, 0.1), B = some(41, 19, 2);
   EXPECT_TRUE(transposed_product(A, B).isApprox(A.transpose() * B, kRounding));
