@@ -14,7 +14,7 @@ namespace {
 constexpr double kLongestGap_s = 60;
 constexpr std::size_t kFewestPairs = 12;
 
-constexpr double kGross = 25;  ///< times the median square
+constexpr double kGross = 25;  ///< times the square of a usual move
 
 /// Squares of a component, of its move between two poses and of what the noise of the reference makes of
 /// that.
@@ -33,33 +33,49 @@ std::optional<Move> move_between(const Pose& from, const Pose& to, bool vector) 
               std::pow(scalar_sd_nT(from), 2) + std::pow(scalar_sd_nT(to), 2)};
 }
 
-/// A gross reading of the reference makes two moves that are none.
-double mean_without_gross(const std::vector<Move>& moves) {
+/// Median square of the moves from each pose to the next.
+double usual_square_nT2(const PoseTable& table, bool vector) {
   std::vector<double> squares;
-  for (const Move& move : moves) squares.push_back(move.square_nT2);
-  const double limit = kGross * stats::median(squares);
-  double sum = 0;
-  int count = 0;
-  for (const Move& move : moves)
-    if (move.square_nT2 <= limit) sum += move.square_nT2 - move.noise_nT2, ++count;
-  return std::max(0.0, sum / count);
+  for (std::size_t k = 1; k < table.poses.size(); ++k)
+    if (const auto move = move_between(table.poses[k - 1], table.poses[k], vector))
+      squares.push_back(move->square_nT2);
+  return stats::median(std::move(squares));
+}
+
+/// A gross reading of the reference makes two moves that cancel: both are far beyond the usual one and beyond
+/// the move past it. At either end of the run one move tells, where the next is a usual one.
+bool is_gross(const PoseTable& table, std::size_t k, bool vector, double usual_nT2) {
+  const std::size_t last = table.poses.size() - 1;
+  const bool end = k == 0 || k == last;
+  const Pose &here = table.poses[k], &before = table.poses[end ? (k == 0 ? 1 : last - 1) : k - 1],
+             &after = table.poses[end ? (k == 0 ? 2 : last - 2) : k + 1];
+  const auto to = move_between(before, here, vector), on = end ? to : move_between(here, after, vector),
+             past = move_between(before, after, vector);
+  if (!to || !on || !past) return false;
+  const double limit = kGross * std::max({usual_nT2, past->square_nT2, past->noise_nT2});
+  return std::min(to->square_nT2, on->square_nT2) > limit;
 }
 
 std::optional<double> mean_square_nT2(const PoseTable& table, bool vector) {
-  std::vector<Move> in_dwells;
+  if (table.poses.size() < kFewestPairs) return std::nullopt;
+  const double usual_nT2 = usual_square_nT2(table, vector);
+  std::vector<bool> gross;
+  for (std::size_t k = 0; k < table.poses.size(); ++k) gross.push_back(is_gross(table, k, vector, usual_nT2));
+  double sum = 0;
+  std::size_t pairs = 0;
   for (std::size_t k = 1; k < table.poses.size(); ++k) {
     const Pose &from = table.poses[k - 1], &to = table.poses[k];
-    if (!from.t_s || !to.t_s || !from.dwell_s || !to.dwell_s) continue;
+    if (gross[k - 1] || gross[k] || !from.t_s || !to.t_s || !from.dwell_s || !to.dwell_s) continue;
     const double gap_s = *to.t_s - *from.t_s;
     if (!(gap_s > 0) || gap_s > kLongestGap_s) continue;
     const auto move = move_between(from, to, vector);
     if (!move) continue;
     const double dwells_s2 = (std::pow(*from.dwell_s, 2) + std::pow(*to.dwell_s, 2)) / 2;
-    const double in_dwell = dwells_s2 / (12 * gap_s * gap_s);
-    in_dwells.push_back({move->square_nT2 * in_dwell, move->noise_nT2 * in_dwell});
+    sum += (move->square_nT2 - move->noise_nT2) / (gap_s * gap_s) * dwells_s2 / 12;
+    ++pairs;
   }
-  if (in_dwells.size() < kFewestPairs) return std::nullopt;
-  return mean_without_gross(in_dwells);
+  if (pairs < kFewestPairs) return std::nullopt;
+  return std::max(0.0, sum / static_cast<double>(pairs));
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 ///
 /// No reference is known sample by sample. From one pose to the next (at most a minute) it moves at the rate
 /// dB/dt, which in a dwell of length T spreads a component by |dB/dt| T / sqrt(12). Faster motion is missed,
-/// so this is the least that the field moved. Pairs whose square is above 25 times the median are gross
-/// readings of the reference and do not count.
+/// so this is the least that the field moved. A gross reading of the reference, whose two moves are far
+/// beyond the usual one and cancel, does not count.
 namespace mgtd::calib::fit {
 
 struct DwellMotion {
