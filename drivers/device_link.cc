@@ -7,9 +7,9 @@ namespace mgtd::drivers {
 
 void DeviceLink::report_state(Stamp now) {
   const LinkHealth shown = health();
-  if (shown.state == told_state_ && shown.detail == told_detail_) return;
-  told_state_ = shown.state;
-  told_detail_ = shown.detail;
+  if (shown.state == reported_state_ && shown.detail == reported_detail_) return;
+  reported_state_ = shown.state;
+  reported_detail_ = shown.detail;
   if (callbacks_.on_state) callbacks_.on_state(shown, now);
 }
 

@@ -82,8 +82,8 @@ class DeviceLink {
   LinkLife life_;
   bool open_{false};
   bool delivering_{false};
-  LinkState told_state_{LinkState::absent};
-  std::string told_detail_;
+  LinkState reported_state_{LinkState::absent};
+  std::string reported_detail_;
 };
 
 }  // namespace mgtd::drivers

@@ -18,7 +18,7 @@ void Dialogue::start(Instant now) {
   outcome_ = Outcome::running;
   identity_.clear();
   answered_.clear();
-  told_.clear();
+  replies_.clear();
   enter(0, now);
 }
 
@@ -37,7 +37,7 @@ void Dialogue::enter(std::size_t at, Instant now) {
 
 void Dialogue::say(Instant now) {
   ++attempts_;
-  to_send_ += proving_ ? told_.front().send : step().send;
+  to_send_ += proving_ ? replies_.front().send : step().send;
   resend_.set(now, kResend_s, pace_.quiet_ticks);
   switch (step().kind) {
     case Step::Kind::tell:
@@ -55,25 +55,25 @@ void Dialogue::say(Instant now) {
 void Dialogue::on_line(std::string_view line, Instant now) {
   if (outcome_ != Outcome::running || step().kind != Step::Kind::ask) return;
   if (proving_) {
-    if (line == told_.front().line) enter(at_ + 1, now);
+    if (line == replies_.front().line) enter(at_ + 1, now);
     return;
   }
   const bool refused = step().tolerant && !step().refusal.empty() && line == step().refusal;
-  if (refused || (matches(line, step().reply) && !told_before(line))) return take_reply(line, now);
+  if (refused || (matches(line, step().reply) && !heard_before(line))) return take_reply(line, now);
   heard_ = line;
 }
 
-bool Dialogue::told_before(std::string_view line) const {
-  return std::any_of(told_.begin(), told_.end(),
-                     [&](const Told& told) { return told.line == line && told.send != step().send; });
+bool Dialogue::heard_before(std::string_view line) const {
+  return std::any_of(replies_.begin(), replies_.end(),
+                     [&](const Reply& reply) { return reply.line == line && reply.send != step().send; });
 }
 
 void Dialogue::take_reply(std::string_view line, Instant now) {
   answered_.push_back(step().send);
-  proving_ = attempts_ > 1 && !told_.empty();
+  proving_ = attempts_ > 1 && !replies_.empty();
   if (step().reply.ends_with('*') && line != step().refusal) {
     identity_ = line;
-    told_.push_back({step().send, identity_});
+    replies_.push_back({step().send, identity_});
   }
   if (!proving_) return enter(at_ + 1, now);
   attempts_ = 0;

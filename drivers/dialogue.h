@@ -68,7 +68,7 @@ class Dialogue {
   void enter(std::size_t at, Instant now);
   void say(Instant now);
   void take_reply(std::string_view line, Instant now);
-  [[nodiscard]] bool told_before(std::string_view line) const;
+  [[nodiscard]] bool heard_before(std::string_view line) const;
   void tick_ask(Instant now);
   void tick_drain(Instant now, std::uint64_t bytes_in);
 
@@ -81,10 +81,10 @@ class Dialogue {
   int attempts_{0};
   bool proving_{false};                ///< it has its reply, and is asked who it is
   std::vector<std::string> answered_;  ///< what was sent
-  struct Told {
+  struct Reply {
     std::string send, line;
   };
-  std::vector<Told> told_;  ///< replies to asks whose reply ends in '*'
+  std::vector<Reply> replies_;  ///< replies to asks whose reply ends in '*'
   std::uint64_t bytes_seen_{0};
 };
 

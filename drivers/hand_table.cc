@@ -10,7 +10,7 @@
 namespace mgtd::drivers {
 namespace {
 
-constexpr double kTellEvery_s = 0.1;
+constexpr double kSayEvery_s = 0.1;
 
 TableLimits::Range limits_of(Settings& settings, const char* key, double most_deg) {
   const auto range = settings.numbers(key, 2, {-most_deg, most_deg});
@@ -33,11 +33,11 @@ void HandTable::on_open(Stamp now) {
   ++health_.opens;
   health_.state = LinkState::live;
   health_.detail = health_.identity = "turned by hand";
-  tell(now);
+  say(now);
 }
 
 void HandTable::on_tick(Stamp now) {
-  if (!told_ || to_seconds(now.mono - *told_) >= kTellEvery_s) tell(now);
+  if (!last_said_ || to_seconds(now.mono - *last_said_) >= kSayEvery_s) say(now);
 }
 
 void HandTable::on_close(Stamp /*now*/) {
@@ -56,9 +56,9 @@ void HandTable::set(const TableAngles& scales) {
   known_ = true;
 }
 
-void HandTable::tell(Stamp now) {
+void HandTable::say(Stamp now) {
   now_ = now;
-  told_ = now.mono;
+  last_said_ = now.mono;
   emit(TableReading{now, at_, referenced_, false, known_});
 }
 

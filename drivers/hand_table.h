@@ -33,13 +33,13 @@ class HandTable final : public Turntable {
   void set(const TableAngles& scales);
 
  private:
-  void tell(Stamp now);
+  void say(Stamp now);
 
   TableLimits limits_;
   TableAngles at_;
   bool referenced_{false}, known_{false};
   Stamp now_;
-  std::optional<Instant> told_;
+  std::optional<Instant> last_said_;
 };
 
 }  // namespace mgtd::drivers

@@ -64,7 +64,7 @@ void ObsdaqDriver::on_shutdown(Stamp /*now*/) {
 void ObsdaqDriver::start(Patience patience, Stamp now) {
   phase_ = Phase::starting;
   patience_ = patience;
-  told_.clear();
+  identity_heard_.clear();
   serial_.clear();
   dialogue_ = start_up(settings_, patience);
   dialogue_.start(now.mono);
@@ -86,7 +86,7 @@ void ObsdaqDriver::on_tick(Stamp now) {
 
 void ObsdaqDriver::pump(Stamp now) {
   send(dialogue_.take_send());
-  if (dialogue_.identity() != told_ && !identified(now)) return;
+  if (dialogue_.identity() != identity_heard_ && !identified(now)) return;
   if (dialogue_.outcome() == Dialogue::Outcome::done) {
     go_live(now);
   } else if (dialogue_.outcome() == Dialogue::Outcome::running) {
@@ -100,9 +100,9 @@ void ObsdaqDriver::pump(Stamp now) {
 
 /// Its name, then its serial number, as each is told. False: it is not the one that is wanted.
 bool ObsdaqDriver::identified(Stamp now) {
-  const bool names_itself = told_.empty();
-  told_ = dialogue_.identity();
-  const std::string said = told_.substr(3);
+  const bool names_itself = identity_heard_.empty();
+  identity_heard_ = dialogue_.identity();
+  const std::string said = identity_heard_.substr(3);
   if (names_itself) {
     model_ = said;
     if (is_obsdaq(said)) return true;

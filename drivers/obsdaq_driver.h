@@ -70,7 +70,7 @@ class ObsdaqDriver final : public LineDevice {
   Patience patience_{Patience::brisk};
   Dialogue dialogue_;
   Deadline silence_, retry_;
-  std::string told_, model_, serial_;  ///< in the conversation under way
+  std::string identity_heard_, model_, serial_;  ///< in the conversation under way
   RateWatch rate_;
   std::uint64_t seq_{0};
   std::uint64_t bytes_at_good_line_{0};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/array_description.h"
 
+#include <nlohmann/json.hpp>
+
 namespace mgtd {
 
 nlohmann::ordered_json to_json(const ArrayDescription& array) {

@@ -2,6 +2,7 @@
 #include "proto/calibration_request.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "proto/json_line.h"
 

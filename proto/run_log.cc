@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/run_log.h"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace mgtd {

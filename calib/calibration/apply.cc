@@ -122,18 +122,18 @@ std::string format_applied(const std::vector<AppliedPose>& rows) {
     for (const double b : row.b_P_nT) add(b);
     for (const double b : s.b_P_nT) add(b);
     add(s.f_nT);
-    const auto add_told = [&](const Gradient& g) {
+    const auto add_components = [&](const Gradient& g) {
       for (std::size_t i = 0; i < columns.told.size(); ++i)
         if (columns.told[i]) add(components(g)[i]);
     };
-    add_told(s.g_nT_per_m);
+    add_components(s.g_nT_per_m);
     if (s.along_line)
       for (const double d : s.along_line->nT_per_m) add(d);
     if (columns.cross) {
       add(s.closure.curl_nT_per_m);
       for (const double c : s.closure.center_nT) add(c);
     }
-    if (columns.sd) add_told(s.g_sd_nT_per_m);
+    if (columns.sd) add_components(s.g_sd_nT_per_m);
     if (columns.sd && s.along_line)
       for (const double sd : s.along_line->sd_nT_per_m) add(sd);
     if (columns.chi2) add(s.closure.chi2);

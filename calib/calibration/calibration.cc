@@ -2,6 +2,7 @@
 #include "calib/calibration/calibration.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "calib/calibration/calibration_json.h"
 

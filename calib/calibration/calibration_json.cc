@@ -2,6 +2,7 @@
 #include "calib/calibration/calibration_json.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/library.h"
 #include "proto/json_text.h"

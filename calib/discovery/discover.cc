@@ -8,8 +8,8 @@
 
 #include "calib/criticism/tests/multiplicity.h"
 #include "calib/discovery/law_checks.h"
+#include "calib/discovery/law_finding.h"
 #include "calib/discovery/law_sequence.h"
-#include "calib/discovery/law_verdict.h"
 #include "calib/discovery/noise_in_force.h"
 #include "calib/effects/library/library.h"
 #include "calib/fit/joint/cross_validation.h"

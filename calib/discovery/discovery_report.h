@@ -14,11 +14,11 @@
 /// What discover() finds, as values; see discover.h.
 namespace mgtd::calib::discovery {
 
-enum class Verdict { pass, law, law_set, library, shape_only, noise_like };
-[[nodiscard]] std::string_view to_string(Verdict verdict);
+enum class LawFinding { pass, law, law_set, library, shape_only, noise_like };
+[[nodiscard]] std::string_view to_string(LawFinding verdict);
 
 /// The rule of verdict_of() that decided, with the number that it compared.
-struct VerdictReason {
+struct LawFindingReason {
   enum class Rule {
     nothing_found,   ///< PASS: log10 p of the search, not below its limit
     only_scatter,    ///< NOISE-LIKE: no formula, but an axis scatters (standard deviations of chi-square)
@@ -88,8 +88,8 @@ struct FoundLaw {
 };
 
 struct DiscoveryReport {
-  Verdict verdict{Verdict::pass};
-  VerdictReason reason{};
+  LawFinding verdict{LawFinding::pass};
+  LawFindingReason reason{};
   std::vector<FoundLaw> laws{};  ///< strongest first; the first is found even where it is not believed
   double log10_p_left{0};        ///< of the search in what is left after the laws
   std::string left_on{};         ///< an axis on which more scatters than noise, after the laws
@@ -102,7 +102,7 @@ struct DiscoveryReport {
   double chi2{0}, dof{0};
   double noise_nT{0}, residual_nT{0};
   double rho{0};             ///< correlation from pose to pose in force
-  bool may_be_drift{false};  ///< law_verdict.h
+  bool may_be_drift{false};  ///< law_finding.h
   bool wanders{false};       ///< the offsets wander, as far as the tests of the library can tell
   struct After {
     double residual_nT{0};

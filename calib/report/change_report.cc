@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "calib/report/json_number.h"
 #include "calib/stats/probability.h"

@@ -13,7 +13,7 @@ namespace {
 
 using discovery::DiscoveryReport;
 using discovery::FoundLaw;
-using Rule = discovery::VerdictReason::Rule;
+using Rule = discovery::LawFindingReason::Rule;
 
 std::string random_offset(const FoundLaw& law, bool jumps) {
   return fmt::format("an offset that {} at {}", jumps ? "jumps from pose to pose" : "walks",

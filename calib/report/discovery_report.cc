@@ -22,7 +22,7 @@ namespace {
 using discovery::DiscoveryReport;
 using discovery::FoundFormula;
 using discovery::FoundLaw;
-using discovery::Verdict;
+using discovery::LawFinding;
 using nlohmann::json;
 
 constexpr std::size_t kShown = 8, kSharesShown = 4, kCoefficientsShown = 4;
@@ -127,7 +127,7 @@ std::vector<std::string> commands(const DiscoveryReport& r, const std::string& r
                                   const std::vector<std::string>& before,
                                   const std::vector<std::string>& kept) {
   std::vector<std::string> out;
-  if (r.verdict != Verdict::law && r.verdict != Verdict::law_set) return out;
+  if (r.verdict != LawFinding::law && r.verdict != LawFinding::law_set) return out;
   for (const std::string& name : kept) out.push_back(fmt::format("mgt add {} {}", name, shell_word(run)));
   for (const FoundLaw& law : kept.empty() ? r.laws : std::vector<FoundLaw>{}) {
     for (const Definition& d : definitions(law.formulas.front())) {
@@ -144,20 +144,20 @@ std::string headline(const DiscoveryReport& r) {
   const FoundLaw* law = r.laws.empty() ? nullptr : &r.laws.front();
   const FoundFormula* first = law == nullptr ? nullptr : &law->formulas.front();
   switch (r.verdict) {
-    case Verdict::pass:
+    case LawFinding::pass:
       return "PASS: no formula stands out from noise.";
-    case Verdict::law:
+    case LawFinding::law:
       return r.laws.size() == 1 ? fmt::format("LAW: {} at {}.", first->formula, first->where)
                                 : fmt::format("LAW: {} formulas, each told from every other.", r.laws.size());
-    case Verdict::law_set:
+    case LawFinding::law_set:
       return fmt::format("LAW-SET: {} at {}, or one of {} others that these poses do not exclude.",
                          first->formula, first->where, law->formulas.size() + law->more - 1);
-    case Verdict::library:
+    case LawFinding::library:
       return fmt::format("LIBRARY: {} at {} describes it.", first->formula, first->where);
-    case Verdict::shape_only:
+    case LawFinding::shape_only:
       return fmt::format("SHAPE-ONLY: something acts on {}, and no formula accounts for it.",
                          law == nullptr ? r.left_on : first->where);
-    case Verdict::noise_like:
+    case LawFinding::noise_like:
       if (law == nullptr || !law->stands_out)
         return fmt::format("NOISE-LIKE: {} scatters more than its noise, and nothing recorded goes with it.",
                            r.left_on);
@@ -312,9 +312,9 @@ std::string to_text(const DiscoveryReport& r, const std::string& run, const std:
     out += wrapped(fmt::format("{} of the {} poses are searched, evenly chosen: a search takes no more",
                                r.searched, r.poses));
   if (r.wanders) out += wrapped("the offsets of this run wander: slow laws are held against that");
-  const bool show = r.verdict != Verdict::pass && !r.laws.empty() && r.laws.front().stands_out;
+  const bool show = r.verdict != LawFinding::pass && !r.laws.empty() && r.laws.front().stands_out;
   // Of what is not believed the first says enough.
-  const std::size_t told = r.verdict == Verdict::noise_like ? 1 : r.laws.size();
+  const std::size_t told = r.verdict == LawFinding::noise_like ? 1 : r.laws.size();
   for (std::size_t i = 0; show && i < told; ++i) tell_law(r.laws[i], i + 1, told, out);
   if (show && told == r.laws.size())
     fmt::format_to(to, "left after {}: p {}; most on {}, {:.1f} standard deviations of chi-square\n",

@@ -23,7 +23,7 @@ namespace {
 using criticism::search::Evidence;
 using nlohmann::json;
 
-constexpr std::size_t kMapsInText = 6, kRivalsInText = 6, kPosesInText = 12;
+constexpr std::size_t kMapsInText = 6, kAlternativesInText = 6, kPosesInText = 12;
 
 json left_json(const criticism::search::Left& left) {
   json maps = json::array();
@@ -65,7 +65,7 @@ void tell_maps(const Evidence& e, std::string& out) {
   }
 }
 
-void tell_rivals(const Evidence& e, std::string& out) {
+void tell_alternatives(const Evidence& e, std::string& out) {
   const auto to = std::back_inserter(out);
   const auto& all = e.candidate.alternatives;
   if (all.empty()) {
@@ -74,7 +74,7 @@ void tell_rivals(const Evidence& e, std::string& out) {
   }
   fmt::format_to(to, "\n{:<32} {:<11} {:>8} {:>9}  {}\n", "it could also be", "where", "p behind", "p right",
                  "possible");
-  for (std::size_t i = 0; i < std::min(kRivalsInText, all.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kAlternativesInText, all.size()); ++i) {
     const criticism::tests::Alternative& r = all[i];
     fmt::format_to(to, "{:<32} {:<11} {:>8.2g} {:>9.3f}  {}\n", r.effect, r.where, r.p_behind, r.p_right,
                    r.possible ? "yes" : "no");
@@ -120,7 +120,7 @@ std::string to_text(const Evidence& e) {
   }
   tell_poses(c, out);
   tell_maps(e, out);
-  tell_rivals(e, out);
+  tell_alternatives(e, out);
   if (!e.tells.empty()) out += "\nwhat would tell:\n";
   for (const Evidence::Tell& tell : e.tells) out += fmt::format("  {}\n", tell.effect) + wrapped(tell.by, 4);
   return out;

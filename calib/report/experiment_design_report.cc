@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "calib/calibration/scale_gauge.h"
 #include "calib/fit/checks/identifiability_text.h"

@@ -2,6 +2,7 @@
 #include "calib/report/experiment_power_report.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::calib::report {
 namespace {

@@ -9,10 +9,10 @@
 #include "calib/effects/library/effect_family.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/report/figures/candidates_figure.h"
 #include "calib/report/figures/limits_figures.h"
 #include "calib/report/figures/parameter_figures.h"
 #include "calib/report/figures/scatter_figures.h"
-#include "calib/report/figures/suspects_figure.h"
 #include "calib/report/figures/waterfall_figure.h"
 #include "calib/report/size_text.h"
 #include "calib/report/verdict_text.h"
@@ -30,7 +30,7 @@ std::string typeset(std::string text) {
   return text;
 }
 
-constexpr std::size_t kSuspectsShown = 12;
+constexpr std::size_t kCandidatesShown = 12;
 
 std::vector<std::string> parameter_names() {
   return {sensor::kParameterNames.begin(), sensor::kParameterNames.end()};
@@ -52,24 +52,24 @@ double worst_sd(const fit::joint::JointFit& fit) {
 
 }  // namespace
 
-figures::Figure suspects_of(const criticism::search::ExplainReport& report) {
-  figures::SuspectsValues v{
-      .suspects = {}, .tried = report.candidates.size(), .seen_d = criticism::tests::kSeen};
-  for (std::size_t i = 0; i < std::min(kSuspectsShown, report.candidates.size()); ++i) {
+figures::Figure candidates_of(const criticism::search::ExplainReport& report) {
+  figures::CandidatesValues v{
+      .candidates = {}, .tried = report.candidates.size(), .seen_d = criticism::tests::kSeen};
+  for (std::size_t i = 0; i < std::min(kCandidatesShown, report.candidates.size()); ++i) {
     const criticism::tests::Candidate& c = report.candidates[i];
-    figures::Suspect s{.effect = c.effect,
-                       .where = c.where,
-                       .d = c.d,
-                       .p = stats::p_phrase(c.log10_p),
-                       .size = typeset(size_text(c))};
+    figures::Candidate s{.effect = c.effect,
+                         .where = c.where,
+                         .d = c.d,
+                         .p = stats::p_phrase(c.log10_p),
+                         .size = typeset(size_text(c))};
     for (const auto& other : c.alternatives)
       if (other.possible) s.could_also_be.push_back(other.effect);
     s.named = std::find(report.named.begin(), report.named.end(), c.effect) != report.named.end();
     s.plausible = c.plausible;
-    v.suspects.push_back(std::move(s));
+    v.candidates.push_back(std::move(s));
   }
   for (const auto& u : report.untestable) v.untestable.push_back(u.effect);
-  return figures::suspects_figure(v);
+  return figures::candidates_figure(v);
 }
 
 figures::Figure detectable_of(const criticism::search::ExplainReport& report) {

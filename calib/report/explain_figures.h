@@ -12,11 +12,11 @@
 #include "calib/fit/joint/effect_impact.h"
 #include "calib/report/figures/figure.h"
 
-/// Figures of what explain() found: suspects and their evidence, what each effect takes out, costs and
+/// Figures of what explain() found: candidates and their evidence, what each effect takes out, costs and
 /// brings, and what the run cannot see or tell apart.
 namespace mgtd::calib::report {
 
-[[nodiscard]] figures::Figure suspects_of(const criticism::search::ExplainReport& report);
+[[nodiscard]] figures::Figure candidates_of(const criticism::search::ExplainReport& report);
 [[nodiscard]] figures::Figure detectable_of(const criticism::search::ExplainReport& report);
 /// `held_out_nT`: residual on poses that the fit of the whole model has not seen.
 [[nodiscard]] figures::Figure waterfall_of(const criticism::search::Waterfall& waterfall,

@@ -51,16 +51,17 @@ std::string reason_text(const criticism::search::NextReport& r) {
 
 /// The description of that spec as a person reads it.
 std::string shown(const criticism::search::NextReport& r, const std::string& spec) {
-  for (const design::Rival& rival : r.rivals)
-    if (rival.name == spec || (rival.specs.size() == 1 && rival.specs.front() == spec)) return rival.name;
+  for (const design::Hypothesis& hypothesis : r.hypotheses)
+    if (hypothesis.name == spec || (hypothesis.specs.size() == 1 && hypothesis.specs.front() == spec))
+      return hypothesis.name;
   return spec;
 }
 
-std::string rivals_text(const std::vector<design::Rival>& rivals) {
+std::string hypotheses_text(const std::vector<design::Hypothesis>& hypotheses) {
   std::string out = "what it could be:\n";
-  for (const design::Rival& rival : rivals)
-    out +=
-        rival.P ? fmt::format("  P {:.2f}  {}\n", *rival.P, rival.name) : fmt::format("  {}\n", rival.name);
+  for (const design::Hypothesis& hypothesis : hypotheses)
+    out += hypothesis.P ? fmt::format("  P {:.2f}  {}\n", *hypothesis.P, hypothesis.name)
+                        : fmt::format("  {}\n", hypothesis.name);
   return out;
 }
 
@@ -78,10 +79,11 @@ std::string never_text(const criticism::search::NextReport& r) {
 
 json to_json(const criticism::search::NextReport& r) {
   const auto lambda = [](const std::optional<double>& x) { return x ? json(*x) : json(); };
-  json rivals = json::array(), left_out = json::array();
-  for (const design::Rival& rival : r.rivals)
-    rivals.push_back(
-        {{"formula", rival.name}, {"specs", rival.specs}, {"P", rival.P ? json(*rival.P) : json()}});
+  json hypotheses = json::array(), left_out = json::array();
+  for (const design::Hypothesis& hypothesis : r.hypotheses)
+    hypotheses.push_back({{"formula", hypothesis.name},
+                          {"specs", hypothesis.specs},
+                          {"P", hypothesis.P ? json(*hypothesis.P) : json()}});
   for (const design::LeftOut& one : r.left_out)
     left_out.push_back({{"action", one.action}, {"why", one.why}});
   json steps = json::array();
@@ -105,7 +107,7 @@ json to_json(const criticism::search::NextReport& r) {
           {"size_assumed", r.assumed},
           {"p_right_before", r.effect.empty() ? json() : json(r.p_right_before)},
           {"separation_before", lambda(r.lambda_before)},
-          {"rivals", std::move(rivals)},
+          {"rivals", std::move(hypotheses)},
           {"next", std::move(steps)},
           {"left_out", std::move(left_out)},
           {"never_told_apart", std::move(never)},
@@ -115,9 +117,9 @@ json to_json(const criticism::search::NextReport& r) {
 std::string to_text(const criticism::search::NextReport& r) {
   std::string out;
   const auto to = std::back_inserter(out);
-  if (r.rivals.size() > 2) out += rivals_text(r.rivals);
+  if (r.hypotheses.size() > 2) out += hypotheses_text(r.hypotheses);
   if (!r.effect.empty()) {
-    fmt::format_to(to, "{}{} or {}?\n", r.rivals.size() > 2 ? "hardest to tell apart: " : "",
+    fmt::format_to(to, "{}{} or {}?\n", r.hypotheses.size() > 2 ? "hardest to tell apart: " : "",
                    shown(r, r.effect), shown(r, r.alternative));
     if (r.assumed)
       out += "neither is large enough to be seen on this run; at the smallest size that would be,\n";

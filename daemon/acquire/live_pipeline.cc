@@ -45,7 +45,7 @@ LivePipeline::LivePipeline(const SamplerConfig& sampler, const calib::sensor::Ge
       sampler_(sampler),
       live_(array),
       raw_(array),
-      told_(array.sensors()),
+      answering_(array.sensors()),
       inputs_(std::move(inputs)) {}
 
 void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> calibration) {
@@ -61,11 +61,11 @@ void LivePipeline::use(std::shared_ptr<const calib::calibration::Calibration> ca
   live_ = calib::calibration::LiveTensor(calibration);
 }
 
-void LivePipeline::answers(int slot, const std::string& told) {
-  std::string& known = told_.at(static_cast<std::size_t>(slot));
-  if (known == told) return;
-  known = told;
-  instruments_.answers({fmt::format("s{}", slot + 1), told});
+void LivePipeline::answers(int slot, const std::string& identity) {
+  std::string& known = answering_.at(static_cast<std::size_t>(slot));
+  if (known == identity) return;
+  known = identity;
+  instruments_.answers({fmt::format("s{}", slot + 1), identity});
 }
 
 /// Where the array stands is known while a referenced table stands still and says so.

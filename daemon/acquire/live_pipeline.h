@@ -38,7 +38,7 @@ class LivePipeline {
   void set_calibrating(bool on) { calibrating_ = on; }
 
   /// Who answers in the place of a sensor: to be told before its readings, as often as one likes.
-  void answers(int slot, const std::string& told);
+  void answers(int slot, const std::string& identity);
   void push(const FieldReading& reading) { sampler_.push(reading, ready_); }
   void push(const TemperatureReading& reading) {
     sampler_.push(reading);
@@ -85,7 +85,7 @@ class LivePipeline {
   calib::criticism::live::LiveCriticism criticism_;
   calib::criticism::tests::RearrangementWatch rearranged_;
   InstrumentWatch instruments_;
-  PerSensor<std::string> told_;        ///< who answers
+  PerSensor<std::string> answering_;   ///< who answers
   std::optional<TableReading> table_;  ///< the last
   LatestInputs inputs_;
   bool calibrating_{false};

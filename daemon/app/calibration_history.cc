@@ -2,6 +2,7 @@
 #include "daemon/app/calibration_history.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace mgtd::daemon::app {

@@ -2,6 +2,7 @@
 // What the rig answers on its control socket.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/cli/ask.h"
 
+#include <nlohmann/json.hpp>
+
 namespace mgtd::daemon::cli {
 
 Result<nlohmann::json> ask(const Session& session, ControlCommand command, nlohmann::json args) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "calib/calibration/calibration_json.h"
 #include "calib/report/calibration_text.h"

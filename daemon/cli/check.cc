@@ -2,6 +2,7 @@
 #include "calib/validity/validity_check.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/report/change_report.h"
 #include "calib/report/residual_words.h"

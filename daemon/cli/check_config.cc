@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "daemon/cli/command.h"
 #include "daemon/config/config.h"

@@ -2,6 +2,7 @@
 // Commands that show who has control of the daemon, keep it, or take it away.
 #include <fmt/format.h>
 #include <pwd.h>
+#include <nlohmann/json.hpp>
 
 #include <csignal>
 #include <memory>

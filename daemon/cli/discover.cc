@@ -42,7 +42,7 @@ struct DiscoverArguments {
 };
 
 int run_discover(const Session& session, const DiscoverArguments& args) {
-  using calib::discovery::Verdict;
+  using calib::discovery::LawFinding;
   auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   if (args.keep) {  // refused before the search, not after it
@@ -77,7 +77,7 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
   }
   if (args.keep && !session.json && names.empty())
     fmt::print("the search is kept in {}: mgt report shows it; there is no formula to keep\n", args.run);
-  return found->verdict == Verdict::shape_only || found->verdict == Verdict::noise_like ? 1 : 0;
+  return found->verdict == LawFinding::shape_only || found->verdict == LawFinding::noise_like ? 1 : 0;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/report/choice_text.h"
-#include "daemon/run/law_rivals.h"
+#include "daemon/run/law_hypotheses.h"
 #include "daemon/store/run_file.h"
 
 namespace mgtd::daemon::cli {
@@ -29,7 +29,7 @@ calib::criticism::search::Choice choice_by_discovery(const store::PoseSource& so
   calib::criticism::search::Choice out{
       .spec = effect.spec(), .finding = discovered.word, .alternatives = {}, .data = discovered.data_hash};
   for (const store::Discovered::Other& other : discovered.others)
-    if (!other.spec.empty() && out.alternatives.size() + 1 < run::kMostRivals)
+    if (!other.spec.empty() && out.alternatives.size() + 1 < run::kMostHypotheses)
       out.alternatives.push_back(other.spec);
   return calib::criticism::search::on_these_poses(std::move(out), source.table, options);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/effect_page.h"
 #include "calib/effects/library/library.h"

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"

@@ -44,7 +44,7 @@ struct ExplainArguments {
 nlohmann::json figures_json(const calib::criticism::search::ExplainReport& explained) {
   nlohmann::json out = nlohmann::json::array();
   if (!explained.candidates.empty())
-    out.push_back(calib::report::words_json(calib::report::suspects_of(explained)));
+    out.push_back(calib::report::words_json(calib::report::candidates_of(explained)));
   if (!explained.detectable.empty())
     out.push_back(calib::report::words_json(calib::report::detectable_of(explained)));
   if (explained.confusion && explained.confusion->effects.size() > 1)

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "calib/report/parameter_history.h"
 #include "daemon/cli/ask.h"

@@ -12,7 +12,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
-#include "daemon/cli/next_rivals.h"
+#include "daemon/cli/next_hypotheses.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/plan/plan_from_list.h"
 #include "proto/run_request.h"
@@ -75,7 +75,7 @@ using Report = Result<calib::criticism::search::NextReport>;
 
 Report among(const Result<Question>& asked, const PoseTable& table) {
   if (!asked) return tl::unexpected(asked.error());
-  return calib::criticism::search::next_among(table, asked->options, asked->rivals);
+  return calib::criticism::search::next_among(table, asked->options, asked->hypotheses);
 }
 
 /// What the verdict and the model leave open; where a law is left that is in no library, its formulas.
@@ -83,7 +83,7 @@ Report left_open(const store::PoseSource& source, const calib::fit::FitOptions& 
                  const std::vector<calib::criticism::search::Choice>& doubts) {
   using calib::criticism::search::Finding;
   const auto doubted = question_in_doubt(doubts, source, options);
-  if (!doubted || !doubted->rivals.empty()) return among(doubted, source.table);
+  if (!doubted || !doubted->hypotheses.empty()) return among(doubted, source.table);
   auto next = calib::criticism::search::next_of(source.table, {.fit = options}, std::nullopt);
   if (!next) return next;
   if (next->effect.empty() && !doubts.empty())
@@ -92,7 +92,7 @@ Report left_open(const store::PoseSource& source, const calib::fit::FitOptions& 
   const bool unnamed =
       next->effect.empty() || next->finding == Finding::unknown || next->finding == Finding::partial;
   const auto formulas = question_by_discovery("", source, options);
-  if (formulas && !formulas->rivals.empty() && (formulas->believed || unnamed))
+  if (formulas && !formulas->hypotheses.empty() && (formulas->believed || unnamed))
     return among(formulas, source.table);
   return next;
 }
@@ -103,7 +103,7 @@ Report answer(const NextArguments& args, const store::PoseSource& source,
   if (args.pair.empty()) return left_open(source, options, doubts);
   if (args.pair.size() == 1) {
     const auto formulas = question_by_discovery(args.pair.front(), source, options);
-    if (formulas && formulas->rivals.empty())
+    if (formulas && formulas->hypotheses.empty())
       return fail(ErrorCode::refused, "mgt discover leaves no two formulas open at " + args.pair.front(),
                   "mgt next without a name asks about the whole run");
     return among(formulas, source.table);

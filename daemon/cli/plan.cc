@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_columns.h"

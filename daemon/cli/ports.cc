@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "daemon/cli/ask.h"
 #include "daemon/cli/serial_lines.h"
@@ -56,7 +57,7 @@ std::map<std::string, std::string> serials_of(const nlohmann::json& status) {
   std::map<std::string, std::string> out;
   for (const auto& device : status.at("devices")) {
     if (device.at("state") != "live") continue;
-    const std::string serial = serial_told(device.at("driver").get<std::string>(), device.at("identity"));
+    const std::string serial = stated_serial(device.at("driver").get<std::string>(), device.at("identity"));
     if (!serial.empty()) out[device.at("name")] = serial;
   }
   return out;

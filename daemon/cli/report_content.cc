@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "calib/criticism/search/evidence.h"
 #include "calib/criticism/search/model_stage.h"
@@ -111,11 +112,11 @@ void draw_effects(const calib::fit::FitOptions& asked, ReportContent& c) {
 
 void draw_search(const calib::criticism::search::ExplainOptions& options, ReportContent& c) {
   if (!c.explained.candidates.empty()) {
-    c.suspects.push_back(calib::report::suspects_of(c.explained));
+    c.candidates.push_back(calib::report::candidates_of(c.explained));
     const auto& best = c.explained.candidates.front();
     if (const auto evidence =
             calib::criticism::search::evidence_of(c.source.table, options, best.effect, best.where, false))
-      c.suspects.push_back(calib::report::evidence_of(*evidence));
+      c.candidates.push_back(calib::report::evidence_of(*evidence));
   }
   if (!c.explained.detectable.empty()) c.limits.push_back(calib::report::detectable_of(c.explained));
   if (c.explained.confusion && c.explained.confusion->effects.size() > 1)

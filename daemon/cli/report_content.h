@@ -43,7 +43,7 @@ struct ReportContent {
   std::string command;                                   ///< that makes this report again
 
   // Figures, in the order of the page.
-  std::vector<calib::report::figures::Figure> measured{}, panels{}, falls{}, suspects{}, limits{}, prices{},
+  std::vector<calib::report::figures::Figure> measured{}, panels{}, falls{}, candidates{}, limits{}, prices{},
       earlier{};
 };
 

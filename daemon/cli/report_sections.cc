@@ -21,8 +21,8 @@ namespace mgtd::daemon::cli {
 using calib::report::figures::escaped;
 
 std::string candidates_section(const ReportContent& c) {
-  if (c.suspects.empty()) return "";
-  return "<h2>What could be missing</h2>" + figures_html(c.suspects) +
+  if (c.candidates.empty()) return "";
+  return "<h2>What could be missing</h2>" + figures_html(c.candidates) +
          html_good(
              "no candidate of any size. A name is a hypothesis about the cause; what is measured is that the "
              "residual "

@@ -98,7 +98,7 @@ SerialLines with_serials(std::string_view text, const std::map<std::string, std:
   return out;
 }
 
-std::string serial_told(std::string_view driver, const std::string& identity) {
+std::string stated_serial(std::string_view driver, const std::string& identity) {
   if (driver == "gcs2") return drivers::serial_of_idn(identity);
   if (driver == "gsm") return drivers::serial_of_gsm(identity);
   return std::string(serial_of({"", identity}));

@@ -22,6 +22,6 @@ struct SerialLines {
                                        const std::map<std::string, std::string>& serials);
 
 /// "1002" out of what a device of that driver says of itself; empty: it does not tell.
-[[nodiscard]] std::string serial_told(std::string_view driver, const std::string& identity);
+[[nodiscard]] std::string stated_serial(std::string_view driver, const std::string& identity);
 
 }  // namespace mgtd::daemon::cli

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The workbench on files, without a daemon: mgt serve.
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,7 +25,8 @@ namespace {
 constexpr const char* kServeHelp =
     "Serves the workbench on run files (*.mgtrun) and pose tables (*.csv) to a browser on this computer, "
     "with\n"
-    "no daemon and no instruments: verdict, nine linked panels, suspects and their evidence; add an effect\n"
+    "no daemon and no instruments: verdict, nine linked panels, candidates and their evidence; add an "
+    "effect\n"
     "and see the error fall, undo, mask poses, try a formula, what to measure next. Every number on the "
     "page\n"
     "comes from a command of mgt, which the page shows beside it.\n\n"

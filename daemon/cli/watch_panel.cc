@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "daemon/cli/progress.h"
 #include "proto/status_codec.h"

@@ -14,7 +14,7 @@
 #include "calib/poses/pose_list.h"
 #include "calib/report/next_report.h"
 #include "daemon/plan/plan_from_list.h"
-#include "daemon/run/law_rivals.h"
+#include "daemon/run/law_hypotheses.h"
 #include "daemon/run/solver.h"
 
 namespace mgtd::daemon::run {
@@ -38,7 +38,7 @@ std::string found_text(const RunEvidence& e) {
     const DiscoveryReport& d = *e.discovered;
     for (const std::string& effect : e.beside) out += fmt::format("; for the rest LIBRARY: {}", effect);
     out += fmt::format("; for the rest {}", to_string(d.verdict));
-    if (d.verdict == calib::discovery::Verdict::law || d.verdict == calib::discovery::Verdict::law_set)
+    if (d.verdict == calib::discovery::LawFinding::law || d.verdict == calib::discovery::LawFinding::law_set)
       out += fmt::format(": {} at {}", d.laws.front().formulas.front().formula,
                          d.laws.front().formulas.front().where);
   }
@@ -100,7 +100,7 @@ void discover_in(calib::fit::FitOptions& options, RunEvidence& evidence) {
                                             {.fit = options, .looks = kMostJudgements, .checks = false});
     if (!found) return;
     evidence.discovered = *std::move(found);
-    if (evidence.discovered->verdict != calib::discovery::Verdict::library ||
+    if (evidence.discovered->verdict != calib::discovery::LawFinding::library ||
         evidence.leaves_formulas_open() || evidence.beside.size() == kMostEffects)
       return;
     const calib::discovery::FoundFormula& leading = evidence.discovered->laws.front().formulas.front();
@@ -114,11 +114,11 @@ void discover_in(calib::fit::FitOptions& options, RunEvidence& evidence) {
 }  // namespace
 
 bool RunEvidence::leaves_formulas_open() const {
-  using calib::discovery::Verdict;
+  using calib::discovery::LawFinding;
   if (!discovered) return false;
-  const calib::discovery::VerdictReason& reason = discovered->reason;
-  return discovered->verdict == Verdict::law_set ||
-         (discovered->verdict == Verdict::library && !(reason.measured > reason.limit));
+  const calib::discovery::LawFindingReason& reason = discovered->reason;
+  return discovered->verdict == LawFinding::law_set ||
+         (discovered->verdict == LawFinding::library && !(reason.measured > reason.limit));
 }
 
 NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) {
@@ -127,19 +127,19 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
   out.judgement.found = found_text(e);
   const Finding finding = e.explained.finding;
   const bool open = e.next && !e.next->effect.empty();
-  using calib::discovery::Verdict;
+  using calib::discovery::LawFinding;
   if (finding == Finding::pass || finding == Finding::explained) {
     out.judgement.next = finding == Finding::pass ? "nothing is left to explain"
                                                   : "the verdict is clear: mgt improve adds what it names";
   } else if (finding == Finding::bad_data) {
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
-  } else if (!open && e.discovered && e.discovered->verdict == Verdict::law) {
+  } else if (!open && e.discovered && e.discovered->verdict == LawFinding::law) {
     out.judgement.next =
         e.beside.empty()
             ? "a formula accounts for the rest: mgt discover says how to keep it"
             : fmt::format("a formula accounts for the rest: mgt discover --with {} says how to keep it",
                           fmt::join(e.beside, " --with "));
-  } else if (!open && e.discovered && e.discovered->verdict == Verdict::pass && !e.beside.empty()) {
+  } else if (!open && e.discovered && e.discovered->verdict == LawFinding::pass && !e.beside.empty()) {
     out.judgement.next =
         fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.beside, " and "));
   } else if (looks_left <= 0) {
@@ -169,9 +169,9 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     options.effects = explained->model;
     discover_in(options, evidence);
     if (evidence.leaves_formulas_open()) {
-      const auto rivals = rivals_of(evidence.discovered->laws.front(), sensors_of(table));
-      if (!rivals.empty())
-        if (auto next = calib::criticism::search::next_among(table, options, rivals))
+      const auto hypotheses = hypotheses_of(evidence.discovered->laws.front(), sensors_of(table));
+      if (!hypotheses.empty())
+        if (auto next = calib::criticism::search::next_among(table, options, hypotheses))
           evidence.next = *std::move(next);
     }
     const bool names_open =

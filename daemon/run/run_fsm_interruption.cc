@@ -3,6 +3,7 @@
 // sensor, a fault, a device that is lost. Whatever it is, the table stops, as soon as it can be reached.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 

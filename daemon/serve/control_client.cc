@@ -2,6 +2,7 @@
 #include "daemon/serve/control_client.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::daemon::serve {
 

@@ -5,6 +5,7 @@
 #include <pwd.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
+#include <nlohmann/json.hpp>
 
 #include <optional>
 #include <vector>

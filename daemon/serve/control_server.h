@@ -5,7 +5,7 @@
 #include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "daemon/serve/peer.h"

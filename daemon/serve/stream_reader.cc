@@ -2,6 +2,7 @@
 #include "daemon/serve/stream_reader.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "proto/json_line.h"
 #include "proto/stream_codec.h"

@@ -158,17 +158,17 @@ void Journal::stop(Error why) {
   if (recording()) ::close(std::exchange(file_.fd, -1));
   if (!trouble_) {
     ++stops_;
-    untold_ = why;
+    unreported_ = why;
     resumed_ = false;
   }
   trouble_ = std::move(why);
 }
 
-std::optional<Error> Journal::take_error() { return std::exchange(untold_, std::nullopt); }
+std::optional<Error> Journal::take_error() { return std::exchange(unreported_, std::nullopt); }
 
 std::optional<std::uint64_t> Journal::take_resumed() {
   if (!std::exchange(resumed_, false)) return std::nullopt;
-  return lost_ - std::exchange(lost_told_, lost_);
+  return lost_ - std::exchange(lost_reported_, lost_);
 }
 
 }  // namespace mgtd::daemon::store

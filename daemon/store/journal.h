@@ -93,11 +93,11 @@ class Journal {
   File file_;
   RawLogEncoder encoder_;
   std::string buffer_;
-  std::uint64_t written_{0}, lost_{0}, lost_told_{0}, stops_{0}, removed_{0};
+  std::uint64_t written_{0}, lost_{0}, lost_reported_{0}, stops_{0}, removed_{0};
   Instant now_, last_write_, last_sync_, last_try_;
   bool held_{false}, resumed_{false};
   std::vector<int> syncs_;  ///< of files that are full
-  std::optional<Error> trouble_, untold_;
+  std::optional<Error> trouble_, unreported_;
 };
 
 }  // namespace mgtd::daemon::store

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/store/kept_discovery.h"
 
+#include <nlohmann/json.hpp>
+
 #include "proto/json_text.h"
 
 namespace mgtd::daemon::store {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "tests/accuracy/markdown.h"
 #include "tests/blind/blind.h"

@@ -56,7 +56,7 @@ async function workbench(size, address) {
   await listed("hidden.mgtrun");
   await judged(`workbench, the runs, ${size[0]} px`);
   await opened("hidden.mgtrun");
-  await browser.run("document.querySelector('.suspect').click()");
+  await browser.run("document.querySelector('.candidate').click()");
   await until(() => browser.run("document.getElementById('try') !== null"), "the evidence");
   await browser.run("for (const e of document.querySelectorAll('details')) e.open = true");
   await browser.run("document.querySelector('#panels figure button').click()");

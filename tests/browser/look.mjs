@@ -73,7 +73,7 @@ async function workbench(address) {
   await is("document.querySelectorAll('[data-run]').length === 3", "the runs");
   await look("runs");
   await opened("hidden.mgtrun");
-  await browser.run("document.querySelector('.suspect').click()");
+  await browser.run("document.querySelector('.candidate').click()");
   await is("document.getElementById('add') !== null", "the evidence");
   await browser.click("tool-alike");
   await look("workbench");

@@ -99,7 +99,7 @@ try {
   holds("a frame around all poses selects them all", (await text("selected")).startsWith("157 selected"), await text("selected"));
   await key("Escape");
 
-  await browser.run("document.querySelector('.suspect').click()");
+  await browser.run("document.querySelector('.candidate').click()");
   await until(() => exists("add"), "the evidence");
   holds("the evidence is that of mgt why", (await text("evidence")).includes(mgt("why", explained.candidates[0].effect, run, "--at", explained.candidates[0].where, "--poses").figure.good));
   await browser.click("try");
@@ -115,7 +115,7 @@ try {
   holds("nothing is left", after.verdict === "PASS" && (await text("verdict")).startsWith("PASS"));
   holds("the waterfall has gained a bar", (await browser.run("document.querySelectorAll('#fall li').length")) === 2);
 
-  await browser.run("[...document.querySelectorAll('#suspects details')][0].open = true; [...document.querySelectorAll('.suspect')].find((e) => e.dataset.spec.startsWith('table.wobble')).click()");
+  await browser.run("[...document.querySelectorAll('#candidates details')][0].open = true; [...document.querySelectorAll('.candidate')].find((e) => e.dataset.spec.startsWith('table.wobble')).click()");
   await until(async () => (await exists("add")) && (await text("evidence")).includes("table.wobble"), "the evidence for what is not there");
   await browser.click("add");
   await until(() => exists("force"), "a veto");

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <thread>
 
@@ -22,13 +23,13 @@ namespace mgtd::calib::testing {
 namespace {
 
 using discovery::DiscoveryReport;
-using discovery::Verdict;
+using discovery::LawFinding;
 
 constexpr double kNoise_nT = 0.05;
 
 /// What was said of one run.
 struct Answer {
-  Verdict verdict{Verdict::pass};
+  LawFinding verdict{LawFinding::pass};
   double log10_p{0}, P{0};
   bool found{false}, place{false}, covariate{false}, first{false}, in_set{false}, alike{false};
   std::size_t set{0};
@@ -110,7 +111,8 @@ std::string clean_page(int runs, int draws) {
                        percent(count_of(answers, [](const Answer& a) { return a.found; }), n),
                        percent(count_of(answers,
                                         [](const Answer& a) {
-                                          return a.verdict == Verdict::law || a.verdict == Verdict::law_set;
+                                          return a.verdict == LawFinding::law ||
+                                                 a.verdict == LawFinding::law_set;
                                         }),
                                n));
   }
@@ -157,9 +159,9 @@ std::string laws_page(int runs, int draws) {
       for (const Answer& a : answers) {
         sets.push_back(a.set);
         const bool right = a.first || a.alike;
-        s.law_wrong += a.verdict == Verdict::law && !right ? 1 : 0;
+        s.law_wrong += a.verdict == LawFinding::law && !right ? 1 : 0;
         s.sure += a.P > 0.99 ? 1 : 0, s.sure_wrong += a.P > 0.99 && !right ? 1 : 0;
-        if (!a.first || a.verdict != Verdict::law)
+        if (!a.first || a.verdict != LawFinding::law)
           fmt::print(stderr, "{} d {}: {} P {:.2f} {}{}; {}\n", law.name, d, discovery::to_string(a.verdict),
                      a.P, a.formula, a.in_set ? "" : " (not in set)", a.reason);
       }
@@ -173,7 +175,7 @@ std::string laws_page(int runs, int draws) {
                       percent_of([](const Answer& a) { return a.first; }, &Sum::first),
                       percent_of([](const Answer& a) { return a.first || a.alike; }, &Sum::alike),
                       percent_of([](const Answer& a) { return a.in_set; }, &Sum::set), sets[sets.size() / 2],
-                      percent_of([](const Answer& a) { return a.verdict == Verdict::law; }, &Sum::law));
+                      percent_of([](const Answer& a) { return a.verdict == LawFinding::law; }, &Sum::law));
     }
   }
   out +=
@@ -204,18 +206,18 @@ std::string lawless_page(int runs, int draws) {
                            seed),
                    nullptr, draws);
       });
-      const auto said = [&](Verdict v) {
+      const auto said = [&](LawFinding v) {
         return percent(count_of(answers, [v](const Answer& a) { return a.verdict == v; }), runs);
       };
       for (const Answer& a : answers)
-        if (a.verdict != Verdict::noise_like)
+        if (a.verdict != LawFinding::noise_like)
           fmt::print(stderr, "{} d {}: {} P {:.2f} {}; {}\n", lawless()[l].name, d,
                      discovery::to_string(a.verdict), a.P, a.formula, a.reason);
       out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", lawless()[l].name, d,
                          percent(count_of(answers, [](const Answer& a) { return a.found; }), runs),
                          percent(count_of(answers, [](const Answer& a) { return a.place; }), runs),
-                         said(Verdict::law), said(Verdict::law_set), said(Verdict::shape_only),
-                         said(Verdict::noise_like));
+                         said(LawFinding::law), said(LawFinding::law_set), said(LawFinding::shape_only),
+                         said(LawFinding::noise_like));
     }
   }
   return out + "\n";

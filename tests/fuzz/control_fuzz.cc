@@ -2,6 +2,7 @@
 // Whatever a control client sends, and whatever answers a control client: a request that is accepted survives
 // its encoding, and a refusal can be sent back and read.
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "proto/calibration_request.h"

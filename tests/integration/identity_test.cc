@@ -2,6 +2,7 @@
 // Two plugs are exchanged on the real programs: raw from the first sample, named by stream, status and run.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/integration/bench.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the limits of a table cost, as an operator is told before a run.
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/integration/bench.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/rig/effect_kind.h"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "tests/rig/scenario.h"

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "proto/sha256.h"
 #include "tests/rig/effect_list.h"

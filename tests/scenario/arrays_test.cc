@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "calib/fit/method_choice/fit.h"
 #include "calib/report/fit_reasons.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/library.h"
 #include "calib/fit/method_choice/fit.h"

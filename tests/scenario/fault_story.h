@@ -110,7 +110,7 @@ class FaultTeller {
   }
   /// Until two more poses are stored after all has come back; an operator resumes what pauses.
   void follow(std::size_t poses_before) {
-    double paused_s = 0, told_s = 0;
+    double paused_s = 0, said_s = 0;
     const double end_s = daemon_.t_s + kPatience_s;
     while (!daemon_.finished && daemon_.t_s < end_s) {
       daemon_.step();
@@ -124,8 +124,8 @@ class FaultTeller {
         wrong_device_ |= status.message.find("wrong device") != std::string::npos;
         paused_s += kStep_s;
       }
-      if (paused_s > 40 && daemon_.t_s - told_s > 40) {
-        told_s = daemon_.t_s;
+      if (paused_s > 40 && daemon_.t_s - said_s > 40) {
+        said_s = daemon_.t_s;
         asked_ = true;
         daemon_.tell(daemon::run::Request::resume);
       }

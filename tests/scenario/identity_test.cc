@@ -174,12 +174,12 @@ TEST_F(ARun, DoesNotMixTheInstrumentsOfItsPoses) {
   EXPECT_EQ(daemon.finished->state, RunState::done);
 }
 
-class ARunThatIsNotTold : public ARun {
+class ARunWithoutSerialNumbers : public ARun {
  protected:
-  ARunThatIsNotTold() : ARun("[sensors]\ntells_serial = false\n") {}
+  ARunWithoutSerialNumbers() : ARun("[sensors]\ntells_serial = false\n") {}
 };
 
-TEST_F(ARunThatIsNotTold, NamesTheExchangeFromItsPoses) {
+TEST_F(ARunWithoutSerialNumbers, NamesTheExchangeFromItsPoses) {
   start({});
   ASSERT_TRUE(daemon.run(3600, [&] { return daemon.poses.poses.size() >= 14; }));
   EXPECT_FALSE(calib::criticism::tests::exchange_in_run(daemon.poses, std::nullopt));

@@ -139,8 +139,8 @@ class StruckRun {
   }
   void note(const std::string& what) {
     ++faults_;
-    told_ += fmt::format("{:8.2f} s, {} poses, {}: {}\n", daemon_.t_s, daemon_.poses.poses.size(),
-                         daemon_.status ? name(daemon_.status->state) : "idle", what);
+    story_ += fmt::format("{:8.2f} s, {} poses, {}: {}\n", daemon_.t_s, daemon_.poses.poses.size(),
+                          daemon_.status ? name(daemon_.status->state) : "idle", what);
   }
   void fault(const std::string& line) {
     note(line);
@@ -184,7 +184,7 @@ class StruckRun {
     daemon_.tell(daemon::run::Request::resume);
   }
   void conclude() {
-    SCOPED_TRACE(told_);
+    SCOPED_TRACE(story_);
     ASSERT_TRUE(over()) << "hangs at " << daemon_.t_s << " s: " << daemon_.status->message;
     EXPECT_EQ(daemon_.poses.poses.size(), static_cast<std::size_t>(kPoses));
     for (std::size_t i = 1; i < daemon_.poses.poses.size(); ++i)
@@ -198,7 +198,7 @@ class StruckRun {
   VirtualDaemon daemon_;
   StreamJudge judge_;
   daemon::plan::RunPlan plan_;
-  std::string told_;
+  std::string story_;
   int faults_{0};
 };
 

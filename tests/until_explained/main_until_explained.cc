@@ -3,6 +3,7 @@
 // is explained, by the real drivers in virtual time, and what the first and the last look say is counted.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/criticism/search/explain.h"
-#include "calib/design/rival_menu.h"
+#include "calib/design/hypothesis_menu.h"
 
 /// Finds which further measurement would tell two effects apart: a given pair, or the one that explain() left
 /// open.
@@ -35,7 +35,7 @@ struct NextReport {
   bool none_helps{false};         ///< no measurement of the menu tells them apart better than this run does
   std::vector<NextStep> steps{};  ///< best first; of formulas: by what each adds a minute
   // Where formulas were asked about (next_among.h):
-  std::vector<design::Rival> rivals{};
+  std::vector<design::Hypothesis> hypotheses{};
   std::optional<double> lambda_before{};
   bool told_apart{false};  ///< by the poses of the run
   std::vector<design::LeftOut> left_out{};

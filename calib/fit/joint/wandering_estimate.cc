@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/linear/cholesky.h"

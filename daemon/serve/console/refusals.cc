@@ -8,9 +8,9 @@ namespace mgtd::daemon::serve::console {
 std::optional<std::string> Refusals::add(std::string_view from, std::string_view why, Instant now) {
   ++total_;
   if (last_line_ && to_seconds(now - *last_line_) < kBetweenLines_s) return std::nullopt;
-  const std::uint64_t unsaid = total_ - told_ - 1;
+  const std::uint64_t unsaid = total_ - reported_ - 1;
   last_line_ = now;
-  told_ = total_;
+  reported_ = total_;
   return fmt::format(
       "console: refused to {}: {}{}", from, why,
       unsaid == 0 ? "" : fmt::format("; {} more were refused since the last such line", unsaid));

@@ -22,7 +22,7 @@ class Refusals {
   [[nodiscard]] std::uint64_t total() const { return total_; }
 
  private:
-  std::uint64_t total_{0}, told_{0};
+  std::uint64_t total_{0}, reported_{0};
   std::optional<Instant> last_line_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <utility>
 #include <vector>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "tests/rig/effect.h"

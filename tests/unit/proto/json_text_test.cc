@@ -2,6 +2,7 @@
 #include "proto/json_text.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd {
 namespace {

@@ -2,6 +2,7 @@
 #include "proto/run_log.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd {
 namespace {

@@ -2,6 +2,7 @@
 // docs/stream.md is what a script is written from: it names every command and every state of a run.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "proto/control_codec.h"
 #include "proto/run_request.h"

@@ -2,6 +2,7 @@
 #include "tests/rig/array_section.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/rig/config_text.h"
 #include "tests/rig/scenario.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "tests/rig/effects/site_record.h"
 #include "tests/rig/effects/temperature_law.h"

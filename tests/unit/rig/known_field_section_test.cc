@@ -2,6 +2,7 @@
 #include "tests/rig/known_field_section.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::rig {
 namespace {

@@ -2,6 +2,7 @@
 #include "tests/rig/seal.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::rig {
 namespace {

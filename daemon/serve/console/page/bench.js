@@ -5,7 +5,7 @@ import { by, fill, make } from "./elements.js";
 import { sig } from "./numbers.js";
 import { measuredLine, measuredPanelsOf } from "./measured.js";
 import { Panels, panelsOf, poseLine } from "./panels.js";
-import { Evidence, number, showChange, showFall, showSuspects } from "./suspects.js";
+import { Evidence, number, showChange, showFall, showCandidates } from "./candidates.js";
 import { showLaws } from "./law.js";
 import { ConfusionMap, FormulaForm, showHistory, showLimits, showNext, showParameters } from "./tools.js";
 
@@ -74,7 +74,7 @@ export class Bench {
     by("bench-list").hidden = true;
     by("bench-run").hidden = false;
     by("run-name").textContent = run.name;
-    for (const id of ["fall-card", "suspects", "evidence", "change", "tool", "pose"]) fill(by(id));
+    for (const id of ["fall-card", "candidates", "evidence", "change", "tool", "pose"]) fill(by(id));
     by("change-card").hidden = by("evidence-card").hidden = true;
     this.#panels.clear();
     this.#select([], false);
@@ -187,19 +187,19 @@ export class Bench {
                              make("b", {}, `${sig(times, 3)} times`), make("span", { class: "track ratio", title: "1 to 1000 times the noise, lines at 10 and 100" }, ratio)),
          make("p", { "data-key": "text" }, explain.text), explain.notes.filter((n) => !explain.text.includes(n.slice(0, 60))).map((n) => make("p", { class: "caption" }, n)),
          (explain.chosen_in_doubt ?? []).map((d) => make("p", { class: "warn" }, d.text ?? `${d.spec}: ${d.alternatives?.join(", ") ?? ""}`)));
-    this.#drawSuspects();
+    this.#drawCandidates();
     this.#map = null;
     if (explain.confusion && explain.confusion.effects.length > 1)
       this.#map = new ConfusionMap(explain.confusion, words("confusion"), (a, b) => this.#settle(a, b));
   }
-  #drawSuspects() {
+  #drawCandidates() {
     const { explain } = this.#answers;
-    fill(by("suspects"), make("h2", {}, "What could be missing"), showSuspects(explain, explain.figures.find((f) => f.name === "suspects"), this.#chosen, (c) => this.#choose(c)));
+    fill(by("candidates"), make("h2", {}, "What could be missing"), showCandidates(explain, explain.figures.find((f) => f.name === "candidates"), this.#chosen, (c) => this.#choose(c)));
   }
 
   async #choose(candidate) {
     this.#chosen = candidate.spec;
-    this.#drawSuspects();
+    this.#drawCandidates();
     by("evidence-card").hidden = false;
     fill(by("evidence"), make("p", { class: "caption" }, `the evidence for ${candidate.effect} is being computed`));
     const why = await this.#ask("why", { effect: candidate.effect, at: candidate.where });

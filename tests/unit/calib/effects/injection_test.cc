@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/library.h"
 #include "calib/fit/joint/joint_fit.h"

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <bit>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "proto/units.h"

@@ -2,6 +2,7 @@
 #include "calib/report/described_array.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::calib::report {
 namespace {

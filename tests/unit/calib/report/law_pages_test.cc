@@ -12,12 +12,12 @@ namespace mgtd::calib::report {
 namespace {
 
 using discovery::DiscoveryReport;
-using discovery::Verdict;
+using discovery::LawFinding;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
 /// A LAW-SET of two formulas over the temperature, with its curve.
-DiscoveryReport found(Verdict verdict) {
+DiscoveryReport found(LawFinding verdict) {
   discovery::FoundLaw law{.more = 3, .log10_p = -20, .stands_out = true, .d = 12, .walk_P = 0.01};
   law.covariates = {{"T", 0.99}, {"t_h", 0.01}};
   law.where = {{"s3.z", 1.0}};
@@ -36,7 +36,7 @@ DiscoveryReport found(Verdict verdict) {
 }
 
 TEST(LawPages, SayTheFormulaWhatElseItCouldBeAndHowSureThatIs) {
-  const auto pages = law_pages(to_json(found(Verdict::law_set), "run.mgtrun"));
+  const auto pages = law_pages(to_json(found(LawFinding::law_set), "run.mgtrun"));
   ASSERT_TRUE(pages) << pages.error().text();
   ASSERT_EQ(pages->size(), 1U);
   const LawPage& page = pages->front();
@@ -52,7 +52,7 @@ TEST(LawPages, SayTheFormulaWhatElseItCouldBeAndHowSureThatIs) {
 }
 
 TEST(LawPages, DrawTheCurveAndWhereTheFormulaLeavesItsBand) {
-  const auto pages = law_pages(to_json(found(Verdict::law), "run.mgtrun"));
+  const auto pages = law_pages(to_json(found(LawFinding::law), "run.mgtrun"));
   ASSERT_TRUE(pages && pages->front().curve);
   const figures::Figure& curve = *pages->front().curve;
   EXPECT_THAT(curve.svg, HasSubstr("temperature of s3, °C"));
@@ -62,14 +62,14 @@ TEST(LawPages, DrawTheCurveAndWhereTheFormulaLeavesItsBand) {
 }
 
 TEST(LawPages, GiveNoFormulaToAShape) {
-  const auto pages = law_pages(to_json(found(Verdict::shape_only), "run.mgtrun"));
+  const auto pages = law_pages(to_json(found(LawFinding::shape_only), "run.mgtrun"));
   ASSERT_TRUE(pages);
   EXPECT_EQ(pages->front().title, "SHAPE-ONLY on s3.z");
-  EXPECT_TRUE(law_pages(to_json(found(Verdict::pass), "run.mgtrun"))->empty());
+  EXPECT_TRUE(law_pages(to_json(found(LawFinding::pass), "run.mgtrun"))->empty());
 }
 
 TEST(LawPages, RefuseWhatIsNoSearch) {
-  nlohmann::json other = to_json(found(Verdict::law), "run.mgtrun");
+  nlohmann::json other = to_json(found(LawFinding::law), "run.mgtrun");
   EXPECT_FALSE(law_pages(nlohmann::json::object()));
   other["schema"] = "mgt.discover/9";
   EXPECT_FALSE(law_pages(other));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/sealed_calibration.h"
 #include "tests/unit/daemon/temp_dir.h"

@@ -2,6 +2,7 @@
 #include "daemon/cli/course_text.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "proto/run_course.h"
 #include "proto/run_log.h"

@@ -2,6 +2,7 @@
 #include "daemon/cli/meant_calibration.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::daemon::cli {
 namespace {

@@ -38,10 +38,10 @@ TEST(SerialLines, NothingKnownChangesNothing) {
 }
 
 TEST(SerialLines, ComesFromWhatEachDriverIsTold) {
-  EXPECT_EQ(serial_told("obsdaq", "<obsDAQ V5.5.7>, serial 1002"), "1002");
-  EXPECT_EQ(serial_told("obsdaq", "<obsDAQ V5.5.7>"), "");
-  EXPECT_EQ(serial_told("gcs2", "PI, C-863, 0115500620, 1.2.5"), "0115500620");
-  EXPECT_EQ(serial_told("gsm", "Gem Systems GSM-19W 3101329 v6.0"), "3101329");
+  EXPECT_EQ(stated_serial("obsdaq", "<obsDAQ V5.5.7>, serial 1002"), "1002");
+  EXPECT_EQ(stated_serial("obsdaq", "<obsDAQ V5.5.7>"), "");
+  EXPECT_EQ(stated_serial("gcs2", "PI, C-863, 0115500620, 1.2.5"), "0115500620");
+  EXPECT_EQ(stated_serial("gsm", "Gem Systems GSM-19W 3101329 v6.0"), "3101329");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "daemon/cli/watch_panel.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 namespace mgtd::daemon::cli {
 namespace {

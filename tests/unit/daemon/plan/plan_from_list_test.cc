@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/criticism/search/next_pair.h"
 #include "daemon/plan/run_duration.h"

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <nlohmann/json.hpp>
+
 namespace mgtd::daemon::run {
 namespace {
 
@@ -110,7 +112,7 @@ TEST(JudgeRun, FormulasAreToldApartLikeEffects) {
   ExplainReport explained;
   explained.finding = Finding::unknown;
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::Verdict::law_set;
+  found.verdict = calib::discovery::LawFinding::law_set;
   found.laws.emplace_back();
   found.laws.front().formulas.resize(2);
   found.laws.front().formulas.front().formula = "z^4";
@@ -130,7 +132,7 @@ TEST(JudgeRun, ALawEndsIt) {
   ExplainReport explained;
   explained.finding = Finding::unknown;
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::Verdict::law;
+  found.verdict = calib::discovery::LawFinding::law;
   found.laws.emplace_back();
   found.laws.front().formulas.resize(1);
   const NextPoses out =
@@ -151,7 +153,7 @@ TEST(JudgeRun, APartThatIsOpenIsToldApart) {
   NextReport next;
   next.effect = "a", next.alternative = "b";
   next.steps = {step("approached from both sides", 7, 0.97, true)};
-  for (const auto verdict : {calib::discovery::Verdict::law, calib::discovery::Verdict::shape_only}) {
+  for (const auto verdict : {calib::discovery::LawFinding::law, calib::discovery::LawFinding::shape_only}) {
     found.verdict = verdict;
     const NextPoses out =
         next_poses({.table = table, .explained = explained, .next = next, .discovered = found}, 30, 4);
@@ -160,13 +162,13 @@ TEST(JudgeRun, APartThatIsOpenIsToldApart) {
   }
 }
 
-/// An effect of the library that leads by little is one of several rivals.
+/// An effect of the library that leads by little is one of several hypotheses.
 TEST(JudgeRun, AnEffectThatLeadsByLittleLeavesFormulasOpen) {
   const PoseTable table = ten_poses();
   const ExplainReport explained;
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::Verdict::library;
-  found.reason = {calib::discovery::VerdictReason::Rule::library, 0.5, 0.98};
+  found.verdict = calib::discovery::LawFinding::library;
+  found.reason = {calib::discovery::LawFindingReason::Rule::library, 0.5, 0.98};
   RunEvidence evidence{.table = table, .explained = explained, .next = {}, .discovered = found};
   EXPECT_TRUE(evidence.leaves_formulas_open());
   evidence.discovered->reason.measured = 0.99;
@@ -183,7 +185,7 @@ TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
   NextPoses out = next_poses(evidence, 30, 4);
   EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LIBRARY: axis.cubic@s3.z; for the rest PASS");
   EXPECT_THAT(out.judgement.next, HasSubstr("nothing is left beside axis.cubic@s3.z"));
-  evidence.discovered->verdict = calib::discovery::Verdict::law;
+  evidence.discovered->verdict = calib::discovery::LawFinding::law;
   evidence.discovered->laws.emplace_back();
   evidence.discovered->laws.front().formulas.resize(1);
   out = next_poses(evidence, 30, 4);

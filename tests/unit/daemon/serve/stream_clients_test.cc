@@ -2,6 +2,8 @@
 // Clients that are slow, dead, flooding, malformed or too many.
 
 #include "proto/watch_request.h"
+
+#include <nlohmann/json.hpp>
 #include "tests/unit/daemon/serve/stream_server_bench.h"
 
 namespace mgtd::daemon::serve {

@@ -2,6 +2,7 @@
 #include "calib/effects/library/library.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "calib/effects/library/effect_family.h"
 #include "calib/effects/library/effect_page.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/report/figures/accuracy_figure.h"
+#include "calib/report/figures/candidates_figure.h"
 #include "calib/report/figures/lanes_figure.h"
 #include "calib/report/figures/law_figure.h"
 #include "calib/report/figures/limits_figures.h"
@@ -15,7 +16,6 @@
 #include "calib/report/figures/residual_figure.h"
 #include "calib/report/figures/scatter_figures.h"
 #include "calib/report/figures/sky_figures.h"
-#include "calib/report/figures/suspects_figure.h"
 #include "calib/report/figures/waterfall_figure.h"
 
 /// One example of every figure, of the kind that a run with a warming sensor gives: made by formulas, the
@@ -124,9 +124,9 @@ inline WaterfallValues waterfall_example() {
                      .held_out = 0.081}};
 }
 
-inline SuspectsValues suspects_example() {
+inline CandidatesValues candidates_example() {
   return {
-      .suspects =
+      .candidates =
           {{.effect = "axis.offset.temperature",
             .where = "s3.z",
             .d = 36.7,
@@ -307,7 +307,7 @@ inline std::vector<Figure> examples(std::size_t poses) {
           autocorrelation_figure(autocorrelation_example()),
           skies_figure(skies_example(poses)),
           waterfall_figure(waterfall_example()),
-          suspects_figure(suspects_example()),
+          candidates_figure(candidates_example()),
           evidence_figure(evidence_example(poses)),
           coverage_figure(coverage_example(poses)),
           accuracy_figure(accuracy_example()),

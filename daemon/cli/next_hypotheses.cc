@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/cli/next_rivals.h"
+#include "daemon/cli/next_hypotheses.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 
 #include "calib/discovery/discover.h"
 #include "calib/effects/library/library.h"
-#include "daemon/run/law_rivals.h"
+#include "daemon/run/law_hypotheses.h"
 #include "daemon/store/user_formulas.h"
 
 namespace mgtd::daemon::cli {
 namespace {
 
-using calib::design::Rival;
+using calib::design::Hypothesis;
 using calib::effects::EffectSpec;
 
 int sensors_of(const store::PoseSource& source) {
@@ -32,10 +32,10 @@ std::string shown(const EffectSpec& spec) {
   return fmt::format("{}{}{}: {}", spec.name, where.empty() ? "" : "@", where, *expression);
 }
 
-/// The model without the effects of a rival.
-void leave_out(calib::fit::FitOptions& options, const std::vector<Rival>& rivals) {
-  for (const Rival& rival : rivals) {
-    for (const std::string& spec : rival.specs) {
+/// The model without the effects of a hypothesis.
+void leave_out(calib::fit::FitOptions& options, const std::vector<Hypothesis>& hypotheses) {
+  for (const Hypothesis& hypothesis : hypotheses) {
+    for (const std::string& spec : hypothesis.specs) {
       const auto parsed = EffectSpec::parse(spec);
       std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) {
         return e->spec() == spec || (parsed && parsed->find("expr") != nullptr && e->name() == parsed->name);
@@ -56,7 +56,7 @@ Result<Question> question(const std::vector<std::string>& specs, const store::Po
     if (spec->where && !place) place = spec->where;
     parsed.push_back(*std::move(spec));
   }
-  Question out{.options = options, .rivals = {}};
+  Question out{.options = options, .hypotheses = {}};
   for (EffectSpec& spec : parsed) {
     if (!spec.where && place) {
       EffectSpec there = spec;
@@ -65,9 +65,9 @@ Result<Question> question(const std::vector<std::string>& specs, const store::Po
     }
     if (const auto effect = calib::effects::library::make_effect(spec); !effect)
       return tl::unexpected(effect.error());
-    out.rivals.push_back({.name = shown(spec), .specs = {spec.text()}, .P = {}});
+    out.hypotheses.push_back({.name = shown(spec), .specs = {spec.text()}, .P = {}});
   }
-  leave_out(out.options, out.rivals);
+  leave_out(out.options, out.hypotheses);
   return out;
 }
 
@@ -96,25 +96,25 @@ Result<Question> question_in_doubt(const std::vector<calib::criticism::search::C
     });
     if (any) return question(specs, source, options);
   }
-  return Question{.options = options, .rivals = {}};
+  return Question{.options = options, .hypotheses = {}};
 }
 
 Result<Question> question_by_discovery(const std::string& place, const store::PoseSource& source,
                                        const calib::fit::FitOptions& options) {
-  Question out{.options = options, .rivals = {}};
+  Question out{.options = options, .hypotheses = {}};
   const auto found = calib::discovery::discover(source.table, {.fit = options, .checks = false});
   if (!found) return tl::unexpected(found.error());
-  using calib::discovery::Verdict;
-  if (found->verdict == Verdict::pass || found->verdict == Verdict::noise_like ||
-      found->verdict == Verdict::library)
+  using calib::discovery::LawFinding;
+  if (found->verdict == LawFinding::pass || found->verdict == LawFinding::noise_like ||
+      found->verdict == LawFinding::library)
     return out;
-  out.believed = found->verdict != Verdict::shape_only;
+  out.believed = found->verdict != LawFinding::shape_only;
   const auto asked = [&](const calib::discovery::FoundLaw& law) {
     return law.formulas.size() > 1 && (place.empty() || law.formulas.front().where == place);
   };
   const auto law = std::find_if(found->laws.begin(), found->laws.end(), asked);
   if (law == found->laws.end()) return out;
-  out.rivals = run::rivals_of(*law, sensors_of(source));
+  out.hypotheses = run::hypotheses_of(*law, sensors_of(source));
   for (const calib::discovery::FoundLaw& other : found->laws) {
     if (&other == &*law) continue;
     if (other.d < law->d) continue;  // what is weaker stands in the residual as noise does

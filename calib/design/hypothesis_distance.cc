@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/design/rival_distance.h"
+#include "calib/design/hypothesis_distance.h"
 
 #include <algorithm>
 #include <numeric>
@@ -25,10 +25,11 @@ Eigen::MatrixXd inverse_of_products(const Eigen::MatrixXd& A) {
 
 }  // namespace
 
-RivalDistance::RivalDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed,
-                             std::vector<Described> described, const std::vector<RivalPair>& pairs)
+HypothesisDistance::HypothesisDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed,
+                                       std::vector<Described> described,
+                                       const std::vector<HypothesisPair>& pairs)
     : fixed_(fixed), described_(std::move(described)) {
-  for (const RivalPair& pair : pairs) {
+  for (const HypothesisPair& pair : pairs) {
     const Eigen::MatrixXd other = columns_of(pair.other, rows);
     const Eigen::VectorXd v = signature_of(pair.truth, rows);
     State state{.pair = pair, .x = linear::least_squares(other, v), .K = inverse_of_products(other)};
@@ -37,19 +38,19 @@ RivalDistance::RivalDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed,
   }
 }
 
-Eigen::MatrixXd RivalDistance::columns_of(std::size_t other, const Eigen::MatrixXd& rows) const {
+Eigen::MatrixXd HypothesisDistance::columns_of(std::size_t other, const Eigen::MatrixXd& rows) const {
   const Described& own = described_[other];
   Eigen::MatrixXd out(rows.rows(), fixed_ + own.count);
   out << rows.leftCols(fixed_), rows.middleCols(own.first, own.count);
   return out;
 }
 
-Eigen::VectorXd RivalDistance::signature_of(std::size_t truth, const Eigen::MatrixXd& rows) const {
+Eigen::VectorXd HypothesisDistance::signature_of(std::size_t truth, const Eigen::MatrixXd& rows) const {
   const Described& own = described_[truth];
   return rows.middleCols(own.first, own.count) * own.size;
 }
 
-std::vector<std::size_t> RivalDistance::worst_first() const {
+std::vector<std::size_t> HypothesisDistance::worst_first() const {
   std::vector<std::size_t> out(pairs_.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
   std::stable_sort(out.begin(), out.end(),
@@ -57,7 +58,8 @@ std::vector<std::size_t> RivalDistance::worst_first() const {
   return out;
 }
 
-RivalDistance::Innovation RivalDistance::innovation(const State& state, const Eigen::MatrixXd& rows) const {
+HypothesisDistance::Innovation HypothesisDistance::innovation(const State& state,
+                                                              const Eigen::MatrixXd& rows) const {
   Innovation out{.columns = columns_of(state.pair.other, rows), .e = {}, .S = {}};
   out.e = signature_of(state.pair.truth, rows) - out.columns * state.x;
   out.S = out.columns * state.K * out.columns.transpose();
@@ -65,12 +67,12 @@ RivalDistance::Innovation RivalDistance::innovation(const State& state, const Ei
   return out;
 }
 
-double RivalDistance::gain(std::size_t pair, const Eigen::MatrixXd& rows) const {
+double HypothesisDistance::gain(std::size_t pair, const Eigen::MatrixXd& rows) const {
   const Innovation now = innovation(pairs_[pair], rows);
   return now.e.dot(linear::solve_by_ldlt(now.S, now.e));
 }
 
-void RivalDistance::add(const Eigen::MatrixXd& rows) {
+void HypothesisDistance::add(const Eigen::MatrixXd& rows) {
   for (State& state : pairs_) {
     const Innovation now = innovation(state, rows);
     const Eigen::VectorXd whitened = linear::solve_by_ldlt(now.S, now.e);
@@ -81,7 +83,7 @@ void RivalDistance::add(const Eigen::MatrixXd& rows) {
   }
 }
 
-std::size_t best_of(const RivalDistance& distance, const std::vector<PossiblePose>& group) {
+std::size_t best_of(const HypothesisDistance& distance, const std::vector<PossiblePose>& group) {
   constexpr double kNothing = 1e-6;
   for (const std::size_t pair : distance.worst_first()) {
     std::size_t best = 0;
@@ -95,7 +97,7 @@ std::size_t best_of(const RivalDistance& distance, const std::vector<PossiblePos
   return 0;
 }
 
-std::vector<std::size_t> placed(RivalDistance distance,
+std::vector<std::size_t> placed(HypothesisDistance distance,
                                 const std::vector<std::vector<PossiblePose>>& groups) {
   std::vector<std::size_t> out;
   for (const std::vector<PossiblePose>& group : groups) {

@@ -7,7 +7,7 @@
 namespace mgtd::calib::design {
 
 /// One of several descriptions of the same residual: effects of the library or formulas, together.
-struct Rival {
+struct Hypothesis {
   std::string name{};                ///< for a person
   std::vector<std::string> specs{};  ///< as --with reads them
   std::optional<double> P{};         ///< its probability on the run, where somebody computed one

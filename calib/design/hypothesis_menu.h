@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "calib/design/hypothesis_fit.h"
 #include "calib/design/law_actions.h"
 #include "calib/design/next_measurement.h"
-#include "calib/design/rival_fit.h"
 
 /// Which further measurement would tell several formulas, or effects, apart: all that could stand in one
 /// place.
@@ -16,7 +16,7 @@
 /// Each has the coefficients that fit the residual of the run best (one linearisation of the joint fit, as in
 /// calib/discovery). Of two, the one that leaves less is taken as true, and
 ///     lambda_ab = |(I - P_b) z_a gamma_a|^2
-/// is computed on the run with the poses of each action behind it (rival_distance.h). The pair with the
+/// is computed on the run with the poses of each action behind it (hypothesis_distance.h). The pair with the
 /// smallest lambda decides; pairs that no action tells apart are told and set aside. Where an action leaves
 /// the attitudes open, those are taken that set the worst pair apart most a minute, one pose after the other.
 ///
@@ -24,7 +24,7 @@
 /// beyond that, less time is all that is better.
 namespace mgtd::calib::design {
 
-struct RivalStep {
+struct HypothesisStep {
   NextMeasurement measurement;
   std::vector<Pose> poses;
   bool by_the_rig{false}, other_day{false};
@@ -35,20 +35,22 @@ struct LeftOut {
   std::string action, why;
 };
 
-struct RivalMenu {
-  RivalFit rivals;
-  RivalPair worst;  ///< on the run, of those that something tells apart
+struct HypothesisMenu {
+  HypothesisFit hypotheses;
+  HypothesisPair worst;  ///< on the run, of those that something tells apart
   double lambda_before{0};
   double p_right_before{1};
-  std::vector<RivalStep> steps;  ///< best first; what adds nothing is no step
+  std::vector<HypothesisStep> steps;  ///< best first; what adds nothing is no step
   std::vector<LeftOut> left_out;
-  std::vector<RivalPair> never;  ///< pairs that the run does not tell apart, and no action either
+  std::vector<HypothesisPair> never;  ///< pairs that the run does not tell apart, and no action either
 };
 
-/// `fit`: of a model without the rivals. Refuses fewer than two rivals, and what rival_fit() refuses.
-[[nodiscard]] Result<RivalMenu> rival_menu(const PoseTable& run, const fit::joint::JointFit& fit,
-                                           const fit::joint::JointOptions& options,
-                                           const std::vector<Rival>& rivals, std::uint64_t seed,
-                                           std::span<const LawAction> actions = law_actions());
+/// `fit`: of a model without the hypotheses. Refuses fewer than two hypotheses, and what hypothesis_fit()
+/// refuses.
+[[nodiscard]] Result<HypothesisMenu> hypothesis_menu(const PoseTable& run, const fit::joint::JointFit& fit,
+                                                     const fit::joint::JointOptions& options,
+                                                     const std::vector<Hypothesis>& hypotheses,
+                                                     std::uint64_t seed,
+                                                     std::span<const LawAction> actions = law_actions());
 
 }  // namespace mgtd::calib::design

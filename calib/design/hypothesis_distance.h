@@ -23,15 +23,15 @@ struct Described {
 };
 
 /// If `truth` is true and `other` is not.
-struct RivalPair {
+struct HypothesisPair {
   std::size_t truth{0}, other{0};
 };
 
-class RivalDistance {
+class HypothesisDistance {
  public:
   /// `rows`: of the run; the first `fixed` columns are F.
-  RivalDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed, std::vector<Described> described,
-                const std::vector<RivalPair>& pairs);
+  HypothesisDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed, std::vector<Described> described,
+                     const std::vector<HypothesisPair>& pairs);
 
   /// Between the pair of that number, with all rows that were added.
   [[nodiscard]] double lambda(std::size_t pair) const { return pairs_[pair].lambda; }
@@ -43,7 +43,7 @@ class RivalDistance {
 
  private:
   struct State {
-    RivalPair pair;
+    HypothesisPair pair;
     Eigen::VectorXd x;
     Eigen::MatrixXd K;
     double lambda{0};
@@ -70,10 +70,10 @@ struct PossiblePose {
 
 /// That of a group which adds most a minute to the lambda of the worst pair, or of the next, where none of
 /// the group adds anything to that.
-[[nodiscard]] std::size_t best_of(const RivalDistance& distance, const std::vector<PossiblePose>& group);
+[[nodiscard]] std::size_t best_of(const HypothesisDistance& distance, const std::vector<PossiblePose>& group);
 
 /// The best of each group in turn, those before it measured. Returns the place within each group.
-[[nodiscard]] std::vector<std::size_t> placed(RivalDistance distance,
+[[nodiscard]] std::vector<std::size_t> placed(HypothesisDistance distance,
                                               const std::vector<std::vector<PossiblePose>>& groups);
 
 }  // namespace mgtd::calib::design

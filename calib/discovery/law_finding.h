@@ -13,8 +13,8 @@ namespace mgtd::calib::discovery {
 [[nodiscard]] bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first);
 
 struct JudgedLaws {
-  Verdict verdict{Verdict::pass};
-  VerdictReason reason{};
+  LawFinding verdict{LawFinding::pass};
+  LawFindingReason reason{};
 };
 /// `report`: with what is left after the laws. What must stand out does so of all `looks` together; what is
 /// left counts as a single look finds it, because that takes a name away.

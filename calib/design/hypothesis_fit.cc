@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/design/rival_fit.h"
+#include "calib/design/hypothesis_fit.h"
 
 #include <fmt/format.h>
 
@@ -43,13 +43,14 @@ Result<std::string> without_open_number(const std::string& text, const ModelOnPo
 }
 
 /// Whether a has more coefficients than b, and can be what b is on the run.
-bool wider(const RivalFit& fit, const std::vector<Eigen::MatrixXd>& columns, std::size_t a, std::size_t b) {
+bool wider(const HypothesisFit& fit, const std::vector<Eigen::MatrixXd>& columns, std::size_t a,
+           std::size_t b) {
   if (fit.size[a].size() <= fit.size[b].size()) return false;
   const Eigen::VectorXd v = columns[b] * fit.size[b];
   return beyond_columns(v, columns[a]).norm() < kContained * v.norm();
 }
 
-std::vector<RivalPair> pairs_of(const RivalFit& fit, const std::vector<Eigen::MatrixXd>& columns) {
+std::vector<HypothesisPair> pairs_of(const HypothesisFit& fit, const std::vector<Eigen::MatrixXd>& columns) {
   const std::size_t n = fit.d.size();
   const auto holds_another = [&](std::size_t a) {
     for (std::size_t b = 0; b < n; ++b)
@@ -63,11 +64,11 @@ std::vector<RivalPair> pairs_of(const RivalFit& fit, const std::vector<Eigen::Ma
     asked.clear();
     for (std::size_t a = 0; a < n; ++a) asked.push_back(a);
   }
-  std::vector<RivalPair> out;
+  std::vector<HypothesisPair> out;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     for (std::size_t j = i + 1; j < asked.size(); ++j) {
       const std::size_t a = asked[i], b = asked[j];
-      out.push_back(fit.d[b] > fit.d[a] ? RivalPair{b, a} : RivalPair{a, b});
+      out.push_back(fit.d[b] > fit.d[a] ? HypothesisPair{b, a} : HypothesisPair{a, b});
     }
   }
   return out;
@@ -75,31 +76,32 @@ std::vector<RivalPair> pairs_of(const RivalFit& fit, const std::vector<Eigen::Ma
 
 }  // namespace
 
-Result<RivalFit> rival_fit(const PoseTable& run, const fit::joint::JointFit& fit,
-                           const fit::joint::JointOptions& options, std::vector<Rival> rivals) {
+Result<HypothesisFit> hypothesis_fit(const PoseTable& run, const fit::joint::JointFit& fit,
+                                     const fit::joint::JointOptions& options,
+                                     std::vector<Hypothesis> hypotheses) {
   const auto model = model_on_poses(run, fit, options);
   if (!model) return tl::unexpected(model.error());
   const tests::Residual residual(model->problem, model->state, 0);
-  RivalFit out;
+  HypothesisFit out;
   std::vector<Eigen::MatrixXd> all;
-  for (Rival& rival : rivals) {
-    for (std::string& spec : rival.specs) {
+  for (Hypothesis& hypothesis : hypotheses) {
+    for (std::string& spec : hypothesis.specs) {
       auto found = without_open_number(spec, *model, residual, run);
       if (!found) return tl::unexpected(found.error());
       spec = *std::move(found);
     }
-    const auto rows = rows_of(*model, run, rival.specs);
+    const auto rows = rows_of(*model, run, hypothesis.specs);
     if (!rows) return tl::unexpected(rows.error());
     tests::Residual::Columns columns = residual.project(*rows);
     if (!(columns.projected.norm() > kLeft * columns.norms.norm()))
       return fail(ErrorCode::refused,
-                  fmt::format("{}: the calibration takes it up whole on these poses", rival.name),
+                  fmt::format("{}: the calibration takes it up whole on these poses", hypothesis.name),
                   "such a law changes nothing; mgt define --try examines a formula");
     out.size.push_back(linear::least_squares(columns.projected, residual.value()));
     out.d.push_back((columns.projected * out.size.back()).norm());
     all.push_back(std::move(columns.projected));
   }
-  out.rivals = std::move(rivals);
+  out.hypotheses = std::move(hypotheses);
   out.pairs = pairs_of(out, all);
   out.assumed = *std::max_element(out.d.begin(), out.d.end()) < kAssumedBelow;
   for (std::size_t i = 0; out.assumed && i < out.size.size(); ++i)
@@ -107,37 +109,38 @@ Result<RivalFit> rival_fit(const PoseTable& run, const fit::joint::JointFit& fit
   return out;
 }
 
-Result<std::vector<double>> distances_on(const PoseTable& table, const RivalFit& rivals,
+Result<std::vector<double>> distances_on(const PoseTable& table, const HypothesisFit& hypotheses,
                                          const fit::joint::JointFit& fit,
                                          const fit::joint::JointOptions& options) {
   const auto model = model_on_poses(table, fit, options);
   if (!model) return tl::unexpected(model.error());
   const tests::Residual residual(model->problem, model->state, 0);
   std::vector<Eigen::MatrixXd> columns;
-  for (const Rival& rival : rivals.rivals) {
-    const auto rows = rows_of(*model, table, rival.specs);
+  for (const Hypothesis& hypothesis : hypotheses.hypotheses) {
+    const auto rows = rows_of(*model, table, hypothesis.specs);
     if (!rows) return tl::unexpected(rows.error());
     columns.push_back(residual.project(*rows).projected);
   }
   std::vector<double> out;
-  for (const RivalPair& pair : rivals.pairs)
+  for (const HypothesisPair& pair : hypotheses.pairs)
     out.push_back(
-        beyond_columns(columns[pair.truth] * rivals.size[pair.truth], columns[pair.other]).squaredNorm());
+        beyond_columns(columns[pair.truth] * hypotheses.size[pair.truth], columns[pair.other]).squaredNorm());
   return out;
 }
 
-Result<RivalRows> rival_rows(const PoseTable& table, std::size_t of_run, const RivalFit& rivals,
-                             const fit::joint::JointFit& fit, const fit::joint::JointOptions& options) {
+Result<HypothesisRows> hypothesis_rows(const PoseTable& table, std::size_t of_run,
+                                       const HypothesisFit& hypotheses, const fit::joint::JointFit& fit,
+                                       const fit::joint::JointOptions& options) {
   const auto model = model_on_poses(table, fit, options);
   if (!model) return tl::unexpected(model.error());
   const tests::LinearRows linear = tests::linear_rows(model->problem, model->state);
   const tests::PriorRows priors = tests::prior_rows(model->problem, model->state);
-  RivalRows out{.run = {}, .further = {}, .fixed = linear.fixed.cols(), .described = {}};
+  HypothesisRows out{.run = {}, .further = {}, .fixed = linear.fixed.cols(), .described = {}};
   Eigen::MatrixXd all = linear.fixed;
-  for (std::size_t i = 0; i < rivals.rivals.size(); ++i) {
-    const auto rows = rows_of(*model, table, rivals.rivals[i].specs);
+  for (std::size_t i = 0; i < hypotheses.hypotheses.size(); ++i) {
+    const auto rows = rows_of(*model, table, hypotheses.hypotheses[i].specs);
     if (!rows) return tl::unexpected(rows.error());
-    out.described.push_back({.first = all.cols(), .count = rows->cols(), .size = rivals.size[i]});
+    out.described.push_back({.first = all.cols(), .count = rows->cols(), .size = hypotheses.size[i]});
     all.conservativeResize(Eigen::NoChange, all.cols() + rows->cols());
     all.rightCols(rows->cols()) = *rows;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/design/rival_distance.h"
+#include "calib/design/hypothesis_distance.h"
 
 #include <gmock/gmock.h>
 
@@ -25,12 +25,12 @@ std::vector<Described> three() {
   }
   return out;
 }
-const std::vector<RivalPair> kPairs{{0, 1}, {0, 2}};
+const std::vector<HypothesisPair> kPairs{{0, 1}, {0, 2}};
 
-TEST(RivalDistance, RowsThatAreAddedCountAsThoseThatWereThere) {
+TEST(HypothesisDistance, RowsThatAreAddedCountAsThoseThatWereThere) {
   const Eigen::MatrixXd all = drawn(60, 5, 1);
-  RivalDistance distance(all.topRows(40), 2, three(), kPairs);
-  const RivalDistance whole(all, 2, three(), kPairs);
+  HypothesisDistance distance(all.topRows(40), 2, three(), kPairs);
+  const HypothesisDistance whole(all, 2, three(), kPairs);
   const double before = distance.lambda(1), gain = distance.gain(1, all.middleRows(40, 12));
   distance.add(all.middleRows(40, 12));
   EXPECT_NEAR(distance.lambda(1), before + gain, 1e-9);
@@ -53,21 +53,21 @@ Eigen::MatrixXd alike() {
   return out;
 }
 
-TEST(RivalDistance, ThePoseThatTellsMostAMinuteIsTaken) {
+TEST(HypothesisDistance, ThePoseThatTellsMostAMinuteIsTaken) {
   const std::vector<std::vector<PossiblePose>> groups{{pose(0, 0, 1), pose(1, 1, 1), pose(1.2, 1.2, 9)}};
-  EXPECT_THAT(placed(RivalDistance(alike(), 2, three(), kPairs), groups), ElementsAre(1U));
+  EXPECT_THAT(placed(HypothesisDistance(alike(), 2, three(), kPairs), groups), ElementsAre(1U));
 }
 
-TEST(RivalDistance, ThePairThatIsWorstByThenDecides) {
+TEST(HypothesisDistance, ThePairThatIsWorstByThenDecides) {
   const std::vector<PossiblePose> group{pose(1, 0, 1), pose(0, 1, 1)};
-  const auto which = placed(RivalDistance(alike(), 2, three(), kPairs), {group, group});
+  const auto which = placed(HypothesisDistance(alike(), 2, three(), kPairs), {group, group});
   EXPECT_NE(which[0], which[1]) << "after one pair is helped it is the other's turn";
 }
 
-TEST(RivalDistance, WhereNothingHelpsTheWorstPairTheNextIsServed) {
+TEST(HypothesisDistance, WhereNothingHelpsTheWorstPairTheNextIsServed) {
   // 0 and 1 stay the same whatever is measured.
   const std::vector<PossiblePose> group{pose(0, 0, 1), pose(0, 1, 1)};
-  EXPECT_THAT(placed(RivalDistance(alike(), 2, three(), kPairs), {group}), ElementsAre(1U));
+  EXPECT_THAT(placed(HypothesisDistance(alike(), 2, three(), kPairs), {group}), ElementsAre(1U));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/discovery/law_verdict.h"
+#include "calib/discovery/law_finding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,19 +45,19 @@ double over_random(const FoundLaw& law) { return std::min(law.over_walk, law.ove
 
 }  // namespace
 
-std::string_view to_string(Verdict verdict) {
+std::string_view to_string(LawFinding verdict) {
   switch (verdict) {
-    case Verdict::pass:
+    case LawFinding::pass:
       return "PASS";
-    case Verdict::law:
+    case LawFinding::law:
       return "LAW";
-    case Verdict::law_set:
+    case LawFinding::law_set:
       return "LAW-SET";
-    case Verdict::library:
+    case LawFinding::library:
       return "LIBRARY";
-    case Verdict::shape_only:
+    case LawFinding::shape_only:
       return "SHAPE-ONLY";
-    case Verdict::noise_like:
+    case LawFinding::noise_like:
       return "NOISE-LIKE";
   }
   return "";
@@ -74,37 +74,37 @@ bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first) {
 
 JudgedLaws verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
                       const DiscoveryReport& report, int looks) {
-  using Rule = VerdictReason::Rule;
+  using Rule = LawFindingReason::Rule;
   const bool left = report.left_sigmas > kLeft;
   const double log10_p = laws.empty() ? 0 : laws.front().law.log10_p;
   if (!stands_out(log10_p, looks)) {
-    if (left) return {Verdict::noise_like, {Rule::only_scatter, report.left_sigmas, kLeft}};
-    if (in_force.wanders) return {Verdict::noise_like, {.rule = Rule::only_wander}};
-    return {Verdict::pass, {Rule::nothing_found, log10_p, limit_log10_p(looks)}};
+    if (left) return {LawFinding::noise_like, {Rule::only_scatter, report.left_sigmas, kLeft}};
+    if (in_force.wanders) return {LawFinding::noise_like, {.rule = Rule::only_wander}};
+    return {LawFinding::pass, {Rule::nothing_found, log10_p, limit_log10_p(looks)}};
   }
   const auto over_walk = log10_p_over_walk(in_force, laws.front().head, report.questions);
   if (over_walk && !stands_out(*over_walk, looks))
-    return {Verdict::noise_like, {Rule::walk_instead, *over_walk, limit_log10_p(looks)}};
+    return {LawFinding::noise_like, {Rule::walk_instead, *over_walk, limit_log10_p(looks)}};
   const FoundLaw& first = laws.front().law;
   if (first.random_beside)
-    return {Verdict::shape_only, {.rule = Rule::random_beside, .measured = first.over_nothing_beside}};
+    return {LawFinding::shape_only, {.rule = Rule::random_beside, .measured = first.over_nothing_beside}};
   const double needed = kOverRandom + 2 * std::log(looks);
   if (over_random(first) < 0)
-    return {Verdict::noise_like, {Rule::random_instead, over_random(first), needed}};
+    return {LawFinding::noise_like, {Rule::random_instead, over_random(first), needed}};
   for (std::size_t i = 0; i < laws.size(); ++i)
     if (over_random(laws[i].law) < needed)
-      return {Verdict::shape_only, {Rule::random_near, over_random(laws[i].law), needed, i}};
-  if (report.may_be_drift) return {Verdict::shape_only, {.rule = Rule::drift}};
+      return {LawFinding::shape_only, {Rule::random_near, over_random(laws[i].law), needed, i}};
+  if (report.may_be_drift) return {LawFinding::shape_only, {.rule = Rule::drift}};
   const double sure = 1 - kUnsure / looks;
   if (first.formulas.front().columns.empty())
-    return {Verdict::library, {Rule::library, first.formulas.front().P, sure}};
+    return {LawFinding::library, {Rule::library, first.formulas.front().P, sure}};
   if (stands_out(report.log10_p_left, 1))
-    return {Verdict::shape_only, {Rule::law_left, report.log10_p_left, limit_log10_p(1)}};
-  if (left) return {Verdict::shape_only, {Rule::scatter_left, report.left_sigmas, kLeft}};
+    return {LawFinding::shape_only, {Rule::law_left, report.log10_p_left, limit_log10_p(1)}};
+  if (left) return {LawFinding::shape_only, {Rule::scatter_left, report.left_sigmas, kLeft}};
   for (std::size_t i = 0; i < laws.size(); ++i)
     if (const double P = laws[i].law.formulas.front().P; !(P > sure))
-      return {Verdict::law_set, {Rule::formulas_open, P, sure, i}};
-  return {Verdict::law, {.rule = Rule::none}};
+      return {LawFinding::law_set, {Rule::formulas_open, P, sure, i}};
+  return {LawFinding::law, {.rule = Rule::none}};
 }
 
 }  // namespace mgtd::calib::discovery

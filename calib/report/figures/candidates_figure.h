@@ -9,22 +9,22 @@
 /// those that these poses cannot tell apart joined by a bracket, and what could not be tested at all.
 namespace mgtd::calib::report::figures {
 
-struct Suspect {
+struct Candidate {
   std::string effect{}, where{};
   double d{0};
   std::string p{}, size{};                   ///< as text, with unit
-  std::vector<std::string> could_also_be{};  ///< names among the other suspects, or of others
+  std::vector<std::string> could_also_be{};  ///< names among the other candidates, or of others
   bool named{false};
   bool plausible{true};  ///< of a size that occurs
 };
 
-struct SuspectsValues {
-  std::vector<Suspect> suspects{};  ///< largest first
-  std::size_t tried{0};             ///< all that were tested
-  double seen_d{8};                 ///< seen in 99 of 100 runs
+struct CandidatesValues {
+  std::vector<Candidate> candidates{};  ///< largest first
+  std::size_t tried{0};                 ///< all that were tested
+  double seen_d{8};                     ///< seen in 99 of 100 runs
   std::vector<std::string> untestable{};
 };
 
-[[nodiscard]] Figure suspects_figure(const SuspectsValues& values);
+[[nodiscard]] Figure candidates_figure(const CandidatesValues& values);
 
 }  // namespace mgtd::calib::report::figures

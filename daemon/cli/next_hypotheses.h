@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/criticism/search/choice.h"
-#include "calib/design/rival.h"
+#include "calib/design/hypothesis.h"
 #include "calib/fit/method_choice/fit.h"
 #include "daemon/store/pose_source.h"
 
@@ -12,8 +12,8 @@
 namespace mgtd::daemon::cli {
 
 struct Question {
-  calib::fit::FitOptions options;            ///< the model without the rivals
-  std::vector<calib::design::Rival> rivals;  ///< none: nothing of this kind to ask
+  calib::fit::FitOptions options;                     ///< the model without the hypotheses
+  std::vector<calib::design::Hypothesis> hypotheses;  ///< none: nothing of this kind to ask
   bool believed{true};  ///< that one of them is the law: nothing is left beside them, and no library effect
                         ///< does as well
 };

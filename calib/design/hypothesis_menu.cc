@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/design/rival_menu.h"
+#include "calib/design/hypothesis_menu.h"
 
 #include <algorithm>
 #include <optional>
@@ -44,18 +44,19 @@ Longer longer(const PoseTable& run, const Groups& groups, const std::vector<std:
   return out;
 }
 
-bool remembers_poses(const RivalFit& rivals) {
-  return std::any_of(rivals.rivals.begin(), rivals.rivals.end(), [](const Rival& rival) {
-    return std::any_of(rival.specs.begin(), rival.specs.end(),
-                       [](const std::string& spec) { return spec.find("prev_") != std::string::npos; });
-  });
+bool remembers_poses(const HypothesisFit& hypotheses) {
+  return std::any_of(
+      hypotheses.hypotheses.begin(), hypotheses.hypotheses.end(), [](const Hypothesis& hypothesis) {
+        return std::any_of(hypothesis.specs.begin(), hypothesis.specs.end(),
+                           [](const std::string& spec) { return spec.find("prev_") != std::string::npos; });
+      });
 }
 
 /// Where a law knows the pose before: each pose behind the one that was chosen before it.
 Result<std::vector<std::size_t>> chosen_in_order(const Groups& groups, const Work& work,
-                                                 const RivalFit& rivals) {
+                                                 const HypothesisFit& hypotheses) {
   std::vector<std::size_t> which;
-  std::optional<RivalDistance> distance;
+  std::optional<HypothesisDistance> distance;
   PoseTable measured = work.run;
   for (const auto& group : groups) {
     PoseTable table = measured;
@@ -68,9 +69,9 @@ Result<std::vector<std::size_t>> chosen_in_order(const Groups& groups, const Wor
         table.poses.back().number = ++number;
       }
     }
-    const auto rows = rival_rows(table, measured.poses.size(), rivals, work.fit, work.options);
+    const auto rows = hypothesis_rows(table, measured.poses.size(), hypotheses, work.fit, work.options);
     if (!rows) return tl::unexpected(rows.error());
-    if (!distance) distance.emplace(rows->run, rows->fixed, rows->described, rivals.pairs);
+    if (!distance) distance.emplace(rows->run, rows->fixed, rows->described, hypotheses.pairs);
     std::vector<PossiblePose> possible;
     for (std::size_t m = 0; m < group.size(); ++m)
       possible.push_back({.rows = rows->further[rows->further.size() - 2 * (group.size() - m) + 1],
@@ -83,9 +84,10 @@ Result<std::vector<std::size_t>> chosen_in_order(const Groups& groups, const Wor
 }
 
 /// Which of its candidates each pose of an action is.
-Result<std::vector<std::size_t>> chosen(const Groups& groups, const Work& work, const RivalFit& rivals) {
+Result<std::vector<std::size_t>> chosen(const Groups& groups, const Work& work,
+                                        const HypothesisFit& hypotheses) {
   if (groups.front().size() < 2) return std::vector<std::size_t>(groups.size(), 0);
-  if (remembers_poses(rivals)) return chosen_in_order(groups, work, rivals);
+  if (remembers_poses(hypotheses)) return chosen_in_order(groups, work, hypotheses);
   PoseTable table = work.run;
   int number = 0;
   for (const Pose& pose : work.run.poses) number = std::max(number, pose.number);
@@ -95,7 +97,7 @@ Result<std::vector<std::size_t>> chosen(const Groups& groups, const Work& work, 
       table.poses.back().number = ++number;
     }
   }
-  const auto rows = rival_rows(table, work.run.poses.size(), rivals, work.fit, work.options);
+  const auto rows = hypothesis_rows(table, work.run.poses.size(), hypotheses, work.fit, work.options);
   if (!rows) return tl::unexpected(rows.error());
   std::vector<std::vector<PossiblePose>> possible;
   std::size_t next = 0;
@@ -104,15 +106,15 @@ Result<std::vector<std::size_t>> chosen(const Groups& groups, const Work& work, 
     for (const CandidatePose& candidate : group)
       possible.back().push_back({.rows = rows->further[next++], .minutes = candidate.minutes});
   }
-  return placed(RivalDistance(rows->run, rows->fixed, rows->described, rivals.pairs), possible);
+  return placed(HypothesisDistance(rows->run, rows->fixed, rows->described, hypotheses.pairs), possible);
 }
 
-Result<Tried> tried(const LawAction& action, const Work& work, const RivalFit& rivals) {
+Result<Tried> tried(const LawAction& action, const Work& work, const HypothesisFit& hypotheses) {
   const Groups groups = candidate_poses(work.run, action, work.fit.state.sensors, kCandidates, work.seed);
-  const auto which = chosen(groups, work, rivals);
+  const auto which = chosen(groups, work, hypotheses);
   if (!which) return tl::unexpected(which.error());
   const Longer run = longer(work.run, groups, *which);
-  auto lambda = distances_on(run.table, rivals, work.fit, work.options);
+  auto lambda = distances_on(run.table, hypotheses, work.fit, work.options);
   if (!lambda) return tl::unexpected(lambda.error());
   return Tried{
       .action = &action,
@@ -122,7 +124,7 @@ Result<Tried> tried(const LawAction& action, const Work& work, const RivalFit& r
 }
 
 /// What an action adds to the worst lambda a minute, as far as it counts.
-double a_minute(const RivalStep& step) {
+double a_minute(const HypothesisStep& step) {
   const auto counted = [](const std::optional<double>& lambda) {
     return std::min(criticism::tests::kToldApart, lambda.value_or(0));
   };
@@ -148,17 +150,18 @@ std::size_t least(const std::vector<double>& lambda, const std::vector<std::size
 
 }  // namespace
 
-Result<RivalMenu> rival_menu(const PoseTable& run, const fit::joint::JointFit& fit,
-                             const fit::joint::JointOptions& options, const std::vector<Rival>& rivals,
-                             std::uint64_t seed, std::span<const LawAction> actions) {
-  if (rivals.size() < 2)
+Result<HypothesisMenu> hypothesis_menu(const PoseTable& run, const fit::joint::JointFit& fit,
+                                       const fit::joint::JointOptions& options,
+                                       const std::vector<Hypothesis>& hypotheses, std::uint64_t seed,
+                                       std::span<const LawAction> actions) {
+  if (hypotheses.size() < 2)
     return fail(ErrorCode::usage, "one formula alone leaves nothing to settle", "name two");
   const Work work{run, fit, options, seed};
-  auto fitted = rival_fit(run, fit, options, rivals);
+  auto fitted = hypothesis_fit(run, fit, options, hypotheses);
   if (!fitted) return tl::unexpected(fitted.error());
-  RivalMenu out;
-  out.rivals = *std::move(fitted);
-  const auto before = distances_on(run, out.rivals, fit, options);
+  HypothesisMenu out;
+  out.hypotheses = *std::move(fitted);
+  const auto before = distances_on(run, out.hypotheses, fit, options);
   if (!before) return tl::unexpected(before.error());
   std::vector<Tried> all;
   for (const LawAction& action : actions) {
@@ -167,17 +170,17 @@ Result<RivalMenu> rival_menu(const PoseTable& run, const fit::joint::JointFit& f
       out.left_out.push_back({std::string(action.text), *std::move(why)});
       continue;
     }
-    auto one = tried(action, work, out.rivals);
+    auto one = tried(action, work, out.hypotheses);
     if (!one) return tl::unexpected(one.error());
     all.push_back(*std::move(one));
   }
   std::vector<std::size_t> count = pairs_told_apart(*before, all);
   for (std::size_t p = 0; p < before->size(); ++p)
-    if (std::find(count.begin(), count.end(), p) == count.end()) out.never.push_back(out.rivals.pairs[p]);
+    if (std::find(count.begin(), count.end(), p) == count.end()) out.never.push_back(out.hypotheses.pairs[p]);
   if (count.empty())
     for (std::size_t p = 0; p < before->size(); ++p) count.push_back(p);
   const std::size_t worst = least(*before, count);
-  out.worst = out.rivals.pairs[worst];
+  out.worst = out.hypotheses.pairs[worst];
   out.lambda_before = (*before)[worst];
   out.p_right_before = criticism::tests::probability_right(out.lambda_before);
   for (Tried& one : all) {
@@ -193,8 +196,9 @@ Result<RivalMenu> rival_menu(const PoseTable& run, const fit::joint::JointFit& f
                          .by_the_rig = one.action->by_the_rig && has_table(run),
                          .other_day = one.action->other_day});
   }
-  std::stable_sort(out.steps.begin(), out.steps.end(),
-                   [](const RivalStep& a, const RivalStep& b) { return a_minute(a) > a_minute(b); });
+  std::stable_sort(out.steps.begin(), out.steps.end(), [](const HypothesisStep& a, const HypothesisStep& b) {
+    return a_minute(a) > a_minute(b);
+  });
   return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/run/law_rivals.h"
+#include "daemon/run/law_hypotheses.h"
 
 #include <string>
 #include <utility>
@@ -8,10 +8,10 @@
 
 namespace mgtd::daemon::run {
 
-std::vector<calib::design::Rival> rivals_of(const calib::discovery::FoundLaw& law, int sensors) {
-  std::vector<calib::design::Rival> out;
+std::vector<calib::design::Hypothesis> hypotheses_of(const calib::discovery::FoundLaw& law, int sensors) {
+  std::vector<calib::design::Hypothesis> out;
   for (const calib::discovery::FoundFormula& formula : law.formulas) {
-    if (out.size() == kMostRivals) break;
+    if (out.size() == kMostHypotheses) break;
     std::vector<std::string> specs = formula.specs;
     if (specs.empty() && !formula.library.empty() && formula.columns.empty())
       specs = {formula.library + "@" + formula.where};

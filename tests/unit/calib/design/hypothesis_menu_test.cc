@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/design/rival_menu.h"
+#include "calib/design/hypothesis_menu.h"
 
 #include <gmock/gmock.h>
 
@@ -23,39 +23,39 @@ PoseTable run_with(const std::function<double(const Pose&, double x)>& law, std:
   return calib::testing::hidden_run({.noise_nT = 0.05, .hidden = hidden}, seed);
 }
 
-Rival formula(const std::string& expression, const std::string& where = "s3.z") {
+Hypothesis formula(const std::string& expression, const std::string& where = "s3.z") {
   return {.name = expression, .specs = {"law@" + where + ",level=axis,unit=nT,expr=" + expression}, .P = {}};
 }
 
-Result<RivalMenu> asked(const PoseTable& run, const std::vector<Rival>& rivals,
-                        std::span<const LawAction> actions = law_actions()) {
+Result<HypothesisMenu> asked(const PoseTable& run, const std::vector<Hypothesis>& hypotheses,
+                             std::span<const LawAction> actions = law_actions()) {
   const fit::joint::JointOptions options = fit::joint::joint_options({});
   const auto fit = fit::joint::fit_joint(run, options);
   if (!fit) return tl::unexpected(fit.error());
-  return rival_menu(run, *fit, options, rivals, 1, actions);
+  return hypothesis_menu(run, *fit, options, hypotheses, 1, actions);
 }
 
-const RivalStep* step(const RivalMenu& menu, std::string_view words) {
-  const auto found = std::find_if(menu.steps.begin(), menu.steps.end(), [&](const RivalStep& s) {
+const HypothesisStep* step(const HypothesisMenu& menu, std::string_view words) {
+  const auto found = std::find_if(menu.steps.begin(), menu.steps.end(), [&](const HypothesisStep& s) {
     return s.measurement.action.find(words) != std::string::npos;
   });
   return found == menu.steps.end() ? nullptr : &*found;
 }
 
-double after(const RivalMenu& menu, std::string_view words) {
-  const RivalStep* const found = step(menu, words);
+double after(const HypothesisMenu& menu, std::string_view words) {
+  const HypothesisStep* const found = step(menu, words);
   return found == nullptr ? 0 : found->measurement.lambda_after.value_or(0);
 }
 
 PoseTable quartic() {
   return run_with([](const Pose&, double x) { return 0.25 * std::pow(x, 4); }, 3);
 }
-const std::vector<Rival> kQuartic{formula("(u/50000)^4"), formula("max(0, abs(u/50000) - 0.6)")};
+const std::vector<Hypothesis> kQuartic{formula("(u/50000)^4"), formula("max(0, abs(u/50000) - 0.6)")};
 
-TEST(RivalMenu, PlacedPosesTellMoreThanThoseOfTheRun) {
+TEST(HypothesisMenu, PlacedPosesTellMoreThanThoseOfTheRun) {
   const auto menu = asked(quartic(), kQuartic);
   ASSERT_TRUE(menu) << menu.error().text();
-  EXPECT_FALSE(menu->rivals.assumed);
+  EXPECT_FALSE(menu->hypotheses.assumed);
   const double gain = after(*menu, "differ most") - menu->lambda_before;
   EXPECT_GT(gain, 1.5 * (after(*menu, "as before") - menu->lambda_before));
   ASSERT_FALSE(menu->steps.empty());
@@ -63,14 +63,14 @@ TEST(RivalMenu, PlacedPosesTellMoreThanThoseOfTheRun) {
   // The angles are those that the run had, and nothing but the seed decides.
   const auto again = asked(quartic(), kQuartic);
   ASSERT_TRUE(again);
-  const RivalStep *const a = step(*menu, "differ most"), *const b = step(*again, "differ most");
+  const HypothesisStep *const a = step(*menu, "differ most"), *const b = step(*again, "differ most");
   for (std::size_t k = 0; k < kLawPoses; ++k) {
     EXPECT_EQ(a->poses[k].azimuth_rad, b->poses[k].azimuth_rad);
     EXPECT_LE(std::abs(*a->poses[k].pitch_rad), to_rad(90));
   }
 }
 
-TEST(RivalMenu, AnActionThatChangesNothingComesLast) {
+TEST(HypothesisMenu, AnActionThatChangesNothingComesLast) {
   std::vector<LawAction> actions;
   for (const LawAction& action : law_actions())
     if (action.by_the_rig || action.text.find("weaker") != std::string_view::npos) actions.push_back(action);
@@ -81,7 +81,7 @@ TEST(RivalMenu, AnActionThatChangesNothingComesLast) {
   EXPECT_EQ(menu->steps.back().measurement.action, "an hour's rest");
 }
 
-TEST(RivalMenu, HeatTellsTemperatureFromTimeAndOneHeadFromTheOther) {
+TEST(HypothesisMenu, HeatTellsTemperatureFromTimeAndOneHeadFromTheOther) {
   // All heads go the same way in this run, up to a constant.
   PoseTable run = run_with([](const Pose& p, double) { return 3 * *p.t_s / 3600; }, 4);
   for (Pose& pose : run.poses)
@@ -101,7 +101,7 @@ TEST(RivalMenu, HeatTellsTemperatureFromTimeAndOneHeadFromTheOther) {
   EXPECT_FALSE(head->steps.front().by_the_rig);
 }
 
-TEST(RivalMenu, PairsThatNothingTellsApartAreSetAside) {
+TEST(HypothesisMenu, PairsThatNothingTellsApartAreSetAside) {
   const PoseTable run = run_with([](const Pose& p, double) { return std::pow(*p.t_s / 3600, 2); }, 4);
   const auto menu = asked(run, {formula("t_h^2"), formula("t_h*t_h"), formula("(T_degC - 20)^2")});
   ASSERT_TRUE(menu) << menu.error().text();
@@ -111,18 +111,18 @@ TEST(RivalMenu, PairsThatNothingTellsApartAreSetAside) {
   EXPECT_GT(menu->lambda_before, 0);
 }
 
-TEST(RivalMenu, OneThatHoldsAnotherIsNoQuestion) {
-  std::vector<Rival> rivals = kQuartic;
-  rivals.push_back(formula("(u/50000)^4", "each-axis"));
-  const auto menu = asked(quartic(), rivals);
+TEST(HypothesisMenu, OneThatHoldsAnotherIsNoQuestion) {
+  std::vector<Hypothesis> hypotheses = kQuartic;
+  hypotheses.push_back(formula("(u/50000)^4", "each-axis"));
+  const auto menu = asked(quartic(), hypotheses);
   ASSERT_TRUE(menu) << menu.error().text();
-  for (const RivalPair& pair : menu->rivals.pairs) EXPECT_TRUE(pair.truth != 2 && pair.other != 2);
-  const auto two = asked(quartic(), {rivals[0], rivals[2]});
+  for (const HypothesisPair& pair : menu->hypotheses.pairs) EXPECT_TRUE(pair.truth != 2 && pair.other != 2);
+  const auto two = asked(quartic(), {hypotheses[0], hypotheses[2]});
   ASSERT_TRUE(two) << two.error().text();
-  EXPECT_EQ(two->rivals.pairs.size(), 1U) << "unless nothing else is asked";
+  EXPECT_EQ(two->hypotheses.pairs.size(), 1U) << "unless nothing else is asked";
 }
 
-TEST(RivalMenu, WhatTheColumnsCannotExpressIsLeftOutWithTheReason) {
+TEST(HypothesisMenu, WhatTheColumnsCannotExpressIsLeftOutWithTheReason) {
   PoseTable run = quartic();
   for (Pose& pose : run.poses) pose.T_degC.fill(std::nullopt);
   const auto menu = asked(run, kQuartic);
@@ -139,32 +139,32 @@ TEST(RivalMenu, WhatTheColumnsCannotExpressIsLeftOutWithTheReason) {
 }
 
 /// Of a recording that was turned by hand no rig repeats anything.
-TEST(RivalMenu, WithoutATableNothingIsDoneByTheRig) {
+TEST(HypothesisMenu, WithoutATableNothingIsDoneByTheRig) {
   PoseTable run = quartic();
   for (Pose& pose : run.poses) pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = std::nullopt;
   const auto menu = asked(run, kQuartic);
   ASSERT_TRUE(menu) << menu.error().text();
   ASSERT_FALSE(menu->steps.empty());
-  for (const RivalStep& one : menu->steps) EXPECT_FALSE(one.by_the_rig) << one.measurement.action;
+  for (const HypothesisStep& one : menu->steps) EXPECT_FALSE(one.by_the_rig) << one.measurement.action;
 }
 
-TEST(RivalMenu, LawsThatKnowThePoseBeforeHaveThePosesInOrder) {
+TEST(HypothesisMenu, LawsThatKnowThePoseBeforeHaveThePosesInOrder) {
   const auto menu = asked(quartic(), {formula("abs(prev_u/50000)"), formula("(prev_u/50000)^2")});
   ASSERT_TRUE(menu) << menu.error().text();
-  EXPECT_TRUE(menu->rivals.assumed) << "there is nothing of the kind on this run";
+  EXPECT_TRUE(menu->hypotheses.assumed) << "there is nothing of the kind on this run";
   EXPECT_GT(after(*menu, "differ most"), after(*menu, "as before"));
 }
 
-TEST(RivalMenu, ANumberThatIsLeftOpenIsFoundOnTheRun) {
-  const Rival open{.name = "hinge",
-                   .specs = {"law@s3.z,level=axis,unit=nT,c=0.1..0.9,expr=max(0, abs(u/50000) - c)"},
-                   .P = {}};
+TEST(HypothesisMenu, ANumberThatIsLeftOpenIsFoundOnTheRun) {
+  const Hypothesis open{.name = "hinge",
+                        .specs = {"law@s3.z,level=axis,unit=nT,c=0.1..0.9,expr=max(0, abs(u/50000) - c)"},
+                        .P = {}};
   const auto menu = asked(quartic(), {kQuartic[0], open});
   ASSERT_TRUE(menu) << menu.error().text();
-  EXPECT_THAT(menu->rivals.rivals[1].specs.front(), ::testing::Not(HasSubstr("..")));
+  EXPECT_THAT(menu->hypotheses.hypotheses[1].specs.front(), ::testing::Not(HasSubstr("..")));
 }
 
-TEST(RivalMenu, RefusesWhatTheCalibrationTakesUp) {
+TEST(HypothesisMenu, RefusesWhatTheCalibrationTakesUp) {
   const auto menu = asked(quartic(), {kQuartic[0], formula("u")});
   ASSERT_FALSE(menu);
   EXPECT_THAT(menu.error().message, HasSubstr("takes it up whole"));

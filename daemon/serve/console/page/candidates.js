@@ -13,7 +13,7 @@ const size = (candidate) => {
 };
 
 /** Bars of d with the line at which an effect is seen; those that these poses cannot tell apart are hatched alike. */
-export function showSuspects(explain, words, chosen, choose) {
+export function showCandidates(explain, words, chosen, choose) {
   const most = Math.max(1.15 * kSeen_d, ...explain.candidates.map((c) => c.d));
   const list = explain.candidates, above = list.filter((c) => c.d >= kSeen_d).length;
   const strong = list.slice(0, Math.max(kLeast, Math.min(kMost, above)));
@@ -26,7 +26,7 @@ export function showSuspects(explain, words, chosen, choose) {
     const alarm = make("i", { class: "alarm" });
     alarm.style.left = `${(100 * kSeen_d) / most}%`;
     const rivals = c.rivals.filter((r) => r.possible).map((r) => r.effect);
-    return make("li", {}, make("button", { class: "suspect", "aria-pressed": String(c.spec === chosen), "data-spec": c.spec, onclick: () => choose(c) },
+    return make("li", {}, make("button", { class: "candidate", "aria-pressed": String(c.spec === chosen), "data-spec": c.spec, onclick: () => choose(c) },
       make("b", {}, c.effect), make("small", {}, ` ${c.where}`), make("span", { class: "track" }, bar, alarm),
       make("small", {}, "d ", number(c.d, `candidates.${i}.d`), ` · p ${chance(c.log10_p)} · ${size(c)}`,
            c.impact_nT_per_m ? ` · ${sig(c.impact_nT_per_m, 2)} nT/m in ${c.impact_component}` : "",
@@ -34,10 +34,10 @@ export function showSuspects(explain, words, chosen, choose) {
   };
   const untestable = explain.untestable.map((u) => make("li", { class: "untestable" }, make("b", {}, u.effect), make("small", {}, ` ${u.why}`)));
   const others = list.slice(strong.length).map((c, i) => row(c, i + strong.length));
-  return [make("ol", { class: "suspects" }, strong.map(row)),
+  return [make("ol", { class: "candidates" }, strong.map(row)),
           words ? make("p", { class: "good-one" }, `Good: ${words.good}`) : null,
-          others.length ? make("details", {}, make("summary", {}, `the other ${others.length}`), make("ol", { class: "suspects" }, others)) : null,
-          untestable.length ? make("details", {}, make("summary", {}, `${untestable.length} that these poses cannot test`), make("ul", { class: "suspects" }, untestable)) : null];
+          others.length ? make("details", {}, make("summary", {}, `the other ${others.length}`), make("ol", { class: "candidates" }, others)) : null,
+          untestable.length ? make("details", {}, make("summary", {}, `${untestable.length} that these poses cannot test`), make("ul", { class: "candidates" }, untestable)) : null];
 }
 
 /** Evidence of one: a line through many poses, what it does to the maps, what else it could be. */
