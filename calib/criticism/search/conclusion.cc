@@ -65,12 +65,22 @@ std::set<std::string> names_of(const std::vector<Round>& rounds) {
   return out;
 }
 
+/// In standard deviations of the noise that `last` found. A round was tested against all that the rounds
+/// after it took away; where the dwells' noise is all that is left, its fall of chi-square is measured by
+/// that.
+double size_at_the_end(const Round& round, const tests::Criticism& last) {
+  if (!last.noise.reference.from_dwells()) return round.added.d;
+  const double fall = round.chi2_before - round.chi2_after;
+  return std::max(round.added.d, std::sqrt(std::max(0.0, fall - round.added.k)));
+}
+
 /// Of several names that together leave only noise, one that itself is little more than that; empty when all
 /// stand out.
-std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds) {
+std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds, const tests::Criticism& last) {
   constexpr double kSigmas = 8;  // from here on the right law of the library stands first, and alone
   for (const Round& round : rounds) {
-    if (round.added.d < kSigmas) return SizeTooSmall{round.added.effect, round.added.d};
+    const double d = size_at_the_end(round, last);
+    if (d < kSigmas) return SizeTooSmall{round.added.effect, d};
   }
   return std::nullopt;
 }
@@ -150,7 +160,7 @@ Finding conclude(const ExplainReport& report, const Asked& first, const tests::C
   const bool ambiguous = std::any_of(report.rounds.begin(), report.rounds.end(),
                                      [](const Round& r) { return !r.possible.empty(); });
   if (several ? ambiguous : !round.possible.empty()) return Finding::ambiguous;
-  auto why = several ? weak_name(report.rounds) : doubt(round, first);
+  auto why = several ? weak_name(report.rounds, last) : doubt(round, first);
   if (!why) return Finding::explained;
   notes.push_back(*std::move(why));
   return Finding::partial;

@@ -11,6 +11,7 @@
 #include "calib/criticism/search/nonlinear_parameters.h"
 #include "calib/criticism/search/second_look.h"
 #include "calib/criticism/search/site_pair.h"
+#include "calib/criticism/search/surrogates.h"
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/judgement.h"
 #include "calib/design/next_measurement.h"
@@ -115,6 +116,14 @@ void exclude(const std::vector<tests::Alternative>& again, Round& round) {
   }
 }
 
+/// Whether the model holds all that the step would add.
+bool adds_nothing(const ForwardStep& step, const std::vector<effects::EffectPtr>& model) {
+  return std::all_of(step.added.begin(), step.added.end(), [&](const effects::EffectPtr& added) {
+    return std::any_of(model.begin(), model.end(),
+                       [&](const effects::EffectPtr& effect) { return effect->spec() == added->spec(); });
+  });
+}
+
 /// Adds family `f` and fits again. False when the fit with it fails. A `first_choice` gives way where a
 /// second look prefers one of its alternatives.
 bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_choice = true) {
@@ -125,7 +134,8 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   for (const tests::Alternative& alternative : round.added.alternatives)
     if (alternative.possible) round.possible.push_back(alternative.effect);
   auto step = forward_step(search.joint.effects, best, search.criticism.residual);
-  if (!step || on_closed_axes(round.added, *step, search.unknown)) {
+  if (!step || adds_nothing(*step, search.joint.effects) ||
+      on_closed_axes(round.added, *step, search.unknown)) {
     search.failed.insert(round.added.effect);
     return false;
   }
@@ -194,9 +204,17 @@ bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& othe
   return left < (1 - kMostOfIt) * other.winner().S;
 }
 
+std::set<std::string> dependences_found(const ExplainReport& report) {
+  std::set<std::string> out;
+  for (const Round& round : report.rounds) out.insert(dependence_of(round.added.effect));
+  return out;
+}
+
 /// Adds the best family that can be fitted; those that cannot are noted, as is the first that rests on one
-/// pose. What only looks like one of an absurd size is left out with it.
-bool add_winner(EffectSearch& search, ExplainReport& report) {
+/// pose. What only looks like one of an absurd size is left out with it. No more than `most` dependences
+/// are added (surrogates.h); one that is there already may still be put on further axes.
+bool add_winner(std::size_t most, EffectSearch& search, ExplainReport& report) {
+  const std::set<std::string> found = dependences_found(report);
   std::vector<std::size_t> absurd;
   for (std::size_t f = 0; f < search.criticism.families.size() && search.criticism.rejects_named(f); ++f) {
     if (search.failed.contains(search.criticism.families[f].candidate_effect->name)) continue;
@@ -217,6 +235,7 @@ bool add_winner(EffectSearch& search, ExplainReport& report) {
                           search.criticism.residual);
         }))
       continue;
+    if (found.size() >= most && !found.contains(dependence_of(c.effect))) return false;
     if (!add(search, f, report)) continue;
     if (!c.plausible) report.notes.emplace_back(SizeUnusual{c});
     return true;
@@ -268,10 +287,12 @@ void add_round(Round round, fit::joint::JointOptions wider, const fit::joint::Jo
 }
 
 bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
+  constexpr int kRoundsEach = 3;
   const auto notes = static_cast<std::ptrdiff_t>(report.notes.size());
-  for (int round = 0; round < most && search.criticism.rejects_named(); ++round) {
+  const std::size_t dependences = dependences_found(report).size() + static_cast<std::size_t>(most);
+  for (int round = 0; round < kRoundsEach * most && search.criticism.rejects_named(); ++round) {
     search.one_pose.reset();
-    if (!add_winner(search, report)) break;
+    if (!add_winner(dependences, search, report)) break;
     if (!may_be_a_pair(search, report)) continue;
     search.pairs_tried = true;
     if (site_pair_instead(search, report) || report.rounds.empty())

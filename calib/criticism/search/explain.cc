@@ -157,6 +157,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   take_back_beside_unknown_laws(search.unknown, criticism, out);
   const bool wandering_describes = take_back_lost_in_wandering(criticism.noise, out);
   keep_names_found_again(out);
+  close_alternatives_that_were_added(out);
   note_absurd_sizes(search, criticism, out);
   const bool described = take_back_what_describes_a_recording(out, criticism);
   if (memory || memory_may_be_it(search, out)) out.notes.emplace_back(TablePathUnknown{});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,7 +17,7 @@
 namespace mgtd::calib::criticism::search {
 namespace {
 
-constexpr int kAlways = 3, kWithRemainder = 2;
+constexpr std::size_t kAlways = 3, kWithRemainder = 2;
 /// Of the excess of chi-square before it: an effect that leaves more is not what is there.
 constexpr double kMost = 0.5;
 /// Of all that is beyond the noise: an axis with less is not where the unknown law acts.
@@ -34,11 +35,24 @@ using Rounds = std::vector<std::size_t>;
 double fall(const Round& round) { return round.chi2_before - round.chi2_after; }
 
 /// Rounds that took away a part that counts.
-int parts(const ExplainReport& report, const Rounds& rounds) {
+Rounds parts(const ExplainReport& report, const Rounds& rounds) {
   double largest = 0;
   for (const std::size_t i : rounds) largest = std::max(largest, fall(report.rounds[i]));
-  return static_cast<int>(std::count_if(
-      rounds.begin(), rounds.end(), [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; }));
+  Rounds out;
+  std::copy_if(rounds.begin(), rounds.end(), std::back_inserter(out),
+               [&](std::size_t i) { return fall(report.rounds[i]) > kPart * largest; });
+  return out;
+}
+
+std::size_t effects_in(const ExplainReport& report, const Rounds& rounds) {
+  return parts(report, rounds).size();
+}
+
+/// The same, where linear and square term of one dependence on temperature count once.
+std::size_t dependences_in(const ExplainReport& report, const Rounds& rounds) {
+  std::set<std::string> out;
+  for (const std::size_t i : parts(report, rounds)) out.insert(dependence_of(report.rounds[i].added.effect));
+  return out.size();
 }
 
 /// Axes on which what a round added is seen, put there or as one of many.
@@ -140,7 +154,7 @@ Surrogates on_sensor(const ExplainReport& report, const tests::Criticism& last, 
   Surrogates found;
   double most = 0;
   for (const auto& [sensor, there] : rounds_by_place(report, sensors_of)) {
-    if (parts(report, there) < kWithRemainder || !left_here(last, sensor) ||
+    if (effects_in(report, there) < kWithRemainder || !left_here(last, sensor) ||
         (spread && on_one_axis(last, sensor)))
       continue;
     const double share = share_on(last, sensor);
@@ -153,6 +167,11 @@ Surrogates on_sensor(const ExplainReport& report, const tests::Criticism& last, 
 }
 
 }  // namespace
+
+std::string dependence_of(std::string effect) {
+  if (effect.ends_with(".temperature2")) effect.pop_back();
+  return effect;
+}
 
 std::set<std::string> axes_of(const Round& round) {
   std::set<std::string> out;
@@ -175,14 +194,15 @@ Surrogates find_surrogates(const ExplainReport& report, const tests::Criticism& 
   if (report.rounds.empty()) return {};
   if (auto found = on_sensor(report, last, true); found.any()) return found;
   for (const auto& [axis, there] : rounds_by_place(report, axes_of)) {
-    const int effects = parts(report, there);
-    if (effects >= kAlways || (effects >= kWithRemainder && left_here(last, axis)))
-      return on_axis(report, axis, there);
+    const std::size_t effects = effects_in(report, there);
+    const bool many = effects >= kAlways && (last.rejects() || dependences_in(report, there) >= kAlways);
+    if (many || (effects >= kWithRemainder && left_here(last, axis))) return on_axis(report, axis, there);
   }
   for (const auto& [axis, there] : rounds_by_place(report, axes_seen_in)) {
     const bool little = std::all_of(there.begin(), there.end(),
                                     [&](std::size_t i) { return took_little(report, report.rounds[i]); });
-    if (little && !closed.contains(axis) && parts(report, there) >= kWithRemainder && left_here(last, axis))
+    if (little && !closed.contains(axis) && effects_in(report, there) >= kWithRemainder &&
+        left_here(last, axis))
       return on_axis(report, axis, there);
   }
   if (auto found = on_sensor(report, last, false); found.any()) return found;

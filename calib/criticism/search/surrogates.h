@@ -11,7 +11,8 @@
 /// curve, so a search that goes on adds one after the other to the axis on which the unknown law acts, and
 /// each looks significant. The signs of it:
 ///
-///   - three effects or more on one axis;
+///   - three effects or more on one axis; where nothing is left after them, the linear and the square term of
+///     one dependence on temperature count as one: the two describe its curve, as they are meant to;
 ///   - two on one axis that leave most of what is left there; or of all axes, seen on this one, if each of
 ///     them took little away;
 ///   - two on one sensor that leave more than a tenth of the misfit, most of it on this sensor: nothing is
@@ -25,6 +26,9 @@ struct Surrogates {
   [[nodiscard]] bool any() const { return !where.empty(); }
   [[nodiscard]] bool whole_sensor() const { return any() && where.find('.') == std::string::npos; }
 };
+
+/// "axis.gain.temperature" of both its linear and its square term; any other effect as it is.
+[[nodiscard]] std::string dependence_of(std::string effect);
 
 /// Axes that the effects of a round were put on one by one.
 [[nodiscard]] std::set<std::string> axes_of(const Round& round);

@@ -37,6 +37,14 @@ double log10_p_of_fit(const Round& round) {
   return stats::chi_square_log10_p(square, static_cast<double>(count));
 }
 
+/// Whether the effects of two rounds act on an axis in common.
+bool share_an_axis(const Round& a, const Round& b) {
+  const std::set<std::string> axes = axes_of(a), others = axes_of(b);
+  if (axes.empty() || others.empty()) return true;  // of a whole sensor, or of all
+  return std::any_of(axes.begin(), axes.end(),
+                     [&](const std::string& axis) { return others.contains(axis); });
+}
+
 /// What an axis, or each axis of a sensor, misfits becomes part of its noise, many times over.
 void loosen(const fit::joint::JointFit& fit, const std::string& place, fit::joint::JointOptions& options) {
   const auto where = effects::Where::parse(place);
@@ -127,6 +135,16 @@ void keep_names_found_again(ExplainReport& report) {
     auto* const unknown = std::get_if<LawOfNoLibrary>(&note);
     if (unknown == nullptr) continue;
     for (const Round& round : report.rounds) unknown->effects.erase(round.added.effect);
+  }
+}
+
+void close_alternatives_that_were_added(ExplainReport& report) {
+  for (Round& round : report.rounds) {
+    std::erase_if(round.possible, [&](const std::string& effect) {
+      return std::any_of(report.rounds.begin(), report.rounds.end(), [&](const Round& other) {
+        return &other != &round && other.added.effect == effect && share_an_axis(round, other);
+      });
+    });
   }
 }
 

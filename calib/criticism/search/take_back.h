@@ -30,4 +30,8 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
 /// so any more.
 void keep_names_found_again(ExplainReport& report);
 
+/// What could have stood in the place of a round and was added beside it, on one of its axes, is no
+/// alternative to it any more: the run needs both.
+void close_alternatives_that_were_added(ExplainReport& report);
+
 }  // namespace mgtd::calib::criticism::search

@@ -45,6 +45,14 @@ bool in_model(const fit::joint::JointProblem& problem, const CandidateEffect& ca
   });
 }
 
+/// The model holds every coefficient of this law: what a test would see of it is what the gauge holds.
+bool whole_in_model(const fit::joint::JointProblem& problem, const CandidateEffect& candidate_effect) {
+  return candidate_effect.variants.size() == 1 &&
+         std::any_of(problem.effects.begin(), problem.effects.end(), [&](const effects::EffectPtr& effect) {
+           return effect->spec() == candidate_effect.variants.front()->spec();
+         });
+}
+
 bool below(double log10_p, double alarm) { return log10_p < std::log10(alarm); }
 
 /// Rates hardly move from one model to the next: those of the one before decide where the best p-value is a
@@ -98,6 +106,7 @@ Criticism tested(const fit::joint::JointFit& fit, Residual residual,
   out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
   out.residual.measure_by(out.noise.reference.scale2);
   for (const CandidateEffect& candidate_effect : candidate_effects.testable) {
+    if (whole_in_model(fit.problem, candidate_effect)) continue;
     ScoredFamily scored =
         score_family(fit.problem, fit.state, out.residual, out.noise.reference, candidate_effect);
     if (scored.testable()) {
