@@ -23,6 +23,16 @@ struct Gradient {
   return {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz};
 }
 
+/// What of a gradient does not change when the frame is turned (Pedersen and Rasmussen, Geophysics 55, 1990):
+///
+///     I1 = Gxx Gyy + Gyy Gzz + Gxx Gzz - Gxy^2 - Gyz^2 - Gxz^2      I2 = det G
+///     contraction = sqrt(sum over i and j of Gij^2), which is sqrt(-2 I1) of a traceless tensor
+struct Invariants {
+  double I1_nT2_per_m2{0}, I2_nT3_per_m3{0}, contraction_nT_per_m{0};
+};
+/// Empty where the array cannot tell all components.
+[[nodiscard]] std::optional<Invariants> invariants(const Gradient& g);
+
 /// Quantities that vanish for a uniform field plus a constant source-free gradient (method, section 1). The
 /// cross has four of them, by name; another array of N sensors has 3N less the number of components that it
 /// can tell, as independent combinations of its readings (FieldExpansion::closure_rows).

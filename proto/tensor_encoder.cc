@@ -94,6 +94,20 @@ void append_gradient(std::string& out, const Gradient& g, bool is_tensor) {
   out += '}';
 }
 
+void append_invariants(std::string& out, const std::optional<Invariants>& invariants) {
+  if (!invariants) {
+    out += "null";
+    return;
+  }
+  out += R"({"I1_nT2_per_m2":)";
+  append_number(out, invariants->I1_nT2_per_m2);
+  out += R"(,"I2_nT3_per_m3":)";
+  append_number(out, invariants->I2_nT3_per_m3);
+  out += R"(,"contraction_nT_per_m":)";
+  append_number(out, invariants->contraction_nT_per_m);
+  out += '}';
+}
+
 void append_flags(std::string& out, Flags flags) {
   out += '[';
   if (flags.any()) {
@@ -200,6 +214,8 @@ std::string_view TensorEncoder::encode(const TensorSample& sample, std::span<con
   append_gradient(line_, sample.g_nT_per_m, true);
   line_ += R"(,"g_sd_nT_per_m":)";
   append_gradient(line_, sample.g_sd_nT_per_m, false);
+  line_ += R"(,"invariants":)";
+  append_invariants(line_, invariants(sample.g_nT_per_m));
   if (sample.along_line) {
     line_ += R"(,"along_line_nT_per_m":)";
     append_vector(line_, sample.along_line->nT_per_m);

@@ -14,6 +14,7 @@
 ///   {"class":"TENSOR","seq":123,"t":"2026-11-21T10:00:00.123456Z","t_ns":1795255200123456000,
 ///    "frame":"platform","cal":"c0123456789ab","b_nT":[..3..],"f_nT":..,
 ///    "g_nT_per_m":{"xx":..,"yy":..,"zz":..,"xy":..,"xz":..,"yz":..},"g_sd_nT_per_m":{same keys},
+///    "invariants":{"I1_nT2_per_m2":..,"I2_nT3_per_m3":..,"contraction_nT_per_m":..} or null,
 ///    "closure":{"curl_nT_per_m":..,"center_nT":[..3..],"chi2":..},"flags":["interpolated"],
 ///    "inputs":{"motor_A":0.731250}}
 ///

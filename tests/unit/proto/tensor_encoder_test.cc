@@ -39,7 +39,8 @@ TEST(TensorEncoder, WritesExactlyTheDocumentedKeys) {
       R"("frame":"platform","cal":"c0123456789ab","b_nT":[1.500000,-2.250000,49999.125000],)"
       R"("f_nT":50000.000000,"g_nT_per_m":{"xx":10.500000,"yy":-20.250000,"zz":9.750000,"xy":1.000000,)"
       R"("xz":-2.000000,"yz":3.000000},"g_sd_nT_per_m":{"xx":0.250000,"yy":0.250000,"zz":0.500000,)"
-      R"("xy":0.125000,"xz":0.125000,"yz":0.125000},"closure":{"curl_nT_per_m":0.500000,)"
+      R"("xy":0.125000,"xz":0.125000,"yz":0.125000},"invariants":{"I1_nT2_per_m2":-321.687500,)"
+      R"("I2_nT3_per_m3":-2108.343750,"contraction_nT_per_m":25.364838},"closure":{"curl_nT_per_m":0.500000,)"
       R"("center_nT":[1.000000,2.000000,-3.000000],"chi2":3.875000},"flags":["interpolated","suspect"]})");
 }
 
@@ -54,6 +55,7 @@ TEST(TensorEncoder, AnotherArrayHasItsOwnClosureAndNullForWhatItCannotTell) {
   const Json line = Json::parse(encoder.encode(s));
   EXPECT_EQ(line["g_nT_per_m"],
             Json::parse(R"({"xx":null,"yy":null,"zz":1.5,"xy":null,"xz":-2.0,"yz":3.0})"));
+  EXPECT_TRUE(line["invariants"].is_null());
   EXPECT_EQ(line["closure"], Json::parse(R"({"curl_nT_per_m":null,"center_nT":null,"chi2":3.875,"dof":2,)"
                                          R"("combinations_nT":[0.25,-1.0]})"));
 }

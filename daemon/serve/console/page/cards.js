@@ -2,6 +2,7 @@
 // The cards beside the lanes: the tensor, the instruments, what the stream says of its calibration, what is recorded.
 import { make, table } from "./elements.js";
 import { shown } from "./lanes.js";
+import { sig } from "./numbers.js";
 import { fieldChange } from "./run.js";
 
 const kComponents = ["xx", "yy", "zz", "xy", "xz", "yz"];
@@ -17,7 +18,14 @@ function tensor(sample, old) {
                                                            [["F", shown(sample.f_nT, 1)]]].flat());
   if (told.length === 0) return [card(field)];
   return [card(table(`Gradient${sample.cal === null ? ", raw" : ""}${since}`, ["", "nT/m"],
-                     told.map((c) => [c, value(sample.g_nT_per_m[c], sample.g_sd_nT_per_m[c])])), field)];
+                     told.map((c) => [c, value(sample.g_nT_per_m[c], sample.g_sd_nT_per_m[c])])), invariants(sample.invariants), field)];
+}
+
+/** What does not change when the frame is turned; null where the array cannot tell every component. */
+function invariants(told) {
+  if (!told) return null;
+  return table("Invariants of the tensor", ["", "value", "unit"],
+               [["I₁", sig(told.I1_nT2_per_m2, 4), "nT²/m²"], ["I₂", sig(told.I2_nT3_per_m3, 4), "nT³/m³"], ["contraction", sig(told.contraction_nT_per_m, 4), "nT/m"]]);
 }
 
 function instruments(status) {
