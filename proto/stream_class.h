@@ -8,8 +8,9 @@
 /// TENSOR: whoever watches samples is told which are missing.
 namespace mgtd {
 
-enum class StreamClass : std::uint8_t { tensor, gap, status, run };
-inline constexpr std::array<std::string_view, 4> kStreamClassNames{"TENSOR", "GAP", "STATUS", "RUN"};
+enum class StreamClass : std::uint8_t { tensor, gap, status, run, sensors };
+inline constexpr std::array<std::string_view, 5> kStreamClassNames{"TENSOR", "GAP", "STATUS", "RUN",
+                                                                   "SENSORS"};
 
 /// A set of classes.
 class StreamClasses {
@@ -20,6 +21,7 @@ class StreamClasses {
     set.add(StreamClass::tensor);
     set.add(StreamClass::status);
     set.add(StreamClass::run);
+    set.add(StreamClass::sensors);
     return set;
   }
   /// Adding tensor adds gap.

@@ -41,5 +41,6 @@ std::string encode(const Error& error) {
 
 std::string encode(const StatusReport& report) { return line_of_class("STATUS", to_json(report)); }
 std::string encode(const RunStatus& run) { return line_of_class("RUN", to_json(run)); }
+std::string encode(const SensorsReport& sensors) { return line_of_class("SENSORS", to_json(sensors)); }
 
 }  // namespace mgtd

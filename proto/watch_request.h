@@ -9,7 +9,7 @@
 
 /// A client of the live stream asks for samples with this request, one JSON object per line:
 ///
-///   {"watch":{"class":["TENSOR","STATUS","RUN"],"rate_hz":10,"from_seq":null}}
+///   {"watch":{"class":["TENSOR","STATUS","RUN","SENSORS"],"rate_hz":10,"from_seq":null}}
 ///
 /// A new watch replaces the one before. Left out or null: every class, every sample, from now on. An empty
 /// list of classes stops the stream. Decimation (`rate_hz`) concerns TENSOR only.

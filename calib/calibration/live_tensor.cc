@@ -62,10 +62,10 @@ void LiveTensor::refresh(const sensor::FieldVector& b_P_nT) {
 }
 
 TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditions) {
-  if (!effects_) return pipeline_.apply(epoch);
+  if (!effects_) return pipeline_.apply(epoch, 1, &fields_P_nT_);
   look_around(epoch, conditions);
-  const sensor::FieldVector b_P_nT = effects_->fields(now_, stacked(epoch.y_nT));
-  TensorSample out = pipeline_.sample(b_P_nT);
+  fields_P_nT_ = effects_->fields(now_, stacked(epoch.y_nT));
+  TensorSample out = pipeline_.sample(fields_P_nT_);
 
   const auto lacking = effects_->left_out(now_, false);
   const auto same = [](const EffectCorrection::LeftOut& now, const LeftOutEffect& before) {
@@ -80,8 +80,8 @@ TensorSample LiveTensor::apply(const Epoch& epoch, const LiveConditions& conditi
   if (!lacking.empty()) out.flags |= Flag::incomplete;
 
   if (pipeline_.noise_known()) {
-    const bool turned = (b_P_nT.head<3>() - at_P_nT_).norm() > kTurned * at_P_nT_.norm();
-    if (--fresh_ < 0 || turned) refresh(b_P_nT);
+    const bool turned = (fields_P_nT_.head<3>() - at_P_nT_).norm() > kTurned * at_P_nT_.norm();
+    if (--fresh_ < 0 || turned) refresh(fields_P_nT_);
     out.g_sd_nT_per_m = g_sd_nT_per_m_;
     if (out.along_line) out.along_line->sd_nT_per_m = along_line_sd_nT_per_m_;
     if (out.closure.dof > 0) {

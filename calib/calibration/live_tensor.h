@@ -39,6 +39,9 @@ class LiveTensor {
   /// Epochs in order of time.
   [[nodiscard]] TensorSample apply(const Epoch& epoch, const LiveConditions& conditions = {});
 
+  /// The corrected field at each sensor at the last epoch, platform frame, one below the other; without a
+  /// calibration the readings.
+  [[nodiscard]] const sensor::FieldVector& fields_P_nT() const { return fields_P_nT_; }
   /// At the last epoch; all that have inputs before the first one.
   [[nodiscard]] const std::vector<LeftOutEffect>& left_out() const { return left_out_; }
   [[nodiscard]] const std::shared_ptr<const Calibration>& calibration() const {
@@ -55,6 +58,7 @@ class LiveTensor {
   std::unique_ptr<const EffectCorrection> effects_;  ///< null without effects of the instrument
   Pose now_;                                         ///< reused, so that a sample allocates little
   std::vector<LeftOutEffect> left_out_;
+  sensor::FieldVector fields_P_nT_;
   // Of the calibration and the noise, at field at_P_nT_:
   int fresh_{0};
   Eigen::Vector3d at_P_nT_{Eigen::Vector3d::Zero()};

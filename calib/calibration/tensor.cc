@@ -330,12 +330,15 @@ TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove
   return out;
 }
 
-TensorSample TensorPipeline::apply(const Epoch& epoch, double samples) const {
+TensorSample TensorPipeline::apply(const Epoch& epoch, double samples,
+                                   sensor::FieldVector* fields_P_nT) const {
   TensorSample out;
   if (effects_ && effects_->has_instrument_effects()) {
-    out = apply(pose_of(epoch), samples);
+    out = apply(pose_of(epoch), samples, false, nullptr, fields_P_nT);
   } else {
-    out = sample(correct(epoch.y_nT));
+    const sensor::FieldVector b_P_nT = correct(epoch.y_nT);
+    if (fields_P_nT != nullptr) *fields_P_nT = b_P_nT;
+    out = sample(b_P_nT);
     if (calibration_ != nullptr && noise_known_) add_uncertainty(samples, out);
   }
   out.seq = epoch.seq;

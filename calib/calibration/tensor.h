@@ -72,8 +72,10 @@ class TensorPipeline {
   /// are not in it is left out, widens g_sd by its size, and flags the sample `incomplete` (LiveTensor knows
   /// more of a stream, and its memory).
   /// g_sd holds noise and calibration covariance together, the latter at the field of this very sample.
-  /// `samples` is the number of samples averaged into the readings.
-  [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1) const;
+  /// `samples` is the number of samples averaged into the readings. `fields_P_nT` receives the corrected
+  /// field at each sensor.
+  [[nodiscard]] TensorSample apply(const Epoch& epoch, double samples = 1,
+                                   sensor::FieldVector* fields_P_nT = nullptr) const;
   /// The same for a pose of a table, with everything it knows and the pose before it. `remove_site` takes the
   /// effects of the site out, for which the pose needs its table angles. seq and time stay empty.
   [[nodiscard]] TensorSample apply(const Pose& pose, double samples, bool remove_site = false,

@@ -68,13 +68,14 @@ void LivePipeline::answers(int slot, const std::string& identity) {
   instruments_.answers({fmt::format("s{}", slot + 1), identity});
 }
 
-/// Where the array stands is known while a referenced table stands still and says so.
-calib::calibration::LiveConditions LivePipeline::conditions(Instant at) const {
-  calib::calibration::LiveConditions out;
+std::optional<TableAngles> LivePipeline::standing_angles(Instant at) const {
   if (table_ && table_->referenced && !table_->moving && at - table_->arrival.mono < kFreshAngles)
-    out.angles = table_->angles;
-  out.covariates = &inputs_.covariates();
-  return out;
+    return table_->angles;
+  return std::nullopt;
+}
+
+calib::calibration::LiveConditions LivePipeline::conditions(Instant at) const {
+  return {.angles = standing_angles(at), .covariates = &inputs_.covariates()};
 }
 
 TensorSample LivePipeline::tensor(const Epoch& epoch, bool& finding_changed) {

@@ -71,6 +71,8 @@ class LivePipeline {
   [[nodiscard]] calib::report::LiveReport finding() const {
     return calib::report::live_report(criticism_.finding(), rearranged_.finding());
   }
+  /// Where a referenced table stands still; empty while it moves, or has said nothing for ten seconds.
+  [[nodiscard]] std::optional<TableAngles> standing_angles(Instant at) const;
   [[nodiscard]] const InstrumentWatch& instruments() const { return instruments_; }
 
  private:

@@ -158,6 +158,9 @@ void DaemonApp::use_active_calibration() {
 void DaemonApp::publish(const Epoch& epoch, const TensorSample& sample, std::span<const InputValue> inputs) {
   stream_.publish(sample, inputs);
   console_.lanes.add(sample, epoch.T_degC, inputs);
+  const acquire::LivePipeline& pipeline = core_.pipeline();
+  published_.sensors.add(epoch, sample.calibration_id, pipeline.live().fields_P_nT(),
+                         pipeline.standing_angles(epoch.t.mono));
   published_.last_skew_s = epoch.skew_bound_s;
   ++published_.count;
 }
@@ -217,6 +220,7 @@ void DaemonApp::every_second(Stamp now) {
   tell_clocks(status, now.mono);
   quiet_.tick(now.mono);
   stream_.publish(status);
+  if (const auto sensors = published_.sensors.take()) stream_.publish(*sensors);
   notify_status(fmt::format("{} epochs, calibration {}, run {}", epochs, store_.active_id().value_or("none"),
                             name(run_.status(now.mono).state)));
   if (watchdog_ && watchdog_->is_due(published_.count, epochs, host)) notify_watchdog();

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/acquire/sensor_means.h"
 #include "daemon/app/calibration_history.h"
 #include "daemon/app/epoch_rate.h"
 #include "daemon/app/log.h"
@@ -49,6 +50,7 @@ class DaemonApp : private core::CoreActions {
   };
   struct Published {
     EpochRate rate;
+    acquire::SensorMeans sensors{};
     std::optional<double> last_skew_s{};
     std::uint64_t count{0};  ///< epochs and gaps
   };

@@ -17,10 +17,11 @@ namespace mgtd::daemon::serve {
 
 struct StreamRecord {
   StreamClass stream_class{StreamClass::tensor};
-  std::uint64_t from_seq{0};  ///< first epoch it speaks of; of STATUS and RUN: the epoch that comes next
-  std::uint64_t to_seq{0};    ///< last epoch it speaks of; of STATUS and RUN as from_seq
-  Instant at{};               ///< of a TENSOR: the sample's time
-  std::string line;           ///< with its line end
+  std::uint64_t from_seq{
+      0};                   ///< first epoch it speaks of; of STATUS, RUN, SENSORS: the epoch that comes next
+  std::uint64_t to_seq{0};  ///< last epoch it speaks of; of STATUS, RUN, SENSORS as from_seq
+  Instant at{};             ///< of a TENSOR: the sample's time
+  std::string line;         ///< with its line end
 };
 
 class SampleRing {

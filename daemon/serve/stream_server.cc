@@ -249,6 +249,9 @@ void StreamServer::publish(const StatusReport& report) {
   state_->publish_line(StreamClass::status, encode(report));
 }
 void StreamServer::publish(const RunStatus& run) { state_->publish_line(StreamClass::run, encode(run)); }
+void StreamServer::publish(const SensorsReport& sensors) {
+  state_->publish_line(StreamClass::sensors, encode(sensors));
+}
 void StreamServer::publish_line(StreamClass stream_class, std::string_view line) {
   state_->publish_line(stream_class, line);
 }

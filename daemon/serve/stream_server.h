@@ -63,7 +63,8 @@ class StreamServer {
   void publish(const Gap& gap);
   void publish(const StatusReport& report);
   void publish(const RunStatus& run);
-  /// A line that is already encoded (without its line end), for STATUS and RUN.
+  void publish(const SensorsReport& sensors);
+  /// A line that is already encoded (without its line end), for STATUS, RUN and SENSORS.
   void publish_line(StreamClass stream_class, std::string_view line);
 
   [[nodiscard]] StreamStatus stats() const;

@@ -106,7 +106,7 @@ async function workbench(address) {
 async function running() {
   const paused = "document.getElementById('run-now').innerText.includes(': paused')";
   await browser.open(rig.ask("console").url, ...kSizes[0]);
-  await is("document.getElementById('link').innerText === 'live' && document.querySelector('#cards table') !== null", "a live stream");
+  await is("document.getElementById('link').innerText === 'live' && document.querySelector('#cards table') !== null && document.querySelectorAll('#sensors .card').length === 4", "a live stream");
   await look("live-raw");
   await browser.click("tab-run");
   for (const [name, value] of Object.entries({ step_deg: 20, random: kRandom, revisits: 2, dwell_short_s: 1, dwell_long_s: 2 }))

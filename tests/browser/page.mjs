@@ -59,6 +59,12 @@ assert.deepEqual([moved.s3.length, moved.s3[0].sigmas], [1, 3], "what these runs
 assert.deepEqual([moved.s3[0].parameter, moved.s3[0].when, moved.s3[0].t_ms], ["iz", "2026-05-11 08:00", Date.UTC(2026, 4, 11, 8)]);
 assert.deepEqual(apart([[0, 0], [10, 5], [10, 40], [200, 1]], (p) => p), [[0, 0], [10, 40], [200, 1]], "a name over another is left out");
 
+const { sensorsWords } = await load("sensors.js");
+const read = { t: "2026-11-21T10:00:00.123456Z", cal: null, table: null, sensors: [{ epochs: 50 }, { epochs: 49 }] };
+assert.equal(sensorsWords(read, false), "Means of 50 epochs.");
+assert.ok(sensorsWords({ ...read, cal: "c1", table: { azimuth_deg: 30, pitch_deg: -5, roll_deg: 0 } }, true)
+  .startsWith("Last measured 10:00:00Z: means of 50 epochs; the table stands at azimuth 30.00, pitch -5.00, roll 0.00 deg. Fields are"));
+
 // A column covers what a line through all its samples does, with the way from the column before.
 const { Columns, kColumn_s } = await load("columns.js");
 const columns = new Columns(10), at = (column, part) => (column + part) * kColumn_s;

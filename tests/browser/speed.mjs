@@ -64,8 +64,8 @@ async function viewer(address) {
   socket.on("data", (chunk) => { bytes += chunk.length; if (head.length < 100) head += chunk.toString("latin1"); });
   await until(() => head.includes("\r\n"), "an answer to a viewer");
   if (!head.startsWith("HTTP/1.1 101")) throw new Error(`a viewer was refused: ${head}`);
-  // {"watch":{"class":["TENSOR","GAP","STATUS"]}} in a frame with a mask of zeros
-  const wish = Buffer.from(`{"watch":{"class":["TENSOR","GAP","STATUS","RUN"]}}\n`);
+  // {"watch":{"class":["TENSOR","GAP","STATUS","RUN","SENSORS"]}} in a frame with a mask of zeros
+  const wish = Buffer.from(`{"watch":{"class":["TENSOR","GAP","STATUS","RUN","SENSORS"]}}\n`);
   socket.write(Buffer.concat([Buffer.from([0x81, 0x80 | wish.length, 0, 0, 0, 0]), wish]));
   return { end: () => socket.destroy(), bytes: () => bytes };
 }

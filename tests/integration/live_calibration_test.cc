@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tests/integration/bench.h"
 
@@ -50,6 +51,31 @@ Streamed streamed(Bench& bench) {
   return out;
 }
 
+/// The table stands: the mean of the fields at the four sensors is what TENSOR says of the centre.
+void expect_fields_of_the_sensors(Bench& bench) {
+  std::optional<json> tensor, sensors;  // the last of each, in more than two seconds of the host
+  std::istringstream lines(bench.mgt({"watch", "--raw", "--rate", "1", "--count", "75"}).out);
+  for (std::string line; std::getline(lines, line);) {
+    const json object = json::parse(line, nullptr, false);
+    if (!object.is_object()) continue;
+    if (object.at("class") == "TENSOR") tensor = object;
+    if (object.at("class") == "SENSORS") sensors = object;
+  }
+  ASSERT_TRUE(tensor && sensors);
+  EXPECT_EQ(sensors->at("cal"), tensor->at("cal"));
+  EXPECT_TRUE(sensors->at("table").is_object()) << sensors->dump();
+  ASSERT_EQ(sensors->at("sensors").size(), 4U);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double mean_nT = 0;
+    for (const json& sensor : sensors->at("sensors")) mean_nT += sensor.at("b_nT").at(axis).get<double>() / 4;
+    EXPECT_NEAR(mean_nT, tensor->at("b_nT").at(axis).get<double>(), 3) << axis;
+  }
+  for (const json& sensor : sensors->at("sensors")) {
+    EXPECT_GT(sensor.at("epochs").get<int>(), 10);
+    for (const json& sd : sensor.at("sd_nT")) EXPECT_GT(sd.get<double>(), 0);
+  }
+}
+
 /// Largest deviation of the stream from the truth.
 struct Deviation {
   double nT_per_m{0}, sd{0};  ///< sd: in the standard deviations of one sample that the stream states
@@ -84,6 +110,7 @@ void becomes_true(Bench& bench, const std::string& effect) {
   const Streamed after = streamed(bench);
   EXPECT_EQ(after.samples, 40);
   EXPECT_FALSE(after.incomplete);
+  expect_fields_of_the_sensors(bench);
   // A mean of forty in the standard deviation of one: what is left is the calibration's.
   const Deviation left = deviation(bench, after);
   EXPECT_LT(left.sd, 3);

@@ -42,7 +42,7 @@ TEST(StreamCodec, GreetingGapAndErrorHaveTheirDocumentedForm) {
                               .closure = 0,
                               .tells = "field and a derivative"};
   EXPECT_EQ(encode(Greeting{"rig 7", "mgtd 0.1.0", pair}),
-            R"({"class":"HELLO","protocol":{"major":1,"minor":1},"rig":"rig 7","software":"mgtd 0.1.0",)"
+            R"({"class":"HELLO","protocol":{"major":1,"minor":2},"rig":"rig 7","software":"mgtd 0.1.0",)"
             R"("array":{"sensors":2,"positions_m":[[0.0,0.0,0.25],[0.0,0.0,-0.25]],"gradient":["zz","xz"],)"
             R"("line":null,"closure":0,"closure_limit":null,"tells":"field and a derivative"}})");
   EXPECT_EQ(encode(Gap{4, 9, {}, "s2 silent"}),

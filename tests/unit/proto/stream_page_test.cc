@@ -6,6 +6,7 @@
 
 #include "proto/control_codec.h"
 #include "proto/run_request.h"
+#include "proto/sensors_report.h"
 #include "proto/status_codec.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
@@ -28,6 +29,16 @@ TEST(StreamPage, NamesEveryStateAndKeyOfARun) {
   const auto run = to_json(RunStatus{});
   for (const auto& [key, value] : run.items())
     EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
+}
+
+TEST(StreamPage, NamesEveryKeyOfTheSensors) {
+  const std::string text = page();
+  const auto report = to_json(SensorsReport{.table = TableAngles{}});
+  for (const auto& [key, value] : report.items())
+    EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
+  for (const auto& part : {report["sensors"][0], report["table"]})
+    for (const auto& [key, value] : part.items())
+      EXPECT_THAT(text, ::testing::HasSubstr(fmt::format("`{}`", key)));
 }
 
 TEST(StreamPage, NamesEveryArgumentOfARun) {

@@ -17,7 +17,7 @@ StreamClasses only(StreamClass c) {
 
 TEST(WatchRequest, ReadsTheDocumentedLine) {
   const auto request =
-      parse_watch(R"({"watch":{"class":["TENSOR","STATUS","RUN"],"rate_hz":10,"from_seq":null}})");
+      parse_watch(R"({"watch":{"class":["TENSOR","STATUS","RUN","SENSORS"],"rate_hz":10,"from_seq":null}})");
   ASSERT_TRUE(request) << request.error().text();
   EXPECT_EQ(request->classes, StreamClasses::all());
   EXPECT_EQ(request->rate_hz, 10.0);
@@ -38,9 +38,15 @@ TEST(WatchRequest, SamplesBringTheirGapsAndNothingElseDoes) {
   EXPECT_FALSE(parse_watch(R"({"watch":{"class":[]}})")->classes.any());
 }
 
+TEST(WatchRequest, AReaderMayLeaveOutTheSensors) {
+  EXPECT_TRUE(WatchRequest{}.classes.has(StreamClass::sensors));
+  EXPECT_FALSE(
+      parse_watch(R"({"watch":{"class":["TENSOR","STATUS","RUN"]}})")->classes.has(StreamClass::sensors));
+}
+
 TEST(WatchRequest, SurvivesItsOwnEncoding) {
-  for (const auto& classes :
-       {StreamClasses::all(), only(StreamClass::run), only(StreamClass::gap), StreamClasses{}}) {
+  for (const auto& classes : {StreamClasses::all(), only(StreamClass::run), only(StreamClass::gap),
+                              only(StreamClass::sensors), StreamClasses{}}) {
     const WatchRequest request{classes, 12.5, 18'446'744'073'709'551'615U};
     const auto back = parse_watch(encode(request));
     ASSERT_TRUE(back) << encode(request);
@@ -83,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(WatchRequest, RemediesNameWhatExists) {
   EXPECT_THAT(parse_watch(R"({"watch":{"class":["X"]}})").error().remedy,
-              HasSubstr("TENSOR, GAP, STATUS, RUN"));
+              HasSubstr("TENSOR, GAP, STATUS, RUN, SENSORS"));
   EXPECT_THAT(parse_watch(R"({"cmd":"run.abort"})").error().remedy, HasSubstr("control socket"));
 }
 

@@ -19,7 +19,7 @@ export function openStream(on) {
         if (!line) continue;
         const message = JSON.parse(line);
         if (message.class === "HELLO")
-          socket.send(JSON.stringify({ watch: { class: ["TENSOR", "STATUS", "RUN"], rate_hz: null,
+          socket.send(JSON.stringify({ watch: { class: ["TENSOR", "STATUS", "RUN", "SENSORS"], rate_hz: null,
                                                 from_seq: lastSeq === null ? null : lastSeq + 1 } }));
         if (message.class === "TENSOR") lastSeq = message.seq;
         if (message.class === "GAP") lastSeq = message.to_seq;

@@ -8,10 +8,11 @@ import { Jobs } from "./jobs.js";
 import { Lanes, windows } from "./lanes.js";
 import { Control, openStream, takeToken } from "./link.js";
 import { active, chip, showRun, wanted } from "./run.js";
+import { sensorCards } from "./sensors.js";
 
 const token = takeToken(), control = new Control(token);
 const lanes = new Lanes(by("canvas"), (text) => { by("cursor").textContent = text; });
-let status = null, run = null, sample = null, heard_ms = 0, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, numbers_ms = 0;
+let status = null, run = null, sample = null, sensors = null, heard_ms = 0, sampled_ms = 0, screen = "live", alarms = 0, judged = 0, numbers_ms = 0;
 
 function banner(text, note = false) {
   by("banner").textContent = text;
@@ -112,6 +113,15 @@ function takeSample(message) {
   showNumbers(now);
 }
 
+function takeSensors(message) {
+  sensors = message;
+  if (screen === "live") showSensors(false);
+}
+function showSensors(old) {
+  by("sensors").hidden = !sensors;
+  if (sensors) fill(by("sensors"), sensorCards(sensors, old));
+}
+
 /** The table behind the lanes, while it is open. */
 function showNumbers(now) {
   if (!by("lane-numbers").open || now - numbers_ms < 1000) return;
@@ -140,6 +150,7 @@ function takeStatus(message) {
   const now = performance.now();  // without samples, as after a pulled cable, the instruments are told all the same
   if (screen === "live" && now - sampled_ms > kQuiet_ms) {
     fill(by("cards"), cards(status, sample, now - heard_ms > kQuiet_ms));
+    if (now - heard_ms > kQuiet_ms) showSensors(true);
     showNumbers(now);
   }
   takeRun(message.run);
@@ -170,6 +181,7 @@ function followRig(hello) {
       else if (message.class === "GAP") lanes.gap(message.why);
       else if (message.class === "STATUS") takeStatus(message);
       else if (message.class === "RUN") takeRun(message);
+      else if (message.class === "SENSORS") takeSensors(message);
     },
     state: (state, since) => {
       const at = since ? since.toISOString().slice(11, 19) + "Z" : "";

@@ -60,6 +60,24 @@ TEST(LiveTensor, RemovesWhatTheLiveThermometerAndTheClockSay) {
   EXPECT_THAT(live.left_out(), IsEmpty());
 }
 
+/// Their mean is the field at the centre of the cross, which the sample holds.
+TEST(LiveTensor, ShowsTheFieldsAtTheSensors) {
+  LiveTensor raw{sensor::Geometry()}, plain(with({})),
+      corrected(with({{"axis.offset.temperature@s3.z", 2.0}}));
+  for (LiveTensor* live : {&raw, &plain, &corrected}) {
+    Epoch e = epoch(1, kField, 23);
+    e.y_nT[0].x() += 8;
+    const TensorSample s = live->apply(e);
+    const sensor::FieldVector& b = live->fields_P_nT();
+    ASSERT_EQ(b.size(), sensor::kChannels);
+    EXPECT_NEAR(b[0], kField.x() + 8, 1e-9);
+    EXPECT_LT((s.b_P_nT - (b.segment<3>(0) + b.segment<3>(3) + b.segment<3>(6) + b.segment<3>(9)) / 4).norm(),
+              1e-9);
+  }
+  EXPECT_NEAR(plain.fields_P_nT()[8], kField.z(), 1e-9);
+  EXPECT_NEAR(corrected.fields_P_nT()[8], kField.z() - 2.0 * (23 - effects::kReferenceT_degC), 1e-9);
+}
+
 TEST(LiveTensor, WhatIsNotMeasuredIsLeftOutAndSaysSo) {
   LiveTensor live(with({{"axis.offset.temperature@s3.z", 2.0}, {"axis.offset.drift@s1.x", 10.0}}, ""));
   EXPECT_EQ(live.left_out().size(), 2U) << "before the first sample nothing is measured";

@@ -1,36 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the epoch to the line of the stream nothing is allocated, whatever the number of sensors. malloc,
-// which operator new and Eigen both end in, is replaced in the whole test program by one that counts; the
-// sanitizers bring their own, and the tests are skipped.
+// From the epoch to the line of the stream nothing is allocated, whatever the number of sensors. With the
+// sanitizers, which have a malloc of their own, the tests are skipped.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 
 #include "calib/calibration/live_tensor.h"
 #include "proto/tensor_encoder.h"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define MGTD_COUNTS_ALLOCATIONS 1
-#else
-#define MGTD_COUNTS_ALLOCATIONS 0
-#endif
-
-namespace {
-thread_local std::size_t allocations = 0;
-}  // namespace
-
-#if MGTD_COUNTS_ALLOCATIONS
-extern "C" void* __libc_malloc(std::size_t bytes);
-extern "C" void* malloc(std::size_t bytes) noexcept {
-  ++allocations;
-  return __libc_malloc(bytes);
-}
-#endif
+#include "tests/support/counted_malloc.h"
 
 namespace mgtd::calib::calibration {
 namespace {
+
+using testing::allocations;
 
 /// Sensors on a helix, so that any number of them determines what so many can.
 sensor::Geometry helix(std::size_t sensors) {

@@ -78,8 +78,23 @@ TEST(Subscription, TakesOnlyItsClasses) {
   push_samples(ring, 0, 3);
   ring.push_gap(4, 5, R"({"class":"GAP"})");
   ring.push_other(StreamClass::status, R"({"class":"STATUS"})");
+  ring.push_other(StreamClass::sensors, R"({"class":"SENSORS"})");
   ring.push_other(StreamClass::run, R"({"class":"RUN"})");
   EXPECT_EQ(filled(subscription, ring), "{\"class\":\"RUN\"}\n");
+}
+
+TEST(Subscription, EveryClassIsEveryOne) {
+  SampleRing ring(100);
+  Subscription subscription;
+  std::string out;
+  subscription.watch(WatchRequest{}, ring, out);
+  std::string all;
+  for (const StreamClass c : {StreamClass::status, StreamClass::run, StreamClass::sensors}) {
+    const std::string line(kStreamClassNames.at(static_cast<std::size_t>(c)));
+    ring.push_other(c, line);
+    all += line + "\n";
+  }
+  EXPECT_EQ(filled(subscription, ring), all);
 }
 
 TEST(Subscription, EmptyWishStopsTheStream) {
