@@ -5,8 +5,15 @@
 
 namespace mgtd::drivers {
 
+LinkHealth DeviceLink::health() const {
+  LinkHealth out = life_.shown(device_->health());
+  out.state_since = state_since_;
+  return out;
+}
+
 void DeviceLink::report_state(Stamp now) {
-  const LinkHealth shown = health();
+  LinkHealth shown = health();
+  if (!state_since_ || shown.state != reported_state_) shown.state_since = state_since_ = now.mono;
   if (shown.state == reported_state_ && shown.detail == reported_detail_) return;
   reported_state_ = shown.state;
   reported_detail_ = shown.detail;

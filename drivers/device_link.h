@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -64,7 +65,7 @@ class DeviceLink {
   [[nodiscard]] Device& device() { return *device_; }
   [[nodiscard]] const Device& device() const { return *device_; }
   /// The device's own counts and state; while the port is closed, why it is.
-  [[nodiscard]] LinkHealth health() const { return life_.shown(device_->health()); }
+  [[nodiscard]] LinkHealth health() const;
 
  private:
   void deliver(Stamp now);
@@ -83,6 +84,7 @@ class DeviceLink {
   bool open_{false};
   bool delivering_{false};
   LinkState reported_state_{LinkState::absent};
+  std::optional<Instant> state_since_;  ///< empty: nothing was reported yet
   std::string reported_detail_;
 };
 

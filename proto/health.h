@@ -47,6 +47,7 @@ struct LinkHealth {
   std::array<std::uint64_t, kRejects> rejected{};  ///< frames by reason
   std::uint64_t opens{0}, closes{0};
   std::optional<Instant> last_frame;
+  std::optional<Instant> state_since;  ///< when the state became what it is; empty: nothing happened yet
 
   void reject(Reject why, std::size_t bytes) {
     ++rejected[static_cast<std::size_t>(why)];

@@ -18,6 +18,10 @@ OrderedJson optional(const std::optional<T>& value) {
   return value ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
+OrderedJson age_s(const std::optional<Instant>& since, Instant now) {
+  return since ? OrderedJson(to_seconds(now - *since)) : OrderedJson(nullptr);
+}
+
 OrderedJson rejected(const LinkHealth& health) {
   OrderedJson counts = OrderedJson::object();
   for (std::size_t i = 0; i < kRejects; ++i) counts[std::string(kRejectNames[i])] = health.rejected[i];
@@ -53,9 +57,28 @@ OrderedJson to_json(const DeviceStatus& device, Instant now) {
           {"opens", h.opens},
           {"closes", h.closes},
           {"balanced", h.balanced()},
-          {"last_frame_age_s",
-           h.last_frame ? OrderedJson(to_seconds(now - *h.last_frame)) : OrderedJson(nullptr)},
+          {"last_frame_age_s", age_s(h.last_frame, now)},
+          {"state_since_s", age_s(h.state_since, now)},
+          {"rate_hz", optional(device.rate_hz)},
           {"clock", to_json(device.clock)}};
+}
+
+/// null where there are none.
+OrderedJson temperatures(const std::vector<std::optional<double>>& T_degC) {
+  if (T_degC.empty()) return nullptr;
+  OrderedJson out = OrderedJson::array();
+  for (const auto& T : T_degC) out.push_back(T ? number(*T) : OrderedJson(nullptr));
+  return out;
+}
+
+OrderedJson to_json(const CalibrationUse& use) {
+  OrderedJson left_out = OrderedJson::array();
+  for (const auto& [effect, lacks] : use.left_out) left_out.push_back({{"effect", effect}, {"lacks", lacks}});
+  return {{"forced", use.forced},
+          {"left_out", std::move(left_out)},
+          {"age_s", optional(use.age_s)},
+          {"made_at_degC", temperatures(use.made_at_degC)},
+          {"now_degC", temperatures(use.now_degC)}};
 }
 
 OrderedJson to_json(const InputStatus& input, Instant now) {
@@ -64,7 +87,7 @@ OrderedJson to_json(const InputStatus& input, Instant now) {
           {"input", input.input},
           {"unit", input.unit.empty() ? OrderedJson(nullptr) : OrderedJson(input.unit)},
           {"value", input.value ? number(*input.value) : OrderedJson(nullptr)},
-          {"age_s", input.heard ? OrderedJson(to_seconds(now - *input.heard)) : OrderedJson(nullptr)}};
+          {"age_s", age_s(input.heard, now)}};
 }
 
 OrderedJson clients(const ClientCounts& counts) {
@@ -188,9 +211,6 @@ OrderedJson to_json(const RunStatus& run) {
 }
 
 OrderedJson to_json(const StatusReport& report) {
-  OrderedJson left_out = OrderedJson::array();
-  for (const auto& [effect, lacks] : report.calibration_use.left_out)
-    left_out.push_back({{"effect", effect}, {"lacks", lacks}});
   OrderedJson devices = OrderedJson::array();
   for (const DeviceStatus& device : report.devices) devices.push_back(to_json(device, report.at.mono));
   OrderedJson inputs = OrderedJson::array();
@@ -203,7 +223,7 @@ OrderedJson to_json(const StatusReport& report) {
           {"array", to_json(report.array)},
           {"speed_up", report.speed_up},
           {"cal", optional(report.calibration)},
-          {"calibration", {{"forced", report.calibration_use.forced}, {"left_out", std::move(left_out)}}},
+          {"calibration", to_json(report.calibration_use)},
           {"criticism",
            {{"state", report.criticism.state},
             {"measured", report.criticism.measured},

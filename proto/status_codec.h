@@ -13,11 +13,13 @@
 ///          null,"tensor_sd_nT_per_m","wanted_tensor_sd_nT_per_m", "proposed": id or
 ///          null,"checks":[{"name","passed","measured","limit","remedy"}]}
 /// STATUS: {"t","t_ns","uptime_s","software","rig","speed_up","cal": id or null,
-///          "calibration":{"forced","left_out":[{"effect","lacks"}]},
+///          "calibration":{"forced","left_out":[{"effect","lacks"}],"age_s",
+///                         "made_at_degC":[a number or null per sensor],"now_degC":[the same]},
 ///          "criticism":{"state","measured","limit","remedy"},
 ///          "devices":[{"name","driver","port","state","detail","identity","bytes_in","bytes_in_frames",
 ///                      "bytes_rejected","bytes_resync","bytes_pending","bytes_out","frames",
 ///                      "rejected":{"length":0,..},"opens","closes","balanced","last_frame_age_s",
+///                      "state_since_s","rate_hz",
 ///                      "clock":{"rate_error","rate_error_pm","bound_s","delivery_s","settled","trouble"}
 ///                              or null}],
 ///          "inputs":[{"name","device","input","unit","value","age_s"}],

@@ -32,6 +32,7 @@ struct DeviceStatus {
   std::string port;
   LinkHealth health;
   std::optional<ClockStatus> clock{};  ///< of a sensor that has sent samples
+  std::optional<double> rate_hz{};     ///< good frames a second of late; empty: not known yet
 };
 
 /// An auxiliary input or a sensor's thermometer.
@@ -73,10 +74,14 @@ struct LeftOut {
   std::string effect, lacks;
 };
 
-/// How the active calibration is used.
+/// How the active calibration is used, and how far the conditions are from those that it was made in.
 struct CalibrationUse {
   bool forced{false};  ///< it failed its checks
   std::vector<LeftOut> left_out;
+  std::optional<double> age_s{};  ///< since its run began; empty: not known
+  /// Temperatures of the heads, sensor by sensor: mean of its run, and the last; no elements without a
+  /// calibration.
+  std::vector<std::optional<double>> made_at_degC{}, now_degC{};
 };
 
 /// What the stream itself says of the calibration.

@@ -213,6 +213,9 @@ void DaemonApp::every_second(Stamp now) {
   const Instant host = std::chrono::steady_clock::now();
   const std::uint64_t epochs = core_.pipeline().sampler().health().epochs;
   published_.rate.add(epochs, host);
+  const auto links = core_.instruments().links();
+  published_.frames.resize(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) published_.frames[i].add(links[i].second.frames, now.mono);
   recording_.guard_reserve();
   core_.every_second(now);
   const StatusReport status = report();

@@ -8,10 +8,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "daemon/acquire/sensor_means.h"
 #include "daemon/app/calibration_history.h"
 #include "daemon/app/epoch_rate.h"
+#include "daemon/app/frame_rate.h"
 #include "daemon/app/log.h"
 #include "daemon/app/ports.h"
 #include "daemon/app/recording.h"
@@ -51,6 +53,7 @@ class DaemonApp : private core::CoreActions {
   struct Published {
     EpochRate rate;
     acquire::SensorMeans sensors{};
+    std::vector<FrameRate> frames{};  ///< of each instrument
     std::optional<double> last_skew_s{};
     std::uint64_t count{0};  ///< epochs and gaps
   };

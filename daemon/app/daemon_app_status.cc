@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the rig says of itself.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <system_error>
 
 #include "daemon/acquire/clock_report.h"
@@ -29,6 +32,23 @@ std::vector<InputStatus> inputs_now(const config::Config& config, const acquire:
   return out;
 }
 
+/// How `used` is used while the inputs are these. What was made after now has no age: the clock was set.
+CalibrationUse use_of(const calib::calibration::Calibration& used, const std::vector<InputStatus>& inputs,
+                      WallTime now) {
+  CalibrationUse out{.forced = !used.accepted_by_checks, .left_out = {}};
+  if (const auto made = parse_utc(used.reference.t_utc); made && made->ns <= now.ns)
+    out.age_s = to_seconds(Duration(now.ns - made->ns));
+  out.made_at_degC.assign(used.reference.T_degC.begin(), used.reference.T_degC.end());
+  for (std::size_t i = 0; i < used.sensors.size(); ++i) {
+    const auto of_sensor = [name = fmt::format("s{}_T_degC", i + 1)](const InputStatus& input) {
+      return input.name == name;
+    };
+    const auto input = std::find_if(inputs.begin(), inputs.end(), of_sensor);
+    out.now_degC.push_back(input == inputs.end() ? std::nullopt : input->value);
+  }
+  return out;
+}
+
 }  // namespace
 
 StatusReport DaemonApp::report() const {
@@ -42,8 +62,9 @@ StatusReport DaemonApp::report() const {
   out.array = array_;
   out.speed_up = config_.speed_up;
   out.calibration = store_.active_id();
+  out.inputs = inputs_now(config_, pipeline.inputs(), now.mono);
   if (const auto& used = pipeline.live().calibration()) {
-    out.calibration_use.forced = !used->accepted_by_checks;
+    out.calibration_use = use_of(*used, out.inputs, now.wall);
     for (const auto& [effect, lacks] : pipeline.live().left_out())
       out.calibration_use.left_out.push_back({effect, lacks});
   }
@@ -54,7 +75,8 @@ StatusReport DaemonApp::report() const {
     out.criticism = {"identity", instruments.measured(),
                      "the calibration holds for the sensors that it was made with", instruments.remedy()};
   out.devices = core_.instruments().status();
-  out.inputs = inputs_now(config_, pipeline.inputs(), now.mono);
+  for (std::size_t i = 0; i < std::min(out.devices.size(), published_.frames.size()); ++i)
+    out.devices[i].rate_hz = published_.frames[i].rate_hz();
   const acquire::SamplerHealth sampler = pipeline.sampler().health();
   for (std::size_t i = 0; i < sampler.sensors.size(); ++i) {
     if (sampler.sensors[i].clock.samples > 0)

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "calib/poses/pose_columns.h"
+#include "daemon/cli/age_text.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/progress.h"
 #include "proto/status_codec.h"
@@ -21,16 +22,27 @@ std::string text_or(const nlohmann::json& object, const char* key, const char* o
   return found == object.end() || found->is_null() ? otherwise : found->get<std::string>();
 }
 
+/// Of a daemon of an earlier version the key is missing.
+template <class Shown>
+std::string number_or(const nlohmann::json& object, const char* key, const char* otherwise, Shown shown) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? shown(found->template get<double>()) : otherwise;
+}
+
 using Text = std::back_insert_iterator<std::string>;
 
 void write_devices(Text to, const nlohmann::json& devices) {
-  fmt::format_to(to, "\n{:<8} {:<8} {:>10} {:>9}  {}\n", "device", "state", "frames", "rejected", "");
+  constexpr auto kRow = "{:<8} {:<9} {:>7} {:>10} {:>8} {:>8}  {}\n";
+  fmt::format_to(to, "\n");
+  fmt::format_to(to, kRow, "device", "state", "for", "frames", "a second", "rejected", "");
   for (const auto& d : devices) {
     std::uint64_t rejected = 0;
     for (const auto& [reason, count] : d.at("rejected").items()) rejected += count.get<std::uint64_t>();
     const std::string said = d.at("state") == "live" ? text_or(d, "identity", "") : text_or(d, "detail", "");
-    fmt::format_to(to, "{:<8} {:<8} {:>10} {:>9}  {}\n", d.at("name").get<std::string>(),
-                   d.at("state").get<std::string>(), d.at("frames").get<std::uint64_t>(), rejected, said);
+    const std::string since = number_or(d, "state_since_s", "", age_text);
+    const std::string rate = number_or(d, "rate_hz", "", [](double hz) { return fmt::format("{:.1f}", hz); });
+    fmt::format_to(to, kRow, d.at("name").get<std::string>(), d.at("state").get<std::string>(), since,
+                   d.at("frames").get<std::uint64_t>(), rate, rejected, said);
     if (const auto clock = d.find("clock"); clock != d.end() && !clock->is_null())
       if (const std::string trouble = text_or(*clock, "trouble", ""); !trouble.empty())
         fmt::format_to(to, "         {}\n", trouble);
@@ -93,6 +105,8 @@ Result<nlohmann::json> status_after(const Session& session, double patience_s) {
 /// Tells what an operator must know of the active calibration beside its id.
 void write_calibration(Text to, const nlohmann::json& s) {
   const auto& use = s.at("calibration");
+  if (const std::string conditions = conditions_text(use); !conditions.empty())
+    fmt::format_to(to, "          {}\n", conditions);
   if (use.at("forced") == true) fmt::format_to(to, "          it failed its checks and was forced\n");
   for (const auto& e : use.at("left_out"))
     fmt::format_to(to, "          not corrected: {}, {} is not measured\n", e.at("effect").get<std::string>(),

@@ -11,12 +11,14 @@ const page = join(dirname(fileURLToPath(import.meta.url)), "../../daemon/serve/c
 /** A module of the page; those that only name the document are loaded without one. */
 const load = (name) => import(`data:text/javascript,${encodeURIComponent(readFileSync(join(page, name), "utf8").replace(/from "\.\/(\w+)\.js"/g, (_, other) =>
   `from "data:text/javascript,${encodeURIComponent(readFileSync(join(page, `${other}.js`), "utf8").replace(/^import .*$/gm, "const css = () => '';").replace(/^const css = \(name.*$/gm, ""))}"`))}`);
-const { binMeans, chance, extent, logTicks, plusMinus, sig, ticks } = await load("numbers.js");
+const { ago, binMeans, chance, extent, logTicks, plusMinus, sig, ticks } = await load("numbers.js");
 
 assert.deepEqual([0.60506, 0.019, 31.5, 928065, 0, 1e-8, null, NaN].map((v) => sig(v)), ["0.605", "0.0190", "31.5", "928065", "0", "1.00e-8", "--", "--"]);
 assert.equal(plusMinus(2.99874, 0.00233, "nT/degC"), "+2.9987 ± 0.0023 nT/°C");
 assert.equal(plusMinus(-12.3, 0, "nT"), "-12.3 nT");
 assert.deepEqual([-500, -7, -1, null].map(chance), ["< 1e-30", "1e-7", "0.10", "--"]);
+
+assert.deepEqual([-1, 119.9, 120, 7199, 7200, 172799, 172800].map(ago), ["0 s", "119 s", "2 min", "119 min", "2 h", "47 h", "2 days"]);
 
 for (const [low, high, wanted] of [[0, 1, 5], [-2.7, 3.4, 4], [1e-9, 4e-9, 3], [53900, 53910, 6], [-1e6, 1e6, 2]]) {
   const { at, text } = ticks(low, high, wanted);
@@ -58,6 +60,16 @@ assert.deepEqual(Object.keys(moved), ["s3", "s12"], "an effect is no parameter o
 assert.deepEqual([moved.s3.length, moved.s3[0].sigmas], [1, 3], "what these runs cannot tell is no dot");
 assert.deepEqual([moved.s3[0].parameter, moved.s3[0].when, moved.s3[0].t_ms], ["iz", "2026-05-11 08:00", Date.UTC(2026, 4, 11, 8)]);
 assert.deepEqual(apart([[0, 0], [10, 5], [10, 40], [200, 1]], (p) => p), [[0, 0], [10, 40], [200, 1]], "a name over another is left out");
+
+const { calibrationWords, conditions, warmer_K } = await load("cards.js");
+const made = { forced: false, age_s: 3 * 86400, made_at_degC: [12.31, null, 11.87], now_degC: [31.02, 31.04, 30.98] };
+assert.equal(conditions(made), "made 3 days ago at 11.9 to 12.3 °C, now 31.0 °C");
+assert.equal(conditions({ ...made, age_s: null, now_degC: [null, null, null] }), "made at 11.9 to 12.3 °C");
+assert.equal(conditions({ age_s: null, made_at_degC: null, now_degC: null }), "");
+assert.ok(Math.abs(warmer_K(made) - 19.11) < 1e-9);
+assert.equal(calibrationWords({ cal: "c1", calibration: made }), "calibration c1, made 3 days ago at 11.9 to 12.3 °C, now 31.0 °C");
+assert.equal(calibrationWords({ cal: "c1", calibration: { ...made, forced: true, now_degC: [12, 12, 12] } }), "calibration c1, forced, 3 days old");
+assert.equal(calibrationWords({ cal: null, calibration: {} }), "no calibration: the stream is raw");
 
 const { sensorsWords } = await load("sensors.js");
 const read = { t: "2026-11-21T10:00:00.123456Z", cal: null, table: null, sensors: [{ epochs: 50 }, { epochs: 49 }] };

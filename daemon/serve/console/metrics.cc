@@ -55,6 +55,13 @@ void devices(const StatusReport& report, Page& page) {
   page.metric("mgtd_device_frames_total", "counter", "Good frames of the device.");
   for (const DeviceStatus& d : report.devices)
     page.value(static_cast<double>(d.health.frames), {{"device", d.name}});
+  page.metric("mgtd_device_frame_rate_hertz", "gauge", "Good frames a second of late.");
+  for (const DeviceStatus& d : report.devices)
+    if (d.rate_hz) page.value(*d.rate_hz, {{"device", d.name}});
+  page.metric("mgtd_device_state_seconds", "gauge", "For how long the device is in its state.");
+  for (const DeviceStatus& d : report.devices)
+    if (d.health.state_since)
+      page.value(to_seconds(report.at.mono - *d.health.state_since), {{"device", d.name}});
   page.metric("mgtd_device_rejected_total", "counter", "Frames that were rejected, by reason.");
   for (const DeviceStatus& d : report.devices) {
     for (std::size_t i = 0; i < kRejects; ++i)
@@ -96,6 +103,10 @@ std::string metrics(const StatusReport& report, std::uint64_t console_refused) {
   inputs(report, page);
   page.metric("mgtd_calibration_active", "gauge", "1 while a calibration is active.");
   page.value(report.calibration ? 1 : 0, {{"id", report.calibration.value_or("")}});
+  if (report.calibration_use.age_s) {
+    page.metric("mgtd_calibration_age_seconds", "gauge", "Since the run of the active calibration began.");
+    page.value(*report.calibration_use.age_s);
+  }
   page.metric("mgtd_calibration_doubted", "gauge", "1 while the stream contradicts the calibration.");
   page.value(report.criticism.state == "suspect" || report.criticism.state == "identity" ? 1 : 0);
   page.metric("mgtd_run_active", "gauge", "1 while a calibration run is going on.");

@@ -11,7 +11,7 @@
 namespace mgtd {
 namespace {
 
-SensorsReport report() {
+SensorsReport two_sensors() {
   SensorsReport out{.from_seq = 100,
                     .to_seq = 149,
                     .t = WallTime{1'795'255'200'123'456'000},
@@ -28,7 +28,7 @@ SensorsReport report() {
 }
 
 TEST(SensorsReport, HasItsDocumentedForm) {
-  EXPECT_EQ(encode(report()),
+  EXPECT_EQ(encode(two_sensors()),
             R"({"class":"SENSORS","from_seq":100,"to_seq":149,"t":"2026-11-21T10:00:00.123456Z",)"
             R"("t_ns":1795255200123456000,"frame":"platform","cal":"c0123456789ab",)"
             R"("table":{"azimuth_deg":30.0,"pitch_deg":-5.0,"roll_deg":0.0},"sensors":[)"
@@ -38,7 +38,7 @@ TEST(SensorsReport, HasItsDocumentedForm) {
 }
 
 TEST(SensorsReport, WhatIsNotKnownIsNull) {
-  SensorsReport raw = report();
+  SensorsReport raw = two_sensors();
   raw.calibration.reset();
   raw.table.reset();
   const auto line = to_json(raw);

@@ -136,6 +136,13 @@ TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
   device.health.bytes_in_frames = 80;
   device.health.reject(Reject::checksum, 20);
   device.health.last_frame = Instant{std::chrono::milliseconds(99'980)};
+  device.health.state_since = Instant{std::chrono::seconds(40)};
+  device.rate_hz = 49.9;
+  report.calibration_use = {.forced = true,
+                            .left_out = {{"axis.offset.drift", "t_s"}},
+                            .age_s = 3600,
+                            .made_at_degC = {12, std::nullopt},
+                            .now_degC = {31.5, std::nullopt}};
   report.devices = {device, {"table", "gcs2", "/dev/mgt/table", {}}};
   report.devices[1].health.bytes_in = 1;
   report.inputs = {{"motor_A", "s2", "q", "A", 0.5, Instant{std::chrono::seconds(99)}},
@@ -154,6 +161,14 @@ TEST(StreamCodec, StatusShowsTheBooksOfEveryDevice) {
       Json({{"length", 0}, {"framing", 0}, {"checksum", 1}, {"number", 0}, {"range", 0}, {"sequence", 0}}));
   EXPECT_EQ(status["devices"][0]["balanced"], true);
   EXPECT_EQ(status["devices"][0]["last_frame_age_s"], 0.02);
+  EXPECT_DOUBLE_EQ(status["devices"][0]["state_since_s"].get<double>(), 60);
+  EXPECT_EQ(status["devices"][0]["rate_hz"], 49.9);
+  EXPECT_TRUE(status["devices"][1]["state_since_s"].is_null());
+  EXPECT_TRUE(status["devices"][1]["rate_hz"].is_null());
+  EXPECT_EQ(status["calibration"],
+            Json::parse(R"({"forced":true,"left_out":[{"effect":"axis.offset.drift","lacks":"t_s"}],)"
+                        R"("age_s":3600.0,"made_at_degC":[12.0,null],"now_degC":[31.5,null]})"));
+  EXPECT_TRUE(Json::parse(encode(StatusReport{}))["calibration"]["made_at_degC"].is_null());
   EXPECT_EQ(status["devices"][1]["balanced"], false);
   EXPECT_TRUE(status["devices"][1]["last_frame_age_s"].is_null());
   EXPECT_EQ(status["inputs"][0], Json({{"name", "motor_A"},

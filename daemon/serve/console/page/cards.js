@@ -2,7 +2,7 @@
 // The cards beside the lanes: the tensor, the instruments, what the stream says of its calibration, what is recorded.
 import { make, table } from "./elements.js";
 import { shown } from "./lanes.js";
-import { sig } from "./numbers.js";
+import { ago, sig } from "./numbers.js";
 import { fieldChange } from "./run.js";
 
 const kComponents = ["xx", "yy", "zz", "xy", "xz", "yz"];
@@ -33,18 +33,41 @@ function instruments(status) {
     const good = d.state === "live";
     const rejected = Object.values(d.rejected).reduce((a, b) => a + b, 0);
     const trouble = d.clock?.trouble || (good ? "" : d.detail);
-    const row = [d.name, make("span", { class: good ? "good" : "bad" }, good ? "live" : d.state), d.frames, rejected];
+    const since = d.state_since_s === null ? "" : make("span", { class: "unbroken" }, ago(d.state_since_s)), rate = d.rate_hz === null ? "--" : d.rate_hz.toFixed(1);
+    const row = [d.name, make("span", { class: good ? "good" : "bad" }, good ? "live" : d.state), since, rate, rejected];
     return trouble ? [row, [{ wide: trouble, columns: row.length }]] : [row];
   });
-  return card(table("Instruments", ["", "state", "frames", "rejected"], body.flat()));
+  return card(table("Instruments", ["", "state", "for", "Hz", "rejected"], body.flat()));
+}
+
+export const kWarmer_K = 5;  // a difference that is told at the top of every screen
+const known = (list) => (list ?? []).filter((v) => v !== null);
+const range = (list) => (Math.min(...list).toFixed(1) === Math.max(...list).toFixed(1) ? list[0].toFixed(1) : `${Math.min(...list).toFixed(1)} to ${Math.max(...list).toFixed(1)}`);
+
+/** When the calibration was made, and how warm it was then and is now; "" where nothing is known. */
+export function conditions({ age_s, made_at_degC, now_degC }) {
+  const made = known(made_at_degC), now = known(now_degC);
+  const parts = [age_s === null ? "" : `${ago(age_s)} ago`, made.length ? `at ${range(made)} °C` : ""].filter(Boolean).join(" ");
+  return parts ? `made ${parts}${made.length && now.length ? `, now ${range(now)} °C` : ""}` : "";
+}
+/** The largest difference of a sensor's temperature from that of the run; 0 where none is known. */
+export function warmer_K({ made_at_degC, now_degC }) {
+  return Math.max(0, ...(made_at_degC ?? []).map((made, i) => (made === null || now_degC[i] === null ? 0 : Math.abs(now_degC[i] - made))));
+}
+/** What stands at the top of every screen. */
+export function calibrationWords({ cal, calibration }) {
+  if (cal === null) return "no calibration: the stream is raw";
+  const far = warmer_K(calibration) >= kWarmer_K, age = calibration.age_s === null ? "" : `, ${ago(calibration.age_s)} old`;
+  return `calibration ${cal}${calibration.forced ? ", forced" : ""}${far ? `, ${conditions(calibration)}` : age}`;
 }
 
 function judged(status) {
-  const { state, measured, limit, remedy } = status.criticism;
-  if (state === "none") return null;
+  const { state, measured, limit, remedy } = status.criticism, made = conditions(status.calibration);
+  if (state === "none" && !made) return null;
   const bad = ["suspect", "identity", "near source"].includes(state);
-  return card(make("h2", {}, "The stream says of its calibration: ", make("span", { class: bad ? "bad" : "good" }, state)),
-              measured ? make("p", {}, `${measured}; limit: ${limit}. ${remedy}`) : null);
+  return card(make("h2", {}, "The stream says of its calibration: ", make("span", { class: bad ? "bad" : "good" }, state === "none" ? "nothing" : state)),
+              measured ? make("p", {}, `${measured}; limit: ${limit}. ${remedy}`) : null,
+              made ? make("p", { class: warmer_K(status.calibration) >= kWarmer_K ? "warn" : "" }, `It was ${made}.`) : null);
 }
 
 function inputs(status) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { cards } from "./cards.js";
+import { calibrationWords, cards, kWarmer_K, warmer_K } from "./cards.js";
 import { Bench } from "./bench.js";
 import { Calibrations } from "./calibrations.js";
 import { showCourse } from "./course.js";
@@ -133,8 +133,8 @@ function showNumbers(now) {
 function takeStatus(message) {
   status = message;
   by("rig").textContent = message.rig;
-  by("calibration").textContent = message.cal === null ? "no calibration: the stream is raw" : `calibration ${message.cal}${message.calibration.forced ? ", forced" : ""}`;
-  by("calibration").className = message.cal === null || message.calibration.forced ? "warn" : "";
+  by("calibration").textContent = calibrationWords(message);
+  by("calibration").className = message.cal === null || message.calibration.forced || warmer_K(message.calibration) >= kWarmer_K ? "warn" : "";
   lanes.channels = channelsOf(message.array, message.inputs);
   lanes.pass(Date.parse(message.t) / 1000);
   const holder = message.control.holder;

@@ -21,6 +21,12 @@ export function plusMinus(value, sd, unit = "") {
   return `${value > 0 ? "+" : ""}${value.toFixed(decimals)} ± ${sd.toFixed(decimals)} ${unit.replace("degC", "°C").replace("^2", "²")}`;
 }
 
+/** How long something has been so, to a whole unit, of which there are at least two. */
+export function ago(s) {
+  const [unit, name] = s < 120 ? [1, "s"] : s < 7200 ? [60, "min"] : s < 172800 ? [3600, "h"] : [86400, "days"];
+  return `${Math.floor(Math.max(0, s) / unit)} ${name}`;
+}
+
 /** A p-value underflows; its logarithm does not. */
 export function chance(log10_p) {
   if (log10_p === null || log10_p === undefined) return "--";

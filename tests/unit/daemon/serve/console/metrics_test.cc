@@ -20,6 +20,10 @@ StatusReport report() {
   out.devices.push_back({.name = "s1", .driver = "obsdaq", .port = "/dev/x", .health = {}});
   out.devices[0].health.state = LinkState::live;
   out.devices[0].health.frames = 55;
+  out.devices[0].health.state_since = Instant{std::chrono::seconds(5)};
+  out.devices[0].rate_hz = 49.5;
+  out.at.mono = Instant{std::chrono::seconds(12)};
+  out.calibration_use.age_s = 3600;
   out.inputs.push_back(
       {.name = "motor_A", .device = "aux1", .input = "1", .unit = "A", .value = 0.25, .heard = {}});
   out.inputs.push_back(
@@ -33,6 +37,9 @@ TEST(Metrics, SayWhatIsKnownAndNothingElse) {
   EXPECT_THAT(text, HasSubstr("mgtd_gap_epochs_total 3\n"));
   EXPECT_THAT(text, HasSubstr("mgtd_console_refused_total 7\n"));
   EXPECT_THAT(text, HasSubstr("mgtd_device_live{device=\"s1\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("mgtd_device_frame_rate_hertz{device=\"s1\"} 49.5\n"));
+  EXPECT_THAT(text, HasSubstr("mgtd_device_state_seconds{device=\"s1\"} 7\n"));
+  EXPECT_THAT(text, HasSubstr("mgtd_calibration_age_seconds 3600\n"));
   EXPECT_THAT(text, HasSubstr("mgtd_input{name=\"motor_A\",unit=\"A\"} 0.25\n"));
   EXPECT_THAT(text, HasSubstr(R"(mgtd_info{rig="rig \"7\" ",software="mgtd test"} 1)"));
   EXPECT_THAT(text, Not(HasSubstr("off_A")));
