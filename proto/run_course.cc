@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "proto/significant.h"
 #include "proto/units.h"
 
 namespace mgtd {
@@ -28,6 +29,22 @@ OrderedJson direction(const Eigen::Vector3d& d) {
 
 OrderedJson finite_or_null(double value) {
   return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
+}
+
+OrderedJson parameters(const RunCourse& course) {
+  OrderedJson name = OrderedJson::array(), unit = OrderedJson::array(), sd = OrderedJson::array();
+  for (const CourseParameter& p : course.parameters) {
+    name.push_back(p.name);
+    unit.push_back(p.unit);
+  }
+  for (const CourseAccuracy& known : course.accuracy) {
+    const std::vector<double>& inside = known.fit.parameter_sd;
+    const bool all = !inside.empty() && inside.size() == course.parameters.size();
+    OrderedJson& shown = sd.emplace_back(all ? OrderedJson::array() : OrderedJson(nullptr));
+    for (std::size_t i = 0; all && i < inside.size(); ++i)
+      shown.push_back(finite_or_null(significant(inside[i] * course.parameters[i].factor)));
+  }
+  return {{"name", std::move(name)}, {"unit", std::move(unit)}, {"sd", std::move(sd)}};
 }
 
 OrderedJson text_or_null(const std::string& text) {
@@ -64,6 +81,7 @@ OrderedJson accuracy(const RunCourse& course) {
     auto& column = out[key] = OrderedJson::array();
     for (const CourseAccuracy& known : course.accuracy) column.push_back(finite_or_null(value(known.fit)));
   }
+  out["parameters"] = parameters(course);
   out["wanted_nT_per_m"] =
       course.wanted_nT_per_m ? OrderedJson(*course.wanted_nT_per_m) : OrderedJson(nullptr);
   out["why"] = text_or_null(course.why_unknown);
@@ -101,6 +119,10 @@ OrderedJson to_json(const RunCourse& course) {
           {"coverage", coverage(course)},
           {"accuracy", accuracy(course)},
           {"disturbances", std::move(disturbances)}};
+}
+
+void keep_last_parameters(RunCourse& course) {
+  for (std::size_t i = 0; i + 1 < course.accuracy.size(); ++i) course.accuracy[i].fit.parameter_sd.clear();
 }
 
 }  // namespace mgtd

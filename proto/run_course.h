@@ -20,12 +20,15 @@
 ///    "coverage":{"pose":[1,..],"state":["measured","next","planned",..],"direction":[[x,y,z] or null,..],
 ///                "hole":{"direction":[x,y,z],"radius_deg"} or null,"good"},
 ///    "accuracy":{"poses":[18,..],"worst_nT_per_m":[..],"xx":[..],..,"yz":[..],"residual_nT":[..],
-///                "offset_sd_nT":[..],"scale_sd_ppm":[..],"angle_sd_deg":[..],"wanted_nT_per_m","why",
+///                "offset_sd_nT":[..],"scale_sd_ppm":[..],"angle_sd_deg":[..],
+///                "parameters":{"name":["s1 theta",..],"unit":["deg",..],"sd":[[..] or null,..]},
+///                "wanted_nT_per_m","why",
 ///                "expected":{"poses","worst_nT_per_m"},"good"},
 ///    "disturbances":[{"t","pose","change_nT","limit_nT","seen_by","lasted_s","then"}]}
 ///
-/// Directions are unit vectors in the platform frame, to four decimals. `good` says what a good one looks
-/// like, with the numbers of this run. null: not known.
+/// Directions are unit vectors in the platform frame, to four decimals. `sd` of the parameters has an entry
+/// for each of `poses`, to four digits. `good` says what a good one looks like, with the numbers of this run.
+/// null: not known.
 namespace mgtd {
 
 enum class CourseState : std::uint8_t { planned, next, measured };
@@ -52,6 +55,12 @@ struct CourseAccuracy {
   FitSoFar fit{};
 };
 
+/// A parameter of a sensor as it is shown.
+struct CourseParameter {
+  std::string name, unit;  ///< "s3 iz", "nT"; a scale factor has no unit
+  double factor{1};        ///< from the unit of FitSoFar to this one
+};
+
 /// The field did not stand still at a pose.
 struct CourseDisturbance {
   WallTime t{};  ///< when it was seen
@@ -67,7 +76,8 @@ struct RunCourse {
   std::vector<CoursePose> poses{};
   std::optional<CourseHole> hole{};
   std::vector<CourseAccuracy> accuracy{},
-      expected{};  ///< expected: of the plan, with the noise of its first pose
+      expected{};                             ///< expected: of the plan, with the noise of its first pose
+  std::vector<CourseParameter> parameters{};  ///< those of FitSoFar::parameter_sd, in their order
   std::optional<double> wanted_nT_per_m{};
   std::string why_unknown{};  ///< why the poses do not tell the accuracy yet
   std::string good_coverage{}, good_accuracy{};
@@ -75,5 +85,9 @@ struct RunCourse {
 };
 
 [[nodiscard]] nlohmann::ordered_json to_json(const RunCourse& course);
+
+/// Leaves the standard errors of the parameters to the last fit: those of 16 sensors after each of a thousand
+/// poses are megabytes.
+void keep_last_parameters(RunCourse& course);
 
 }  // namespace mgtd

@@ -107,8 +107,9 @@ serve::console::ConsoleSource DaemonApp::console_source() {
           .metrics = [this] { return serve::console::metrics(report(), console_.server.refused()); },
           .course =
               [this] {
-                return to_json(run_.course()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                       '\n';
+                RunCourse course = run_.course();
+                keep_last_parameters(course);
+                return to_json(course).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
               },
           .events = [this]() -> Result<std::string> {
             const auto log = run_.log();

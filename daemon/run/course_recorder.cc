@@ -11,6 +11,7 @@
 #include "calib/report/figures/sky_figures.h"
 #include "calib/report/figures/ticks.h"
 #include "calib/sensor/sensor_equations.h"
+#include "calib/validity/change.h"
 #include "daemon/plan/mounting.h"
 #include "proto/units.h"
 
@@ -145,6 +146,9 @@ RunCourse CourseRecorder::course() const {
   }
   if (out.accuracy.empty()) return out;
   const CourseAccuracy& last = out.accuracy.back();
+  const std::size_t sensors = last.fit.parameter_sd.size() / calib::sensor::kSensorParameters;
+  for (auto& [name, unit, factor] : calib::validity::shown_slots(sensors, {}))
+    out.parameters.push_back({std::move(name), std::move(unit), factor});
   out.good_accuracy = figures::good_accuracy(last.worst_nT_per_m, last.poses, out.wanted_nT_per_m);
   if (active_ && !out.expected.empty())
     out.good_accuracy +=

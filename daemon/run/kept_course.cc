@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/fit/joint/tensor_uncertainty.h"
+#include "proto/significant.h"
 
 namespace mgtd::daemon::run {
 namespace {
@@ -32,6 +33,7 @@ CourseAccuracy accuracy_of(const json& a) {
              .offset_sd_nT = number_at(a, "offset_sd_nT"),
              .scale_sd = number_at(a, "scale_sd"),
              .angle_sd_rad = number_at(a, "angle_sd_rad")};
+  for (const json& sd : a.value("parameter_sd", json::array())) out.fit.parameter_sd.push_back(number_of(sd));
   out.worst_nT_per_m = calib::fit::joint::worst_component(out.tensor_sd_nT_per_m).value;
   return out;
 }
@@ -53,14 +55,16 @@ CourseDisturbance disturbance_of(const json& d) {
 json to_json(const KeptCourse& course) {
   json accuracy = json::array(), disturbances = json::array();
   for (const CourseAccuracy& a : course.accuracy) {
-    json sd = json::array();
+    json sd = json::array(), parameter_sd = json::array();
     for (const double component : components(a.tensor_sd_nT_per_m)) sd.push_back(number(component));
+    for (const double parameter : a.fit.parameter_sd) parameter_sd.push_back(number(significant(parameter)));
     accuracy.push_back({{"poses", a.poses},
                         {"sd_nT_per_m", std::move(sd)},
                         {"residual_nT", number(a.fit.residual_nT)},
                         {"offset_sd_nT", number(a.fit.offset_sd_nT)},
                         {"scale_sd", number(a.fit.scale_sd)},
-                        {"angle_sd_rad", number(a.fit.angle_sd_rad)}});
+                        {"angle_sd_rad", number(a.fit.angle_sd_rad)},
+                        {"parameter_sd", std::move(parameter_sd)}});
   }
   for (const CourseDisturbance& d : course.disturbances)
     disturbances.push_back({{"t_ns", d.t.ns},

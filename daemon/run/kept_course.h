@@ -12,7 +12,7 @@
 /// life of the daemon resumes still has it:
 ///
 ///   {"accuracy":[{"poses":18,"sd_nT_per_m":[xx,yy,zz,xy,xz,yz],"residual_nT",
-///                 "offset_sd_nT","scale_sd","angle_sd_rad"}, ...],
+///                 "offset_sd_nT","scale_sd","angle_sd_rad","parameter_sd":[..]}, ...],
 ///    "disturbances":[{"t_ns","pose","change_nT","limit_nT","seen_by","lasted_s","then"}, ...]}
 ///
 /// null in the place of a number: not known.

@@ -11,7 +11,7 @@ const page = join(dirname(fileURLToPath(import.meta.url)), "../../daemon/serve/c
 /** A module of the page; those that only name the document are loaded without one. */
 const load = (name) => import(`data:text/javascript,${encodeURIComponent(readFileSync(join(page, name), "utf8").replace(/from "\.\/(\w+)\.js"/g, (_, other) =>
   `from "data:text/javascript,${encodeURIComponent(readFileSync(join(page, `${other}.js`), "utf8").replace(/^import .*$/gm, "const css = () => '';").replace(/^const css = \(name.*$/gm, ""))}"`))}`);
-const { ago, binMeans, chance, extent, logTicks, plusMinus, sig, ticks } = await load("numbers.js");
+const { ago, binMeans, bySensor, chance, extent, logTicks, plusMinus, sig, ticks } = await load("numbers.js");
 
 assert.deepEqual([0.60506, 0.019, 31.5, 928065, 0, 1e-8, null, NaN].map((v) => sig(v)), ["0.605", "0.0190", "31.5", "928065", "0", "1.00e-8", "--", "--"]);
 assert.equal(plusMinus(2.99874, 0.00233, "nT/degC"), "+2.9987 ± 0.0023 nT/°C");
@@ -60,6 +60,9 @@ assert.deepEqual(Object.keys(moved), ["s3", "s12"], "an effect is no parameter o
 assert.deepEqual([moved.s3.length, moved.s3[0].sigmas], [1, 3], "what these runs cannot tell is no dot");
 assert.deepEqual([moved.s3[0].parameter, moved.s3[0].when, moved.s3[0].t_ms], ["iz", "2026-05-11 08:00", Date.UTC(2026, 4, 11, 8)]);
 assert.deepEqual(apart([[0, 0], [10, 5], [10, 40], [200, 1]], (p) => p), [[0, 0], [10, 40], [200, 1]], "a name over another is left out");
+
+assert.deepEqual(bySensor(["s1 theta", "s1 cx", "s2 theta", "s2 cx"], ["deg", "", "deg", ""], [0.1, 2, 0.3, 4]),
+                 { sensors: ["s1", "s2"], lines: [["theta", "deg", 0.1, 0.3], ["cx", "", 2, 4]] });
 
 const { calibrationWords, conditions, warmer_K } = await load("cards.js");
 const made = { forced: false, age_s: 3 * 86400, made_at_degC: [12.31, null, 11.87], now_degC: [31.02, 31.04, 30.98] };

@@ -25,7 +25,8 @@ FitSoFar fit_so_far(const Eigen::MatrixXd& covariance, std::size_t sensors, doub
     double& largest = kind >= sensor::ix && kind <= sensor::iz   ? out.offset_sd_nT
                       : kind >= sensor::cx && kind <= sensor::cz ? out.scale_sd
                                                                  : out.angle_sd_rad;
-    largest = std::max(largest, std::sqrt(std::max(0.0, covariance(k, k))));
+    out.parameter_sd.push_back(std::sqrt(std::max(0.0, covariance(k, k))));
+    largest = std::max(largest, out.parameter_sd.back());
   }
   return out;
 }

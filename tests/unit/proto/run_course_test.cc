@@ -16,6 +16,7 @@ TEST(RunCourse, WithoutARunIsEmptyAndHasEveryKey) {
       R"({"run_id":"","coverage":{"pose":[],"state":[],"direction":[],"hole":null,"good":null},)"
       R"("accuracy":{"poses":[],"worst_nT_per_m":[],"xx":[],"yy":[],"zz":[],"xy":[],"xz":[],"yz":[],)"
       R"("residual_nT":[],"offset_sd_nT":[],"scale_sd_ppm":[],"angle_sd_deg":[],)"
+      R"("parameters":{"name":[],"unit":[],"sd":[]},)"
       R"("wanted_nT_per_m":null,"why":null,"expected":{"poses":[],"worst_nT_per_m":[]},"good":null},"disturbances":[]})");
 }
 
@@ -44,10 +45,26 @@ TEST(RunCourse, HasItsDocumentedForm) {
       json["accuracy"].dump(),
       R"({"poses":[18],"worst_nT_per_m":[6.0],"xx":[1.0],"yy":[2.0],"zz":[3.0],"xy":[4.0],"xz":[null],)"
       R"("yz":[6.0],"residual_nT":[0.5],"offset_sd_nT":[null],"scale_sd_ppm":[250000.0],"angle_sd_deg":[null],)"
+      R"("parameters":{"name":[],"unit":[],"sd":[null]},)"
       R"("wanted_nT_per_m":2.5,"why":null,"expected":{"poses":[24],"worst_nT_per_m":[5.0]},"good":null})");
   EXPECT_EQ(json["disturbances"].dump(),
             R"([{"t":"2026-11-21T10:00:00.000000Z","pose":2,"change_nT":12.5,"limit_nT":0.5,)"
             R"("seen_by":"array","lasted_s":null,"then":"waits"}])");
+}
+
+TEST(RunCourse, ParametersAreNamedOnceAndHaveAnArrayForEachFit) {
+  RunCourse course;
+  course.parameters = {{"s1 theta", "deg", 50}, {"s1 cx", "", 1}};
+  course.accuracy = {{18, {}, 6, {.parameter_sd = {0.04, 0.123456}}},
+                     {19, {}, 5, {}},
+                     {20, {}, 4, {.parameter_sd = {0.02, 0.1}}}};
+  EXPECT_EQ(to_json(course)["accuracy"]["parameters"].dump(),
+            R"({"name":["s1 theta","s1 cx"],"unit":["deg",""],"sd":[[2.0,0.1235],null,[1.0,0.1]]})");
+  keep_last_parameters(course);
+  EXPECT_EQ(to_json(course)["accuracy"]["parameters"]["sd"].dump(), "[null,null,[1.0,0.1]]");
+  RunCourse none;
+  keep_last_parameters(none);
+  EXPECT_TRUE(none.accuracy.empty());
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // The course of a run: from where its sensors have seen the field, how well the tensor is known by now, and what disturbed it.
 // Numbers and sentences are those of mgt run course --json.
 import { by, draw, fill, make, rows, table } from "./elements.js";
-import { logTicks, sig, ticks } from "./numbers.js";
+import { bySensor, logTicks, sig, ticks } from "./numbers.js";
 import { mollweide } from "./skies.js";
 
 const kComponents = ["xx", "yy", "zz", "xy", "xz", "yz"];
@@ -94,10 +94,20 @@ function accuracy(a, planned) {
     make("div", { class: "data", tabindex: "0", role: "region", "aria-label": "standard errors pose by pose" },
       table("", ["poses", ...at, "residual", ...kParameters.map(([, label]) => label)],
             a.poses.map((p, i) => [p, ...at.map((c) => sig(a[c][i])), value(a.residual_nT[i]), ...kParameters.map(([key]) => value(a[key][i]))]).reverse()))) : null;
+  const every = known ? parameters(a) : null;
   const left = known && residual !== null ? ["; the fit of these leaves a residual of ", number("accuracy.residual_nT", sig(residual)), " nT"] : [];
   return figure("Accuracy", fall(a, planned), known
     ? ["The worst component of the tensor is known to ", number("accuracy.worst_nT_per_m", sig(a.worst_nT_per_m.at(-1))), " nT/m by a calibration from ", number("accuracy.poses", String(a.poses.at(-1))), " poses", ...left, ". Dots: after each fit; dashes: expected of the plan; thin dots: 1/√n through the last."]
-    : ["The standard error of the tensor's worst component by a calibration from the poses so far. Dashes: expected of the plan.", a.why ? ` Not measured yet: ${a.why}.` : ""], a.good, numbers);
+    : ["The standard error of the tensor's worst component by a calibration from the poses so far. Dashes: expected of the plan.", a.why ? ` Not measured yet: ${a.why}.` : ""], a.good, [numbers, every]);
+}
+
+/** The standard error of every parameter after the last fit. */
+function parameters({ poses, parameters: { name, unit, sd } }) {
+  if (!sd.at(-1)) return null;
+  const { sensors, lines } = bySensor(name, unit, sd.at(-1));
+  return make("details", { id: "course-parameters" }, make("summary", {}, `Standard error of every parameter after ${poses.at(-1)} poses`),
+    make("div", { class: "data", tabindex: "0", role: "region", "aria-label": "standard error of every parameter" },
+      table("", ["", "unit", ...sensors], lines.map(([parameter, of, ...values]) => [parameter, of || "ppm", ...values.map((v) => sig(of ? v : 1e6 * v))]))));
 }
 
 const kSeen = { array: "array", scalar: "scalar", level: "scalar, against the pose before" };

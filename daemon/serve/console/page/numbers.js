@@ -76,3 +76,14 @@ export function binMeans(x, y, bins = 8) {
   }
   return out;
 }
+
+/** Of names like "s1 theta" with their units and values: [[parameter, unit, value of s1, ...], ...] and the sensors. */
+export function bySensor(names, units, values) {
+  const sensors = [...new Set(names.map((name) => name.split(" ")[0]))], lines = new Map();
+  names.forEach((name, i) => {
+    const [sensor, parameter] = name.split(" ");
+    if (!lines.has(parameter)) lines.set(parameter, [parameter, units[i], ...sensors.map(() => null)]);
+    lines.get(parameter)[2 + sensors.indexOf(sensor)] = values[i];
+  });
+  return { sensors, lines: [...lines.values()] };
+}

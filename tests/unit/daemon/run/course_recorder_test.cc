@@ -119,6 +119,21 @@ TEST(CourseRecorder, AccuracyIsThatOfEveryFit) {
   EXPECT_EQ(r.recorder.course().good_accuracy.find("the plan"), std::string::npos);
 }
 
+TEST(CourseRecorder, ParametersHaveTheNamesAndUnitsThatTheyHaveElsewhere) {
+  Recorded r;
+  r.recorder.known(1, {4, 1, 1, 1, 1, 1});
+  EXPECT_TRUE(r.recorder.course().parameters.empty()) << "none are known";
+  r.recorder.known(2, {3, 1, 1, 1, 1, 1}, {.parameter_sd = std::vector<double>(48, 0.01)});
+  const RunCourse course = r.recorder.course();
+  ASSERT_EQ(course.parameters.size(), 48U);
+  EXPECT_EQ(course.parameters.front().name, "s1 theta");
+  EXPECT_EQ(course.parameters.front().unit, "deg");
+  EXPECT_NEAR(course.parameters.front().factor, 180 / std::numbers::pi, 1e-12);
+  EXPECT_EQ(course.parameters[3].name, "s1 cx");
+  EXPECT_EQ(course.parameters[3].factor, 1);
+  EXPECT_EQ(course.parameters.back().name, "s4 gamma");
+}
+
 TEST(CourseRecorder, ADisturbanceLastsUntilTheRunGoesOn) {
   Recorded r;
   r.recorder.disturbed(2, {.change_nT = 12, .limit_nT = 0.5}, second(10));
@@ -166,7 +181,9 @@ TEST(CourseRecorder, WhatIsKeptIsThereAgain) {
   EXPECT_FALSE(r.recorder.take_unkept()) << "the poses are in the file anyway";
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   r.recorder.known(2, {4, 3, 2, 1, unknown, 6});
-  r.recorder.known(3, {2, 1.5, 1, 0.5, unknown, 3}, {.residual_nT = 0.7, .scale_sd = 1e-4});
+  const std::vector<double> parameter_sd(48, 1.23456e-4);
+  r.recorder.known(3, {2, 1.5, 1, 0.5, unknown, 3},
+                   {.residual_nT = 0.7, .scale_sd = 1e-4, .parameter_sd = parameter_sd});
   r.recorder.disturbed(3, {.change_nT = 7, .limit_nT = 2}, second(10));
   r.recorder.shows(showing(RunState::moving), second(14));
   r.recorder.disturbed(4, {.change_nT = 9, .limit_nT = 2}, second(20));
@@ -187,6 +204,8 @@ TEST(CourseRecorder, WhatIsKeptIsThereAgain) {
   EXPECT_EQ(course.accuracy[1].fit.residual_nT, 0.7);
   EXPECT_EQ(course.accuracy[1].fit.scale_sd, 1e-4);
   EXPECT_TRUE(std::isnan(course.accuracy[1].fit.offset_sd_nT));
+  EXPECT_EQ(course.accuracy[1].fit.parameter_sd, std::vector<double>(48, 1.235e-4)) << "to four digits";
+  EXPECT_TRUE(course.accuracy[0].fit.parameter_sd.empty());
   ASSERT_EQ(course.disturbances.size(), 2U);
   EXPECT_EQ(course.disturbances[0].t, second(10).wall);
   EXPECT_EQ(course.disturbances[0].lasted_s, 4);

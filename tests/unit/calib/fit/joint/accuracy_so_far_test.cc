@@ -51,6 +51,10 @@ TEST(AccuracySoFar, TheLargestOfEachKindCounts) {
   EXPECT_DOUBLE_EQ(fit.offset_sd_nT, 2);
   EXPECT_DOUBLE_EQ(fit.scale_sd, 3e-4);
   EXPECT_DOUBLE_EQ(fit.angle_sd_rad, 5e-4);
+  ASSERT_EQ(fit.parameter_sd.size(), 24U) << "those of the sensors";
+  EXPECT_DOUBLE_EQ(fit.parameter_sd[sensor::ix], 2);
+  EXPECT_DOUBLE_EQ(fit.parameter_sd[sensor::kSensorParameters + sensor::cz], 3e-4);
+  EXPECT_DOUBLE_EQ(fit.parameter_sd[sensor::alpha], 1e-6);
 }
 
 }  // namespace

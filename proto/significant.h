@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace mgtd {
+
+/// Rounded to so many significant digits, so that its text is short. What is not finite stays as it is.
+[[nodiscard]] double significant(double value, int digits = 4);
+
+}  // namespace mgtd
