@@ -33,7 +33,8 @@ CourseAccuracy accuracy_of(const json& a) {
              .offset_sd_nT = number_at(a, "offset_sd_nT"),
              .scale_sd = number_at(a, "scale_sd"),
              .angle_sd_rad = number_at(a, "angle_sd_rad")};
-  for (const json& sd : a.value("parameter_sd", json::array())) out.fit.parameter_sd.push_back(number_of(sd));
+  for (const json& parameter : a.value("parameter_sd", json::array()))
+    out.fit.parameter_sd.push_back(number_of(parameter));
   out.worst_nT_per_m = calib::fit::joint::worst_component(out.tensor_sd_nT_per_m).value;
   return out;
 }

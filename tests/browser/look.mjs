@@ -124,6 +124,8 @@ async function running() {
   await browser.click("pause");
   await is(paused, "the run paused");
   await look("run");
+  await browser.run("for (const e of document.querySelectorAll('#course details')) e.open = true");
+  await look("run-open");
   rig.mgt("run", "finish");
   await is("document.querySelectorAll('#proposal button').length === 2", "the calibration that the run proposes");
   await look("proposed");
@@ -147,13 +149,50 @@ async function running() {
   await look("unplugged");
 }
 
-/** A run at a table that is turned by hand: what it asks for. */
-async function byHand() {
-  await browser.open("about:blank", ...kSizes[0], "true");  // a page would miss the daemon that ends
+/** Another rig in the place of the one before; the page is left first, for it would miss the daemon that ends. */
+async function another(scenario) {
+  await browser.open("about:blank", ...kSizes[0], "true");
   await rig.stop();
   rig = null;
-  rig = await Rig.start(bin, kSpeed, `[rig]\nname = "by hand"\nparameters = "table6"\n[table]\nhands = "table"\n`);
+  rig = await Rig.start(bin, kSpeed, scenario);
   await rig.startDaemon();
+}
+
+/** An offset that goes with the temperature makes a calibration suspect that was made in the cool. */
+async function suspect() {
+  await another(`[rig]\nname = "warming"\nparameters = "table6"\n[temperature]\nstart_degC = 31.0\nramp_degC_per_h = 60.0\n` +
+                `[[effect]]\nname = "axis.offset.temperature"\nwhere = "s3.z"\nnT_per_degC = 3.0\n`);
+  const poses = join(scratch, "cool.csv"), cal = join(scratch, "cool.json");
+  execFileSync(join(bin, "mgt-rig"), ["table", "--rig", "table6", "-o", poses]);
+  execFileSync(join(bin, "mgt"), ["fit", poses, "-o", cal], { stdio: "ignore" });
+  rig.mgt("calibrations", "import", cal, "--accept");
+  await browser.open(rig.ask("console").url, ...kSizes[0]);
+  await is("document.getElementById('cards').innerText.includes('suspect')", "the calibration that is suspect");
+  await look("suspect");
+}
+
+/** A magnet comes near during a run. */
+async function disturbed() {
+  await another(`[rig]\nname = "disturbed"\nparameters = "table6"\n`);
+  await browser.open(rig.ask("console").url, ...kSizes[0]);
+  await browser.click("tab-run");
+  const begun = rig.mgt("run", "start", "--step", "20", "--random", "10", "--dwell-short", "8", "--dwell-long", "8", "--detach");
+  if (begun.status !== 0) throw new Error(`no run beside a magnet: ${begun.stderr}`);
+  let near = 0;  // moved in every dwell, until the run has seen it
+  await until(() => {
+    const { state, pose } = rig.ask("run", "status");
+    if (state === "dwelling" && pose >= 2) rig.magnet(near = 1 - near);
+    return rig.ask("run", "course").disturbances.length > 0;
+  }, "a disturbance");
+  rig.magnet(0);
+  rig.mgt("run", "pause");
+  await is("/Disturbances of the field: [1-9]/.test(document.getElementById('course').innerText) && document.getElementById('run-now').innerText.includes(': paused')", "the disturbance on the page");
+  await look("disturbed");
+}
+
+/** A run at a table that is turned by hand: what it asks for. */
+async function byHand() {
+  await another(`[rig]\nname = "by hand"\nparameters = "table6"\n[table]\nhands = "table"\n`);
   await browser.open(rig.ask("console").url, ...kSizes[0]);
   await browser.click("tab-run");
   const begun = rig.mgt("run", "start", "--random", "10", "--detach");
@@ -210,6 +249,8 @@ try {
   rig = await Rig.start(bin, kSpeed);
   await rig.startDaemon();
   await running();
+  await suspect();
+  await disturbed();
   await byHand();
   for (const line of browser.log) console.error(`the browser says: ${line}`);
   wrong += browser.log.length;

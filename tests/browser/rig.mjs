@@ -56,6 +56,11 @@ export class Rig {
     const done = spawnSync(join(this.#bin, "mgt-rig"), ["fault", join(this.#folder, "ports"), ...words], { encoding: "utf8" });
     if (done.status !== 0) throw new Error(`mgt-rig fault ${words.join(" ")}: ${done.stderr}`);
   }
+  /** Holds a bar magnet beyond the sensor of that number; 0 takes it away. */
+  magnet(arm) {
+    const done = spawnSync(join(this.#bin, "mgt-rig"), ["magnet", join(this.#folder, "ports"), String(arm)], { encoding: "utf8" });
+    if (done.status !== 0) throw new Error(`mgt-rig magnet ${arm}: ${done.stderr}`);
+  }
   /** Of the daemon. */
   get pid() { return this.#daemon.pid; }
   /** What the daemon has printed since it was started. */

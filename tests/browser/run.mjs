@@ -157,6 +157,10 @@ try {
         words.includes(`Disturbances of the field: ${disturbances.length}`)), [shown, coverage, accuracy, disturbances]);
   const left = await both((browser) => browser.run(key("accuracy.residual_nT")));
   holds("so is the residual of the fit", left.every((nT) => Number(nT) === Number(accuracy.residual_nT.at(-1).toFixed((nT.split(".")[1] ?? "").length))), [left, accuracy.residual_nT]);
+  const { name, sd } = accuracy.parameters, at = name.indexOf("s2 theta");
+  const theta = await both((browser) => browser.run(`document.querySelector("#course-parameters tbody tr").children[3].textContent`));
+  holds("and the standard error of every parameter", sd.length === accuracy.poses.length && sd.at(-1).length === name.length &&
+        theta.every((deg) => Number(deg) === Number(sd.at(-1)[at].toFixed((deg.split(".")[1] ?? "").length))), [theta, name, sd.at(-1)]);
   const { events } = rig.ask("run", "events"), log = `[...document.querySelectorAll("#run-events tbody tr")]`;
   await agreed(`${log}.length === ${events.length}`, "the entries of the run");
   const entries = await both((browser) => browser.run(`${log}.map((row) => row.lastChild.textContent)`));
