@@ -204,17 +204,27 @@ bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& othe
   return left < (1 - kMostOfIt) * other.winner().S;
 }
 
-std::set<std::string> dependences_found(const ExplainReport& report) {
-  std::set<std::string> out;
-  for (const Round& round : report.rounds) out.insert(dependence_of(round.added.effect));
+/// Whether the rounds found this dependence on temperature: its other term, or further axes, are no new law.
+bool found_on_temperature(const std::vector<Round>& rounds, const std::string& effect) {
+  const std::string dependence = dependence_of(effect);
+  return dependence.ends_with(".temperature") &&
+         std::any_of(rounds.begin(), rounds.end(),
+                     [&](const Round& round) { return dependence_of(round.added.effect) == dependence; });
+}
+
+/// Rounds that found a law: those that went on with a dependence on temperature do not count.
+int laws_found(const std::vector<Round>& rounds) {
+  int out = 0;
+  for (auto round = rounds.begin(); round != rounds.end(); ++round)
+    out += found_on_temperature({rounds.begin(), round}, round->added.effect) ? 0 : 1;
   return out;
 }
 
 /// Adds the best family that can be fitted; those that cannot are noted, as is the first that rests on one
-/// pose. What only looks like one of an absurd size is left out with it. No more than `most` dependences
-/// are added (surrogates.h); one that is there already may still be put on further axes.
-bool add_winner(std::size_t most, EffectSearch& search, ExplainReport& report) {
-  const std::set<std::string> found = dependences_found(report);
+/// pose. What only looks like one of an absurd size is left out with it. After `most` laws only a
+/// dependence on temperature that was found goes on.
+bool add_winner(int most, EffectSearch& search, ExplainReport& report) {
+  const bool closed = laws_found(report.rounds) >= most;
   std::vector<std::size_t> absurd;
   for (std::size_t f = 0; f < search.criticism.families.size() && search.criticism.rejects_named(f); ++f) {
     if (search.failed.contains(search.criticism.families[f].candidate_effect->name)) continue;
@@ -235,7 +245,7 @@ bool add_winner(std::size_t most, EffectSearch& search, ExplainReport& report) {
                           search.criticism.residual);
         }))
       continue;
-    if (found.size() >= most && !found.contains(dependence_of(c.effect))) return false;
+    if (closed && !found_on_temperature(report.rounds, c.effect)) return false;
     if (!add(search, f, report)) continue;
     if (!c.plausible) report.notes.emplace_back(SizeUnusual{c});
     return true;
@@ -289,10 +299,10 @@ void add_round(Round round, fit::joint::JointOptions wider, const fit::joint::Jo
 bool add_rounds(int most, EffectSearch& search, ExplainReport& report) {
   constexpr int kRoundsEach = 3;
   const auto notes = static_cast<std::ptrdiff_t>(report.notes.size());
-  const std::size_t dependences = dependences_found(report).size() + static_cast<std::size_t>(most);
+  const int laws = laws_found(report.rounds) + most;
   for (int round = 0; round < kRoundsEach * most && search.criticism.rejects_named(); ++round) {
     search.one_pose.reset();
-    if (!add_winner(dependences, search, report)) break;
+    if (!add_winner(laws, search, report)) break;
     if (!may_be_a_pair(search, report)) continue;
     search.pairs_tried = true;
     if (site_pair_instead(search, report) || report.rounds.empty())

@@ -43,8 +43,8 @@ struct EffectSearch {
 void add_round(Round round, fit::joint::JointOptions wider, const fit::joint::JointFit& refit,
                EffectSearch& search, ExplainReport& report);
 
-/// Adds what stands out: at most so many dependences (surrogates.h), and each of them on further axes as they
-/// stand out. False: nothing does but what rests on one pose.
+/// Adds what stands out: at most so many laws, a dependence on temperature with both its terms and all its
+/// axes counting as one. False: nothing stands out but what rests on one pose.
 [[nodiscard]] bool add_rounds(int most, EffectSearch& search, ExplainReport& report);
 
 }  // namespace mgtd::calib::criticism::search

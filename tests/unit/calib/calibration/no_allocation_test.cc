@@ -13,7 +13,7 @@
 namespace mgtd::calib::calibration {
 namespace {
 
-using testing::allocations;
+using mgtd::testing::allocations;
 
 /// Sensors on a helix, so that any number of them determines what so many can.
 sensor::Geometry helix(std::size_t sensors) {
