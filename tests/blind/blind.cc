@@ -102,6 +102,7 @@ void ask(const PoseTable& table, const std::string& truth, const criticism::sear
   }
   count(*report, truth, out);
   if (changes_the_field(*report)) ++out.advised;
+  if (report->finding == criticism::search::Finding::pass && report->noise.wandering.any()) ++out.wanders;
 }
 
 int Answers::of(criticism::search::Finding finding) const {
@@ -112,7 +113,7 @@ int Answers::of(criticism::search::Finding finding) const {
 Answers& Answers::operator+=(const Answers& other) {
   runs += other.runs, refused += other.refused, detected += other.detected;
   named_first += other.named_first, in_set += other.in_set, wrong_single += other.wrong_single;
-  advised += other.advised, told_at_best += other.told_at_best;
+  advised += other.advised, wanders += other.wanders, told_at_best += other.told_at_best;
   set_sizes.insert(set_sizes.end(), other.set_sizes.begin(), other.set_sizes.end());
   for (const auto& [finding, count] : other.findings) findings[finding] += count;
   for (const auto& [name, count] : other.first) first[name] += count;

@@ -19,6 +19,7 @@ struct Answers {
   int named_first{0};   ///< the first name is the right one, of those detected
   int in_set{0};        ///< the right name is among those that are named or possible
   int wrong_single{0};  ///< EXPLAINED by something else
+  int wanders{0};       ///< PASS, with an offset that wanders
   /// Sum over detections of the probability that ranking by likelihood puts the right one of two laws first,
   /// the first name and the one that is hardest to tell from it.
   double told_at_best{0};

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "calib/criticism/search/surrogates.h"
 #include "calib/criticism/tests/local_lack_of_fit.h"
 #include "calib/effects/common_axis.h"
 #include "calib/fit/checks/check_limits.h"
@@ -65,22 +66,30 @@ std::set<std::string> names_of(const std::vector<Round>& rounds) {
   return out;
 }
 
-/// In standard deviations of the noise that `last` found. A round was tested against all that the rounds
-/// after it took away; where the dwells' noise is all that is left, its fall of chi-square is measured by
-/// that.
-double size_at_the_end(const Round& round, const tests::Criticism& last) {
-  if (!last.noise.reference.from_dwells()) return round.added.d;
-  const double fall = round.chi2_before - round.chi2_after;
-  return std::max(round.added.d, std::sqrt(std::max(0.0, fall - round.added.k)));
+/// Whether another round found another term, or another axis, of the same dependence on temperature.
+bool law_stands_out(const Round& round, const std::vector<Round>& rounds, double sigmas) {
+  const std::string law = dependence_of(round.added.effect);
+  return law.ends_with(".temperature") && std::any_of(rounds.begin(), rounds.end(), [&](const Round& other) {
+           return dependence_of(other.added.effect) == law && other.added.d >= sigmas;
+         });
+}
+
+/// What a round took away, in standard deviations of the noise of the dwells, where that is all that is left.
+/// When it was tested it was measured by all that the rounds after it took away.
+double fall_at_the_end(const Round& round, const tests::Criticism& last) {
+  if (!last.noise.reference.from_dwells()) return 0;
+  return std::sqrt(std::max(0.0, round.chi2_before - round.chi2_after - round.added.k));
 }
 
 /// Of several names that together leave only noise, one that itself is little more than that; empty when all
 /// stand out.
 std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds, const tests::Criticism& last) {
-  constexpr double kSigmas = 8;  // from here on the right law of the library stands first, and alone
+  constexpr double kSigmas = 8;     // from here on the right law of the library stands first, and alone
+  constexpr double kDecisive = 30;  // that a term of a law that stands out took away
   for (const Round& round : rounds) {
-    const double d = size_at_the_end(round, last);
-    if (d < kSigmas) return SizeTooSmall{round.added.effect, d};
+    const bool stands_out = round.added.d >= kSigmas || (law_stands_out(round, rounds, kSigmas) &&
+                                                         fall_at_the_end(round, last) >= kDecisive);
+    if (!stands_out) return SizeTooSmall{round.added.effect, round.added.d};
   }
   return std::nullopt;
 }

@@ -31,6 +31,18 @@ void prune_unless_worse(const PoseTable& table, const fit::FitOptions& options,
   best.effects = std::move(tidy.effects);
 }
 
+/// How many of the first rounds to keep, by the error on poses left out before them and after each: one after
+/// which it rises is kept only where a later one lowers it again. The laws of one sensor may only help
+/// together.
+std::size_t rounds_that_pay(const std::vector<std::optional<double>>& held_out_nT) {
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < held_out_nT.size(); ++i) {
+    const bool known = held_out_nT[kept] && held_out_nT[i];
+    if (!known || *held_out_nT[i] <= kHeldOutVeto * *held_out_nT[kept]) kept = i;
+  }
+  return kept;
+}
+
 ImproveStop stop_of(const ExplainReport& explained) {
   switch (explained.left) {
     case Finding::unknown:
@@ -55,27 +67,28 @@ Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& opt
       .finding = explained->left, .stopped = stop_of(*explained), .notes = explained->notes, .fit = {}};
   const fit::joint::JointOptions joint = fit::joint::joint_options(options);
   std::shared_ptr<const fit::joint::JointFit> last = explained->fit;
-  std::optional<double> held_out = fit::joint::left_out_nT(*last);
+  std::vector<std::optional<double>> held_out_nT{fit::joint::left_out_nT(*last)};
+  for (const Round& round : explained->rounds) held_out_nT.push_back(fit::joint::left_out_nT(*round.fit));
+  const std::size_t kept = rounds_that_pay(held_out_nT);
+  if (kept < explained->rounds.size()) {
+    out.stopped = ImproveStop::held_out_error_rises;
+    out.refused =
+        RefusedEffect{explained->rounds[kept].added.spec, *held_out_nT[kept], *held_out_nT[kept + 1]};
+    out.finding = Finding::partial;
+  }
   fit::FitOptions best = options;
-  for (const Round& round : explained->rounds) {
-    const auto after = fit::joint::left_out_nT(*round.fit);
-    if (held_out && after && *after > kHeldOutVeto * *held_out) {
-      out.stopped = ImproveStop::held_out_error_rises;
-      out.refused = RefusedEffect{round.added.spec, *held_out, *after};
-      out.finding = Finding::partial;
-      break;
-    }
+  for (std::size_t i = 0; i < kept; ++i) {
+    const Round& round = explained->rounds[i];
     out.rounds.push_back({.added = round.added,
                           .possible = round.possible,
                           .rms_before_nT = round.rms_before_nT,
                           .rms_after_nT = round.rms_after_nT,
-                          .held_out_before_nT = held_out,
-                          .held_out_after_nT = after,
+                          .held_out_before_nT = held_out_nT[i],
+                          .held_out_after_nT = held_out_nT[i + 1],
                           .predicted_fall = round.added.fall,
                           .realised_fall = round.chi2_before - round.chi2_after,
                           .price = variance_price(*last, *round.fit)});
     best.effects = round.model;
-    held_out = after;
     last = round.fit;
   }
   const fit::FitOptions found = best;
