@@ -8,8 +8,8 @@
 #include "calib/criticism/search/model_stage.h"
 
 /// improve() repeats explain, add and fit, unattended, until nothing more is justified. Calibrated p-values
-/// decide what is added; the error on held-out poses is a veto, never a reason. A round after which it rises is
-/// kept only where a later one lowers it again.
+/// decide what is added; the error on held-out poses is a veto, never a reason. A round after which it rises
+/// is kept only where a later one lowers it again.
 namespace mgtd::calib::criticism::search {
 
 struct ImproveRound {

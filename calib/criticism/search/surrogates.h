@@ -11,8 +11,8 @@
 /// curve, so a search that goes on adds one after the other to the axis on which the unknown law acts, and
 /// each looks significant. The signs of it:
 ///
-///   - three effects or more on one axis; where nothing is left after them, the linear and the square term of
-///     one dependence on temperature count as one: the two describe its curve, as they are meant to;
+///   - three effects or more on one axis; where nothing is left after them and all depend on temperature,
+///     the linear and the square term of one dependence count as one: they describe its curve, as meant;
 ///   - two on one axis that leave most of what is left there; or of all axes, seen on this one, if each of
 ///     them took little away;
 ///   - two on one sensor that leave more than a tenth of the misfit, most of it on this sensor: nothing is
