@@ -12,6 +12,7 @@
 #include <boost/asio/buffer.hpp>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <system_error>
 
@@ -119,7 +120,11 @@ Result<std::shared_ptr<JobProcess>> JobProcess::start(boost::asio::io_context& i
   for (std::string& word : held) argv.push_back(word.data());
   argv.push_back(nullptr);
   std::string language = "LC_ALL=C.UTF-8", colour = "NO_COLOR=1", progress = "MGTD_PROGRESS=lines";
-  char* environment[]{language.data(), colour.data(), progress.data(), nullptr};
+  // The last digits are those of the terminal only with the same kernels of OpenBLAS.
+  const char* const chosen = std::getenv("OPENBLAS_CORETYPE");  // NOLINT(concurrency-mt-unsafe)
+  std::string kernels = fmt::format("OPENBLAS_CORETYPE={}", chosen == nullptr ? "" : chosen);
+  char* environment[]{language.data(), colour.data(), progress.data(),
+                      chosen == nullptr ? nullptr : kernels.data(), nullptr};
   std::shared_ptr<JobProcess> out(new JobProcess(io, bounds, std::move(ended)));
   const pid_t parent = ::getpid();
   out->pid_ = ::fork();
