@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "calib/criticism/search/surrogates.h"
+#include "calib/criticism/search/temperature_dependence.h"
 #include "calib/criticism/tests/local_lack_of_fit.h"
 #include "calib/effects/common_axis.h"
 #include "calib/fit/checks/check_limits.h"
@@ -66,14 +66,6 @@ std::set<std::string> names_of(const std::vector<Round>& rounds) {
   return out;
 }
 
-/// Whether another round found another term, or another axis, of the same dependence on temperature.
-bool law_stands_out(const Round& round, const std::vector<Round>& rounds, double sigmas) {
-  const std::string law = dependence_of(round.added.effect);
-  return law.ends_with(".temperature") && std::any_of(rounds.begin(), rounds.end(), [&](const Round& other) {
-           return dependence_of(other.added.effect) == law && other.added.d >= sigmas;
-         });
-}
-
 /// What a round took away, in standard deviations of the noise of the dwells, where that is all that is left.
 /// When it was tested it was measured by all that the rounds after it took away.
 double fall_at_the_end(const Round& round, const tests::Criticism& last) {
@@ -87,8 +79,9 @@ std::optional<ExplainNote> weak_name(const std::vector<Round>& rounds, const tes
   constexpr double kSigmas = 8;     // from here on the right law of the library stands first, and alone
   constexpr double kDecisive = 30;  // that a term of a law that stands out took away
   for (const Round& round : rounds) {
-    const bool stands_out = round.added.d >= kSigmas || (law_stands_out(round, rounds, kSigmas) &&
-                                                         fall_at_the_end(round, last) >= kDecisive);
+    const bool stands_out =
+        round.added.d >= kSigmas || (added_term_of_dependence(rounds, round.added.effect, kSigmas) &&
+                                     fall_at_the_end(round, last) >= kDecisive);
     if (!stands_out) return SizeTooSmall{round.added.effect, round.added.d};
   }
   return std::nullopt;

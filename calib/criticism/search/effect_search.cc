@@ -11,7 +11,7 @@
 #include "calib/criticism/search/nonlinear_parameters.h"
 #include "calib/criticism/search/second_look.h"
 #include "calib/criticism/search/site_pair.h"
-#include "calib/criticism/search/surrogates.h"
+#include "calib/criticism/search/temperature_dependence.h"
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/judgement.h"
 #include "calib/design/next_measurement.h"
@@ -204,19 +204,11 @@ bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& othe
   return left < (1 - kMostOfIt) * other.winner().S;
 }
 
-/// Whether the rounds found this dependence on temperature: its other term, or further axes, are no new law.
-bool found_on_temperature(const std::vector<Round>& rounds, const std::string& effect) {
-  const std::string dependence = dependence_of(effect);
-  return dependence.ends_with(".temperature") &&
-         std::any_of(rounds.begin(), rounds.end(),
-                     [&](const Round& round) { return dependence_of(round.added.effect) == dependence; });
-}
-
 /// Rounds that found a law: those that went on with a dependence on temperature do not count.
 int laws_found(const std::vector<Round>& rounds) {
   int out = 0;
   for (auto round = rounds.begin(); round != rounds.end(); ++round)
-    out += found_on_temperature({rounds.begin(), round}, round->added.effect) ? 0 : 1;
+    out += added_term_of_dependence({rounds.begin(), round}, round->added.effect) ? 0 : 1;
   return out;
 }
 
@@ -245,7 +237,7 @@ bool add_winner(int most, EffectSearch& search, ExplainReport& report) {
                           search.criticism.residual);
         }))
       continue;
-    if (closed && !found_on_temperature(report.rounds, c.effect)) return false;
+    if (closed && !added_term_of_dependence(report.rounds, c.effect)) return false;
     if (!add(search, f, report)) continue;
     if (!c.plausible) report.notes.emplace_back(SizeUnusual{c});
     return true;

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "calib/criticism/search/temperature_dependence.h"
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/local_lack_of_fit.h"
 #include "calib/effects/effect_spec.h"
@@ -54,9 +55,9 @@ std::size_t dependences_in(const ExplainReport& report, const Rounds& rounds) {
   const Rounds there = parts(report, rounds);
   std::set<std::string> out;
   for (const std::size_t i : there) {
-    const std::string law = dependence_of(report.rounds[i].added.effect);
-    if (!law.ends_with(".temperature")) return there.size();
-    out.insert(law);
+    const auto dependence = temperature_dependence(report.rounds[i].added.effect);
+    if (!dependence) return there.size();
+    out.insert(*dependence);
   }
   return out.size();
 }
@@ -173,11 +174,6 @@ Surrogates on_sensor(const ExplainReport& report, const tests::Criticism& last, 
 }
 
 }  // namespace
-
-std::string dependence_of(std::string effect) {
-  if (effect.ends_with(".temperature2")) effect.pop_back();
-  return effect;
-}
 
 std::set<std::string> axes_of(const Round& round) {
   std::set<std::string> out;

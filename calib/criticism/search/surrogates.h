@@ -27,9 +27,6 @@ struct Surrogates {
   [[nodiscard]] bool whole_sensor() const { return any() && where.find('.') == std::string::npos; }
 };
 
-/// "axis.gain.temperature" of both its linear and its square term; any other effect as it is.
-[[nodiscard]] std::string dependence_of(std::string effect);
-
 /// Axes that the effects of a round were put on one by one.
 [[nodiscard]] std::set<std::string> axes_of(const Round& round);
 

@@ -49,6 +49,15 @@ void bound(__rlimit_resource resource, std::uint64_t most, std::uint64_t grace =
   ::prlimit(0, resource, &limit, nullptr);
 }
 
+/// As execve() takes them, null at the end.
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> out;
+  out.reserve(texts.size() + 1);
+  for (std::string& text : texts) out.push_back(text.data());
+  out.push_back(nullptr);
+  return out;
+}
+
 /// In the child, between fork and exec: system calls only.
 [[noreturn]] void become(const Pipes& pipes, char* const* words, char* const* environment,
                          const JobBounds& bounds, pid_t parent) {
@@ -115,21 +124,17 @@ Result<std::shared_ptr<JobProcess>> JobProcess::start(boost::asio::io_context& i
   if (bounds.memory_bytes == 0) bounds.memory_bytes = memory_bytes() / 2;
   Pipes pipes;
   if (::pipe2(pipes.out, O_CLOEXEC) != 0 || ::pipe2(pipes.err, O_CLOEXEC) != 0) return no_process(errno);
-  std::vector<std::string> held = words;
-  std::vector<char*> argv;
-  for (std::string& word : held) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  std::string language = "LC_ALL=C.UTF-8", colour = "NO_COLOR=1", progress = "MGTD_PROGRESS=lines";
+  std::vector<std::string> environment{"LC_ALL=C.UTF-8", "NO_COLOR=1", "MGTD_PROGRESS=lines"};
   // The last digits are those of the terminal only with the same kernels of OpenBLAS.
-  const char* const chosen = std::getenv("OPENBLAS_CORETYPE");  // NOLINT(concurrency-mt-unsafe)
-  std::string kernels = fmt::format("OPENBLAS_CORETYPE={}", chosen == nullptr ? "" : chosen);
-  char* environment[]{language.data(), colour.data(), progress.data(),
-                      chosen == nullptr ? nullptr : kernels.data(), nullptr};
+  if (const char* const kernels = std::getenv("OPENBLAS_CORETYPE"))  // NOLINT(concurrency-mt-unsafe)
+    environment.push_back(fmt::format("OPENBLAS_CORETYPE={}", kernels));
+  std::vector<std::string> held = words;
+  const std::vector<char*> argv = pointers(held), envp = pointers(environment);
   std::shared_ptr<JobProcess> out(new JobProcess(io, bounds, std::move(ended)));
   const pid_t parent = ::getpid();
   out->pid_ = ::fork();
   if (out->pid_ < 0) return no_process(errno);
-  if (out->pid_ == 0) become(pipes, argv.data(), environment, bounds, parent);
+  if (out->pid_ == 0) become(pipes, argv.data(), envp.data(), bounds, parent);
   const int process = static_cast<int>(::syscall(SYS_pidfd_open, out->pid_, 0));
   if (process < 0) return no_process(errno);
   error_code ec;
