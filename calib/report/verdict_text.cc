@@ -142,9 +142,14 @@ std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, 
            "residual.";
   const criticism::tests::MapScore& m = maps.front();
   static const std::map<std::string, std::string> kTry{
-      {"time", "sin(2*_pi*t_h/0.5)"},       {"azimuth", "cosd(3*azimuth_deg)"},
-      {"temperature", "max(0, T_degC-24)"}, {"own reading", "(u/50000)^4"},
-      {"direction", "ux*uy/50000^2"},       {"previous pose", "exp(-since_stop_s/20)"},
+      {"time", "sin(2*_pi*t_h/0.5)"},
+      {"azimuth", "cosd(3*azimuth_deg)"},
+      {"temperature", "max(0, T_degC-24)"},
+      {"own reading", "(u/50000)^4"},
+      {"own reading x time", "u*sin(2*_pi*t_h/0.5)"},
+      {"own reading x temperature", "u*max(0, T_degC-24)"},
+      {"direction", "ux*uy/50000^2"},
+      {"previous pose", "exp(-since_stop_s/20)"},
   };
   // The table never stops in a recording, so no column tells how long ago.
   if (recording && m.map == "previous pose")

@@ -110,7 +110,7 @@ bool steps_of_a_curve(const ExplainReport& report, const tests::Criticism& last)
   const std::set<std::string> names = names_of(report.rounds);
   const auto is_step = [](const std::string& name) { return name.ends_with(".step"); };
   return std::all_of(names.begin(), names.end(), is_step) && !last.maps.empty() &&
-         last.maps.front().map == "time";
+         (last.maps.front().map == "time" || last.maps.front().map == "own reading x time");
 }
 
 /// Wiring and bookkeeping that no effect stands for; empty when there is none to be seen.

@@ -26,6 +26,9 @@ struct Map {
 };
 using Visit = std::function<void(const Map&)>;
 
+constexpr int kPowers = 3;       ///< of the temperature
+constexpr int kGainCosines = 4;  ///< a gain changes slowly
+
 /// Values of the functions of a map at a pose for one channel; empty where the pose cannot feed it.
 using ChannelFunctions = std::function<std::vector<double>(const fit::joint::JointPose& pose, int channel)>;
 /// The same for all channels of a sensor.
@@ -84,14 +87,37 @@ std::vector<double> powers(double x, int n) {
   return out;
 }
 
+std::vector<double> cosines(double u, int n) {
+  std::vector<double> out;
+  for (int j = 1; j <= n; ++j) out.push_back(time_cosine(u, j));
+  return out;
+}
+
+std::vector<double> times(double factor, std::vector<double> values) {
+  for (double& v : values) v *= factor;
+  return values;
+}
+
+Range range_of_times(const fit::joint::JointProblem& problem) {
+  Range out;
+  for (const fit::joint::JointPose& pose : problem.poses) out.add(pose.t_h);
+  return out;
+}
+
+Range range_of_temperatures(const fit::joint::JointProblem& problem) {
+  Range out;
+  for (const fit::joint::JointPose& pose : problem.poses) {
+    for (const auto& T : pose.pose->T_degC)
+      if (T) out.add(*T);
+  }
+  return out;
+}
+
 void add_time(const fit::joint::JointProblem& problem, const Visit& visit) {
-  Range range;
-  for (const fit::joint::JointPose& pose : problem.poses) range.add(pose.t_h);
+  const Range range = range_of_times(problem);
   if (!range.varies()) return;
   visit(by_channel(problem, "time", kCosines, [range](const fit::joint::JointPose& pose, int) {
-    std::vector<double> v;
-    for (int j = 1; j <= kCosines; ++j) v.push_back(time_cosine(range.scaled(pose.t_h), j));
-    return v;
+    return cosines(range.scaled(pose.t_h), kCosines);
   }));
 }
 
@@ -173,16 +199,32 @@ void add_direction(const fit::joint::JointProblem& problem, const Readings& read
 }
 
 void add_temperature(const fit::joint::JointProblem& problem, const Visit& visit) {
-  Range range;
-  for (const fit::joint::JointPose& pose : problem.poses) {
-    for (const auto& T : pose.pose->T_degC)
-      if (T) range.add(*T);
-  }
+  const Range range = range_of_temperatures(problem);
   if (!range.varies()) return;
-  visit(by_channel(problem, "temperature", 3, [range](const fit::joint::JointPose& pose, int i) {
+  visit(by_channel(problem, "temperature", kPowers, [range](const fit::joint::JointPose& pose, int i) {
     const auto& T = pose.pose->T_degC[static_cast<std::size_t>(i)];
-    return T ? powers(range.scaled(*T), 3) : std::vector<double>{};
+    return T ? powers(range.scaled(*T), kPowers) : std::vector<double>{};
   }));
+}
+
+/// The axis' own part of the field times functions of time and of temperature: a gain that changes.
+void add_gain(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
+  const Range of_times = range_of_times(problem), of_temperatures = range_of_temperatures(problem);
+  const auto own = [&](const fit::joint::JointPose& pose, int c) {
+    return readings.direction(pose, c / 3)[c % 3];
+  };
+  if (of_times.varies()) {
+    visit(of_channels(problem, "own reading x time", kGainCosines,
+                      [&](const fit::joint::JointPose& pose, int c) {
+                        return times(own(pose, c), cosines(of_times.scaled(pose.t_h), kGainCosines));
+                      }));
+  }
+  if (!of_temperatures.varies()) return;
+  visit(of_channels(
+      problem, "own reading x temperature", kPowers, [&](const fit::joint::JointPose& pose, int c) {
+        const auto& T = pose.pose->T_degC[static_cast<std::size_t>(c / 3)];
+        return T ? times(own(pose, c), powers(of_temperatures.scaled(*T), kPowers)) : std::vector<double>{};
+      }));
 }
 
 void add_previous(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
@@ -233,6 +275,7 @@ void each_map(const fit::joint::JointProblem& problem, const fit::joint::JointSt
   add_own_reading(problem, readings, visit);
   add_direction(problem, readings, visit);
   add_temperature(problem, visit);
+  add_gain(problem, readings, visit);
   add_previous(problem, readings, visit);
   add_mount(problem, visit);
   add_columns(problem, visit);

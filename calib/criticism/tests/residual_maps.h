@@ -15,6 +15,8 @@
 ///     azimuth         4 harmonics a channel                         direction at the sensor, a channel
 ///     own reading     polynomials of degree 2 to 6 of the axis' part of the field, a channel
 ///     temperature     cubic of the sensor's own    previous pose    last reading of the sensor, a channel
+///     own reading x time                       the axis' part of the field times 4 cosines, a channel
+///     own reading x temperature                the same times the cubic of the sensor's own, a channel
 ///     mount           a level for each mounting    site field       8 cosines of time, 3 components
 ///     site gradient   8 cosines, 5 components      site map         gradient and curvature, constant
 ///     <column>        quadratic of every extra numeric column, a channel
