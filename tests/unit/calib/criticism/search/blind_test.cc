@@ -60,5 +60,15 @@ TEST(Blind, WhatIsInNoLibraryIsNotExplained) {
             at_least(sum.runs, 0.97));
 }
 
+/// A gain that drifts and one that follows the temperature are alike; only the other one is in the library.
+TEST(Blind, ALawThatWasTakenOutIsNotExplainedByOneThatIsAlike) {
+  Answers sum;
+  for (const HiddenLaw& law : hidden_laws())
+    if (law.name == "axis.gain.drift" || law.name == "axis.gain.temperature")
+      sum += hidden(law, 40, 3, kSeed, true);
+  EXPECT_EQ(sum.runs, 6);
+  EXPECT_EQ(sum.of(criticism::search::Finding::explained), 0);
+}
+
 }  // namespace
 }  // namespace mgtd::calib::testing
