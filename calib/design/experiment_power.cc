@@ -49,12 +49,12 @@ Shape shape_of(const DesignProblem& design, const criticism::tests::Residual& re
                const criticism::tests::CandidateEffect& candidate_effect) {
   Shape out{.candidate_effect = &candidate_effect, .signatures = {}, .basis = {}};
   for (const effects::EffectPtr& variant : candidate_effect.variants)
-    out.signatures.push_back(criticism::tests::signature_of(
-        residual, criticism::tests::effect_rows(design.problem, design.state, variant)));
+    out.signatures.emplace_back(residual,
+                                criticism::tests::effect_source(design.problem, design.state, variant));
   for (const criticism::tests::Hypothesis& h : candidate_effect.hypotheses) {
     std::vector<Eigen::MatrixXd>& bases = out.basis.emplace_back();
     for (const criticism::tests::Signature& s : out.signatures)
-      bases.emplace_back(s.columns * criticism::tests::orthonormal_combinations(s, h));
+      bases.emplace_back(s.times(criticism::tests::orthonormal_combinations(s, h)));
   }
   return out;
 }
@@ -73,7 +73,7 @@ std::vector<Shape> shapes_of(const DesignProblem& design,
 Eigen::MatrixXd truth(const Shape& a, std::size_t hypothesis) {
   const std::size_t middle = a.signatures.size() / 2;
   if (a.basis[hypothesis][middle].cols() == 0) return {};
-  return a.signatures[middle].columns * a.candidate_effect->hypotheses[hypothesis].combine;
+  return a.signatures[middle].times(a.candidate_effect->hypotheses[hypothesis].combine);
 }
 
 /// Largest share of `a` within `b`, in squares.

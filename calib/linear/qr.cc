@@ -27,9 +27,10 @@ std::optional<Eigen::VectorXd> unique_least_squares(const Eigen::MatrixXd& X, co
 
 Eigen::Index rank_of(const Eigen::MatrixXd& X) { return Pivoted(X).rank(); }
 
-Eigen::MatrixXd column_space(const Eigen::MatrixXd& X, const Eigen::VectorXd& lengths, double tolerance) {
+Eigen::MatrixXd column_space(Eigen::MatrixXd X, const Eigen::VectorXd& lengths, double tolerance) {
   const Eigen::VectorXd scale = (lengths.array() > 0).select(lengths.cwiseInverse(), 0.0);
-  Pivoted qr(X * scale.asDiagonal());
+  X *= scale.asDiagonal();
+  Eigen::ColPivHouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(X);  // in place
   qr.setThreshold(tolerance);
   return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), qr.rank());
 }

@@ -17,7 +17,7 @@ namespace mgtd::calib::linear {
 
 /// Orthonormal basis of the space of the columns, each divided by its length in `lengths` first (a length of
 /// zero leaves the column out): what then is shorter than `tolerance` times the longest counts as dependent.
-[[nodiscard]] Eigen::MatrixXd column_space(const Eigen::MatrixXd& X, const Eigen::VectorXd& lengths,
+[[nodiscard]] Eigen::MatrixXd column_space(Eigen::MatrixXd X, const Eigen::VectorXd& lengths,
                                            double tolerance);
 /// Orthonormal basis of columns that are known to be independent, one for each and in their order.
 [[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& X);

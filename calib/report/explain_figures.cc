@@ -76,7 +76,8 @@ figures::Figure detectable_of(const criticism::search::ExplainReport& report) {
   figures::DetectableValues v;
   for (const auto& d : report.detectable) {
     const effects::library::EffectFamily* const family = effects::library::find_family(d.effect);
-    const bool beyond = family != nullptr && family->bound > 0 && d.value > family->bound;
+    const bool beyond = d.value >= criticism::tests::kAtNoSize ||
+                        (family != nullptr && family->bound > 0 && d.value > family->bound);
     const double usual = family == nullptr ? 0 : family->typical;
     v.sizes.push_back({.effect = d.effect,
                        .where = d.where,

@@ -176,8 +176,7 @@ std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
 }  // namespace
 
 std::string detectable_text(const criticism::tests::Detectable& d) {
-  constexpr double kBeyondAll = 1e9;  // in any unit of the library
-  if (!(d.value < kBeyondAll)) return "at no size: what is in the model takes it up";
+  if (!(d.value < criticism::tests::kAtNoSize)) return "at no size: what is in the model takes it up";
   return fmt::format("{:.3g} {} ({})", d.value, d.unit, d.where);
 }
 

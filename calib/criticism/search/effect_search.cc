@@ -133,7 +133,7 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   round.added.alternatives = tests::alternatives_of(search.criticism.families, f, search.seed, search.looks);
   for (const tests::Alternative& alternative : round.added.alternatives)
     if (alternative.possible) round.possible.push_back(alternative.effect);
-  auto step = forward_step(search.joint.effects, best, search.criticism.residual);
+  auto step = forward_step(search.joint.effects, best);
   if (!step || adds_nothing(*step, search.joint.effects) ||
       on_closed_axes(round.added, *step, search.unknown)) {
     search.failed.insert(round.added.effect);
@@ -186,7 +186,7 @@ bool accounts_for_all(const tests::Candidate& candidate, const tests::Criticism&
 
 /// Columns of the winning question of a family, its own combination of the axes.
 Eigen::MatrixXd winning_columns(const tests::ScoredFamily& family) {
-  return family.signatures[family.winner().variant].columns * family.where().combine;
+  return family.signatures[family.winner().variant].times(family.where().combine);
 }
 
 /// Most of the evidence of `other` is that of `leader`, which has much more: a look-alike of something that
@@ -265,6 +265,7 @@ bool may_be_a_pair(const EffectSearch& search, const ExplainReport& report) {
 
 void EffectSearch::judge_anew(const fit::joint::JointFit& refit) {
   const tests::Rates rates = std::move(criticism.rates);
+  criticism = {};  // of a long run two are hundreds of megabytes
   tests::Judgement judged = tests::judge(refit, candidate_effects, seed, &rates);
   fit = std::move(judged.fit);
   criticism = std::move(judged.criticism);

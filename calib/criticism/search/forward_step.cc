@@ -34,48 +34,82 @@ bool has_axis(const std::vector<effects::EffectPtr>& model, const tests::ScoredF
   });
 }
 
+/// One axis and one value of the searched number.
 struct Pick {
   std::size_t hypothesis{0}, variant{0};
   double S{0};
-  Eigen::VectorXd direction{};  ///< unit length, the others taken out
 };
 
-/// The one axis and number with the largest score once `picked` are taken out.
-Pick next_pick(const tests::ScoredFamily& winner, const std::vector<effects::EffectPtr>& model,
-               const tests::Residual& residual, const std::vector<Pick>& picked) {
-  constexpr double kOwn = 1e-6;  // of a squared length: less is what the others hold already
-  Pick best;
-  for (std::size_t h = 0; h < winner.candidate_effect->hypotheses.size(); ++h) {
-    const tests::Hypothesis& axis = winner.candidate_effect->hypotheses[h];
-    if (axis.axes != 1 || axis.combine.cols() != 1 || has_axis(model, winner, axis.where)) continue;
-    if (std::any_of(picked.begin(), picked.end(), [h](const Pick& p) { return p.hypothesis == h; })) continue;
-    for (std::size_t v = 0; v < winner.signatures.size(); ++v) {
-      Eigen::VectorXd z = winner.signatures[v].columns * axis.combine.col(0);
-      const double whole = z.squaredNorm();
-      for (const Pick& p : picked) z -= p.direction.dot(z) * p.direction;
-      const double own = z.squaredNorm();
-      if (!(own > kOwn * whole)) continue;
-      z /= std::sqrt(own);
-      const double S = std::pow(z.dot(residual.value()), 2);
-      if (S > best.S) best = {.hypothesis = h, .variant = v, .S = S, .direction = std::move(z)};
+/// Picks one column of the winner's family after the other, each time that with the largest score once those
+/// before are taken out: a pivoted Cholesky decomposition of the Gram matrix of all of them.
+class Picking {
+ public:
+  Picking(const tests::ScoredFamily& winner, const std::vector<effects::EffectPtr>& model) {
+    std::vector<tests::Signature::Combination> columns;
+    const auto& hypotheses = winner.candidate_effect->hypotheses;
+    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+      const tests::Hypothesis& axis = hypotheses[h];
+      if (axis.axes != 1 || axis.combine.cols() != 1 || has_axis(model, winner, axis.where)) continue;
+      for (std::size_t v = 0; v < winner.signatures.size(); ++v) {
+        const tests::Signature& s = winner.signatures[v];
+        if (axis.combine.rows() != s.cols()) continue;  // of another form of the law
+        all_.push_back({.hypothesis = h, .variant = v});
+        columns.push_back({&s, axis.combine});
+      }
     }
+    gram_ = tests::Signature::gram_of(columns);
+    left_.resize(gram_.rows());
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      left_[static_cast<Eigen::Index>(i)] = columns[i].V.col(0).dot(columns[i].of->by_residual());
+    own_ = gram_.diagonal();
+    L_.resize(gram_.rows(), 0);
   }
-  return best;
-}
+
+  /// With S = 0 where none is left.
+  [[nodiscard]] Pick next() {
+    constexpr double kOwn = 1e-6;  // of a squared length: less is what the others hold already
+    Eigen::Index best = -1;
+    double S = 0;
+    for (Eigen::Index i = 0; i < own_.size(); ++i) {
+      const bool picked = std::find(axes_.begin(), axes_.end(), at(i).hypothesis) != axes_.end();
+      if (picked || !(own_[i] > kOwn * gram_(i, i))) continue;
+      if (const double here = left_[i] * left_[i] / own_[i]; here > S) S = here, best = i;
+    }
+    if (best < 0) return {};
+    const Eigen::VectorXd column = (gram_.col(best) - L_ * L_.row(best).transpose()) / std::sqrt(own_[best]);
+    left_ -= column * (left_[best] / std::sqrt(own_[best]));
+    own_ -= column.cwiseAbs2();
+    L_.conservativeResize(Eigen::NoChange, L_.cols() + 1);
+    L_.rightCols<1>() = column;
+    Pick out = at(best);
+    axes_.push_back(out.hypothesis);
+    out.S = S;
+    return out;
+  }
+
+ private:
+  [[nodiscard]] const Pick& at(Eigen::Index i) const { return all_[static_cast<std::size_t>(i)]; }
+
+  std::vector<Pick> all_;
+  std::vector<std::size_t> axes_;  ///< of those that were picked
+  Eigen::MatrixXd gram_, L_;
+  Eigen::VectorXd left_;  ///< products with what the picked ones leave of the residual
+  Eigen::VectorXd own_;   ///< squared lengths of what the picked ones leave of the columns
+};
 
 /// The few axes that make up the winner; empty where they are many or do not.
-std::vector<Pick> few_axes(const tests::ScoredFamily& winner, const std::vector<effects::EffectPtr>& model,
-                           const tests::Residual& residual) {
+std::vector<Pick> few_axes(const tests::ScoredFamily& winner, const std::vector<effects::EffectPtr>& model) {
   constexpr double kStandsOut = 20, kWorthwhile = 0.01;  // of the largest
   constexpr std::size_t kFew = 4;
   constexpr double kMost = 0.8;  // of the winner's score
   std::vector<Pick> picked;
+  Picking picking(winner, model);
   double sum = 0;
   while (picked.size() <= kFew) {
-    Pick next = next_pick(winner, model, residual, picked);
+    const Pick next = picking.next();
     if (next.S < kStandsOut || (!picked.empty() && next.S < kWorthwhile * picked.front().S)) break;
     sum += next.S;
-    picked.push_back(std::move(next));
+    picked.push_back(next);
   }
   if (picked.size() > kFew || sum < kMost * winner.winner().S) picked.clear();
   return picked;
@@ -84,13 +118,12 @@ std::vector<Pick> few_axes(const tests::ScoredFamily& winner, const std::vector<
 }  // namespace
 
 Result<ForwardStep> forward_step(const std::vector<effects::EffectPtr>& model,
-                                 const tests::ScoredFamily& winner, const tests::Residual& residual) {
+                                 const tests::ScoredFamily& winner) {
   ForwardStep out;
   const tests::CandidateEffect& candidate_effect = *winner.candidate_effect;
   const bool one_axis = winner.where().axes == 1;
   std::vector<Pick> picked;
-  if (winner.candidate_effect->level == effects::Level::axis && !one_axis)
-    picked = few_axes(winner, model, residual);
+  if (winner.candidate_effect->level == effects::Level::axis && !one_axis) picked = few_axes(winner, model);
   if (picked.empty()) {
     if (one_axis && has_axis(model, winner, winner.where().where)) {
       return fail(ErrorCode::refused,

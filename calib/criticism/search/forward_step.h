@@ -22,7 +22,6 @@ struct ForwardStep {
 /// another number does not get it twice. Refuses what the library refuses, and a winner of which nothing is
 /// left.
 [[nodiscard]] Result<ForwardStep> forward_step(const std::vector<effects::EffectPtr>& model,
-                                               const tests::ScoredFamily& winner,
-                                               const tests::Residual& residual);
+                                               const tests::ScoredFamily& winner);
 
 }  // namespace mgtd::calib::criticism::search

@@ -23,12 +23,11 @@ struct Fall {
 Fall score_fall(const ModelStage& stage, const effects::EffectPtr& effect) {
   const tests::Residual residual(stage.fit.problem, stage.fit.state,
                                  tests::pose_correlation(stage.fit.problem, stage.fit.state));
-  const tests::Signature s =
-      tests::signature_of(residual, tests::effect_rows(stage.fit.problem, stage.fit.state, effect));
+  const tests::Signature s(residual, tests::effect_source(stage.fit.problem, stage.fit.state, effect));
   const auto m = static_cast<Eigen::Index>(effect->coefficients().size());
   const tests::OneStep step =
       tests::one_step(s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(m, m), .names = {}});
-  return {(step.basis.transpose() * s.by_residual).squaredNorm(), static_cast<int>(step.basis.cols())};
+  return {(step.basis.transpose() * s.by_residual()).squaredNorm(), static_cast<int>(step.basis.cols())};
 }
 
 /// Of the Wald test: what chi-square would rise by if these coefficients were zero.

@@ -71,8 +71,7 @@ std::optional<SecondLook> second_look(const PoseTable& table, const fit::joint::
     // What the first look added to the family was made for its own residual, but is as good a start here.
     tests::ScoredFamily again{.candidate_effect = known.candidate_effect, .own = known.own};
     for (const effects::EffectPtr& variant : known.candidate_effect->variants) {
-      again.signatures.push_back(
-          tests::signature_of(residual, tests::effect_rows(at->problem, at->state, variant)));
+      again.signatures.emplace_back(residual, tests::effect_source(at->problem, at->state, variant));
       again.score_last(noise);
     }
     if (!again.testable()) continue;

@@ -47,11 +47,10 @@ Eigen::Index coefficients_of(const std::vector<effects::EffectPtr>& effects) {
 /// Orthonormal columns of an effect, projected as the residual is.
 Eigen::MatrixXd columns_of(const fit::joint::JointFit& fit, const tests::Residual& residual,
                            const effects::EffectPtr& effect) {
-  const tests::Signature s =
-      tests::signature_of(residual, tests::effect_rows(fit.problem, fit.state, effect));
+  const tests::Signature s(residual, tests::effect_source(fit.problem, fit.state, effect));
   const auto n = static_cast<Eigen::Index>(effect->coefficients().size());
-  return s.columns * tests::orthonormal_combinations(
-                         s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(n, n), .names = {}});
+  return s.times(tests::orthonormal_combinations(
+      s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(n, n), .names = {}}));
 }
 
 /// The two effects of a pair, dipoles at the places that fit best; empty where the run cannot test them.

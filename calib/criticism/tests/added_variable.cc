@@ -7,7 +7,7 @@ namespace mgtd::calib::criticism::tests {
 
 AddedVariable added_variable(const Signature& s, const OneStep& fitted, const Residual& residual,
                              const fit::joint::JointProblem& problem) {
-  const Eigen::VectorXd z = s.columns * (fitted.basis * (fitted.basis.transpose() * s.by_residual));
+  const Eigen::VectorXd z = s.times(fitted.basis * (fitted.basis.transpose() * s.by_residual()));
   const Eigen::VectorXd& r = residual.value();
   const double length2 = z.squaredNorm();
   AddedVariable out;

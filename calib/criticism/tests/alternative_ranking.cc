@@ -6,7 +6,6 @@
 #include <map>
 
 #include "calib/linear/normal_draws.h"
-#include "calib/linear/product.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -21,7 +20,6 @@ constexpr double kInSight = 0.1;
 /// fit best, and with those near the winner alone a search would seem to win less easily than it does.
 constexpr std::size_t kValues = 30;
 constexpr std::size_t kMost = 200;
-constexpr double kRankingJitter = 1e-9;
 constexpr double kNever = -1e9;
 
 RankedAlternative ranked_alternative_of(const ScoredFamily& family, std::size_t f, const Score& score,
@@ -58,29 +56,31 @@ std::vector<RankedAlternative> nearest(const std::vector<ScoredFamily>& families
 
 AlternativeRanking::AlternativeRanking(const std::vector<ScoredFamily>& families, std::size_t a)
     : families_(families.size()), all_(nearest(families, a)) {
-  std::vector<Eigen::MatrixXd> bases;
+  std::vector<Signature::Combination> combinations;
   Eigen::Index columns = 0;
   for (RankedAlternative& c : all_) {
     const ScoredFamily& family = families[c.family];
-    bases.push_back(orthonormal_combinations(family.signatures[c.score->variant],
-                                             family.candidate_effect->hypotheses[c.score->hypothesis]));
-    c.first = columns, c.count = bases.back().cols();
+    const Signature& s = family.signatures[c.score->variant];
+    combinations.push_back(
+        {&s, orthonormal_combinations(s, family.candidate_effect->hypotheses[c.score->hypothesis])});
+    c.first = columns, c.count = combinations.back().V.cols();
     columns += c.count;
   }
-  U_.resize(families[a].signatures.front().columns.rows(), columns);
+  gram_ = Signature::gram_of(combinations);
   t_.resize(columns);
-  for (std::size_t i = 0; i < all_.size(); ++i) {
-    const RankedAlternative& c = all_[i];
-    const Signature& s = families[c.family].signatures[c.score->variant];
-    U_.middleCols(c.first, c.count) = s.columns * bases[i];
-    t_.segment(c.first, c.count) = bases[i].transpose() * s.by_residual;
-  }
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    t_.segment(all_[i].first, all_[i].count) =
+        combinations[i].V.transpose() * combinations[i].of->by_residual();
+}
+
+double AlternativeRanking::outside(const RankedAlternative& c, const RankedAlternative& other) const {
+  const Eigen::VectorXd inside =
+      gram_.block(other.first, c.first, other.count, c.count) * t_.segment(c.first, c.count);
+  return std::max(0.0, length2(c) - inside.squaredNorm());
 }
 
 void AlternativeRanking::draw(std::uint64_t seed, int draws) {
-  Eigen::MatrixXd gram = linear::gram(U_);
-  gram.diagonal().array() += kRankingJitter;
-  noise_ = linear::normal_draws(gram, draws, seed);
+  noise_ = linear::normal_draws(gram_, draws, seed);
 }
 
 double AlternativeRanking::deficit(const Eigen::VectorXd& best, std::size_t family) const {
@@ -91,7 +91,8 @@ double AlternativeRanking::deficit(const Eigen::VectorXd& best, std::size_t fami
 }
 
 double AlternativeRanking::behind(const RankedAlternative& truth) const {
-  const Eigen::VectorXd shift = U_.transpose() * signature(truth);
+  const Eigen::VectorXd shift =
+      gram_.middleCols(truth.first, truth.count) * t_.segment(truth.first, truth.count);
   Eigen::VectorXd best(static_cast<Eigen::Index>(families_));
   const auto rank = [&](const auto& sums) {
     best.setConstant(kNever);

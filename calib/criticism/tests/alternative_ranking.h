@@ -23,14 +23,12 @@ class AlternativeRanking {
   AlternativeRanking(const std::vector<ScoredFamily>& families, std::size_t a);
 
   [[nodiscard]] const std::vector<RankedAlternative>& all() const { return all_; }
-  /// Orthonormal within each hypothesis.
-  [[nodiscard]] Eigen::MatrixXd space(const RankedAlternative& c) const {
-    return U_.middleCols(c.first, c.count);
+  /// What a question makes of the residual, z: its length in squares.
+  [[nodiscard]] double length2(const RankedAlternative& c) const {
+    return t_.segment(c.first, c.count).squaredNorm();
   }
-  /// What it makes of the residual.
-  [[nodiscard]] Eigen::VectorXd signature(const RankedAlternative& c) const {
-    return U_.middleCols(c.first, c.count) * t_.segment(c.first, c.count);
-  }
+  /// Of z, what lies outside the space of another question: its length in squares.
+  [[nodiscard]] double outside(const RankedAlternative& c, const RankedAlternative& other) const;
 
   /// Draws of the noise, from which behind() takes all its runs.
   void draw(std::uint64_t seed, int draws);
@@ -43,8 +41,8 @@ class AlternativeRanking {
 
   std::size_t families_{0};
   std::vector<RankedAlternative> all_;
-  Eigen::MatrixXd U_;
-  Eigen::VectorXd t_;
+  Eigen::MatrixXd gram_;   ///< U'U, the columns U of each question orthonormal
+  Eigen::VectorXd t_;      ///< U'r
   Eigen::MatrixXd noise_;  ///< columns of the space x draws
 };
 

@@ -17,34 +17,27 @@ constexpr double kNothing = 1e-3;  ///< of a chi-square
 /// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
 constexpr double kGone = 16;
 
-/// Length in squares of what of `v` is not in the space of U.
-double outside(const Eigen::VectorXd& v, const Eigen::MatrixXd& U) {
-  return (v - U * (U.transpose() * v)).squaredNorm();
-}
-
-double share_inside(const Eigen::VectorXd& v, double outside) {
-  return 1 - outside / std::max(v.squaredNorm(), kNothing);
-}
+double share_inside(double length2, double outside) { return 1 - outside / std::max(length2, kNothing); }
 
 /// `drawn`: the chance that it fell behind is asked for.
 Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredFamily>& families,
                     const RankedAlternative& a, const RankedAlternative& b, bool drawn, int looks) {
   const ScoredFamily& family = families[b.family];
   const Hypothesis& h = family.candidate_effect->hypotheses[b.score->hypothesis];
-  const Eigen::VectorXd v_a = ranking.signature(a), v_b = ranking.signature(b);
-  const double lambda_ba = outside(v_b, ranking.space(a)), lambda_ab = outside(v_a, ranking.space(b));
+  const double length2_a = ranking.length2(a);
+  const double lambda_ba = ranking.outside(b, a), lambda_ab = ranking.outside(a, b);
   Alternative out{.effect = family.candidate_effect->name,
                   .where = h.where,
                   .spec = spec_of(*family.candidate_effect, h, b.score->variant)};
-  out.alike = share_inside(v_b, lambda_ba);
+  out.alike = share_inside(ranking.length2(b), lambda_ba);
   const Hypothesis& won = families[a.family].candidate_effect->hypotheses[a.score->hypothesis];
-  if (h.where == won.where) out.alike = std::max(out.alike, share_inside(v_a, lambda_ab));
+  if (h.where == won.where) out.alike = std::max(out.alike, share_inside(length2_a, lambda_ab));
   // Of two fields of the site what a dipole has beyond its gradient is as exact as the gradient.
   const bool exact = family.candidate_effect->level == effects::Level::site &&
                      families[a.family].candidate_effect->level == effects::Level::site;
   out.form_only = !exact && out.alike > kAlike &&
                   family.candidate_effect->reads == families[a.family].candidate_effect->reads;
-  out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, v_a.squaredNorm()) : lambda_ab);
+  out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, length2_a) : lambda_ab);
   if (drawn && a.L - b.L < kGone) out.p_behind = ranking.behind(b);
   out.possible = out.p_behind >= kLost / looks || out.form_only;
   return out;

@@ -122,12 +122,12 @@ Result<FormulaExamination> examine_formula(const PoseTable& table, const fit::Fi
                          .expression = *formula.find("expr"),
                          .k = static_cast<int>(candidate_effect->variants.front()->coefficients().size())};
   const Signature& s = scored.signatures[scored.testable() ? scored.winner().variant : 0];
-  const double length = s.norms.squaredNorm();
-  out.absorbed = length > 0 ? 1 - s.columns.squaredNorm() / length : 1;
+  const double length = s.norms().squaredNorm();
+  out.absorbed = length > 0 ? 1 - s.gram().trace() / length : 1;
   if (!scored.testable()) return out;
   tell_coefficients(*candidate_effect, scored, out);
   out.signature = added_variable(s, one_step(s, scored.where()), residual, fit->problem);
-  out.alike = alike(*fit, residual, table, s.columns);
+  out.alike = alike(*fit, residual, table, s.times(Eigen::MatrixXd::Identity(s.cols(), s.cols())));
   return out;
 }
 

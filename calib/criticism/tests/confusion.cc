@@ -14,7 +14,7 @@ namespace {
 Eigen::VectorXd fitted_form(const ScoredFamily& family) {
   const Signature& s = family.signatures[family.winner().variant];
   const Eigen::MatrixXd basis = orthonormal_combinations(s, family.where());
-  const Eigen::VectorXd form = s.columns * (basis * (basis.transpose() * s.by_residual));
+  const Eigen::VectorXd form = s.times(basis * (basis.transpose() * s.by_residual()));
   const double length = form.norm();
   return length > 0 ? Eigen::VectorXd(form / length) : form;
 }
@@ -23,7 +23,7 @@ Eigen::VectorXd fitted_form(const ScoredFamily& family) {
 Eigen::VectorXd shares_inside(const Eigen::MatrixXd& forms, const ScoredFamily& family) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(forms.cols());
   for (std::size_t v = 0; v < family.signatures.size(); ++v) {
-    const Eigen::MatrixXd products = family.signatures[v].columns.transpose() * forms;
+    const Eigen::MatrixXd products = family.signatures[v].transposed_times(forms);
     for (const Score& score : family.scores) {
       if (score.variant != v) continue;
       const Eigen::MatrixXd basis = orthonormal_combinations(
@@ -42,7 +42,7 @@ ConfusionMatrix confusion_of(const std::vector<ScoredFamily>& families) {
   out.correlation = Eigen::MatrixXd::Identity(n, n);
   out.p_right = Eigen::MatrixXd::Ones(n, n);
   if (n == 0) return out;
-  Eigen::MatrixXd forms(families.front().signatures.front().columns.rows(), n);
+  Eigen::MatrixXd forms(families.front().signatures.front().rows(), n);
   for (Eigen::Index a = 0; a < n; ++a) {
     const ScoredFamily& family = families[static_cast<std::size_t>(a)];
     forms.col(a) = fitted_form(family);

@@ -78,7 +78,8 @@ double largest_S(const std::vector<ScoredFamily>& families) {
 /// Families that could still win with a better number. A dipole makes the gradient that is seen, once its
 /// place is known: it comes as near as site.gradient does. A dipole that came during the run is looked for
 /// where a step of the site is what stands out most.
-void refine_alternatives(const fit::joint::JointFit& fit, Criticism& out) {
+void refine_alternatives(Criticism& out) {
+  const fit::joint::JointFit& fit = *out.tested;
   constexpr double kInReach = 0.6;  // of the largest score
   const double largest = largest_S(out.families);
   double of_gradient = 0;
@@ -99,9 +100,10 @@ void refine_alternatives(const fit::joint::JointFit& fit, Criticism& out) {
   }
 }
 
-Criticism tested(const fit::joint::JointFit& fit, Residual residual,
-                 const CandidateEffects& candidate_effects, std::uint64_t seed, const Rates* before) {
-  Criticism out{.residual = std::move(residual), .tested = std::make_shared<const fit::joint::JointFit>(fit)};
+Criticism tested(const fit::joint::JointFit& of, Residual residual, const CandidateEffects& candidate_effects,
+                 std::uint64_t seed, const Rates* before) {
+  Criticism out{.residual = std::move(residual), .tested = std::make_shared<const fit::joint::JointFit>(of)};
+  const fit::joint::JointFit& fit = *out.tested;  // the signatures refer to it
   out.noise = noise_model(fit, out.residual);
   out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
   out.residual.measure_by(out.noise.reference.scale2);
@@ -117,7 +119,7 @@ Criticism tested(const fit::joint::JointFit& fit, Residual residual,
     }
   }
   rate(before, seed, out);
-  refine_alternatives(fit, out);
+  refine_alternatives(out);
   std::stable_sort(out.families.begin(), out.families.end(),
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
   judge_size(out);
@@ -175,7 +177,7 @@ std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
   const ScoredFamily& f = families[family];
   const Signature& s = f.signatures[f.winner().variant];
   const Eigen::MatrixXd basis = orthonormal_combinations(s, f.where());
-  const Eigen::VectorXd fit = s.columns * (basis * (basis.transpose() * s.by_residual));
+  const Eigen::VectorXd fit = s.times(basis * (basis.transpose() * s.by_residual()));
   const Eigen::VectorXd product = fit.cwiseProduct(residual.value());
   std::vector<double> out;
   for (Eigen::Index k = 0; k < residual.poses(); ++k)

@@ -28,7 +28,7 @@ struct Criticism {
   /// The channel that scatters least for its noise, "s3.z", and the probability of so little, all counted.
   std::string low_scatter{};
   double low_scatter_log10_p{0}, low_scatter_ratio{1};
-  Residual residual;                                     ///< in units of the noise
+  Residual residual{};                                   ///< in units of the noise
   std::shared_ptr<const fit::joint::JointFit> tested{};  ///< the fit, with the weights of the tests
 
   /// Evidence for one of the families, pose by pose.

@@ -12,9 +12,12 @@ Detectable detectable_of(const CandidateEffect& candidate_effect, const Signatur
                                                        : &h != &candidate_effect.hypotheses.front())
       continue;
     for (Eigen::Index j = 0; j < h.combine.cols(); ++j) {
-      const double left = h.combine.col(j).dot(s.gram * h.combine.col(j));
-      const double value = kSeen / std::sqrt(left);
-      if (!(value > out.value) || !std::isfinite(value)) continue;
+      const auto t = h.combine.col(j);
+      const double whole = t.cwiseAbs2().dot(s.norms().cwiseAbs2()), left = t.dot(s.gram() * t);
+      if (!(whole > 0)) continue;
+      const bool absorbed = left < s.absorbed() * s.absorbed() * whole;
+      const double value = absorbed ? kAtNoSize : kSeen / std::sqrt(left);
+      if (!(value > out.value)) continue;
       Eigen::Index of = 0;
       h.combine.col(j).maxCoeff(&of);
       out.value = value;

@@ -10,6 +10,8 @@
 namespace mgtd::calib::criticism::tests {
 
 inline constexpr double kSeen = 8;
+/// Detectable::value where what is in the model takes the effect up whole: beyond all, in any unit.
+inline constexpr double kAtNoSize = 1e12;
 
 struct Detectable {
   std::string effect{}, where{};

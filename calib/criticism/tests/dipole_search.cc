@@ -76,6 +76,13 @@ std::vector<Trial> best_apart(std::vector<Trial> all, std::size_t most) {
   return out;
 }
 
+/// Coefficients of a dipole that stands where it stands.
+Eigen::VectorXd moment_and_shift(const Eigen::Vector3d& moment_Am2) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(6);
+  out.head<3>() = moment_Am2;
+  return out;
+}
+
 class DipoleSearch {
  public:
   DipoleSearch(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
@@ -94,9 +101,7 @@ class DipoleSearch {
 
   /// Columns of moment and shift at one place with its moment.
   [[nodiscard]] Signature both(const effects::EffectPtr& effect, const Eigen::Vector3d& moment_Am2) const {
-    Eigen::VectorXd c = Eigen::VectorXd::Zero(6);
-    c.head<3>() = moment_Am2;
-    return signature_of(residual_, effect_rows(problem_, state_, effect, c));
+    return {residual_, effect_source(problem_, state_, effect, moment_and_shift(moment_Am2))};
   }
 
  private:
@@ -186,7 +191,11 @@ class DipoleSearch {
     for (Eigen::Index i = 0; i < count; ++i) {
       const auto effect = dipole_(trial.at_S_m[static_cast<std::size_t>(i)]);
       if (!effect) return std::nullopt;
-      const Eigen::MatrixXd own = without_beside(both(*effect, trial.moments_Am2.segment<3>(3 * i)).columns);
+      const Eigen::MatrixXd own =
+          without_beside(residual_
+                             .project(effect_rows(problem_, state_, *effect,
+                                                  moment_and_shift(trial.moments_Am2.segment<3>(3 * i))))
+                             .projected);
       Z.middleCols<3>(3 * i) = own.leftCols<3>();
       Z.middleCols<3>(3 * (count + i)) = own.rightCols<3>();
     }

@@ -18,7 +18,7 @@ namespace mgtd::calib::criticism::tests {
 
 struct FoundDipole {
   effects::EffectPtr effect{};  ///< at that place, the shift zero
-  Signature signature{};        ///< of moment and shift, both, at that place and its moment
+  Signature signature;          ///< of moment and shift, both, at that place and its moment
 };
 
 using DipoleAt = std::function<Result<effects::EffectPtr>(const Eigen::Vector3d& place_S_m)>;

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "calib/linear/normal_draws.h"
-#include "calib/linear/product.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -19,9 +18,6 @@ constexpr int kDraws = 1000;
 constexpr std::size_t kTogether = 3;
 /// Share of the draws that decides about m.
 constexpr double kLower = 1.0 / 3;
-constexpr double kJitter = 1e-9;
-/// Of the columns that stand side by side: all of a usual run, and no second copy of a long one.
-constexpr Eigen::Index kRowsAtOnce = 4096;
 
 std::vector<std::size_t> drawn(const ScoredFamily& family, std::size_t most) {
   const std::size_t n = family.signatures.size(), m = std::min(n, most);
@@ -58,31 +54,21 @@ struct Draws {
 
 Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64_t seed) {
   Draws out;
-  Eigen::Index m = 0, rows = 0;
+  Eigen::Index m = 0;
+  std::vector<Signature::Combination> all;
   for (const ScoredFamily& family : families) {
     out.first.emplace_back();
     for (const std::size_t v : drawn(family, most)) {
+      const Signature& s = family.signatures[v];
       out.first.back().emplace_back(v, m);
-      m += family.signatures[v].columns.cols();
-      rows = family.signatures[v].columns.rows();
+      m += s.cols();
+      all.push_back({&s, s.seen()});
     }
   }
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);
-  for (Eigen::Index row = 0; row < rows; row += kRowsAtOnce) {
-    Eigen::MatrixXd all(std::min(kRowsAtOnce, rows - row), m);
-    for (std::size_t f = 0; f < families.size(); ++f) {
-      for (const auto& [v, at] : out.first[f]) {
-        const Eigen::MatrixXd& columns = families[f].signatures[v].columns;
-        all.middleCols(at, columns.cols()) = columns.middleRows(row, all.rows());
-      }
-    }
-    linear::add_gram(all, gram);
-  }
-  out.length = gram.diagonal().cwiseSqrt();
+  Eigen::MatrixXd gram = Signature::gram_of(all);
+  out.length = gram.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd inverse = (out.length.array() > 0).select(out.length.cwiseInverse(), 0.0);
   gram = inverse.asDiagonal() * gram * inverse.asDiagonal();
-  gram.diagonal().array() += kJitter;
-  gram.diagonal() = gram.diagonal().cwiseMax(kJitter);
   out.sums = linear::normal_draws(gram, kDraws, seed);
   return out;
 }
@@ -95,7 +81,7 @@ std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std
   std::map<std::pair<int, int>, Eigen::ArrayXd> largest;
   for (const auto& [v, at] : draws.first[f]) {
     const Signature& s = family.signatures[v];
-    const Eigen::Index m = s.columns.cols();
+    const Eigen::Index m = s.cols();
     const Eigen::MatrixXd sums = draws.length.segment(at, m).asDiagonal() * draws.sums.middleRows(at, m);
     for (const Hypothesis& h : family.candidate_effect->hypotheses) {
       const Eigen::MatrixXd basis = orthonormal_combinations(s, h);

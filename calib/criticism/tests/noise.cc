@@ -14,7 +14,6 @@
 namespace mgtd::calib::criticism::tests {
 namespace {
 
-using Mixing = sensor::ChannelCovariance;
 constexpr double kMaxRho = 0.95;
 /// Standard errors that are added to a correlation: too small a one makes every slow effect significant, one
 /// too large costs a little power. And the standard error of a median over that of a mean.
@@ -27,16 +26,19 @@ constexpr double kContradicts_log10_p = -3;
 
 /// Residuals of the readings with the nuisances fitted, and how noise gets into them.
 struct Fitted {
-  Eigen::MatrixXd e;      ///< 12 x P
-  std::vector<Mixing> M;  ///< by pose
-  Eigen::MatrixXd J;      ///< channels P x fixed, the same of the fixed block
+  Eigen::MatrixXd e;    ///< channels x P
+  Eigen::MatrixXd M;    ///< channels x channels P, pose by pose
+  Eigen::MatrixXd J{};  ///< channels P x fixed, the same of the fixed block
+
+  [[nodiscard]] auto M_of(Eigen::Index pose) const { return M.middleCols(pose * M.rows(), M.rows()); }
 };
 
-Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
+Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, bool with_fixed) {
   const LinearRows rows = linear_rows(problem, state);
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
   const Eigen::Index channels = problem.channels(), block_rows = problem.pose_rows();
-  Fitted out{.e = Eigen::MatrixXd(channels, n), .M = {}, .J = Eigen::MatrixXd(channels * n, problem.fixed())};
+  Fitted out{.e = Eigen::MatrixXd(channels, n), .M = Eigen::MatrixXd::Zero(channels, channels * n)};
+  if (with_fixed) out.J.resize(channels * n, problem.fixed());
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto N = rows.nuisance.middleRows(k * block_rows, block_rows);
     const Eigen::Matrix4d H = sensor::over_rows<sensor::kChannels + 4>(
@@ -44,10 +46,11 @@ Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointSt
     const Eigen::LLT<Eigen::Matrix4d> llt(H);
     const auto top = N.topRows(channels);
     const auto weight = problem.poses[static_cast<std::size_t>(k)].weight;
-    Mixing there = Mixing::Zero(channels, channels);
-    there.diagonal() = (weight.array() > 0).cast<double>();
-    out.M.push_back(there - top * llt.solve(top.transpose()));
+    auto M = out.M.middleCols(k * channels, channels);
+    M.diagonal() = (weight.array() > 0).cast<double>();
+    M -= top * llt.solve(top.transpose());
     out.e.col(k) = rows.residual.segment(k * block_rows, channels);
+    if (!with_fixed) continue;
     const Eigen::MatrixXd block = rows.fixed.middleRows(k * block_rows, block_rows);
     out.J.middleRows(k * channels, channels) =
         block.topRows(channels) - top * llt.solve(N.transpose() * block);
@@ -115,8 +118,9 @@ struct LagOne {
 };
 
 std::vector<LagOne> lag_one(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
-  const Fitted f = fitted(problem, state);
+  Fitted f = fitted(problem, state, true);
   const Eigen::MatrixXd hat = leverages(f);
+  f.J.resize(0, 0);
   const auto order = order_in_time(problem);
   const Eigen::Index channels = problem.channels();
   std::vector<LagOne> out(static_cast<std::size_t>(channels));
@@ -125,13 +129,13 @@ std::vector<LagOne> lag_one(const fit::joint::JointProblem& problem, const fit::
     x.L.resize(static_cast<Eigen::Index>(order.size()), hat.cols());
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Eigen::Index k = order[i];
-      const auto& M = f.M[static_cast<std::size_t>(k)];
+      const auto M = f.M_of(k);
       x.L.row(static_cast<Eigen::Index>(i)) = hat.row(k * channels + c);
       x.squares += f.e(c, k) * f.e(c, k);
       x.own += sensor::over_channels(channels, [&](auto n) { return M.row(c).head(n).squaredNorm(); });
       if (i == 0) continue;
       x.products += f.e(c, k) * f.e(c, order[i - 1]);
-      const auto& before = f.M[static_cast<std::size_t>(order[i - 1])];
+      const auto before = f.M_of(order[i - 1]);
       x.by_lag += sensor::over_channels(channels,
                                         [&](auto n) { return M.row(c).head(n).dot(before.row(c).head(n)); });
     }
@@ -200,7 +204,7 @@ std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2
     }
     fit::joint::refit_nuisances(problem, state);
   }
-  const Fitted f = fitted(problem, state);
+  const Fitted f = fitted(problem, state, false);
   PureError out{.pairs = static_cast<int>(pairs.size())};
   double squares = 0, expected = 0;
   for (const auto& [u, v] : pairs) {
@@ -210,8 +214,8 @@ std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2
       squares +=
           (by_u.head(n).cwiseProduct(f.e.col(u).head(n)) - by_v.head(n).cwiseProduct(f.e.col(v).head(n)))
               .squaredNorm();
-      expected += (by_u.head(n).asDiagonal() * f.M[a].topLeftCorner(n, n)).squaredNorm() +
-                  (by_v.head(n).asDiagonal() * f.M[b].topLeftCorner(n, n)).squaredNorm();
+      expected += (by_u.head(n).asDiagonal() * f.M_of(u).topLeftCorner(n, n)).squaredNorm() +
+                  (by_v.head(n).asDiagonal() * f.M_of(v).topLeftCorner(n, n)).squaredNorm();
     });
   }
   if (!(expected > 0)) return std::nullopt;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 
-#include "calib/criticism/tests/whitener.h"
+#include "calib/criticism/tests/projection.h"
 #include "calib/fit/joint/joint_fit.h"
 
 /// What a joint fit left over, ready for tests: nuisances, correlation between poses and every direction that
@@ -15,6 +16,7 @@ inline constexpr double kAbsorbed = 1e-6;
 
 class Residual {
  public:
+  Residual() = default;  ///< of no run: only to be assigned to
   Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
            const fit::joint::WanderingRates& nT_per_sqrt_h = {});
 
@@ -22,11 +24,11 @@ class Residual {
   [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
   [[nodiscard]] double chi2() const { return chi2_; }
   [[nodiscard]] double dof() const { return dof_; }
-  [[nodiscard]] const Whitener& whitener() const { return whitener_; }
+  [[nodiscard]] const Whitener& whitener() const { return projection_->whitener(); }
   [[nodiscard]] Eigen::Index poses() const { return poses_; }
   /// Rows of value() for one pose.
-  [[nodiscard]] Eigen::Index rows_per_pose() const { return whitener_.rows_per_pose(); }
-  [[nodiscard]] Eigen::Index channels() const { return whitener_.channels(); }
+  [[nodiscard]] Eigen::Index rows_per_pose() const { return whitener().rows_per_pose(); }
+  [[nodiscard]] Eigen::Index channels() const { return whitener().channels(); }
 
   /// Share of its length below which a projected column says nothing. Laws are functions of the readings,
   /// which are known to their noise only: with single samples of one sensor that is more than rounding, and
@@ -39,23 +41,18 @@ class Residual {
   /// From now on everything is in units of noise with `scale2` times the variance of the weights.
   void measure_by(double scale2);
 
-  struct Columns {
-    Eigen::MatrixXd projected;
-    Eigen::VectorXd norms;  ///< of the columns before the model's parameters were projected out
-  };
+  using Columns = Projection::Columns;
   /// Rows as effect_rows() gives them.
   [[nodiscard]] Columns project(const Eigen::MatrixXd& rows) const;
+  /// What project() does, before units.
+  [[nodiscard]] const std::shared_ptr<const Projection>& projection() const { return projection_; }
 
   /// Orthonormal, of the directions that the model's own parameters can take.
-  [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
+  [[nodiscard]] const Eigen::MatrixXd& basis() const { return projection_->basis(); }
 
  private:
-  Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
-           const LinearRows& rows, double rho, const fit::joint::WanderingRates& nT_per_sqrt_h);
-
-  Whitener whitener_;
-  Eigen::Index poses_;
-  Eigen::MatrixXd basis_;  ///< orthonormal, of the space of the model's parameters
+  std::shared_ptr<const Projection> projection_;
+  Eigen::Index poses_{0};
   Eigen::VectorXd value_;
   double chi2_{0}, dof_{0};
   double unit_{1};

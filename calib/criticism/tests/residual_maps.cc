@@ -21,7 +21,7 @@ namespace {
 
 struct Map {
   std::string name{};
-  Eigen::MatrixXd rows{};                ///< as effect_rows()
+  RowSource rows{};
   std::vector<Hypothesis> hypotheses{};  ///< all channels; each axis where the map is by channel
 };
 using Visit = std::function<void(const Map&)>;
@@ -42,21 +42,28 @@ Hypothesis picked(std::string where, int axes, int alike, Eigen::Index first, Ei
   return h;
 }
 
-/// The functions free in each channel.
+/// The functions free in each channel. The source keeps a reference to the problem.
 Map of_channels(const fit::joint::JointProblem& problem, std::string name, Eigen::Index m,
-                const ChannelFunctions& functions) {
-  const auto poses = static_cast<Eigen::Index>(problem.poses.size());
+                ChannelFunctions functions) {
   const int channels = problem.channels();
-  const Eigen::Index block = problem.pose_rows();
-  Map out{.name = std::move(name), .rows = Eigen::MatrixXd::Zero(poses * block, m * channels)};
-  for (Eigen::Index k = 0; k < poses; ++k) {
-    const fit::joint::JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
-    for (int c = 0; c < channels; ++c) {
-      const std::vector<double> values = functions(pose, c);
-      for (std::size_t j = 0; j < values.size(); ++j)
-        out.rows(k * block + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
+  Map out{.name = std::move(name), .rows = {.columns = m * channels}};
+  out.rows.of = [&problem, m, channels,
+                 functions = std::move(functions)](std::span<const Eigen::Index> poses) {
+    const Eigen::Index block = problem.pose_rows();
+    Eigen::MatrixXd rows =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()) * block, m * channels);
+    Eigen::Index row = 0;
+    for (const Eigen::Index k : poses) {
+      const fit::joint::JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+      for (int c = 0; c < channels; ++c) {
+        const std::vector<double> values = functions(pose, c);
+        for (std::size_t j = 0; j < values.size(); ++j)
+          rows(row + c, c * m + static_cast<Eigen::Index>(j)) = pose.weight[c] * values[j];
+      }
+      row += block;
     }
-  }
+    return rows;
+  };
   out.hypotheses.push_back(picked("all", channels, 1, 0, m * channels, m * channels));
   for (int c = 0; c < channels; ++c) {
     out.hypotheses.push_back(picked(sensor::channel_name(c), 1, channels, c * m, m, m * channels));
@@ -65,10 +72,11 @@ Map of_channels(const fit::joint::JointProblem& problem, std::string name, Eigen
 }
 
 Map by_channel(const fit::joint::JointProblem& problem, std::string name, Eigen::Index m,
-               const Functions& functions) {
-  return of_channels(problem, std::move(name), m, [&functions](const fit::joint::JointPose& pose, int c) {
-    return functions(pose, c / 3);
-  });
+               Functions functions) {
+  return of_channels(problem, std::move(name), m,
+                     [functions = std::move(functions)](const fit::joint::JointPose& pose, int c) {
+                       return functions(pose, c / 3);
+                     });
 }
 
 /// A covariate brought to [-1, 1] over the poses; not usable where it does not vary.
@@ -280,7 +288,7 @@ void each_map(const fit::joint::JointProblem& problem, const fit::joint::JointSt
   add_mount(problem, visit);
   add_columns(problem, visit);
   for (SiteRows& site : site_map_rows(problem, state)) {
-    const Eigen::Index m = site.rows.cols();
+    const Eigen::Index m = site.rows.columns;
     visit({.name = std::move(site.name),
            .rows = std::move(site.rows),
            .hypotheses = {picked("site", problem.channels(), 1, 0, m, m)}});
@@ -289,26 +297,28 @@ void each_map(const fit::joint::JointProblem& problem, const fit::joint::JointSt
 
 /// Empty where nothing of the map is left after the model's own parameters.
 std::optional<MapScore> score_of(const Map& map, const Residual& residual, const NoiseReference& noise) {
-  const Signature s = signature_of(residual, map.rows);
+  const Signature s(residual, map.rows);
   MapScore best{.map = map.name,
                 .where = {},
                 .log10_p = 1,
                 .by_channel = std::vector<double>(static_cast<std::size_t>(residual.channels())),
                 .fit = {}};
   double scales = 0;
+  Eigen::VectorXd shown;  // coefficients of what the best explains
   for (const Hypothesis& h : map.hypotheses) {
     scales += 1.0 / h.alike;
     const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
     const auto k = static_cast<int>(basis.cols());
     if (k == 0) continue;
-    const Eigen::VectorXd t = basis.transpose() * s.by_residual;
+    const Eigen::VectorXd t = basis.transpose() * s.by_residual();
     const double own = noise.log10_p(t.squaredNorm(), k, h.axes), log10_p = own + std::log10(h.alike);
     if (h.alike > 1) best.by_channel.at(static_cast<std::size_t>(&h - &map.hypotheses[1])) = own;
     if (log10_p >= best.log10_p) continue;
     best.where = h.where, best.S = t.squaredNorm(), best.k = k, best.log10_p = log10_p;
-    best.fit = s.columns * (basis * t);
+    shown = basis * t;
   }
   if (best.k == 0) return std::nullopt;
+  best.fit = s.times(shown);
   best.log10_p = std::min(0.0, best.log10_p + std::log10(scales));
   return best;
 }

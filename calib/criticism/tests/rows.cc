@@ -2,7 +2,11 @@
 #include "calib/criticism/tests/rows.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "calib/fit/joint/joint_solver.h"
 
@@ -70,30 +74,89 @@ Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem, const fit::
                      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect->coefficients().size())));
 }
 
+namespace {
+
+/// The model with an effect more than it has.
+class Wider {
+ public:
+  Wider(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+        effects::EffectPtr effect, const Eigen::VectorXd& coefficients)
+      : problem_(problem),
+        state_(state),
+        effect_(std::move(effect)),
+        wider_(with_effect()),
+        at_(at(coefficients)),
+        model_(wider_, at_),
+        added_(coefficients.size()) {}
+
+  [[nodiscard]] Eigen::MatrixXd rows(std::span<const Eigen::Index> poses) const {
+    const Eigen::Index channels = problem_.channels(), block = problem_.pose_rows();
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()) * block, added_);
+    fit::joint::PoseLinear linear;
+    Eigen::Index row = 0;
+    for (const Eigen::Index k : poses) {
+      const auto pose_index = static_cast<std::size_t>(k);
+      const fit::joint::JointPose& pose = problem_.poses[pose_index];
+      if (effect_->missing(*pose.pose).empty()) {
+        model_.linearise(pose, state_.nuisances[pose_index], linear);
+        out.middleRows(row, channels) = pose.weight.asDiagonal() * linear.d_global.rightCols(added_);
+        out.row(row + channels) = pose.f_weight * linear.f_global.tail(added_);
+      }
+      row += block;
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] fit::joint::JointProblem with_effect() const {
+    fit::joint::JointProblem out;
+    out.geometry = problem_.geometry;
+    out.effects = problem_.effects;
+    out.common_field = problem_.common_field;
+    out.effects.push_back(effect_);
+    return out;
+  }
+  [[nodiscard]] fit::joint::JointState at(const Eigen::VectorXd& coefficients) const {
+    fit::joint::JointState out{.sensors = state_.sensors,
+                               .direction = state_.direction,
+                               .R_SR = state_.R_SR,
+                               .f_nT = state_.f_nT,
+                               .coefficients = state_.coefficients,
+                               .nuisances = {}};
+    out.coefficients.conservativeResize(state_.coefficients.size() + coefficients.size());
+    out.coefficients.tail(coefficients.size()) = coefficients;
+    return out;
+  }
+
+  const fit::joint::JointProblem& problem_;
+  const fit::joint::JointState& state_;
+  effects::EffectPtr effect_;
+  fit::joint::JointProblem wider_;
+  fit::joint::JointState at_;
+  fit::joint::PoseModel model_;
+  Eigen::Index added_;
+};
+
+}  // namespace
+
 Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
                             const effects::EffectPtr& effect, const Eigen::VectorXd& coefficients) {
-  fit::joint::JointProblem wider;
-  wider.geometry = problem.geometry;
-  wider.effects = problem.effects;
-  wider.common_field = problem.common_field;
-  wider.effects.push_back(effect);
-  const Eigen::Index added = coefficients.size();
-  fit::joint::JointState at = state;
-  at.coefficients.conservativeResize(state.coefficients.size() + added);
-  at.coefficients.tail(added) = coefficients;
-  const fit::joint::PoseModel model(wider, at);
-  fit::joint::PoseLinear linear;
-  const Eigen::Index channels = problem.channels();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(row_of(problem, problem.poses.size()), added);
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    const fit::joint::JointPose& pose = problem.poses[k];
-    if (!effect->missing(*pose.pose).empty()) continue;
-    model.linearise(pose, state.nuisances[k], linear);
-    const Eigen::Index row = row_of(problem, k);
-    out.middleRows(row, channels) = pose.weight.asDiagonal() * linear.d_global.rightCols(added);
-    out.row(row + channels) = pose.f_weight * linear.f_global.tail(added);
-  }
-  return out;
+  std::vector<Eigen::Index> all(problem.poses.size());
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  return Wider(problem, state, effect, coefficients).rows(all);
+}
+
+RowSource effect_source(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                        const effects::EffectPtr& effect, const Eigen::VectorXd& coefficients) {
+  const auto wider = std::make_shared<const Wider>(problem, state, effect, coefficients);
+  return {.columns = coefficients.size(),
+          .of = [wider](std::span<const Eigen::Index> poses) { return wider->rows(poses); }};
+}
+
+RowSource effect_source(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                        const effects::EffectPtr& effect) {
+  return effect_source(problem, state, effect,
+                       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect->coefficients().size())));
 }
 
 PriorRows prior_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <functional>
+#include <span>
 
 #include "calib/fit/joint/joint_problem.h"
 
@@ -31,6 +33,20 @@ struct LinearRows {
                                           const fit::joint::JointState& state,
                                           const effects::EffectPtr& effect,
                                           const Eigen::VectorXd& coefficients);
+
+/// Rows by the coefficients of a law, made when they are asked for: of a long run no more than a piece is
+/// held.
+struct RowSource {
+  Eigen::Index columns{0};
+  /// A block of JointProblem::pose_rows() for each of these poses, in this order.
+  std::function<Eigen::MatrixXd(std::span<const Eigen::Index> poses)> of{};
+};
+/// effect_rows() as a source. Keeps references to problem and state.
+[[nodiscard]] RowSource effect_source(const fit::joint::JointProblem& problem,
+                                      const fit::joint::JointState& state, const effects::EffectPtr& effect,
+                                      const Eigen::VectorXd& coefficients);
+[[nodiscard]] RowSource effect_source(const fit::joint::JointProblem& problem,
+                                      const fit::joint::JointState& state, const effects::EffectPtr& effect);
 
 /// The priors and gauge constraints of the fixed block, as rows.
 struct PriorRows {

@@ -50,7 +50,7 @@ void refine(const fit::joint::JointProblem& problem, const fit::joint::JointStat
       const auto tried = end ? wider.between(std::min(value, *end), std::max(value, *end)) : std::nullopt;
       auto effect = tried ? wider.make(nullptr, tried) : Result<effects::EffectPtr>(nullptr);
       if (!effect || *effect == nullptr) continue;
-      Signature signature = signature_of(residual, effect_rows(problem, state, *effect));
+      Signature signature(residual, effect_source(problem, state, *effect));
       add_variant(tried, *std::move(effect), std::move(signature), noise, wider, family);
     }
   }
@@ -66,7 +66,7 @@ void refine_place(const fit::joint::JointProblem& problem, const fit::joint::Joi
     return wider.dipole_at(place_S_m, value);
   });
   if (!found) return;
-  if (found->signature.columns.cols() != wider.hypotheses.front().combine.rows())
+  if (found->signature.cols() != wider.hypotheses.front().combine.rows())
     wider.hypotheses.push_back(hypotheses_of(*found->effect, problem.sensors()).front());
   add_variant(value, found->effect, std::move(found->signature), noise, wider, family);
   family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
@@ -77,7 +77,7 @@ void put_at_place(const fit::joint::JointProblem& problem, const fit::joint::Joi
                   ScoredFamily& family) {
   CandidateEffect& wider = widened(family);
   add_variant(wider.values[family.winner().variant], dipole,
-              signature_of(residual, effect_rows(problem, state, dipole)), noise, wider, family);
+              Signature(residual, effect_source(problem, state, dipole)), noise, wider, family);
   const std::size_t last = family.signatures.size() - 1;
   for (std::size_t i = 0; i < family.scores.size(); ++i)
     if (family.scores[i].variant == last) family.best = i;

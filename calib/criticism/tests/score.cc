@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "calib/linear/cholesky.h"
-#include "calib/linear/product.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/f_distribution.h"
 
@@ -18,18 +17,6 @@ double NoiseReference::log10_p(double S, int k, int axes) const {
   const double left = own * chi2 / dof - S;
   if (!(left > 0)) return stats::f_log10_p(1e12, k, own - k);
   return stats::f_log10_p(S / k / (left / (own - k)), k, own - k);
-}
-
-Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows) {
-  auto columns = residual.project(rows);
-  Signature out{.columns = std::move(columns.projected),
-                .norms = std::move(columns.norms),
-                .gram = {},
-                .by_residual = {},
-                .absorbed = residual.absorbed()};
-  out.gram = linear::gram(out.columns);
-  out.by_residual = out.columns.transpose() * residual.value();
-  return out;
 }
 
 namespace {
@@ -67,13 +54,13 @@ Eigen::MatrixXd whitening_of(const Signature& s, const std::vector<Entry>& entri
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(combined);
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(combined, combined);
   for (const Entry& a : entries) {
-    squares[a.combined] += std::pow(a.value * s.norms[a.finest], 2);
+    squares[a.combined] += std::pow(a.value * s.norms()[a.finest], 2);
     for (const Entry& b : entries)
-      M(a.combined, b.combined) += a.value * s.gram(a.finest, b.finest) * b.value;
+      M(a.combined, b.combined) += a.value * s.gram()(a.finest, b.finest) * b.value;
   }
   const Eigen::VectorXd scale = (squares.array() > 0).select(squares.cwiseSqrt().cwiseInverse(), 0.0);
   return scale.asDiagonal() *
-         whitening_of(scale.asDiagonal() * M * scale.asDiagonal(), s.absorbed * s.absorbed);
+         whitening_of(scale.asDiagonal() * M * scale.asDiagonal(), s.absorbed() * s.absorbed());
 }
 
 Eigen::MatrixXd spread(const std::vector<Entry>& entries, const Eigen::MatrixXd& V, Eigen::Index finest) {
@@ -93,7 +80,8 @@ OneStep one_step(const Signature& s, const Hypothesis& h) {
   const std::vector<Entry> entries = entries_of(h.combine);
   const Eigen::MatrixXd V = whitening_of(s, entries, h.combine.cols());
   const Eigen::MatrixXd basis = spread(entries, V, h.combine.rows());
-  return {.value = V * (basis.transpose() * s.by_residual), .covariance = V * V.transpose(), .basis = basis};
+  return {
+      .value = V * (basis.transpose() * s.by_residual()), .covariance = V * V.transpose(), .basis = basis};
 }
 
 namespace {
@@ -103,14 +91,14 @@ Score score_one(const Signature& s, const Hypothesis& h) {
   if (h.combine.cols() > 1) {
     const Eigen::MatrixXd basis = orthonormal_combinations(s, h);
     out.k = static_cast<int>(basis.cols());
-    out.S = (basis.transpose() * s.by_residual).squaredNorm();
+    out.S = (basis.transpose() * s.by_residual()).squaredNorm();
     return out;
   }
   const auto t = h.combine.col(0);
-  const double whole = t.cwiseAbs2().dot(s.norms.cwiseAbs2()), left = t.dot(s.gram * t);
-  if (left < s.absorbed * s.absorbed * whole || !(left > 0)) return out;
+  const double whole = t.cwiseAbs2().dot(s.norms().cwiseAbs2()), left = t.dot(s.gram() * t);
+  if (left < s.absorbed() * s.absorbed() * whole || !(left > 0)) return out;
   out.k = 1;
-  out.S = std::pow(t.dot(s.by_residual), 2) / left;
+  out.S = std::pow(t.dot(s.by_residual()), 2) / left;
   return out;
 }
 
@@ -119,8 +107,7 @@ Score score_one(const Signature& s, const Hypothesis& h) {
 void ScoredFamily::score_last(const NoiseReference& noise) {
   for (std::size_t h = 0; h < candidate_effect->hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = candidate_effect->hypotheses[h];
-    if (hypothesis.combine.rows() != signatures.back().columns.cols())
-      continue;  // of another form of the law
+    if (hypothesis.combine.rows() != signatures.back().cols()) continue;  // of another form of the law
     Score score = score_one(signatures.back(), hypothesis);
     if (score.k == 0) continue;
     score.hypothesis = h;
@@ -140,7 +127,7 @@ ScoredFamily score_family(const fit::joint::JointProblem& problem, const fit::jo
                           const CandidateEffect& candidate_effect) {
   ScoredFamily out{.candidate_effect = &candidate_effect};
   for (const effects::EffectPtr& variant : candidate_effect.variants) {
-    out.signatures.push_back(signature_of(residual, effect_rows(problem, state, variant)));
+    out.signatures.emplace_back(residual, effect_source(problem, state, variant));
     out.score_last(noise);
   }
   out.calibrated = std::min(0.0, out.priced);

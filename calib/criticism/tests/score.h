@@ -9,6 +9,7 @@
 
 #include "calib/criticism/tests/candidate_effect.h"
 #include "calib/criticism/tests/residual.h"
+#include "calib/criticism/tests/signature.h"
 
 /// The score (Lagrange multiplier) test of effects that are not in the model. With z the projected columns of
 /// an effect and r the residual,
@@ -40,15 +41,6 @@ struct Score {
   [[nodiscard]] double d() const { return std::sqrt(std::max(0.0, S - k)); }
 };
 
-/// Columns of one variant and the sums that every score is made of.
-struct Signature {
-  Eigen::MatrixXd columns{};  ///< projected
-  Eigen::VectorXd norms{};    ///< before
-  Eigen::MatrixXd gram{};
-  Eigen::VectorXd by_residual{};
-  double absorbed{kAbsorbed};  ///< Residual::absorbed()
-};
-
 /// Coefficients of one hypothesis. `basis` maps the finest columns to orthonormal ones.
 struct OneStep {
   Eigen::VectorXd value{};
@@ -73,7 +65,6 @@ struct ScoredFamily {
   void score_last(const NoiseReference& noise);
 };
 
-[[nodiscard]] Signature signature_of(const Residual& residual, const Eigen::MatrixXd& rows);
 [[nodiscard]] OneStep one_step(const Signature& signature, const Hypothesis& hypothesis);
 /// The basis of that step alone.
 [[nodiscard]] Eigen::MatrixXd orthonormal_combinations(const Signature& signature,

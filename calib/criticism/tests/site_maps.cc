@@ -68,15 +68,20 @@ class SiteShape : public effects::EffectOf<SiteShape> {
   std::vector<effects::Coefficient> coefficients_;
 };
 
-Eigen::MatrixXd beside(const std::vector<Eigen::MatrixXd>& parts) {
-  Eigen::Index n = 0;
-  for (const auto& part : parts) n += part.cols();
-  Eigen::MatrixXd out(parts.front().rows(), n);
-  Eigen::Index at = 0;
-  for (const auto& part : parts) {
-    out.middleCols(at, part.cols()) = part;
-    at += part.cols();
-  }
+RowSource beside(std::vector<RowSource> parts) {
+  RowSource out;
+  for (const RowSource& part : parts) out.columns += part.columns;
+  out.of = [columns = out.columns, parts = std::move(parts)](std::span<const Eigen::Index> poses) {
+    Eigen::MatrixXd rows;
+    Eigen::Index at = 0;
+    for (const RowSource& part : parts) {
+      const Eigen::MatrixXd own = part.of(poses);
+      if (at == 0) rows.resize(own.rows(), columns);
+      rows.middleCols(at, part.columns) = own;
+      at += part.columns;
+    }
+    return rows;
+  };
   return out;
 }
 
@@ -93,14 +98,14 @@ std::vector<SiteRows> site_map_rows(const fit::joint::JointProblem& problem,
     to_h = std::max(to_h, pose.t_h);
   }
   const auto rows = [&](Kind kind, int cosine) {
-    return effect_rows(problem, state, std::make_shared<const SiteShape>(kind, cosine, from_h, to_h));
+    return effect_source(problem, state, std::make_shared<const SiteShape>(kind, cosine, from_h, to_h));
   };
   if (to_h > from_h) {
     for (const auto& [kind, name] :
          {std::pair{Kind::uniform, "site field"}, {Kind::gradient, "site gradient"}}) {
-      std::vector<Eigen::MatrixXd> parts;
+      std::vector<RowSource> parts;
       for (int j = 1; j <= kCosines; ++j) parts.push_back(rows(kind, j));
-      out.push_back({name, beside(parts)});
+      out.push_back({name, beside(std::move(parts))});
     }
   }
   out.push_back({"site map", beside({rows(Kind::gradient, 0), rows(Kind::curvature, 0)})});

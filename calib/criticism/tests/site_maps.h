@@ -18,7 +18,7 @@ inline constexpr int kCosines = 8;
 
 struct SiteRows {
   std::string name;  ///< "site field", "site gradient", "site map"
-  Eigen::MatrixXd rows;
+  RowSource rows;    ///< keeps references to the problem and its state
 };
 
 /// Empty without table angles; those over time only where the poses have times.

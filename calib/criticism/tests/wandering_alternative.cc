@@ -13,32 +13,32 @@ namespace {
 constexpr int kClimbs = 5;  ///< from rates that are near: a law takes away from some of them
 constexpr double kAbsorbedShare = 1e-6;
 
-/// One column per channel and term, in the order of SlowSums.
-Eigen::MatrixXd slow_rows(const fit::joint::JointProblem& problem) {
+/// One column per channel and term, in the order of SlowSums; none where the poses have no time.
+RowSource slow_source(const fit::joint::JointProblem& problem) {
   const fit::joint::WanderingTerms terms = fit::joint::wandering_terms(problem);
-  const auto rows = static_cast<Eigen::Index>(problem.poses.size()) * problem.pose_rows();
-  Eigen::MatrixXd out =
-      Eigen::MatrixXd::Zero(rows, terms.any() ? problem.channels() * fit::joint::kWanderingTerms : 0);
-  for (std::size_t k = 0; terms.any() && k < problem.poses.size(); ++k) {
-    const fit::joint::JointPose& pose = problem.poses[k];
-    for (int c = 0; c < problem.channels(); ++c) {
-      out.block<1, fit::joint::kWanderingTerms>(static_cast<Eigen::Index>(k) * problem.pose_rows() + c,
-                                                c * fit::joint::kWanderingTerms) =
-          pose.weight[c] * terms.at(pose.t_h).transpose();
+  RowSource out{.columns = terms.any() ? problem.channels() * fit::joint::kWanderingTerms : 0};
+  out.of = [&problem, terms, columns = out.columns](std::span<const Eigen::Index> poses) {
+    const Eigen::Index block = problem.pose_rows();
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()) * block, columns);
+    Eigen::Index row = 0;
+    for (const Eigen::Index k : poses) {
+      const fit::joint::JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
+      for (int c = 0; columns > 0 && c < problem.channels(); ++c) {
+        rows.block<1, fit::joint::kWanderingTerms>(row + c, c * fit::joint::kWanderingTerms) =
+            pose.weight[c] * terms.at(pose.t_h).transpose();
+      }
+      row += block;
     }
-  }
+    return rows;
+  };
   return out;
 }
 
-fit::joint::SlowSums sums_of(const Residual& residual, const Eigen::VectorXd& value,
-                             const Eigen::MatrixXd& slow, double per_effective) {
-  fit::joint::SlowSums out{.gram = Eigen::MatrixXd::Zero(slow.cols(), slow.cols()),
-                           .by_residual = slow.transpose() * value,
-                           .chi2 = residual.chi2() / per_effective,
-                           .dof = residual.dof() / per_effective};
-  out.gram.selfadjointView<Eigen::Lower>().rankUpdate(slow.transpose());
-  out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
-  return out;
+fit::joint::SlowSums sums_of(const Residual& residual, const Signature& slow, double per_effective) {
+  return {.gram = slow.gram() / per_effective,
+          .by_residual = slow.by_residual() / per_effective,
+          .chi2 = residual.chi2() / per_effective,
+          .dof = residual.dof() / per_effective};
 }
 
 /// Relative variances of an estimate.
@@ -66,8 +66,8 @@ WanderingAlternative::WanderingAlternative(const fit::joint::JointFit& bare)
       residual_(problem_, state_, 0),
       per_effective_(bare.samples_per_effective),
       value_(residual_.value() / std::sqrt(per_effective_)),
-      slow_(residual_.project(slow_rows(problem_)).projected / std::sqrt(per_effective_)),
-      likelihood_(sums_of(residual_, value_, slow_, per_effective_)),
+      slow_(residual_, slow_source(problem_)),
+      likelihood_(sums_of(residual_, slow_, per_effective_)),
       estimate_(fit::joint::estimate_wandering(likelihood_)),
       theta_(fit::joint::Channels::Zero(problem_.channels())) {
   if (!estimate_.any()) return;
@@ -79,8 +79,7 @@ WanderingAlternative::WanderingAlternative(const fit::joint::JointFit& bare)
 WanderingAlternative::Ratio WanderingAlternative::ratio(const Eigen::MatrixXd& rows) const {
   const Eigen::MatrixXd Q = basis_of(rows);
   if (Q.cols() == 0) return {};
-  const fit::joint::SlowLikelihood with(
-      likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * value_));
+  const fit::joint::SlowLikelihood with(likelihood_.sums().without(slow_by(Q), Q.transpose() * value_));
   const auto deviance = [&](const fit::joint::Channels& at) { return deviance_with(with, at); };
   // From rates that are too high the likelihood is climbed slowly: begin with those of the others, and with
   // none, too.
@@ -108,10 +107,11 @@ double WanderingAlternative::deviance_with(const fit::joint::SlowLikelihood& wit
 
 double WanderingAlternative::curve_instead(int channel) const {
   constexpr int kCurve = 8;
-  const Eigen::MatrixXd columns = slow_.middleCols(channel * fit::joint::kWanderingTerms, kCurve);
-  const Eigen::MatrixXd Q = linear::orthonormal(columns);
+  Eigen::MatrixXd first = Eigen::MatrixXd::Zero(slow_.cols(), kCurve);
+  first.middleRows<kCurve>(channel * fit::joint::kWanderingTerms).setIdentity();
+  const Eigen::MatrixXd Q = linear::orthonormal(slow_.times(first));
   const Eigen::VectorXd r = Q.transpose() * value_;
-  const fit::joint::SlowLikelihood with(likelihood_.sums().without(Q.transpose() * slow_, r));
+  const fit::joint::SlowLikelihood with(likelihood_.sums().without(slow_by(Q), r));
   fit::joint::Channels others = theta_;
   others[channel] = 0;
   const double S = r.squaredNorm() * with.sums().dof / with.sums().chi2;
@@ -121,7 +121,11 @@ double WanderingAlternative::curve_instead(int channel) const {
 fit::joint::WanderingEstimate WanderingAlternative::beside(const Eigen::MatrixXd& rows) const {
   const Eigen::MatrixXd Q = basis_of(rows);
   return fit::joint::estimate_wandering(
-      fit::joint::SlowLikelihood(likelihood_.sums().without(Q.transpose() * slow_, Q.transpose() * value_)));
+      fit::joint::SlowLikelihood(likelihood_.sums().without(slow_by(Q), Q.transpose() * value_)));
+}
+
+Eigen::MatrixXd WanderingAlternative::slow_by(const Eigen::MatrixXd& Q) const {
+  return slow_.transposed_times(Q).transpose() / std::sqrt(per_effective_);
 }
 
 Eigen::MatrixXd WanderingAlternative::basis_of(const Eigen::MatrixXd& rows) const {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "calib/criticism/tests/residual.h"
+#include "calib/criticism/tests/signature.h"
 #include "calib/fit/joint/wandering_estimate.h"
 
 /// Laws against offsets that wander. A drift, a step or a temperature makes an offset move, and so does the
@@ -19,6 +20,8 @@ class WanderingAlternative {
  public:
   /// Of a fit in which nothing wanders.
   explicit WanderingAlternative(const fit::joint::JointFit& bare);
+  WanderingAlternative(const WanderingAlternative&) = delete;  // slow_ refers to problem_
+  WanderingAlternative& operator=(const WanderingAlternative&) = delete;
 
   [[nodiscard]] const fit::joint::WanderingEstimate& estimate() const { return estimate_; }
 
@@ -41,6 +44,8 @@ class WanderingAlternative {
   [[nodiscard]] const fit::joint::JointState& state() const { return state_; }
 
  private:
+  /// Q' times the columns of the wandering, of projected columns Q.
+  [[nodiscard]] Eigen::MatrixXd slow_by(const Eigen::MatrixXd& Q) const;
   /// Orthonormal, of the law's projected columns.
   [[nodiscard]] Eigen::MatrixXd basis_of(const Eigen::MatrixXd& rows) const;
   /// -2 ln of the maximum likelihood with a law, whose directions are out of `with`. The determinant does not
@@ -53,7 +58,7 @@ class WanderingAlternative {
   Residual residual_;      ///< nuisances and the model's own parameters out, poses uncorrelated
   double per_effective_;   ///< JointFit::samples_per_effective: what follows is thinned by it
   Eigen::VectorXd value_;  ///< of the residual
-  Eigen::MatrixXd slow_;   ///< projected columns of the wandering
+  Signature slow_;         ///< of the wandering, not thinned
   fit::joint::SlowLikelihood likelihood_;
   fit::joint::WanderingEstimate estimate_;
   fit::joint::Channels theta_;  ///< where the likelihood is largest without any law

@@ -46,7 +46,7 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
   const auto W = static_cast<Eigen::Index>(walking_.size()), U = unknowns();
   const double fresh = 1 / std::sqrt(1 - rho * rho);
   /// What the readings of a pose, each times a factor, feel of its unknowns.
-  const auto felt = [&](Eigen::Index pose, const sensor::FieldVector& factor) {
+  const auto felt = [&](Eigen::Index pose, const Eigen::VectorXd& factor) {
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(channels_, U);
     for (Eigen::Index i = 0; i < W; ++i) {
       const int c = walking_[static_cast<std::size_t>(i)];
@@ -83,11 +83,12 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
       for (Eigen::Index i = 0; i < W; ++i) mine(U + i, i) = 1 / kStart_nT;
     }
     mine.bottomRows(channels_) = felt(order_[k], step.now);
-    step.first = linear::triangularising_rotation(last);
-    if (k > 0) log_det_ += log_det_of(step.first * last);
+    const bool alone = rho == 0 && W == 0;  // what is carried over is a triangle already
+    if (!alone) step.first = linear::triangularising_rotation(last);
+    if (k > 0) log_det_ += log_det_of(alone ? last : step.first * last);
     const Eigen::Index others = pose_rows_ - channels_;
     Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + pose_rows_, U);
-    left.topRows(W + channels_) = (step.first * mine).bottomRows(W + channels_);
+    left.topRows(W + channels_) = (alone ? mine : step.first * mine).bottomRows(W + channels_);
     left.bottomRightCorner(others, fit::joint::kNuisances) =
         nuisance.middleRows(order_[k] * pose_rows_ + channels_, others);
     step.second = linear::triangularising_rotation(left);
@@ -100,28 +101,74 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
 }
 
 Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& rows) const {
-  const Eigen::Index n = rows.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * rows_per_pose(), rows.cols());
+  apply(rows, out);
+  return out;
+}
+
+void Whitener::apply(const Eigen::MatrixXd& rows, Eigen::Ref<Eigen::MatrixXd> out) const {
+  const Eigen::Index left_rows = rows_per_pose();
+  Walk walk(*this, rows.cols());
+  for (const Eigen::Index k : order_)
+    walk.next(rows.middleRows(k * pose_rows_, pose_rows_), out.middleRows(k * left_rows, left_rows));
+}
+
+Eigen::MatrixXd Whitener::apply_transposed(const Eigen::MatrixXd& X) const {
+  const Eigen::Index n = X.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
   const Eigen::Index others = pose_rows_ - channels_, left_rows = rows_per_pose();
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(order_.size()) * left_rows, n);
-  Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + W + channels_, n), turned(in.rows(), n);
-  Eigen::MatrixXd left(W + pose_rows_, n), emitted(W + pose_rows_, n);
-  for (std::size_t k = 0; k < order_.size(); ++k) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(order_.size()) * pose_rows_, n);
+  Eigen::MatrixXd emitted = Eigen::MatrixXd::Zero(W + pose_rows_, n), left(W + pose_rows_, n);
+  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(U + W + channels_, n), in = turned;
+  for (std::size_t k = order_.size(); k-- > 0;) {
     const Step& step = steps_[k];
     const Eigen::Index row = order_[k] * pose_rows_;
-    in.middleRows(U, W).setZero();
-    in.bottomRows(channels_) = step.now.asDiagonal() * rows.middleRows(row, channels_);
-    if (k > 0 && rho_ != 0) {
-      in.bottomRows(channels_) +=
-          step.before.asDiagonal() * rows.middleRows(order_[k - 1] * pose_rows_, channels_);
+    emitted.topRows(U) = in.topRows(U);  // what the pose handed on
+    emitted.bottomRows(left_rows) = X.middleRows(order_[k] * left_rows, left_rows);
+    left.noalias() = step.second.transpose() * emitted;
+    turned.bottomRows(W + channels_) = left.topRows(W + channels_);
+    if (step.first.size() == 0) {
+      in = turned;
+    } else {
+      in.noalias() = step.first.transpose() * turned;
     }
-    turned.noalias() = step.first * in;
-    left.topRows(W + channels_) = turned.bottomRows(W + channels_);
-    left.bottomRows(others) = rows.middleRows(row + channels_, others);
-    emitted.noalias() = step.second * left;
-    in.topRows(U) = emitted.topRows(U);
-    out.middleRows(order_[k] * left_rows, left_rows) = emitted.bottomRows(left_rows);
+    out.middleRows(row, channels_) += step.now.asDiagonal() * in.bottomRows(channels_);
+    out.middleRows(row + channels_, others) = left.bottomRows(others);
+    if (k > 0 && rho_ != 0)
+      out.middleRows(order_[k - 1] * pose_rows_, channels_) +=
+          step.before.asDiagonal() * in.bottomRows(channels_);
   }
   return out;
+}
+
+Whitener::Walk::Walk(const Whitener& whitener, Eigen::Index columns) : whitener_(whitener) {
+  const Eigen::Index U = whitener.unknowns(), W = U - fit::joint::kNuisances;
+  in_ = Eigen::MatrixXd::Zero(U + W + whitener.channels_, columns);
+  turned_.resize(in_.rows(), columns);
+  left_.resize(W + whitener.pose_rows_, columns);
+  emitted_.resize(left_.rows(), columns);
+}
+
+void Whitener::Walk::next(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Ref<Eigen::MatrixXd> out) {
+  const Step& step = whitener_.steps_[at_];
+  const Eigen::Index U = whitener_.unknowns(), W = U - fit::joint::kNuisances;
+  const Eigen::Index channels = whitener_.channels_, others = whitener_.pose_rows_ - channels;
+  in_.middleRows(U, W).setZero();
+  in_.bottomRows(channels) = step.now.asDiagonal() * rows.topRows(channels);
+  if (whitener_.rho_ != 0) {
+    if (at_ > 0) in_.bottomRows(channels) += step.before.asDiagonal() * before_;
+    before_ = rows.topRows(channels);
+  }
+  if (step.first.size() == 0) {
+    left_.topRows(channels) = in_.bottomRows(channels);
+  } else {
+    turned_.noalias() = step.first * in_;
+    left_.topRows(W + channels) = turned_.bottomRows(W + channels);
+  }
+  left_.bottomRows(others) = rows.bottomRows(others);
+  emitted_.noalias() = step.second * left_;
+  in_.topRows(U) = emitted_.topRows(U);
+  out = emitted_.bottomRows(out.rows());
+  ++at_;
 }
 
 }  // namespace mgtd::calib::criticism::tests

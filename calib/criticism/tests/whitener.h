@@ -28,6 +28,25 @@ class Whitener {
   /// Rows as in LinearRows in; out, a block for each pose of the problem, with as many rows as it has
   /// readings.
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& rows) const;
+  void apply(const Eigen::MatrixXd& rows, Eigen::Ref<Eigen::MatrixXd> out) const;
+
+  /// W'X, with W the matrix of apply() and X rows as it gives them: rows as in LinearRows.
+  [[nodiscard]] Eigen::MatrixXd apply_transposed(const Eigen::MatrixXd& X) const;
+
+  /// apply(), a pose after the other in order(): holds no more than what one pose hands on to the next.
+  class Walk {
+   public:
+    /// Keeps a reference to the whitener.
+    Walk(const Whitener& whitener, Eigen::Index columns);
+    /// `rows`: the block of the next pose.
+    void next(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Ref<Eigen::MatrixXd> out);
+
+   private:
+    const Whitener& whitener_;
+    std::size_t at_{0};
+    Eigen::MatrixXd in_, turned_, left_, emitted_;
+    Eigen::MatrixXd before_;  ///< readings' rows of the last pose
+  };
 
   [[nodiscard]] double rho() const { return rho_; }
   [[nodiscard]] Eigen::Index channels() const { return channels_; }
@@ -47,9 +66,9 @@ class Whitener {
     return static_cast<Eigen::Index>(walking_.size()) + fit::joint::kNuisances;
   }
   struct Step {
-    sensor::FieldVector now,
-        before;  ///< factors of this pose's readings and the last one's
-    /// Rows carried over, steps of the walks and readings: takes out the unknowns of the pose before.
+    Eigen::VectorXd now, before;  ///< factors of this pose's readings and the last one's
+    /// Rows carried over, steps of the walks and readings: takes out the unknowns of the pose before. Empty
+    /// where poses do not depend on each other.
     Eigen::MatrixXd first;
     /// What is left, and scalar and attitude: takes out this pose's own.
     Eigen::MatrixXd second;

@@ -29,11 +29,7 @@ inline criticism::tests::ScoredFamily scored(
     const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
   criticism::tests::ScoredFamily out{.candidate_effect = candidate_effect.get(), .own = candidate_effect};
   for (Eigen::Index v = 0; v < columns.cols(); ++v) {
-    const Eigen::MatrixXd z = columns.col(v);
-    out.signatures.push_back({.columns = z,
-                              .norms = z.colwise().norm(),
-                              .gram = z.transpose() * z,
-                              .by_residual = z.transpose() * residual});
+    out.signatures.emplace_back(Eigen::MatrixXd(columns.col(v)), residual);
     out.score_last({});
   }
   out.calibrated = out.priced;
