@@ -14,7 +14,7 @@ using V = Eigen::Vector3d;
 
 double warmer(const Pose& p, int sensor) { return *p.T_degC[static_cast<std::size_t>(sensor)] - 20; }
 double hours(const Pose& p) { return *p.t_s / 3600; }
-double sign(double x) { return x > 0 ? 1 : -1; }
+double sign_of(double x) { return x > 0 ? 1 : -1; }
 
 constexpr std::array kLaws{
     HiddenLaw{"axis.offset.temperature", "",
@@ -29,7 +29,7 @@ constexpr std::array kLaws{
     HiddenLaw{"axis.cubic", "", [](const Pose&, int, int a, const V& v) { return std::pow(v[a] / kF0, 3); }},
     HiddenLaw{"axis.quadratic", "",
               [](const Pose&, int, int a, const V& v) { return std::pow(v[a] / kF0, 2); }},
-    HiddenLaw{"axis.zero-crossing", "", [](const Pose&, int, int a, const V& v) { return sign(v[a]); }},
+    HiddenLaw{"axis.zero-crossing", "", [](const Pose&, int, int a, const V& v) { return sign_of(v[a]); }},
     HiddenLaw{"axis.gain.step", ",c=30000",
               [](const Pose&, int, int a, const V& v) { return std::abs(v[a]) > 30'000 ? 1e-6 * v[a] : 0; }},
     HiddenLaw{

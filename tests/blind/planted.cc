@@ -102,6 +102,8 @@ std::shared_ptr<const rig::Effect> make_planted(const Planted& effect) {
                           {.value = effect.numbers}, effect.of);
 }
 
+void plant(Stage& stage, const Planted& effect) { stage.scenario.effects.push_back(make_planted(effect)); }
+
 Planted scaled(Planted effect, double factor) {
   const rig::EffectKind& kind = kind_named(effect.kind);
   std::size_t next = 0;

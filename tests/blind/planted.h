@@ -44,6 +44,9 @@ struct Stage {
 /// As a scenario holds it. Throws where the rig knows no such effect.
 [[nodiscard]] std::shared_ptr<const rig::Effect> make_planted(const Planted& effect);
 
+/// The effect acts in every run of the stage.
+void plant(Stage& stage, const Planted& effect);
+
 [[nodiscard]] Planted scaled(Planted effect, double factor);
 [[nodiscard]] PoseTable planted_run(const Stage& stage, const std::vector<Planted>& effects,
                                     std::uint64_t seed);

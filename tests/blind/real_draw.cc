@@ -34,4 +34,9 @@ std::string axis_at_random(Random& random) {
   return fmt::format("{}.{}", sensor, "xyz"[random() % 3]);
 }
 
+Planted dipole_at_random(Random& random) {
+  const auto moment = vector(random, 3), at = vector(random, between(random, 1, 2));
+  return {"site.dipole", "all", {moment[0], moment[1], moment[2], at[0], at[1], at[2]}};
+}
+
 }  // namespace mgtd::calib::testing

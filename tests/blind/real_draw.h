@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-/// What the kinds of run draw: sizes, directions, places.
+#include "tests/blind/planted.h"
+
+/// What the kinds of run draw: sizes, directions, places, dipoles.
 namespace mgtd::calib::testing {
 
 using Random = std::mt19937_64;
@@ -18,5 +20,6 @@ using Random = std::mt19937_64;
 [[nodiscard]] std::array<double, 3> vector(Random& random, double length);
 [[nodiscard]] std::string sensor_at_random(Random& random);  ///< "s3"
 [[nodiscard]] std::string axis_at_random(Random& random);    ///< "s3.z"
+[[nodiscard]] Planted dipole_at_random(Random& random);      ///< 3 A m2, 1 to 2 m away
 
 }  // namespace mgtd::calib::testing
