@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -32,6 +35,39 @@ std::string accuracy_text(const Json& accuracy) {
   return out;
 }
 
+/// "s3 theta" is parameter theta of s3.
+std::pair<std::string, std::string> sensor_and_parameter(const std::string& name) {
+  const std::size_t space = name.find(' ');
+  return {name.substr(0, space), space == std::string::npos ? "" : name.substr(space + 1)};
+}
+
+/// The standard error of every parameter after the last fit: a line for each parameter, a column for each
+/// sensor. Empty where the last fit does not tell them.
+std::string parameters_text(const Json& accuracy) {
+  const Json &names = accuracy.at("parameters").at("name"), &units = accuracy.at("parameters").at("unit"),
+             &sd = accuracy.at("parameters").at("sd");
+  if (sd.empty() || sd.back().is_null()) return {};
+  std::vector<std::string> sensors, lines;
+  std::map<std::string, std::string> line_of;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto [sensor, parameter] = sensor_and_parameter(text_of(names.at(i)));
+    if (sensors.empty() || sensors.back() != sensor) sensors.push_back(sensor);
+    const bool ratio = text_of(units.at(i)).empty();
+    const auto [line, is_new] = line_of.try_emplace(
+        parameter, fmt::format("  {:<6} {:>4}", parameter, ratio ? "ppm" : text_of(units.at(i))));
+    if (is_new) lines.push_back(parameter);
+    const Json& value = sd.back().at(i);
+    line->second += value.is_null() ? fmt::format(" {:>8}", "-")
+                                    : fmt::format(" {:>8.3g}", (ratio ? 1e6 : 1) * value.get<double>());
+  }
+  std::string out = fmt::format("standard errors of the parameters after {} poses:\n  {:<6} {:>4}",
+                                accuracy.at("poses").back().get<int>(), "", "unit");
+  for (const std::string& sensor : sensors) out += fmt::format(" {:>8}", sensor);
+  out += '\n';
+  for (const std::string& parameter : lines) out += line_of.at(parameter) + '\n';
+  return out;
+}
+
 std::string disturbance_text(const Json& d) {
   return fmt::format("  {}  pose {}: {:.2g} nT (limit {:.2g} nT), {}; {}\n", text_of(d.at("t")),
                      d.at("pose").get<int>(), d.at("change_nT").get<double>(), d.at("limit_nT").get<double>(),
@@ -53,7 +89,7 @@ std::string course_text(const Json& course) {
     out += fmt::format(". A good one: {}", good);
   out += "\naccuracy of the worst component: ";
   if (const std::string good = text_of(accuracy.at("good")); !good.empty())
-    out += fmt::format("a good one: {}\n{}", good, accuracy_text(accuracy));
+    out += fmt::format("a good one: {}\n{}{}", good, accuracy_text(accuracy), parameters_text(accuracy));
   else
     out += fmt::format("not known yet{}\n",
                        accuracy.at("why").is_null() ? "" : ": " + text_of(accuracy.at("why")));

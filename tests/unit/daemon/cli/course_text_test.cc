@@ -11,6 +11,7 @@ namespace mgtd::daemon::cli {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(CourseText, SaysWhatWasGainedAndWhatDisturbed) {
   EXPECT_EQ(course_text(to_json(RunCourse{})), "no run yet\n");
@@ -33,6 +34,20 @@ TEST(CourseText, SaysWhatWasGainedAndWhatDisturbed) {
   EXPECT_THAT(text, HasSubstr("     18 poses  0.5 nT/m\n")) << text;
   EXPECT_THAT(text, HasSubstr("     60 poses  0.15 nT/m, residual 0.0234 nT\n")) << text;
   EXPECT_THAT(text, HasSubstr("pose 2: 12 nT (limit 0.5 nT), 7 s; pose 2 is measured again\n")) << text;
+}
+
+TEST(CourseText, SaysHowWellEveryParameterIsKnown) {
+  RunCourse course;
+  course.run_id = "monday";
+  course.good_accuracy = "the curve ends low.";
+  course.parameters = {{"s1 ix", "nT"}, {"s1 kx", ""}, {"s2 ix", "nT"}, {"s2 kx", ""}};
+  course.accuracy = {{.poses = 18}, {.poses = 40, .fit = {.parameter_sd = {0.25, 12e-6, 0.5, 8e-6}}}};
+  EXPECT_THAT(course_text(to_json(course)), HasSubstr("standard errors of the parameters after 40 poses:\n"
+                                                      "         unit       s1       s2\n"
+                                                      "  ix       nT     0.25      0.5\n"
+                                                      "  kx      ppm       12        8\n"));
+  course.accuracy.push_back({.poses = 41});  // without a fit
+  EXPECT_THAT(course_text(to_json(course)), Not(HasSubstr("standard errors of the parameters")));
 }
 
 TEST(CourseText, SaysWhatTheRunWroteDown) {
