@@ -54,7 +54,7 @@ export class Browser {
     this.#waiting.clear();
   }
   #heard(message) {
-    if (message.method === "Log.entryAdded") this.log.push(message.params.entry.text);
+    if (message.method === "Log.entryAdded") this.log.push(`${message.params.entry.text} ${message.params.entry.url ?? ""}`.trim());
     if (message.method === "Runtime.exceptionThrown") this.log.push(message.params.exceptionDetails.exception?.description ?? "exception");
     if (message.method === "Page.javascriptDialogOpening") this.#call("Page.handleJavaScriptDialog", { accept: true });
     const waiting = this.#waiting.get(message.id);

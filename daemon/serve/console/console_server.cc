@@ -311,9 +311,12 @@ void ConsoleServer::State::admit(Listener::Socket socket) {
 Result<void> ConsoleServer::State::may_come(const Request& request) { return rule_->admit(head_of(request)); }
 
 Response ConsoleServer::State::answered(const Request& request, const std::string& who) {
-  if (!rate_.admit(clock_.now().mono))
-    return refusal(request, {ErrorCode::refused, "too many requests a second", "ask less often"},
-                   http::status::too_many_requests);
+  if (!rate_.admit(clock_.now().mono)) {
+    Response later = refusal(request, {ErrorCode::refused, "too many requests a second", "ask less often"},
+                             http::status::too_many_requests);
+    later.set(http::field::retry_after, "1");
+    return later;
+  }
   if (auto allowed = may_come(request); !allowed) return refusal(request, allowed.error());
   if (asks_for_job(request) && desk_) return of_job(request, who);
   if (request.method() != http::verb::get)

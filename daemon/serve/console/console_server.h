@@ -48,7 +48,7 @@ struct ConsoleConfig {
   std::size_t max_connections{48};
   std::chrono::milliseconds patience{10'000};  ///< for a request, an answer, or the first line of control
   std::chrono::milliseconds wrong_token_wait{1'000};  ///< so that guessing takes long
-  RateLimit rate{.per_s = 20, .burst = 200};          ///< of requests, all clients together
+  RateLimit rate{.per_s = 40, .burst = 400};          ///< of requests, all clients together
   std::optional<WorkbenchConfig> workbench{};         ///< runs to work on
 };
 

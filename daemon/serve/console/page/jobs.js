@@ -2,6 +2,8 @@
 // Computations on runs: commands of mgt that the server starts, asked about until they end.
 
 const kFirst_ms = 40, kMost_ms = 400, kShare = 0.06;  // of the time that has passed: an answer is seen a few per cent late
+/** Milliseconds until a job is asked about again: seldom while it waits for others, and the less often the more are alive. */
+const next_ms = (waits, passed_ms, alive) => Math.min(kMost_ms, Math.max((waits ? 4 : 1) * kFirst_ms * alive, kShare * passed_ms));
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 export class Jobs {
@@ -17,7 +19,7 @@ export class Jobs {
   async #send(method, path, body = null, keepalive = false) {
     for (;;) {
       const answer = await fetch(path, { method, body, keepalive, headers: { Authorization: `Bearer ${this.#token}` } });
-      if (answer.status === 429 && method === "GET") { await pause(kMost_ms); continue; }
+      if (answer.status === 429 && answer.headers.has("Retry-After")) { await pause(kMost_ms); continue; }
       if (answer.ok) return answer;
       const { error } = await answer.json().catch(() => ({ error: { message: `HTTP ${answer.status}`, remedy: "" } }));
       throw error;
@@ -45,7 +47,7 @@ export class Jobs {
         if (result.error) throw { ...result.error, command: job.command, beside: result };
         return { answer: result, exit_code: job.exit_code, command: job.command };
       }
-      await pause(Math.min(kMost_ms, Math.max(kFirst_ms, kShare * (performance.now() - began))));
+      await pause(next_ms(job.state === "waiting", performance.now() - began, this.#alive.size));
     }
   }
   cancel(id) { return this.#send("DELETE", `/jobs/${id}`).catch(() => {}); }

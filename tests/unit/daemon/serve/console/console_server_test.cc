@@ -102,6 +102,7 @@ TEST_F(ConsoleServerTest, TooManyConnectionsAndRequestsAreRefused) {
   EXPECT_EQ(third.count("mgtd_up"), 0U);
   second.send(get("/metrics"));
   EXPECT_TRUE(wait(second, "429 Too Many Requests"));
+  EXPECT_EQ(second.count("Retry-After: 1"), 1U);  // nothing was begun: the same may be asked again
 }
 
 class ConsoleServerWithRuns : public ConsoleServerTest {
