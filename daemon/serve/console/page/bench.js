@@ -9,7 +9,7 @@ import { Evidence, number, showChange, showFall, showCandidates } from "./candid
 import { showLaws } from "./law.js";
 import { ConfusionMap, FormulaForm, showHistory, showLimits, showNext, showParameters } from "./tools.js";
 
-const kLong = 3000;  // poses: a search takes a minute and most of the memory
+const kLong = 3000;  // poses: a search takes up to a minute
 const kTools = { next: "What to measure next", formula: "Formula", law: "A law of no library", alike: "Told apart", limits: "Limits", parameters: "Parameters", history: "History" };
 const kColour = { PASS: "good", EXPLAINED: "warn", AMBIGUOUS: "warn", PARTIAL: "warn", UNKNOWN: "bad", "BAD-DATA": "bad" };
 
@@ -145,7 +145,7 @@ export class Bench {
     by("bench-run").dataset.shown = String(opened);
   }
   #offerSearch() {
-    fill(by("verdict"), make("p", {}, `The search for effects in ${this.#run.poses} poses takes minutes and may need a gigabyte of memory. `,
+    fill(by("verdict"), make("p", {}, `The search for effects in ${this.#run.poses} poses may take a minute. `,
       make("button", { onclick: async () => { this.#answers.explain = await this.#ask("explain"); if (this.#answers.explain) this.#drawSearch(); } }, "Search all the same")));
   }
 
