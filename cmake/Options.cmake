@@ -5,9 +5,9 @@ target_compile_options(mgtd_options INTERFACE
   -Wdouble-promotion $<$<BOOL:${MGTD_WERROR}>:-Werror> -ffp-contract=off)
 # False alarms of g++ 12 at -O3 and under a sanitizer: a moved variant is taken for every alternative it could have
 # held, and so are the states of std::regex; at -O3 also std::string's own insertion for an overlap (GCC bug 105651).
-target_compile_options(mgtd_options INTERFACE
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<OR:$<CONFIG:Release>,$<BOOL:${MGTD_SANITIZE}>>>:-Wno-maybe-uninitialized>
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-restrict>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND (MGTD_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Release"))
+  target_compile_options(mgtd_options INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
+endif()
 target_include_directories(mgtd_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_definitions(mgtd_options INTERFACE MGTD_VERSION="${PROJECT_VERSION}")
 

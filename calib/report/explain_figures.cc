@@ -72,9 +72,10 @@ figures::Figure candidates_of(const criticism::search::ExplainReport& report) {
   return figures::candidates_figure(v);
 }
 
-figures::Figure detectable_of(const criticism::search::ExplainReport& report) {
+figures::Figure detectable_of(const std::vector<criticism::tests::Detectable>& detectable,
+                              const std::vector<criticism::tests::Untestable>& untestable) {
   figures::DetectableValues v;
-  for (const auto& d : report.detectable) {
+  for (const auto& d : detectable) {
     const effects::library::EffectFamily* const family = effects::library::find_family(d.effect);
     const bool beyond = d.value >= criticism::tests::kAtNoSize ||
                         (family != nullptr && family->bound > 0 && d.value > family->bound);
@@ -84,7 +85,7 @@ figures::Figure detectable_of(const criticism::search::ExplainReport& report) {
                        .ratio = usual > 0 && !beyond ? d.value / usual : 0,
                        .text = typeset(detectable_text(d))});
   }
-  for (const auto& u : report.untestable) v.untestable.push_back(u.effect);
+  for (const auto& u : untestable) v.untestable.push_back(u.effect);
   return figures::detectable_figure(v);
 }
 

@@ -17,7 +17,9 @@
 namespace mgtd::calib::report {
 
 [[nodiscard]] figures::Figure candidates_of(const criticism::search::ExplainReport& report);
-[[nodiscard]] figures::Figure detectable_of(const criticism::search::ExplainReport& report);
+/// Smallest sizes that are seen, of a run as measured or as planned.
+[[nodiscard]] figures::Figure detectable_of(const std::vector<criticism::tests::Detectable>& detectable,
+                                            const std::vector<criticism::tests::Untestable>& untestable);
 /// `held_out_nT`: residual on poses that the fit of the whole model has not seen.
 [[nodiscard]] figures::Figure waterfall_of(const criticism::search::Waterfall& waterfall,
                                            std::optional<double> held_out_nT);

@@ -4,10 +4,24 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/criticism/tests/residual_shape.h"
+#include "proto/number.h"
 
 namespace mgtd::calib::report {
 
 using nlohmann::json;
+
+namespace {
+
+/// A number as a number, which tables write with the typesetter's minus.
+json cell_json(const std::string& cell) {
+  constexpr std::string_view kMinus = "\u2212";
+  const std::string plain = cell.starts_with(kMinus) ? "-" + cell.substr(kMinus.size()) : cell;
+  if (const auto whole = parse_integer(plain)) return *whole;
+  const auto number = parse_number(plain);
+  return number ? json(*number) : json(cell);
+}
+
+}  // namespace
 
 json words_json(const figures::Figure& f) {
   return {{"name", f.name},
@@ -15,6 +29,26 @@ json words_json(const figures::Figure& f) {
           {"caption", f.caption},
           {"good", f.good},
           {"stands_out", f.stands_out}};
+}
+
+json words_by_name(const std::vector<figures::Figure>& figures) {
+  json out = json::object();
+  for (const figures::Figure& f : figures) out[f.name] = words_json(f);
+  return out;
+}
+
+json figures_json(const std::vector<figures::Figure>& figures) {
+  json out = words_by_name(figures);
+  for (const figures::Figure& f : figures) {
+    json rows = json::array();
+    for (const std::vector<std::string>& row : f.data.rows) {
+      json& cells = rows.emplace_back(json::array());
+      for (const std::string& cell : row) cells.push_back(cell_json(cell));
+    }
+    out[f.name]["svg"] = f.svg;
+    out[f.name]["points"] = {{"head", f.data.head}, {"rows", std::move(rows)}, {"note", f.data.note}};
+  }
+  return out;
 }
 
 json panels_json(const PanelModel& model) {

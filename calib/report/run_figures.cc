@@ -147,8 +147,9 @@ figures::Figure time_figure(const PanelModel& model) {
   v.good = fmt::format(
       "the residual stays level while everything else moves. Here, over {:.2f} h with {} gaps, {}.", hours,
       v.gaps.size(),
-      strongest == nullptr ? "no time was recorded"
-                           : "no dependence of it on time has " + stats::p_phrase(strongest->log10_p));
+      strongest == nullptr
+          ? "no time was recorded"
+          : "a level residual would stray this far with " + stats::p_phrase(strongest->log10_p));
   return figures::lanes_figure(v);
 }
 

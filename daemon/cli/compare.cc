@@ -11,7 +11,9 @@
 #include "calib/report/figure_words.h"
 #include "calib/report/measured_report.h"
 #include "calib/report/pose_points_report.h"
+#include "calib/report/run_figures.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/figures_flag.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/work_progress.h"
 
@@ -32,9 +34,21 @@ struct CompareArguments {
   std::string run, output;
   bool poses{false};
   std::shared_ptr<FitFlags> flags;
+  FiguresFlag figures;
 };
 
+/// The nine panels, where the sensors were looked at from, and what happened when.
+std::vector<calib::report::figures::Figure> figures_of(const calib::report::PanelModel& model) {
+  std::vector<calib::report::figures::Figure> out = calib::report::panel_figures(model, nullptr);
+  out.push_back(calib::report::coverage_of(model));
+  out.push_back(calib::report::time_figure(model));
+  if (auto closure = calib::report::closure_figure(model)) out.push_back(std::move(*closure));
+  return out;
+}
+
 int run_compare(const Session& session, const CompareArguments& args) {
+  if (const auto ready = ready_for_figures(session, args.figures); !ready)
+    return report(session, ready.error());
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -49,7 +63,7 @@ int run_compare(const Session& session, const CompareArguments& args) {
   };
   if (!comparison) return refused(comparison.error());
   std::optional<calib::criticism::tests::PosePoints> points;
-  if (args.poses || !args.output.empty()) {
+  if (args.poses || !args.output.empty() || args.figures.asked()) {
     auto found =
         with_progress("compare", [&] { return calib::criticism::tests::pose_points(*comparison->fit); });
     if (!found) return refused(found.error());
@@ -59,8 +73,12 @@ int run_compare(const Session& session, const CompareArguments& args) {
     if (auto written = write_file(args.output, calib::report::to_csv(*points)); !written)
       return report(session, written.error());
   }
+  nlohmann::json out = calib::report::to_json(*comparison);
+  if (args.figures.asked()) {
+    if (auto drawn = hand_out(args.figures, figures_of({*comparison, *points}), out); !drawn)
+      return report(session, drawn.error());
+  }
   if (session.json) {
-    nlohmann::json out = calib::report::to_json(*comparison);
     if (args.poses) {
       out["poses"] = calib::report::to_json(*points);
       out.update(calib::report::panels_json({*comparison, *points}));
@@ -83,6 +101,7 @@ void add_compare(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_flag("--poses", args->poses, "with --json: what is left at each pose");
   command->add_option("-o,--output", args->output, "write what is left at each pose here (CSV)");
+  add_figures_flag(command, args->figures);
   args->flags = add_model_flags(command);
 }
 

@@ -12,8 +12,10 @@
 #include "calib/effects/formula/formula.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/poses/pose_table.h"
+#include "calib/report/formula_figure.h"
 #include "calib/report/formula_report.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/figures_flag.h"
 #include "daemon/cli/kept_run.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/store/user_formulas.h"
@@ -48,6 +50,7 @@ struct DefineArguments {
   std::optional<double> prior;
   bool drop{false}, tried{false};
   std::shared_ptr<FitFlags> flags;
+  FiguresFlag figures;
 };
 
 bool is_name(const std::string& name) {
@@ -136,9 +139,9 @@ constexpr double kAgree_sigmas = 4;
 
 void print(const Session& session, const DefineArguments& args,
            const calib::criticism::tests::FormulaExamination& x, const store::Definition& definition,
-           const Confirmation& c) {
+           const Confirmation& c, json out) {
   if (session.json) {
-    json out = calib::report::to_json(x);
+    out.update(calib::report::to_json(x));
     out["schema"] = "mgt.define/1";
     out["spec"] = definition.spec;
     out["exploratory"] = definition.exploratory();
@@ -198,6 +201,8 @@ int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
 }
 
 int run_define(const Session& session, const DefineArguments& args) {
+  if (const auto ready = ready_for_figures(session, args.figures); !ready)
+    return report(session, ready.error());
   auto run = open_kept_run(args.run, *args.flags, args.tried ? Keeping::nothing : Keeping::steps);
   if (!run) return report(session, run.error());
   if (args.drop && !args.tried) return drop(session, args, *run);
@@ -237,12 +242,17 @@ int run_define(const Session& session, const DefineArguments& args) {
   } else {
     definition.found = x->coefficients;
   }
+  json figures = json::object();
+  if (!x->wholly_absorbed()) {
+    if (auto drawn = hand_out(args.figures, {calib::report::formula_figure(*x)}, figures); !drawn)
+      return report(session, drawn.error());
+  }
   if (!nothing_left(*x) && !args.tried) {
     for (const store::Definition& d : run->source.definitions)
       if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);
     if (auto ok = keep_formula(*run->file, run->source, definition); !ok) return report(session, ok.error());
   }
-  print(session, args, *x, definition, confirmation);
+  print(session, args, *x, definition, confirmation, std::move(figures));
   return nothing_left(*x) || (confirmation.asked && !confirmation.given) ? 1 : 0;
 }
 
@@ -264,6 +274,7 @@ void add_define(CLI::App& app, Session& session) {
   command->add_option("--prior", args->prior, "standard deviation of the coefficients about zero");
   command->add_option("--scan", args->scan,
                       "NAME=FROM:TO, a number in it that is searched for in this range");
+  add_figures_flag(command, args->figures);
   command->add_flag("--try", args->tried, "examine it, keep nothing");
   command->add_flag("--drop", args->drop, "delete the formula of this name");
   command->add_option("--from", args->from, "run file that keeps the formula: does this run confirm it?");

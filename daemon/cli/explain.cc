@@ -11,9 +11,11 @@
 #include "calib/report/figure_words.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
+#include "daemon/cli/figures_flag.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/remaining_law.h"
+#include "daemon/cli/search_figures.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -38,21 +40,29 @@ struct ExplainArguments {
   std::string run;
   bool confusion{false}, impact{false}, no_law{false};
   std::shared_ptr<FitFlags> flags;
+  FiguresFlag figures;
 };
 
-/// What stands beside the pictures of the search.
-nlohmann::json figures_json(const calib::criticism::search::ExplainReport& explained) {
-  nlohmann::json out = nlohmann::json::array();
-  if (!explained.candidates.empty())
-    out.push_back(calib::report::words_json(calib::report::candidates_of(explained)));
-  if (!explained.detectable.empty())
-    out.push_back(calib::report::words_json(calib::report::detectable_of(explained)));
-  if (explained.confusion && explained.confusion->effects.size() > 1)
-    out.push_back(calib::report::words_json(calib::report::confusion_of(*explained.confusion)));
-  return out;
+using Figures = std::vector<calib::report::figures::Figure>;
+
+/// Pictures where they were asked for, else the words that stand beside those of the console.
+Result<void> add_figures(const ExplainArguments& args, const PoseTable& table,
+                         const calib::criticism::search::ExplainOptions& options,
+                         const calib::criticism::search::ExplainReport& explained, nlohmann::json& out) {
+  Figures figures;
+  if (args.figures.asked()) {
+    figures = candidate_figures(table, options, explained);
+  } else if (args.confusion && !explained.candidates.empty()) {
+    figures.push_back(calib::report::candidates_of(explained));
+  }
+  for (auto& figure : limit_figures(explained)) figures.push_back(std::move(figure));
+  if (args.confusion) out["figures"] = calib::report::words_by_name(figures);
+  return hand_out(args.figures, figures, out);
 }
 
 int run_explain(const Session& session, const ExplainArguments& args) {
+  if (const auto ready = ready_for_figures(session, args.figures); !ready)
+    return report(session, ready.error());
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -72,11 +82,12 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   whole.effects = explained->model;
   const RemainingLaw law =
       args.no_law ? std::nullopt : remaining_law(source->table, whole, explained->finding);
+  nlohmann::json out = calib::report::to_json(*explained);
+  if (auto drawn = add_figures(args, source->table, wanted, *explained, out); !drawn)
+    return report(session, drawn.error());
   if (session.json) {
-    nlohmann::json out = calib::report::to_json(*explained);
     if (!args.no_law) out["law"] = law_json(law, whole, *source, args.run);
     out["chosen_in_doubt"] = doubts_json(*doubts);
-    if (args.confusion) out["figures"] = figures_json(*explained);
     print_json(out);
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
@@ -99,6 +110,7 @@ void add_explain(CLI::App& app, Session& session) {
   command->add_flag("--confusion", args->confusion, "also: which effects look alike on this run");
   command->add_flag("--impact", args->impact, "also: what ignoring each effect would do to the tensor, nT/m");
   command->add_flag("--no-law", args->no_law, "without a search for the formula of what remains");
+  add_figures_flag(command, args->figures);
   args->flags = add_model_flags(command);
 }
 

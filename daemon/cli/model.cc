@@ -19,8 +19,10 @@
 #include "calib/report/waterfall_report.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
+#include "daemon/cli/figures_flag.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/kept_run.h"
+#include "daemon/cli/price_figures.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -47,6 +49,7 @@ struct ModelArguments {
   bool force{false}, tried{false};
   [[nodiscard]] Keeping keeping() const { return tried ? Keeping::nothing : Keeping::steps; }
   std::shared_ptr<FitFlags> flags;
+  FiguresFlag figures;  ///< of add
 };
 
 /// What each effect of the model removes from the error; empty without effects, or if a fit fails.
@@ -61,6 +64,20 @@ std::string model_text(const std::vector<std::string>& specs) {
   return specs.empty() ? "no effects" : fmt::format("{}", fmt::join(specs, ", "));
 }
 
+/// What each effect takes out, costs and brings, where pictures were asked for.
+Result<void> draw(const FiguresFlag& flag, const KeptRun& run,
+                  const calib::criticism::search::ModelChange& change,
+                  const std::optional<calib::criticism::search::Waterfall>& steps,
+                  const calib::fit::FitOptions& options, json& out) {
+  if (!flag.asked()) return {};
+  std::vector<calib::report::figures::Figure> figures;
+  if (steps) figures.push_back(calib::report::waterfall_of(*steps, change.held_out_after_nT));
+  if (const auto stage = calib::criticism::search::model_stage(run.source.table, options)) {
+    for (auto& figure : price_figures(run.source.table, *stage)) figures.push_back(std::move(figure));
+  }
+  return hand_out(flag, figures, out);
+}
+
 /// Keeps the change or says why not, and prints it. `choice`: what the poses said of an effect that is added.
 int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
              const calib::criticism::search::ModelChange& change, const std::string& spec,
@@ -68,13 +85,17 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
   const bool good = args.force || !change.vetoed(), keep = good && !args.tried;
   json made = calib::report::to_json(change);
   if (!choice.spec.empty()) made["choice"] = to_json(choice);
+  const auto steps = waterfall_of(run, options);
+  json pictures = json::object();
+  if (auto drawn = draw(args.figures, run, change, steps, options, pictures); !drawn)
+    return report(session, drawn.error());
   if (keep) {
     if (auto ok = keep_step(run, change.adding ? "add" : "drop", spec, made); !ok)
       return report(session, ok.error());
   }
-  const auto steps = waterfall_of(run, options);
   if (session.json) {
     json out = std::move(made);
+    out.update(pictures);
     out["kept"] = keep;
     out["tried"] = args.tried;
     out["open"] = choice.open() ? calib::report::to_text(choice) : std::string();
@@ -104,6 +125,8 @@ bool is_left_out_of_stream(const calib::effects::Effect& effect) {
 }
 
 int run_add(const Session& session, const ModelArguments& args) {
+  if (const auto ready = ready_for_figures(session, args.figures); !ready)
+    return report(session, ready.error());
   auto run = open_kept_run(args.run, *args.flags, args.keeping());
   if (!run) return report(session, run.error());
   run->who = args.who;
@@ -255,6 +278,7 @@ void add_add(CLI::App& app, Session& session) {
   command->footer(kAddHelp);
   command->add_option("EFFECT", args->effect, "NAME[@WHERE][,PARAM=VALUE]: see mgt effects")->required();
   add_run_argument(command, *args);
+  add_figures_flag(command, args->figures);
   command->add_flag("--force", args->force, "keep it even if these poses speak against it");
   command->add_flag("--try", args->tried, "fit and tell, keep nothing");
   add_who_option(command, args->who);

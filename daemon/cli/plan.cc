@@ -9,10 +9,12 @@
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"
+#include "calib/report/design_figures.h"
 #include "calib/report/experiment_design_report.h"
 #include "daemon/cli/array_flags.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/figures_flag.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/run/limits_cost.h"
@@ -44,6 +46,7 @@ struct PlanArguments {
   bool no_scalar{false};
   std::optional<double> field_nT, field_sd_nT, inclination_deg, declination_deg, table_sd_deg;
   ArrayFlags array;
+  FiguresFlag figures;
 };
 
 /// The run that a configuration describes.
@@ -151,6 +154,8 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
 }
 
 int run_plan(const Session& session, const PlanArguments& args) {
+  if (const auto ready = ready_for_figures(session, args.figures); !ready)
+    return report(session, ready.error());
   const auto wanted = wanted_of(args);
   if (!wanted) return report(session, wanted.error());
   const auto planned = with_progress("plan", [&] { return calib::design::evaluate_design(wanted->request); });
@@ -162,8 +167,11 @@ int run_plan(const Session& session, const PlanArguments& args) {
     if (!cost) return report(session, cost.error());
     limits = *std::move(cost);
   }
+  nlohmann::json out = calib::report::to_json(*planned);
+  if (auto drawn = hand_out(args.figures, calib::report::design_figures(wanted->request, *planned), out);
+      !drawn)
+    return report(session, drawn.error());
   if (session.json) {
-    nlohmann::json out = calib::report::to_json(*planned);
     if (limits) out["limits"] = run::to_json(*limits);
     print_json(out);
   } else {
@@ -199,6 +207,7 @@ void add_plan(CLI::App& app, Session& session) {
                    "warming of the heads during the run in degC, where the poses have no temperature")
       ->check(in_range(-100, 100, "degC"))
       ->capture_default_str();
+  add_figures_flag(command, args->figures);
   command->add_flag("--no-scalar", args->no_scalar, "there is no scalar reference");
   command
       ->add_option("--field", args->field_nT,

@@ -21,6 +21,8 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/formulas.h"
+#include "daemon/cli/price_figures.h"
+#include "daemon/cli/search_figures.h"
 #include "daemon/store/kept_discovery.h"
 #include "daemon/store/run_file.h"
 #include "proto/shell_word.h"
@@ -95,32 +97,7 @@ void draw_effects(const calib::fit::FitOptions& asked, ReportContent& c) {
         calib::report::waterfall_of(*steps, held_out ? std::optional(held_out->residual_nT) : std::nullopt));
     c.waterfall = std::move(*steps);
   }
-  const auto narrow = calib::criticism::search::fit_under_same_weights(table, *stage, {});
-  if (!narrow) return;
-  c.prices.push_back(calib::report::price_of(*narrow, stage->fit));
-  std::vector<std::pair<std::string, calib::fit::joint::EffectImpact>> impacts;
-  Eigen::Index first = 0;
-  for (const calib::effects::EffectPtr& effect : stage->options.effects) {
-    const auto n = static_cast<Eigen::Index>(effect->coefficients().size());
-    if (const auto impact = calib::fit::joint::effect_impact(*narrow, effect,
-                                                             stage->fit.state.coefficients.segment(first, n)))
-      impacts.emplace_back(effect->spec(), *impact);
-    first += n;
-  }
-  if (!impacts.empty()) c.prices.push_back(calib::report::impact_of(impacts, *narrow));
-}
-
-void draw_search(const calib::criticism::search::ExplainOptions& options, ReportContent& c) {
-  if (!c.explained.candidates.empty()) {
-    c.candidates.push_back(calib::report::candidates_of(c.explained));
-    const auto& best = c.explained.candidates.front();
-    if (const auto evidence =
-            calib::criticism::search::evidence_of(c.source.table, options, best.effect, best.where, false))
-      c.candidates.push_back(calib::report::evidence_of(*evidence));
-  }
-  if (!c.explained.detectable.empty()) c.limits.push_back(calib::report::detectable_of(c.explained));
-  if (c.explained.confusion && c.explained.confusion->effects.size() > 1)
-    c.limits.push_back(calib::report::confusion_of(*c.explained.confusion));
+  c.prices = price_figures(table, *stage);
 }
 
 Result<void> draw_earlier(const ReportWishes& wishes, const FitFlags& flags, ReportContent& c) {
@@ -227,7 +204,8 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
                     .command = report_command(wishes, flags)};
   if (auto drawn = draw_panels(*options, out); !drawn) return tl::unexpected(drawn.error());
   if (!out.explained.model.empty()) draw_effects(*options, out);
-  draw_search(search, out);
+  out.candidates = candidate_figures(out.source.table, search, out.explained);
+  out.limits = limit_figures(out.explained);
   if (auto drawn = draw_earlier(wishes, flags, out); !drawn) return tl::unexpected(drawn.error());
   if (auto read = read_laws(wishes, out); !read) return tl::unexpected(read.error());
   return out;

@@ -7,6 +7,7 @@
 #include "calib/report/explain_figures.h"
 #include "calib/report/figure_words.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/figures_flag.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/work_progress.h"
@@ -28,9 +29,12 @@ struct WhyArguments {
   std::string run, effect, at;
   bool poses{false};
   std::shared_ptr<FitFlags> flags;
+  FiguresFlag figures;
 };
 
 int run_why(const Session& session, WhyArguments args) {
+  if (const auto ready = ready_for_figures(session, args.figures); !ready)
+    return report(session, ready.error());
   if (const std::size_t at = args.effect.find('@'); at != std::string::npos && args.at.empty())
     args.at = args.effect.substr(at + 1, args.effect.find(',', at) - at - 1);
   const auto source = read_source(args.run, *args.flags);
@@ -43,8 +47,10 @@ int run_why(const Session& session, WhyArguments args) {
     return calib::criticism::search::evidence_of(source->table, wanted, args.effect, args.at, args.poses);
   });
   if (!evidence) return report(session, evidence.error());
+  nlohmann::json out = calib::report::to_json(*evidence);
+  if (auto drawn = hand_out(args.figures, {calib::report::evidence_of(*evidence)}, out); !drawn)
+    return report(session, drawn.error());
   if (session.json) {
-    nlohmann::json out = calib::report::to_json(*evidence);
     if (args.poses) out["figure"] = calib::report::words_json(calib::report::evidence_of(*evidence));
     print_json(out);
   } else {
@@ -64,6 +70,7 @@ void add_why(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("--at", args->at, "where it acts (s3.z, s3, all); else where it shows best");
   command->add_flag("--poses", args->poses, "with --json: what is left at each pose, without and with it");
+  add_figures_flag(command, args->figures);
   args->flags = add_model_flags(command);
 }
 

@@ -38,6 +38,7 @@ class EvidenceOfPrograms : public ::testing::Test {
     return json::parse(mgt(std::move(words)).out, nullptr, false);
   }
   [[nodiscard]] std::string file() const { return dir_ / "run.mgtrun"; }
+  [[nodiscard]] std::string folder(const std::string& name) const { return dir_ / name; }
 
  private:
   TemporaryDirectory dir_;
@@ -130,6 +131,44 @@ TEST_F(EvidenceOfPrograms, PanelsAndFiguresHaveTheirWords) {
   EXPECT_EQ(compared.at("autocorrelation").at("by_sensor").size(), 4U);
   EXPECT_EQ(ask({"explain", file(), "--confusion"}).at("figures").size(), 3U);
   EXPECT_FALSE(ask({"explain", file()}).contains("figures"));
+}
+
+/// Every command that computes something worth drawing draws it: in its object, and in a folder.
+TEST_F(EvidenceOfPrograms, FiguresComeWithTheirWordsAndTheirData) {
+  const std::string effect = "axis.offset.temperature@s3.z";
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> commands{
+      {{"compare", file()}, {"residual-time", "skies", "qq", "coverage", "time", "closure"}},
+      {{"explain", file(), "--confusion"}, {"candidates", "evidence", "detectable", "confusion"}},
+      {{"why", effect, file()}, {"evidence"}},
+      {{"add", effect, file(), "--try"}, {"waterfall", "price", "impact"}},
+      {{"plan"}, {"coverage", "detectable"}},
+      {{"define", file(), "warm", "T_degC", "--scale", "s3.z", "--try"}, {"signature"}}};
+  for (const auto& [command, names] : commands) {
+    std::vector<std::string> words = command;
+    words.push_back("--figures=" + folder(command.front()));
+    const json figures = ask(std::move(words)).at("figures");
+    for (const std::string& name : names) {
+      ASSERT_TRUE(figures.contains(name))
+          << command.front() << ": " << name << " is not in " << figures.size();
+      const json& figure = figures.at(name);
+      EXPECT_THAT(figure.at("svg").get<std::string>(), HasSubstr("</svg>")) << name;
+      EXPECT_THAT(figure.at("good").get<std::string>(), HasSubstr("Here")) << name;
+      const json& points = figure.at("points");
+      ASSERT_FALSE(points.at("rows").empty()) << name;
+      for (const json& row : points.at("rows")) EXPECT_EQ(row.size(), points.at("head").size()) << name;
+      EXPECT_TRUE(slurp(folder(command.front()) + "/" + name + ".svg") == figure.at("svg").get<std::string>())
+          << name;
+    }
+  }
+}
+
+TEST_F(EvidenceOfPrograms, FiguresThatNobodyWouldGetAreRefusedAtOnce) {
+  const Finished refused = mgt({"explain", file(), "--figures"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--figures=FOLDER"));
+  const Finished no_folder = mgt({"compare", file(), "--figures=" + file()});
+  EXPECT_THAT(no_folder.err, HasSubstr("cannot be made"));
+  EXPECT_TRUE(no_folder.out.empty());
 }
 
 TEST_F(EvidenceOfPrograms, ATryTellsAllAndKeepsNothing) {

@@ -197,7 +197,7 @@ Figure autocorrelation_figure(const AutocorrelationValues& v) {
 }
 
 Figure evidence_figure(const EvidenceValues& v) {
-  Drawing drawing("evidence", kWide, 300);
+  Drawing drawing(v.name, kWide, 300);
   std::vector<double> ys = v.y;
   ys.push_back(0);
   std::vector<double> xs = v.x;
@@ -235,7 +235,7 @@ Figure evidence_figure(const EvidenceValues& v) {
   drawing.text({Plot::kLeft, 14}, fmt::format("slope {}", v.slope_text), Anchor::start, Tone::vermilion,
                kFontSize, true);
   Figure out{
-      .name = "evidence",
+      .name = v.name,
       .title = fmt::format("The evidence for {}{}{}", v.effect, v.where.empty() ? "" : " at ", v.where),
       .svg = {},
       .caption =

@@ -34,6 +34,7 @@ struct AutocorrelationValues {
 /// Added-variable plot of one candidate: what it would make of each pose against what is left there,
 /// everything else of the model taken out of both. The slope is the coefficient.
 struct EvidenceValues {
+  std::string name{"evidence"};  ///< of the figure
   std::string effect{}, where{};
   std::string x_label{}, y_label{"residual, nT"};
   std::string slope_text{};  ///< "3.00 ± 0.08 nT/°C"

@@ -256,7 +256,8 @@ Figure coverage_figure(const CoverageValues& v) {
   }
   const double radius_deg = v.measured.empty() ? 180 : hole.radius_rad / kDeg;
   Figure out{.name = "coverage",
-             .title = "Directions of the field that were measured",
+             .title = v.ahead ? "Directions of the field that the poses will reach"
+                              : "Directions of the field that were measured",
              .svg = {},
              .caption = fmt::format(
                  "Direction of the field in the frame of the platform, Mollweide's equal-area projection. "
@@ -271,7 +272,7 @@ Figure coverage_figure(const CoverageValues& v) {
   };
   add(fmt::format("middle of the largest hole, radius {:.1f} deg", radius_deg), hole.centre);
   for (const Eigen::Vector3d& d : v.measured)
-    if (v.measured.size() <= kMostSkyMarks) add("measured", d);
+    if (v.measured.size() <= kMostSkyMarks) add(v.ahead ? "planned" : "measured", d);
   for (const Eigen::Vector3d& d : v.planned) add("planned", d);
   out.stands_out = radius_deg > v.good_deg;
   out.svg = drawing.finished(out.title, out.caption);

@@ -30,6 +30,7 @@ inline constexpr double kGoodHole_deg = 45;  ///< no direction should be farther
 struct CoverageValues {
   std::vector<Eigen::Vector3d> measured{}, planned{};  ///< planned: those still open
   double good_deg{kGoodHole_deg};
+  bool ahead{false};  ///< nothing is measured yet: `measured` is what the poses will reach
 };
 [[nodiscard]] Figure coverage_figure(const CoverageValues& values);
 /// What a good one looks like, and what this one is: radius of the largest hole, and so many directions.

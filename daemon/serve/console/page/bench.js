@@ -179,7 +179,7 @@ export class Bench {
       model?.model.map((spec) => make("button", { class: "small", onclick: () => this.#change("drop", spec, {}) }, `Drop ${spec}`))].flat()));
   }
   #drawSearch() {
-    const { explain } = this.#answers, words = (name) => explain.figures.find((f) => f.name === name);
+    const { explain } = this.#answers, words = (name) => explain.figures[name];
     const ratio = make("i", { class: "bar" }), times = explain.residual_nT / explain.noise_nT;
     ratio.style.width = `${Math.min(100, (100 * Math.log10(Math.max(1, times))) / 3)}%`;  // 1 to 1000
     fill(by("verdict"), make("p", {}, make("b", { class: `word ${kColour[explain.verdict] ?? ""}`, "data-key": "verdict" }, explain.verdict),
@@ -194,7 +194,7 @@ export class Bench {
   }
   #drawCandidates() {
     const { explain } = this.#answers;
-    fill(by("candidates"), make("h2", {}, "What could be missing"), showCandidates(explain, explain.figures.find((f) => f.name === "candidates"), this.#chosen, (c) => this.#choose(c)));
+    fill(by("candidates"), make("h2", {}, "What could be missing"), showCandidates(explain, explain.figures.candidates, this.#chosen, (c) => this.#choose(c)));
   }
 
   async #choose(candidate) {
@@ -269,7 +269,7 @@ export class Bench {
   async #show(id) {
     this.#tool = id;
     for (const other of Object.keys(kTools)) by(`tool-${other}`).setAttribute("aria-pressed", String(other === id));
-    const { explain, fit, model, compare } = this.#answers, words = (name) => explain?.figures.find((f) => f.name === name);
+    const { explain, fit, model, compare } = this.#answers, words = (name) => explain?.figures[name];
     const wait = (verb) => [make("p", { class: "caption" }, this.#refusals[verb] ?? "not computed yet")];
     if (this.#answers.measured && id !== "history") return fill(by("tool"), wait("compare"));
     if (id === "formula") return void fill(by("tool"), compare ? this.#formula.elements(this.#names(compare)) : wait("compare"));

@@ -23,5 +23,19 @@ TEST(FigureWords, AreThoseOfTheFigureWithoutItsPicture) {
                                    {"stands_out", true}}));
 }
 
+TEST(FigureWords, AreFollowedByThePictureAndItsDataWhereTheWholeIsAskedFor) {
+  const figures::Figure figure{.name = "skies",
+                               .svg = "<svg/>",
+                               .data = {.head = {"sensor", "pose", "residual, nT"},
+                                        .rows = {{"s1", "7", "\u22120.25"}, {"s2", "8", "unknown"}},
+                                        .note = "One row a pose."}};
+  const nlohmann::json whole = figures_json({figure}).at("skies");
+  EXPECT_EQ(whole.at("svg"), "<svg/>");
+  EXPECT_EQ(whole.at("points"), nlohmann::json({{"head", {"sensor", "pose", "residual, nT"}},
+                                                {"rows", {{"s1", 7, -0.25}, {"s2", 8, "unknown"}}},
+                                                {"note", "One row a pose."}}));
+  EXPECT_EQ(words_by_name({figure}).at("skies"), words_json(figure));
+}
+
 }  // namespace
 }  // namespace mgtd::calib::report
