@@ -88,27 +88,33 @@ bool differ_in_form(const std::string& a, const std::string& b) {
 }
 
 /// Smallest probability, over the alternatives, that the winner's name comes out right if it is true.
-double p_right(const Longer& run, const fit::joint::JointFit& fit, const fit::joint::JointOptions& options,
+double p_right(const Longer& run, const ModelOnPoses& design, const criticism::tests::Residual& residual,
                const criticism::tests::Candidate& winner,
                const std::vector<criticism::tests::Alternative>& alternatives) {
-  const auto design = model_on_poses(run.table, fit, options);
-  if (!design) return 0;
-  const criticism::tests::Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;
-  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
+  const Eigen::MatrixXd Z = columns_of(design, residual, winner.spec, run, &names);
   if (Z.cols() == 0) return 0;
   const Eigen::VectorXd sizes = sizes_of(winner, names);
   const Eigen::VectorXd v =
       Z.leftCols(sizes.size()) * sizes;  // what the site made here is not at another place
   double lambda = v.squaredNorm();
   for (const criticism::tests::Alternative& alternative : alternatives) {
-    const Eigen::MatrixXd B = columns_of(*design, residual, alternative.spec, run, nullptr);
+    const Eigen::MatrixXd B = columns_of(design, residual, alternative.spec, run, nullptr);
     if (B.cols() == 0) continue;
     const double distance = outside(v, B);
     lambda = std::min(
         lambda, alternative.form_only ? criticism::tests::beyond_form(distance, v.squaredNorm()) : distance);
   }
   return criticism::tests::probability_right(lambda);
+}
+
+double p_right_after(const Longer& run, const fit::joint::JointFit& fit,
+                     const fit::joint::JointOptions& options, const criticism::tests::Candidate& winner,
+                     const std::vector<criticism::tests::Alternative>& alternatives) {
+  const auto design = model_on_poses(run.table, fit, options);
+  if (!design) return 0;
+  const criticism::tests::Residual residual(design->problem, design->state, 0);
+  return p_right(run, *design, residual, winner, alternatives);
 }
 
 std::vector<criticism::tests::Alternative> hardest(const criticism::tests::Candidate& winner) {
@@ -126,20 +132,16 @@ std::vector<criticism::tests::Alternative> hardest(const criticism::tests::Candi
 }
 
 /// For alternatives that were not compared with the winner yet.
-void find_form_only(const PoseTable& table, const fit::joint::JointFit& fit,
-                    const fit::joint::JointOptions& options, const criticism::tests::Candidate& winner,
+void find_form_only(const Longer& run, const ModelOnPoses& design, const criticism::tests::Residual& residual,
+                    const criticism::tests::Candidate& winner,
                     std::vector<criticism::tests::Alternative>& alternatives) {
-  const Longer run = as_it_is(table, fit.problem);
-  const auto design = model_on_poses(table, fit, options);
-  if (!design) return;
-  const criticism::tests::Residual residual(design->problem, design->state, 0);
   std::vector<std::string> names;
-  const Eigen::MatrixXd Z = columns_of(*design, residual, winner.spec, run, &names);
+  const Eigen::MatrixXd Z = columns_of(design, residual, winner.spec, run, &names);
   if (Z.cols() == 0) return;
   const Eigen::VectorXd v = Z * sizes_of(winner, names);
   for (criticism::tests::Alternative& alternative : alternatives) {
     if (alternative.form_only || !differ_in_form(alternative.spec, winner.spec)) continue;
-    const Eigen::MatrixXd B = columns_of(*design, residual, alternative.spec, run, nullptr);
+    const Eigen::MatrixXd B = columns_of(design, residual, alternative.spec, run, nullptr);
     alternative.form_only = B.cols() > 0 && outside(v, B) < (1 - criticism::tests::kAlike) * v.squaredNorm();
   }
 }
@@ -152,11 +154,17 @@ NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& f
   NextMenu out;
   auto alternatives = hardest(winner);
   if (alternatives.empty()) return out;
-  find_form_only(table, fit, options, winner, alternatives);
-  out.p_right_before = p_right(as_it_is(table, fit.problem), fit, options, winner, alternatives);
+  {
+    const Longer here = as_it_is(table, fit.problem);
+    const auto design = model_on_poses(here.table, fit, options);
+    if (!design) return out;
+    const criticism::tests::Residual residual(design->problem, design->state, 0);
+    find_form_only(here, *design, residual, winner, alternatives);
+    out.p_right_before = p_right(here, *design, residual, winner, alternatives);
+  }
   double worth = out.p_right_before + kWorthMeasuring;
   for (const Action& action : actions()) {
-    const double after = p_right(longer(table, action, fit), fit, options, winner, alternatives);
+    const double after = p_right_after(longer(table, action, fit), fit, options, winner, alternatives);
     if (after < worth) continue;
     if (&action == actions().data()) worth = after + kBetter;
     out.steps.push_back(

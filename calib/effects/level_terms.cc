@@ -29,8 +29,14 @@ LevelTerms::LevelTerms(const std::vector<EffectPtr>& effects, Level level) : lev
 
 TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double> in,
                         const Eigen::VectorXd& coefficients) const {
-  const int inputs = inputs_of(level_), outputs = outputs_of(level_);
   TermSum total;
+  sum(at, sensor, in, coefficients, total);
+  return total;
+}
+
+void LevelTerms::sum(const Conditions& at, int sensor, std::span<const double> in,
+                     const Eigen::VectorXd& coefficients, TermSum& total) const {
+  const int inputs = inputs_of(level_), outputs = outputs_of(level_);
   total.value.setZero(outputs);
   total.d_input.setZero(outputs, inputs);
   total.d_coefficient.setZero(outputs, coefficients.size());
@@ -62,7 +68,6 @@ TermSum LevelTerms::sum(const Conditions& at, int sensor, std::span<const double
       }
     }
   }
-  return total;
 }
 
 TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const double> in,

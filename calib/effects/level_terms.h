@@ -26,6 +26,9 @@ class LevelTerms {
   [[nodiscard]] bool empty() const { return entries_.empty(); }
   [[nodiscard]] TermSum sum(const Conditions& at, int sensor, std::span<const double> in,
                             const Eigen::VectorXd& coefficients) const;
+  /// The same into `total`, whose storage is used again.
+  void sum(const Conditions& at, int sensor, std::span<const double> in, const Eigen::VectorXd& coefficients,
+           TermSum& total) const;
   /// The value alone, `outputs_of(level)` numbers.
   [[nodiscard]] TermValue value(const Conditions& at, int sensor, std::span<const double> in,
                                 const Eigen::VectorXd& coefficients) const;

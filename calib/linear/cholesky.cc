@@ -81,11 +81,11 @@ Eigen::MatrixXd Cholesky::whiten(const Eigen::MatrixXd& B) const {
   return x;
 }
 
-Eigen::MatrixXd Cholesky::whiten_rows(const Eigen::MatrixXd& B) const {
-  Eigen::MatrixXd x = B * scale_.asDiagonal();
-  auto columns = x.transpose();
+Eigen::MatrixXd Cholesky::whiten_rows(Eigen::MatrixXd B) const {
+  B *= scale_.asDiagonal();
+  auto columns = B.transpose();
   lower_.triangularView<Eigen::Lower>().solveInPlace(columns);
-  return x;
+  return B;
 }
 
 Eigen::MatrixXd Cholesky::colour(const Eigen::MatrixXd& Z) const {

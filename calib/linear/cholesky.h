@@ -26,7 +26,7 @@ class Cholesky {
   [[nodiscard]] Eigen::VectorXd whiten(const Eigen::VectorXd& b) const;
   [[nodiscard]] Eigen::MatrixXd whiten(const Eigen::MatrixXd& B) const;
   /// B D L'^-1: the same for rows.
-  [[nodiscard]] Eigen::MatrixXd whiten_rows(const Eigen::MatrixXd& B) const;
+  [[nodiscard]] Eigen::MatrixXd whiten_rows(Eigen::MatrixXd B) const;
   /// D^-1 L Z, the way back: what has the covariance 1 then has the covariance A.
   [[nodiscard]] Eigen::MatrixXd colour(const Eigen::MatrixXd& Z) const;
   /// ln det A

@@ -39,6 +39,11 @@ Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
   return out;
 }
 
+void set_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), 1,
+              A.data(), lead(A), B.data(), lead(B), 0, C.data(), lead(C));
+}
+
 void subtract_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), -1,
               A.data(), lead(A), B.data(), lead(B), 1, C.data(), lead(C));

@@ -14,6 +14,9 @@ void add_gram(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::MatrixXd& G);
 /// A'B; both have the same number of rows.
 [[nodiscard]] Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& A,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& B);
+/// C becomes A B; it has that size already.
+void set_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
+                 Eigen::MatrixXd& C);
 /// C becomes C - A B.
 void subtract_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
                       Eigen::MatrixXd& C);

@@ -163,6 +163,30 @@ async function workbench() {
   }
 }
 
+/** Seconds and the most memory that a command takes; its exit code is its answer, not a failure. */
+async function effort(argv) {
+  const began = performance.now(), child = spawn(argv[0], argv.slice(1), { stdio: "ignore" });
+  let most_kB = 0, seconds;
+  child.once("exit", () => { seconds = (performance.now() - began) / 1000; });
+  while (seconds === undefined) {
+    try { most_kB = Math.max(most_kB, Number(readFileSync(`/proc/${child.pid}/status`, "utf8").match(/VmHWM:\s*(\d+)/)?.[1] ?? 0)); } catch { /* it ended */ }
+    await pause(0.02);
+  }
+  return { seconds, most_kB };
+}
+
+/** The search for what is missing in thousands of poses, where nothing is and where something is. */
+async function search() {
+  if (smoke) return;
+  const hidden = join(here, "../scenarios/hidden_temperature.toml");
+  for (const [what, scenario] of [["nothing is hidden", []], ["a temperature law is hidden", ["--scenario", hidden]]]) {
+    const file = join(scratch, "search.csv");
+    execFileSync(join(bin, "mgt-rig"), ["table", ...scenario, "--poses", "grid5832", "-o", file]);
+    const { seconds, most_kB } = await effort([join(bin, "mgt"), "explain", file]);
+    measured(`\`mgt explain\` of 5832 poses, ${what}`, `${seconds.toFixed(1)} s, ${(most_kB / 1000).toFixed(0)} MB`, "20 s, 300 MB", "`mgt-rig table --poses grid5832`");
+  }
+}
+
 /** From the last byte of a sample to its TENSOR line, by the benchmark that is built beside the release. */
 function latency() {
   const bench = join(bin, "bench");
@@ -181,6 +205,7 @@ try {
   measured("size of the page", `${(gzipped / 1000).toFixed(1)} kB gzipped`, "100 kB", "all of its files, level 9");
   await live();
   await workbench();
+  await search();
   latency();
   const text = `# How fast the console is
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "calib/fit/joint/sample_correlation.h"
 #include "calib/linear/cholesky.h"
+#include "calib/linear/product.h"
 #include "calib/stats/chi_square.h"
 #include "calib/stats/f_distribution.h"
 
@@ -34,7 +37,8 @@ struct Fitted {
 };
 
 Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, bool with_fixed) {
-  const LinearRows rows = linear_rows(problem, state);
+  const LinearRows rows = observation_rows(problem, state);
+  const RowSource fixed = fixed_source(problem, state);
   const auto n = static_cast<Eigen::Index>(problem.poses.size());
   const Eigen::Index channels = problem.channels(), block_rows = problem.pose_rows();
   Fitted out{.e = Eigen::MatrixXd(channels, n), .M = Eigen::MatrixXd::Zero(channels, channels * n)};
@@ -51,7 +55,7 @@ Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointSt
     M -= top * llt.solve(top.transpose());
     out.e.col(k) = rows.residual.segment(k * block_rows, channels);
     if (!with_fixed) continue;
-    const Eigen::MatrixXd block = rows.fixed.middleRows(k * block_rows, block_rows);
+    const Eigen::MatrixXd block = fixed.of(std::span(&k, 1));
     out.J.middleRows(k * channels, channels) =
         block.topRows(channels) - top * llt.solve(N.transpose() * block);
   }
@@ -59,18 +63,19 @@ Fitted fitted(const fit::joint::JointProblem& problem, const fit::joint::JointSt
 }
 
 /// Rows whose products are the elements of the hat matrix of the fixed block.
-Eigen::MatrixXd leverages(const Fitted& f) {
-  const Eigen::VectorXd length = f.J.colwise().norm();
-  const Eigen::VectorXd scale = (length.array() > 0).select(length.cwiseInverse(), 0.0);
-  const Eigen::MatrixXd A = f.J * scale.asDiagonal();
-  Eigen::MatrixXd G = A.transpose() * A;
+Eigen::MatrixXd leverages(Eigen::MatrixXd J) {
+  const Eigen::VectorXd length = J.colwise().norm();
+  J *= (length.array() > 0).select(length.cwiseInverse(), 0.0).matrix().asDiagonal();
+  Eigen::MatrixXd G = linear::gram(J);
   G.diagonal().array() += 1e-9;
-  return linear::Cholesky::of_unscaled(G).value().whiten_rows(A);
+  return linear::Cholesky::of_unscaled(G).value().whiten_rows(std::move(J));
 }
 
 bool same_attitude(const Pose& a, const Pose& b) {
   const auto p = a.angles(), q = b.angles();
   const auto near = [](double x, double y) {
+    const double apart = std::abs(x - y);  // of nearly all pairs of poses this says it without a division
+    if (apart > kSameAngle_rad && apart < 2 * std::numbers::pi - 2 * kSameAngle_rad) return false;
     return std::abs(std::remainder(x - y, 2 * std::numbers::pi)) < kSameAngle_rad;
   };
   return p && q && a.mount == b.mount && near(p->azimuth_rad, q->azimuth_rad) &&
@@ -107,7 +112,9 @@ struct LagOne {
   Eigen::MatrixXd L;         ///< hat matrix of the channel is L L'
 
   [[nodiscard]] std::pair<double, double> expected(double rho) const {
-    const Eigen::MatrixXd VL = correlated(L, rho), K = L.transpose() * VL, LK = L * K;
+    const Eigen::MatrixXd VL = correlated(L, rho), K = linear::transposed_product(L, VL);
+    Eigen::MatrixXd LK(L.rows(), K.cols());
+    linear::set_product(L, K, LK);
     const Eigen::Index n = L.rows();
     const auto lag = [n](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
       return a.bottomRows(n - 1).cwiseProduct(b.topRows(n - 1)).sum();
@@ -119,8 +126,7 @@ struct LagOne {
 
 std::vector<LagOne> lag_one(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
   Fitted f = fitted(problem, state, true);
-  const Eigen::MatrixXd hat = leverages(f);
-  f.J.resize(0, 0);
+  const Eigen::MatrixXd hat = leverages(std::move(f.J));
   const auto order = order_in_time(problem);
   const Eigen::Index channels = problem.channels();
   std::vector<LagOne> out(static_cast<std::size_t>(channels));

@@ -32,16 +32,15 @@ double absorbed_in(const fit::joint::JointProblem& problem) {
 Residual::Residual(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, double rho,
                    const fit::joint::WanderingRates& nT_per_sqrt_h)
     : poses_(static_cast<Eigen::Index>(problem.poses.size())), absorbed_(absorbed_in(problem)) {
-  LinearRows rows = linear_rows(problem, state);
+  const LinearRows rows = observation_rows(problem, state);
   Whitener whitener(problem, rows.nuisance, rho, nT_per_sqrt_h);
   const PriorRows priors = prior_rows(problem, state);
   const Eigen::Index n = poses_ * whitener.rows_per_pose(), q = priors.residual.size();
   value_.resize(n + q);
   value_ << whitener.apply(rows.residual), priors.residual;
   Eigen::MatrixXd fixed(n + q, problem.fixed());
-  whitener.apply(rows.fixed, fixed.topRows(n));
+  whitener.apply(fixed_source(problem, state), fixed.topRows(n));
   fixed.bottomRows(q) = priors.fixed;
-  rows = {};  // of a long run each of these is tens of megabytes
   const Eigen::VectorXd lengths = fixed.colwise().norm();
   Eigen::MatrixXd basis = linear::column_space(std::move(fixed), lengths, kRankTolerance);
   value_ -= basis * (basis.transpose() * value_);

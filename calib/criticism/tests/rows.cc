@@ -37,16 +37,27 @@ void fill_attitude(const fit::joint::JointPose& pose, const fit::joint::Nuisance
   out.nuisance(first, 3) = 1;
 }
 
-}  // namespace
+/// By the slots of the fixed block, into the rows of one pose.
+void fill_fixed(const fit::joint::JointProblem& problem, const fit::joint::JointPose& pose,
+                const fit::joint::PoseBlocks& b, Eigen::Ref<Eigen::MatrixXd> out) {
+  const Eigen::Index channels = problem.channels(), block = problem.slots().sensor_block();
+  for (int i = 0; i < problem.sensors(); ++i) {
+    out.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
+        pose.weight.segment<3>(3 * i).asDiagonal() * b.linear.d_sensor.middleRows<3>(3 * i);
+  }
+  const Eigen::Index globals = b.linear.d_global.cols();
+  out.block(0, block, channels, globals) = pose.weight.asDiagonal() * b.linear.d_global;
+  out.block(channels, block, 1, globals) = b.scalar.global;
+}
 
-LinearRows linear_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
+/// `fixed` where it has rows.
+void fill(const fit::joint::JointProblem& problem, const fit::joint::JointState& state, LinearRows& out) {
   const auto rows = row_of(problem, problem.poses.size());
-  LinearRows out{.residual = Eigen::VectorXd::Zero(rows),
-                 .fixed = Eigen::MatrixXd::Zero(rows, problem.fixed()),
-                 .nuisance = Eigen::MatrixXd::Zero(rows, fit::joint::kNuisances)};
+  out.residual = Eigen::VectorXd::Zero(rows);
+  out.nuisance = Eigen::MatrixXd::Zero(rows, fit::joint::kNuisances);
   const fit::joint::PoseModel model(problem, state);
   fit::joint::PoseBlocks b;
-  const Eigen::Index channels = problem.channels(), block = problem.slots().sensor_block();
+  const Eigen::Index channels = problem.channels();
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const fit::joint::JointPose& pose = problem.poses[k];
     const Eigen::Index row = row_of(problem, k);
@@ -55,17 +66,42 @@ LinearRows linear_rows(const fit::joint::JointProblem& problem, const fit::joint
     out.residual[row + channels] = b.scalar.residual;
     out.nuisance.middleRows(row, channels) = b.N;
     out.nuisance.row(row + channels) = b.scalar.nuisance;
-    const auto w = pose.weight.asDiagonal();
-    for (int i = 0; i < problem.sensors(); ++i) {
-      out.fixed.block<3, sensor::kSensorParameters>(row + 3 * i, sensor::kSensorParameters * i) =
-          pose.weight.segment<3>(3 * i).asDiagonal() * b.linear.d_sensor.middleRows<3>(3 * i);
-    }
-    const Eigen::Index globals = b.linear.d_global.cols();
-    out.fixed.block(row, block, channels, globals) = w * b.linear.d_global;
-    out.fixed.block(row + channels, block, 1, globals) = b.scalar.global;
+    if (out.fixed.rows() > 0) fill_fixed(problem, pose, b, out.fixed.middleRows(row, problem.pose_rows()));
     fill_attitude(pose, state.nuisances[k], row, out);
   }
+}
+
+}  // namespace
+
+LinearRows linear_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
+  LinearRows out;
+  out.fixed = Eigen::MatrixXd::Zero(row_of(problem, problem.poses.size()), problem.fixed());
+  fill(problem, state, out);
   return out;
+}
+
+LinearRows observation_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
+  LinearRows out;
+  fill(problem, state, out);
+  return out;
+}
+
+RowSource fixed_source(const fit::joint::JointProblem& problem, const fit::joint::JointState& state) {
+  const auto model = std::make_shared<const fit::joint::PoseModel>(problem, state);
+  return {.columns = problem.fixed(), .of = [&problem, &state, model](std::span<const Eigen::Index> poses) {
+            const Eigen::Index block = problem.pose_rows();
+            Eigen::MatrixXd out =
+                Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()) * block, problem.fixed());
+            fit::joint::PoseBlocks b;
+            Eigen::Index row = 0;
+            for (const Eigen::Index k : poses) {
+              const auto pose = static_cast<std::size_t>(k);
+              fit::joint::assemble(problem, *model, state, pose, false, b);
+              fill_fixed(problem, problem.poses[pose], b, out.middleRows(row, block));
+              row += block;
+            }
+            return out;
+          }};
 }
 
 Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
@@ -87,17 +123,22 @@ class Wider {
         wider_(with_effect()),
         at_(at(coefficients)),
         model_(wider_, at_),
+        coefficients_(coefficients),
+        axis_({effect_}, effects::Level::axis),
         added_(coefficients.size()) {}
 
   [[nodiscard]] Eigen::MatrixXd rows(std::span<const Eigen::Index> poses) const {
     const Eigen::Index channels = problem_.channels(), block = problem_.pose_rows();
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()) * block, added_);
     fit::joint::PoseLinear linear;
+    effects::TermSum terms;
     Eigen::Index row = 0;
     for (const Eigen::Index k : poses) {
       const auto pose_index = static_cast<std::size_t>(k);
       const fit::joint::JointPose& pose = problem_.poses[pose_index];
-      if (effect_->missing(*pose.pose).empty()) {
+      if (!axis_.empty()) {
+        of_axes(pose, state_.nuisances[pose_index], terms, out.middleRows(row, channels));
+      } else if (effect_->missing(*pose.pose).empty()) {
         model_.linearise(pose, state_.nuisances[pose_index], linear);
         out.middleRows(row, channels) = pose.weight.asDiagonal() * linear.d_global.rightCols(added_);
         out.row(row + channels) = pose.f_weight * linear.f_global.tail(added_);
@@ -108,6 +149,15 @@ class Wider {
   }
 
  private:
+  /// A term of an axis adds to its reading and to nothing else, so that its own derivatives are the rows.
+  void of_axes(const fit::joint::JointPose& pose, const fit::joint::Nuisance& nuisance,
+               effects::TermSum& terms, Eigen::Ref<Eigen::MatrixXd> out) const {
+    const fit::joint::Channels in_nT = model_.axis_inputs_nT(pose, nuisance);
+    for (int i = 0; i < problem_.sensors(); ++i) {
+      axis_.sum(pose.conditions(), i, {in_nT.data() + std::ptrdiff_t{3} * i, 3}, coefficients_, terms);
+      out.middleRows<3>(3 * i) = pose.weight.segment<3>(3 * i).asDiagonal() * terms.d_coefficient;
+    }
+  }
   [[nodiscard]] fit::joint::JointProblem with_effect() const {
     fit::joint::JointProblem out;
     out.geometry = problem_.geometry;
@@ -134,6 +184,8 @@ class Wider {
   fit::joint::JointProblem wider_;
   fit::joint::JointState at_;
   fit::joint::PoseModel model_;
+  Eigen::VectorXd coefficients_;
+  effects::LevelTerms axis_;  ///< of an effect of another level: empty
   Eigen::Index added_;
 };
 

@@ -24,6 +24,20 @@ struct LinearRows {
 [[nodiscard]] LinearRows linear_rows(const fit::joint::JointProblem& problem,
                                      const fit::joint::JointState& state);
 
+/// The same without `fixed`, which of a long run is tens of megabytes.
+[[nodiscard]] LinearRows observation_rows(const fit::joint::JointProblem& problem,
+                                          const fit::joint::JointState& state);
+
+/// Rows that are made when they are asked for: of a long run no more than a piece is held.
+struct RowSource {
+  Eigen::Index columns{0};
+  /// A block of JointProblem::pose_rows() for each of these poses, in this order.
+  std::function<Eigen::MatrixXd(std::span<const Eigen::Index> poses)> of{};
+};
+/// LinearRows::fixed as a source. Keeps references to problem and state.
+[[nodiscard]] RowSource fixed_source(const fit::joint::JointProblem& problem,
+                                     const fit::joint::JointState& state);
+
 /// By the coefficients of an effect that is not in the model, at zero. Poses that cannot feed it get zeros.
 [[nodiscard]] Eigen::MatrixXd effect_rows(const fit::joint::JointProblem& problem,
                                           const fit::joint::JointState& state,
@@ -34,13 +48,6 @@ struct LinearRows {
                                           const effects::EffectPtr& effect,
                                           const Eigen::VectorXd& coefficients);
 
-/// Rows by the coefficients of a law, made when they are asked for: of a long run no more than a piece is
-/// held.
-struct RowSource {
-  Eigen::Index columns{0};
-  /// A block of JointProblem::pose_rows() for each of these poses, in this order.
-  std::function<Eigen::MatrixXd(std::span<const Eigen::Index> poses)> of{};
-};
 /// effect_rows() as a source. Keeps references to problem and state.
 [[nodiscard]] RowSource effect_source(const fit::joint::JointProblem& problem,
                                       const fit::joint::JointState& state, const effects::EffectPtr& effect,

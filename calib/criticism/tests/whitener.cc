@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
+#include "calib/linear/product.h"
 #include "calib/linear/qr.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -113,6 +115,19 @@ void Whitener::apply(const Eigen::MatrixXd& rows, Eigen::Ref<Eigen::MatrixXd> ou
     walk.next(rows.middleRows(k * pose_rows_, pose_rows_), out.middleRows(k * left_rows, left_rows));
 }
 
+void Whitener::apply(const RowSource& rows, Eigen::Ref<Eigen::MatrixXd> out) const {
+  constexpr std::size_t kAtATime = 64;
+  const Eigen::Index left_rows = rows_per_pose();
+  Walk walk(*this, rows.columns);
+  for (std::size_t from = 0; from < order_.size(); from += kAtATime) {
+    const auto poses = std::span(order_).subspan(from, std::min(kAtATime, order_.size() - from));
+    const Eigen::MatrixXd piece = rows.of(poses);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      walk.next(piece.middleRows(static_cast<Eigen::Index>(i) * pose_rows_, pose_rows_),
+                out.middleRows(poses[i] * left_rows, left_rows));
+  }
+}
+
 Eigen::MatrixXd Whitener::apply_transposed(const Eigen::MatrixXd& X) const {
   const Eigen::Index n = X.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
   const Eigen::Index others = pose_rows_ - channels_, left_rows = rows_per_pose();
@@ -143,7 +158,7 @@ Eigen::MatrixXd Whitener::apply_transposed(const Eigen::MatrixXd& X) const {
 Whitener::Walk::Walk(const Whitener& whitener, Eigen::Index columns) : whitener_(whitener) {
   const Eigen::Index U = whitener.unknowns(), W = U - fit::joint::kNuisances;
   in_ = Eigen::MatrixXd::Zero(U + W + whitener.channels_, columns);
-  turned_.resize(in_.rows(), columns);
+  turned_.resize(W + whitener.channels_, columns);
   left_.resize(W + whitener.pose_rows_, columns);
   emitted_.resize(left_.rows(), columns);
 }
@@ -161,11 +176,11 @@ void Whitener::Walk::next(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::
   if (step.first.size() == 0) {
     left_.topRows(channels) = in_.bottomRows(channels);
   } else {
-    turned_.noalias() = step.first * in_;
-    left_.topRows(W + channels) = turned_.bottomRows(W + channels);
+    linear::set_product(step.first.bottomRows(W + channels), in_, turned_);
+    left_.topRows(W + channels) = turned_;
   }
   left_.bottomRows(others) = rows.bottomRows(others);
-  emitted_.noalias() = step.second * left_;
+  linear::set_product(step.second, left_, emitted_);
   in_.topRows(U) = emitted_.topRows(U);
   out = emitted_.bottomRows(out.rows());
   ++at_;

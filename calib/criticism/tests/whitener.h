@@ -29,6 +29,8 @@ class Whitener {
   /// readings.
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& rows) const;
   void apply(const Eigen::MatrixXd& rows, Eigen::Ref<Eigen::MatrixXd> out) const;
+  /// Asks for the rows of a few poses at a time.
+  void apply(const RowSource& rows, Eigen::Ref<Eigen::MatrixXd> out) const;
 
   /// W'X, with W the matrix of apply() and X rows as it gives them: rows as in LinearRows.
   [[nodiscard]] Eigen::MatrixXd apply_transposed(const Eigen::MatrixXd& X) const;

@@ -40,6 +40,7 @@ struct PoseModel::Field {
   Eigen::Vector3d b_P_nT;
   Eigen::Matrix<double, 3, kNuisances> d_nuisance;
   Eigen::Matrix<double, 3, Eigen::Dynamic> d_global;
+  effects::TermSum terms;  ///< of the level that is summed just now
 };
 
 PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
@@ -53,6 +54,7 @@ PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
       tangents_(tangents(state.direction)),
       reference_turns_(reference_turns(state.direction)),
       globals_(kGlobals + problem.coefficients()),
+      of_field_(site_.empty() && platform_.empty() && table_.empty() ? int{kGlobals} : globals_),
       common_field_(problem.common_field) {
   gains_.clear();
   for (const sensor::SensorModel& sensor : state.sensors) gains_.push_back(gain_of(sensor));
@@ -142,11 +144,10 @@ void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, F
   Eigen::Matrix3d dB_dx = Eigen::Matrix3d::Zero();
   if (!site_.empty()) {
     const Eigen::Vector3d x_S_m = a.R.transpose() * r_P_m;
-    const effects::TermSum terms =
-        site_.sum(pose.conditions(), sensor, {x_S_m.data(), 3}, state_.coefficients);
-    B_S += terms.value;
-    dB_dx = terms.d_input;
-    field.d_global.rightCols(globals_ - kGlobals) += a.R * terms.d_coefficient;
+    site_.sum(pose.conditions(), sensor, {x_S_m.data(), 3}, state_.coefficients, field.terms);
+    B_S += field.terms.value;
+    dB_dx = field.terms.d_input;
+    field.d_global.rightCols(globals_ - kGlobals) += a.R * field.terms.d_coefficient;
   }
   field.b_P_nT = a.R * B_S;
   add_site_columns(a, B_S, dB_dx, r_P_m, field);
@@ -157,8 +158,8 @@ void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int senso
   Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
   in.head<3>() = field.b_P_nT;
   if (a.known) in.tail<3>() = a.R.col(2);
-  const effects::TermSum terms =
-      platform_.sum(pose.conditions(), sensor, {in.data(), 6}, state_.coefficients);
+  const effects::TermSum& terms = field.terms;
+  platform_.sum(pose.conditions(), sensor, {in.data(), 6}, state_.coefficients, field.terms);
   const Eigen::Matrix3d by_b = Eigen::Matrix3d::Identity() + terms.d_input.leftCols<3>();
   const Eigen::Matrix3d by_g = terms.d_input.rightCols<3>();
   field.b_P_nT += terms.value;
@@ -227,7 +228,7 @@ Eigen::RowVector3d PoseModel::reference_terms(const JointPose& pose, const Attit
   return by_u * a.R * (Eigen::Matrix3d::Identity() - u_S * u_S.transpose()) / B_S.norm();
 }
 
-void PoseModel::read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const {
+void PoseModel::read(const JointPose& pose, int sensor, Field& field, PoseLinear& out) const {
   const auto i = static_cast<std::size_t>(sensor);
   const int row = 3 * sensor;
   const SensorGain& g = gains_[i];
@@ -237,16 +238,21 @@ void PoseModel::read(const JointPose& pose, int sensor, const Field& field, Pose
     d_sensor.col(kGainParameters[j]) = g.d_gain[j] * field.b_P_nT;
   out.y_nT.segment<3>(row) = v_nT + state_.sensors[i].offset_nT;
   out.d_nuisance.middleRows<3>(row) = g.gain * field.d_nuisance;
-  out.d_global.middleRows<3>(row).noalias() = g.gain * field.d_global;
+  auto d_global = out.d_global.middleRows<3>(row);
+  const Eigen::Index fields = of_field_;
+  d_global.leftCols(fields).noalias() = g.gain * field.d_global.leftCols(fields);
+  d_global.rightCols(globals_ - fields).setZero();
   if (!axis_.empty()) {
-    const effects::TermSum terms =
-        axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients);
-    const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
+    const effects::TermSum& terms = field.terms;
+    axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients, field.terms);
     out.y_nT.segment<3>(row) += terms.value;
-    d_sensor = (by_v * d_sensor).eval();
-    out.d_nuisance.middleRows<3>(row) = (by_v * out.d_nuisance.middleRows<3>(row)).eval();
-    out.d_global.middleRows<3>(row) = (by_v * out.d_global.middleRows<3>(row)).eval();
-    out.d_global.middleRows<3>(row).rightCols(globals_ - kGlobals) += terms.d_coefficient;
+    if (!terms.d_input.isZero(0)) {  // of coefficients at zero, as those of effects that are tried
+      const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
+      d_sensor = (by_v * d_sensor).eval();
+      out.d_nuisance.middleRows<3>(row) = (by_v * out.d_nuisance.middleRows<3>(row)).eval();
+      d_global.leftCols(fields) = (by_v * d_global.leftCols(fields)).eval();
+    }
+    d_global.rightCols(globals_ - kGlobals) += terms.d_coefficient;
   }
   d_sensor.middleCols<3>(sensor::ix).setIdentity();
 }
@@ -269,6 +275,45 @@ void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseL
     }
     read(pose, sensor, field, out);
   }
+}
+
+/// R of a pose with angles.
+Eigen::Matrix3d PoseModel::attitude(const JointPose& pose, const Nuisance& nuisance) const {
+  const Eigen::Matrix3d error = sensor::turn_by<double>(nuisance.head<3>());
+  if (table_.empty()) return error * pose.T;
+  const TableAngles angles = *pose.pose->angles();
+  const std::array<double, 5> in{angles.azimuth_rad, angles.pitch_rad, angles.roll_rad, 0, 0};
+  const effects::TermValue moved = table_.value(pose.conditions(), 0, in, state_.coefficients);
+  return error * sensor::table_rotation<double>(in[0] + moved[0], in[1] + moved[1], in[2] + moved[2],
+                                                moved[3], moved[4]);
+}
+
+Channels PoseModel::axis_inputs_nT(const JointPose& pose, const Nuisance& nuisance) const {
+  const effects::Conditions conditions = pose.conditions();
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d field_S_nT = nuisance.head<3>();  // of a pose without angles: in frame P already
+  if (pose.has_angles) {
+    R = attitude(pose, nuisance);
+    field_S_nT = nuisance[3] * (state_.R_SR ? Eigen::Vector3d(*state_.R_SR * pose.reference_nT.normalized())
+                                            : Eigen::Vector3d(state_.direction));
+  }
+  Channels out(3 * static_cast<Eigen::Index>(gains_.size()));
+  for (int sensor = 0; sensor < static_cast<int>(gains_.size()); ++sensor) {
+    const auto i = static_cast<std::size_t>(sensor);
+    Eigen::Vector3d b_P_nT = R * field_S_nT;
+    if (pose.has_angles && !site_.empty()) {
+      const Eigen::Vector3d x_S_m = R.transpose() * positions_P_m_[i];
+      b_P_nT += R * site_.value(conditions, sensor, {x_S_m.data(), 3}, state_.coefficients);
+    }
+    if (!platform_.empty()) {
+      Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
+      in.head<3>() = b_P_nT;
+      if (pose.has_angles) in.tail<3>() = R.col(2);
+      b_P_nT += platform_.value(conditions, sensor, {in.data(), 6}, state_.coefficients);
+    }
+    out.segment<3>(3 * sensor) = gains_[i].gain * b_P_nT;
+  }
+  return out;
 }
 
 }  // namespace mgtd::calib::fit::joint

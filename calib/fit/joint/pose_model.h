@@ -27,6 +27,8 @@ class PoseModel {
  public:
   PoseModel(const JointProblem& problem, const JointState& state);
   void linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const;
+  /// What the axes see, C A R' b without an offset: the input of effects at level axis. No derivatives.
+  [[nodiscard]] Channels axis_inputs_nT(const JointPose& pose, const Nuisance& nuisance) const;
 
  private:
   struct Attitude;
@@ -36,6 +38,7 @@ class PoseModel {
     std::array<Eigen::Matrix3d, 9> d_gain;  ///< by theta, phi, psi, cx, cy, cz, alpha, beta, gamma
   };
   [[nodiscard]] static SensorGain gain_of(const sensor::SensorModel& sensor);
+  [[nodiscard]] Eigen::Matrix3d attitude(const JointPose& pose, const Nuisance& nuisance) const;
   void set_attitude(const JointPose& pose, const Nuisance& nuisance, Attitude& a) const;
   void add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, const Eigen::Matrix3d& dB_dx,
                         const Eigen::Vector3d& r_P_m, Field& field) const;
@@ -44,7 +47,7 @@ class PoseModel {
   void scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const;
   [[nodiscard]] Eigen::RowVector3d reference_terms(const JointPose& pose, const Attitude& a,
                                                    const Eigen::Vector3d& B_S, PoseLinear& out) const;
-  void read(const JointPose& pose, int sensor, const Field& field, PoseLinear& out) const;
+  void read(const JointPose& pose, int sensor, Field& field, PoseLinear& out) const;
 
   const JointState& state_;
   effects::LevelTerms table_, site_, platform_, axis_, reference_;
@@ -53,6 +56,7 @@ class PoseModel {
   Eigen::Matrix<double, 3, 2> tangents_;
   Eigen::Matrix3d reference_turns_;
   int globals_;
+  int of_field_;  ///< the first of them, which act on the field as it is at the sensors
   bool common_field_;
 };
 

@@ -58,6 +58,19 @@ TEST(Whitener, EliminatesNuisancesExactlyForAnyCorrelation) {
   }
 }
 
+/// More poses than are asked for at a time.
+TEST(Whitener, TakesRowsWholeOrPieceByPiece) {
+  const fit::joint::JointFit fit = fit_of(hidden_run({}, 4));
+  const LinearRows rows = linear_rows(fit.problem, fit.state);
+  const Whitener whitener(fit.problem, rows.nuisance, 0.4);
+  const Eigen::MatrixXd whole = whitener.apply(rows.fixed);
+  Eigen::MatrixXd pieces(whole.rows(), whole.cols());
+  whitener.apply(fixed_source(fit.problem, fit.state), pieces);
+  EXPECT_EQ(whole, pieces);
+  EXPECT_EQ(observation_rows(fit.problem, fit.state).nuisance, rows.nuisance);
+  EXPECT_EQ(observation_rows(fit.problem, fit.state).fixed.size(), 0);
+}
+
 TEST(Whitener, ResidualIsAsLargeAsItsFreedom) {
   // Mean of 8 chi-squares with 1834 degrees of freedom: 1 % one sigma.
   double sum = 0, dof = 0;

@@ -202,5 +202,27 @@ TEST(PoseModel, PlantedDerivativeErrorIsCaught) {
   EXPECT_GT(worst_derivative(make_case({probe<effects::Level::axis>(0.01)}, true)), 100 * kTolerance);
 }
 
+/// Without effects of the axes a reading is what its axis sees and its offset.
+TEST(PoseModel, TellsWhatTheAxesSee) {
+  for (const bool with_angles : {true, false}) {
+    for (const bool beside : {false, true}) {
+      if (beside && !with_angles) continue;
+      std::vector<effects::EffectPtr> probes{std::make_shared<Probe<effects::Level::platform>>()};
+      if (with_angles) {
+        probes.push_back(std::make_shared<Probe<effects::Level::table>>());
+        probes.push_back(std::make_shared<Probe<effects::Level::site>>());
+      }
+      const Case c = make_case(std::move(probes), with_angles, beside);
+      const JointPose& pose = c.problem.poses[20];
+      double f_nT = 0;
+      Channels expected = predict(c, c.state, c.state.nuisances[20], f_nT);
+      for (int i = 0; i < c.problem.sensors(); ++i)
+        expected.segment<3>(3 * i) -= c.state.sensors[static_cast<std::size_t>(i)].offset_nT;
+      const Channels seen = PoseModel(c.problem, c.state).axis_inputs_nT(pose, c.state.nuisances[20]);
+      EXPECT_LT((seen - expected).norm(), 1e-9 * expected.norm()) << with_angles << beside;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mgtd::calib::fit::joint
