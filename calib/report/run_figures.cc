@@ -103,6 +103,8 @@ figures::Figure time_figure(const PanelModel& model) {
       .title = "One time axis",
       .what =
           "What happened at the same time. The residual is that of the channel that depends most on time."};
+  if (!model.comparison.fit->problem.effects.empty())
+    v.what += " The effects of the model are taken out of it.";
   v.gaps = gaps_of(p.t_h);
   const auto add = [&](std::string name, std::string unit, std::vector<figures::Series> series, bool joined) {
     v.lanes.push_back({.name = std::move(name),

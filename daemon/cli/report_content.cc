@@ -67,21 +67,22 @@ Result<void> draw_panels(const calib::fit::FitOptions& asked, ReportContent& c) 
   const auto bare = seen(c, asked, {});
   if (!bare) return tl::unexpected(bare.error());
   const calib::report::PanelModel before{bare->comparison, bare->points};
-  if (whole.empty()) {
-    c.panels = calib::report::panel_figures(before, nullptr);
-  } else {
-    const auto wide = seen(c, asked, whole);
-    if (!wide) return tl::unexpected(wide.error());
-    const calib::report::PanelModel after{wide->comparison, wide->points};
-    c.panels = calib::report::panel_figures(before, &after);
+  std::optional<SeenModel> wide;
+  if (!whole.empty()) {
+    auto found = seen(c, asked, whole);
+    if (!found) return tl::unexpected(found.error());
+    wide = *std::move(found);
   }
-  c.measured.push_back(calib::report::coverage_of(before));
+  const calib::report::PanelModel last =
+      wide ? calib::report::PanelModel{wide->comparison, wide->points} : before;
+  c.panels = calib::report::panel_figures(before, wide ? &last : nullptr);
+  c.measured.push_back(calib::report::coverage_of(last));
   const std::optional<double> wanted =
       c.source.header ? c.source.header->options.until_tensor_sd_nT_per_m : std::nullopt;
   if (auto accuracy = calib::report::accuracy_of(c.source.table, with_model(asked, whole), wanted))
     c.measured.push_back(std::move(*accuracy));
-  c.measured.push_back(calib::report::time_figure(before));
-  if (auto closure = calib::report::closure_figure(before)) c.measured.push_back(std::move(*closure));
+  c.measured.push_back(calib::report::time_figure(last));
+  if (auto closure = calib::report::closure_figure(last)) c.measured.push_back(std::move(*closure));
   return {};
 }
 

@@ -190,6 +190,8 @@ TEST_F(Loop, TheReportIsOnePageThatNeedsNothingElse) {
   EXPECT_THAT(page, HasSubstr("What good looks like"));
   EXPECT_THAT(page, HasSubstr("What each effect takes out"));
   EXPECT_THAT(page, HasSubstr("How the model came to be"));
+  EXPECT_THAT(page, HasSubstr("The effects of the model are taken out of it"))
+      << "the time axis shows what is left";
   for (const char* loaded : {"<script", "src=", "href=", "url(", "@import"})
     EXPECT_EQ(page.find(loaded), std::string::npos) << loaded;
   EXPECT_EQ(mgt({"report", file("none.csv"), "-o", file("x.html")}).exit_code, 2);
