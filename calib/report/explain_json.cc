@@ -129,11 +129,15 @@ json to_json(const criticism::search::ExplainReport& r) {
       {"omnibus_p", std::pow(10.0, r.omnibus_log10_p)},
       {"share_of", share_of(r)},
       {"lack_of_fit", std::move(lack)},
-      {"detectable_above",
-       array_of(r.detectable,
-                [](const criticism::tests::Detectable& d) {
-                  return json{{"effect", d.effect}, {"where", d.where}, {"value", d.value}, {"unit", d.unit}};
-                })},
+      {"detectable_above", array_of(r.detectable,
+                                    [](const criticism::tests::Detectable& d) {
+                                      const bool of_a_size = d.value < criticism::tests::kAtNoSize;
+                                      return json{{"effect", d.effect},
+                                                  {"where", d.where},
+                                                  {"value", of_a_size ? json(d.value) : json()},
+                                                  {"unit", d.unit},
+                                                  {"text", detectable_text(d)}};
+                                    })},
       {"untestable", array_of(r.untestable,
                               [](const criticism::tests::Untestable& u) {
                                 return json{{"effect", u.effect}, {"why", u.why}};

@@ -19,7 +19,8 @@ export function showNext(next, measure) {
 
 export function showLimits(explain, words) {
   return [make("div", { class: "columns" },
-    make("div", {}, table("Smallest size that would have been seen", ["", "where", "", ""], explain.detectable_above.map((d) => [d.effect, d.where, sig(d.value, 2), d.unit.replace("degC", "°C").replace("^2", "²")]))),
+    make("div", {}, table("Smallest size that would have been seen", ["", "where", "", ""], explain.detectable_above.map((d) => d.value === null ? [d.effect, d.text, "", ""]
+      : [d.effect, d.where, sig(d.value, 2), d.unit.replace("degC", "°C").replace("^2", "²")]))),
     make("div", {}, table("Not testable on these poses", ["", "why"], explain.untestable.map((u) => [u.effect, u.why])),
          table("The residual follows", ["", "where", "p"], explain.maps.map((m) => [m.map, m.where, make("span", {}, chance(m.log10_p))])))),
           words ? make("p", { class: "good-one" }, `Good: ${words.good}`) : null];
