@@ -74,10 +74,14 @@ int run_compare(const Session& session, const CompareArguments& args) {
       return report(session, written.error());
   }
   nlohmann::json out = calib::report::to_json(*comparison);
-  if (args.figures.asked()) {
-    if (auto drawn = hand_out(args.figures, figures_of({*comparison, *points}), out); !drawn)
-      return report(session, drawn.error());
-  }
+  if (auto drawn = hand_out(
+          args.figures,
+          [&] {
+            return figures_of({*comparison, *points});
+          },
+          out);
+      !drawn)
+    return report(session, drawn.error());
   if (session.json) {
     if (args.poses) {
       out["poses"] = calib::report::to_json(*points);

@@ -243,10 +243,11 @@ int run_define(const Session& session, const DefineArguments& args) {
     definition.found = x->coefficients;
   }
   json figures = json::object();
-  if (!x->wholly_absorbed()) {
-    if (auto drawn = hand_out(args.figures, {calib::report::formula_figure(*x)}, figures); !drawn)
-      return report(session, drawn.error());
-  }
+  const auto draw = [&] {
+    return x->wholly_absorbed() ? std::vector<calib::report::figures::Figure>()
+                                : std::vector{calib::report::formula_figure(*x)};
+  };
+  if (auto drawn = hand_out(args.figures, draw, figures); !drawn) return report(session, drawn.error());
   if (!nothing_left(*x) && !args.tried) {
     for (const store::Definition& d : run->source.definitions)
       if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);

@@ -49,15 +49,17 @@ using Figures = std::vector<calib::report::figures::Figure>;
 Result<void> add_figures(const ExplainArguments& args, const PoseTable& table,
                          const calib::criticism::search::ExplainOptions& options,
                          const calib::criticism::search::ExplainReport& explained, nlohmann::json& out) {
-  Figures figures;
-  if (args.figures.asked()) {
-    figures = candidate_figures(table, options, explained);
-  } else if (args.confusion && !explained.candidates.empty()) {
-    figures.push_back(calib::report::candidates_of(explained));
+  const auto with_limits = [&](Figures figures) {
+    for (auto& figure : limit_figures(explained)) figures.push_back(std::move(figure));
+    return figures;
+  };
+  if (args.confusion && !args.figures.asked()) {
+    Figures candidates;
+    if (!explained.candidates.empty()) candidates.push_back(calib::report::candidates_of(explained));
+    out["figures"] = calib::report::words_by_name(with_limits(std::move(candidates)));
   }
-  for (auto& figure : limit_figures(explained)) figures.push_back(std::move(figure));
-  if (args.confusion) out["figures"] = calib::report::words_by_name(figures);
-  return hand_out(args.figures, figures, out);
+  const auto drawn = [&] { return with_limits(candidate_figures(table, options, explained)); };
+  return hand_out(args.figures, drawn, out);
 }
 
 int run_explain(const Session& session, const ExplainArguments& args) {

@@ -43,9 +43,11 @@ Result<void> ready_for_figures(const Session& session, const FiguresFlag& flag) 
               "choose another place with --figures=FOLDER");
 }
 
-Result<void> hand_out(const FiguresFlag& flag, const std::vector<calib::report::figures::Figure>& figures,
+Result<void> hand_out(const FiguresFlag& flag,
+                      const std::function<std::vector<calib::report::figures::Figure>()>& drawn,
                       nlohmann::json& out) {
   if (!flag.asked()) return {};
+  const std::vector<calib::report::figures::Figure> figures = drawn();
   out["figures"] = calib::report::figures_json(figures);
   const std::filesystem::path folder = folder_of(flag);
   if (folder.empty()) return {};

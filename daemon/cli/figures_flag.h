@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -20,10 +21,10 @@ void add_figures_flag(CLI::App* command, FiguresFlag& flag);
 /// To be called before anything is computed: refuses pictures that nobody would get, and makes the folder.
 [[nodiscard]] Result<void> ready_for_figures(const Session& session, const FiguresFlag& flag);
 
-/// Where they were asked for: writes FOLDER/NAME.svg, says so on stderr, and puts "figures" into `out`
-/// (figure_words.h).
+/// Where they were asked for: has them drawn, writes FOLDER/NAME.svg, says so on stderr, and puts "figures"
+/// into `out` (figure_words.h).
 [[nodiscard]] Result<void> hand_out(const FiguresFlag& flag,
-                                    const std::vector<calib::report::figures::Figure>& figures,
+                                    const std::function<std::vector<calib::report::figures::Figure>()>& drawn,
                                     nlohmann::json& out);
 
 }  // namespace mgtd::daemon::cli

@@ -69,13 +69,15 @@ Result<void> draw(const FiguresFlag& flag, const KeptRun& run,
                   const calib::criticism::search::ModelChange& change,
                   const std::optional<calib::criticism::search::Waterfall>& steps,
                   const calib::fit::FitOptions& options, json& out) {
-  if (!flag.asked()) return {};
-  std::vector<calib::report::figures::Figure> figures;
-  if (steps) figures.push_back(calib::report::waterfall_of(*steps, change.held_out_after_nT));
-  if (const auto stage = calib::criticism::search::model_stage(run.source.table, options)) {
-    for (auto& figure : price_figures(run.source.table, *stage)) figures.push_back(std::move(figure));
-  }
-  return hand_out(flag, figures, out);
+  const auto drawn = [&] {
+    std::vector<calib::report::figures::Figure> figures;
+    if (steps) figures.push_back(calib::report::waterfall_of(*steps, change.held_out_after_nT));
+    if (const auto stage = calib::criticism::search::model_stage(run.source.table, options)) {
+      for (auto& figure : price_figures(run.source.table, *stage)) figures.push_back(std::move(figure));
+    }
+    return figures;
+  };
+  return hand_out(flag, drawn, out);
 }
 
 /// Keeps the change or says why not, and prints it. `choice`: what the poses said of an effect that is added.

@@ -168,7 +168,8 @@ int run_plan(const Session& session, const PlanArguments& args) {
     limits = *std::move(cost);
   }
   nlohmann::json out = calib::report::to_json(*planned);
-  if (auto drawn = hand_out(args.figures, calib::report::design_figures(wanted->request, *planned), out);
+  if (auto drawn = hand_out(
+          args.figures, [&] { return calib::report::design_figures(wanted->request, *planned); }, out);
       !drawn)
     return report(session, drawn.error());
   if (session.json) {

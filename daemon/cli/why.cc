@@ -48,7 +48,9 @@ int run_why(const Session& session, WhyArguments args) {
   });
   if (!evidence) return report(session, evidence.error());
   nlohmann::json out = calib::report::to_json(*evidence);
-  if (auto drawn = hand_out(args.figures, {calib::report::evidence_of(*evidence)}, out); !drawn)
+  if (auto drawn = hand_out(
+          args.figures, [&] { return std::vector{calib::report::evidence_of(*evidence)}; }, out);
+      !drawn)
     return report(session, drawn.error());
   if (session.json) {
     if (args.poses) out["figure"] = calib::report::words_json(calib::report::evidence_of(*evidence));

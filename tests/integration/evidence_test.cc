@@ -162,6 +162,11 @@ TEST_F(EvidenceOfPrograms, FiguresComeWithTheirWordsAndTheirData) {
   }
 }
 
+TEST_F(EvidenceOfPrograms, AFormulaThatIsAbsorbedWholeHasNoFigure) {
+  const json defined = ask({"define", file(), "flat", "1", "--scale", "s3.z", "--try", "--figures"});
+  EXPECT_EQ(defined.at("figures"), json::object());
+}
+
 TEST_F(EvidenceOfPrograms, FiguresThatNobodyWouldGetAreRefusedAtOnce) {
   const Finished refused = mgt({"explain", file(), "--figures"});
   EXPECT_EQ(refused.exit_code, 2);
