@@ -66,8 +66,17 @@ void Preflight::add(const ScalarReading& reading) {
   if (reading.arrival.mono >= begin_) scalar_.push_back(reading);
 }
 
+void Preflight::add(const TableReading& reading) {
+  table_ = reading;
+  listened_to_the_table_ = Duration{0};
+}
+
 void Preflight::passes(Instant now) {
-  if (last_event_) longest_standstill_ = std::max(longest_standstill_, now - *last_event_);
+  if (last_event_) {
+    const Duration between = now - *last_event_;
+    longest_standstill_ = std::max(longest_standstill_, between);
+    if (between < from_seconds(kStandstill_s)) listened_to_the_table_ += between;
+  }
   last_event_ = now;
 }
 
@@ -247,11 +256,11 @@ Check Preflight::scalar() const {
                "without it and state field_nT");
 }
 
-Check Preflight::table(const drivers::TableLimits& limits, Instant now) const {
+Check Preflight::table(const drivers::TableLimits& limits) const {
   constexpr const char* kRemedy = "check the controller's power, port and axis names; is the axis free?";
-  if (!table_ || now - table_->arrival.mono > from_seconds(kTableSilence_s))
+  if (!table_ || listened_to_the_table_ > from_seconds(kTableSilence_s))
     return check("table", false, "no position from the table",
-                 fmt::format("one every {:.0f} s", kTableSilence_s), kRemedy);
+                 fmt::format("one every {:.0f} s", kTableSilence_s), remedy(kRemedy));
   const TableAngles& a = table_->angles;
   const std::string outside = table_->referenced ? outside_limits(a, limits) : "";
   return check(
@@ -265,7 +274,7 @@ Check Preflight::table(const drivers::TableLimits& limits, Instant now) const {
                             "and on: the run begins with a reference move");
 }
 
-std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant now) const {
+std::vector<Check> Preflight::checks(const drivers::TableLimits& limits) const {
   const Statistics s = statistics();
   std::vector<Check> all;
   for (const auto& [device, health] : links_) {
@@ -280,7 +289,7 @@ std::vector<Check> Preflight::checks(const drivers::TableLimits& limits, Instant
     all.insert(all.end(), {alive(slot, s), noise(slot, s), scatter(slot, s), field(slot, s)});
   all.push_back(wiring(s));
   if (config_.scalar) all.push_back(scalar());
-  all.push_back(table(limits, now));
+  all.push_back(table(limits));
   return all;
 }
 

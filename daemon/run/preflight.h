@@ -50,7 +50,7 @@ class Preflight {
 
   void add(const EpochOrGap& item);
   void add(const ScalarReading& reading);
-  void add(const TableReading& reading) { table_ = reading; }
+  void add(const TableReading& reading);
   void add(const std::string& device, const LinkHealth& health) { links_[device] = health; }
   /// To be called at every event. A long time between two of them means that this program was not served by
   /// the computer, and readings that are missing say nothing of the cables.
@@ -58,7 +58,7 @@ class Preflight {
 
   /// length_s after the first epoch (gaps count) when every instrument was heard, else after wait_s.
   [[nodiscard]] bool complete(Instant now) const;
-  [[nodiscard]] std::vector<Check> checks(const drivers::TableLimits& limits, Instant now) const;
+  [[nodiscard]] std::vector<Check> checks(const drivers::TableLimits& limits) const;
   /// Of one sample, the largest axis; 0 when there were too few epochs.
   [[nodiscard]] double noise_nT() const;
 
@@ -84,7 +84,7 @@ class Preflight {
   [[nodiscard]] Check alive(int slot, const Statistics& s) const;
   [[nodiscard]] Check field(int slot, const Statistics& s) const;
   [[nodiscard]] Check scalar() const;
-  [[nodiscard]] Check table(const drivers::TableLimits& limits, Instant now) const;
+  [[nodiscard]] Check table(const drivers::TableLimits& limits) const;
   /// `otherwise`, unless the program itself stood still: then that comes first.
   [[nodiscard]] std::string remedy(std::string otherwise) const;
 
@@ -103,7 +103,8 @@ class Preflight {
   std::optional<TableReading> table_;
   std::map<std::string, LinkHealth> links_;
   std::optional<Instant> last_event_;
-  Duration longest_standstill_{0};  ///< of this program
+  Duration longest_standstill_{0};     ///< of this program
+  Duration listened_to_the_table_{0};  ///< since its last position, standstills of this program left out
 };
 
 [[nodiscard]] bool all_passed(const std::vector<Check>& checks);

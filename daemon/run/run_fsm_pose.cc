@@ -98,7 +98,7 @@ bool RunFsm::reached(const TableReading& reading, const TableAngles& goal) const
 void RunFsm::advance(phase::Preflighting& now) {
   now.preflight.passes(now_.mono);
   if (!now.preflight.complete(now_.mono)) return;
-  checks_ = now.preflight.checks(config_.limits, now_.mono);
+  checks_ = now.preflight.checks(config_.limits);
   preflight_passed_ = all_passed(checks_);
   checks_.push_back(identity_.check());
   act(StoreChecks{"preflight", checks_});

@@ -72,7 +72,7 @@ struct Rig {
     preflight.add("s2", health);
     return preflight;
   }
-  [[nodiscard]] std::vector<Check> checks() const { return look().checks(limits, at(5.1).mono); }
+  [[nodiscard]] std::vector<Check> checks() const { return look().checks(limits); }
 };
 
 std::string failed(const std::vector<Check>& checks) {
@@ -131,14 +131,31 @@ TEST(Preflight, ABusyComputerIsBlamedBeforeTheCables) {
   Preflight preflight = Rig{.lost = 40, .s2 = LinkState::silent}.look();
   for (int k = 0; k < 100; ++k) preflight.passes(at(0.02 * k).mono);
   const std::string cable = "check cable, port and baud rate of the sensor named";
-  EXPECT_EQ(remedy_of(preflight.checks({}, at(5.1).mono), "gaps"), cable);
+  EXPECT_EQ(remedy_of(preflight.checks({}), "gaps"), cable);
   preflight.passes(at(0.02 * 99 + 2.5).mono);
-  const auto checks = preflight.checks({}, at(5.1).mono);
+  const auto checks = preflight.checks({});
   for (const char* name : {"rate", "gaps", "link.s2"})
     EXPECT_THAT(remedy_of(checks, name),
                 ::testing::StartsWith("this computer is too busy: the daemon stood still for 2.5 s"))
         << name;
   EXPECT_THAT(remedy_of(checks, "gaps"), ::testing::EndsWith(cable));
+}
+
+TEST(Preflight, ATableIsSilentOnlyWhileTheProgramListens) {
+  Rig rig;
+  Preflight preflight = rig.look();
+  preflight.passes(at(5).mono);
+  preflight.passes(at(25).mono);  // stood still: the table could not be asked
+  EXPECT_EQ(failed(preflight.checks(rig.limits)), "");
+  int silent = 0;
+  for (; failed(preflight.checks(rig.limits)).empty() && silent < 1000; ++silent)
+    preflight.passes(at(25 + 0.1 * (silent + 1)).mono);
+  EXPECT_NEAR(0.1 * silent, 10, 0.2);
+  EXPECT_EQ(failed(preflight.checks(rig.limits)), "table");
+  EXPECT_THAT(remedy_of(preflight.checks(rig.limits), "table"),
+              ::testing::StartsWith("this computer is too busy: the daemon stood still for 20.0 s"));
+  preflight.add(TableReading{at(36), {0, 0, 0}, true, false, true});
+  EXPECT_EQ(failed(preflight.checks(rig.limits)), "");
 }
 
 TEST(Preflight, TableThatIsNotReferencedYetMayReportAnything) {
@@ -171,7 +188,7 @@ TEST(Preflight, NothingAtAllFailsWithoutInventingNumbers) {
   EXPECT_FALSE(preflight.complete(at(19).mono));
   EXPECT_TRUE(preflight.complete(at(20).mono));
   EXPECT_EQ(preflight.noise_nT(), 0);
-  const auto checks = preflight.checks({{-1, 1}, {}, {}}, at(20).mono);
+  const auto checks = preflight.checks({{-1, 1}, {}, {}});
   EXPECT_THAT(failed(checks), HasSubstr("rate"));
   for (const Check& c : checks) EXPECT_THAT(c.measured, ::testing::Not(HasSubstr("nan"))) << c.name;
 }
