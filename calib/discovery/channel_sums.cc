@@ -6,6 +6,7 @@
 
 #include "calib/criticism/tests/rows.h"
 #include "calib/effects/laws/site_gradient.h"
+#include "calib/linear/product.h"
 #include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::discovery {
@@ -139,6 +140,13 @@ Eigen::MatrixXd ChannelSums::before_projection(int c, int d, const Eigen::Matrix
   if (!correlated_) return h.col(0).asDiagonal() * g;
   if (c <= d) return h * g;
   return h.transpose() * g;
+}
+
+Eigen::MatrixXd ChannelSums::taken_up(int c, const Eigen::MatrixXd& g) const {
+  const Eigen::MatrixXd& taken = taken_[static_cast<std::size_t>(c)];
+  Eigen::MatrixXd out(taken.rows(), g.cols());
+  linear::set_product(taken, g, out);
+  return out;
 }
 
 Eigen::MatrixXd ChannelSums::product(int c, int d, const Eigen::MatrixXd& g) const {

@@ -78,9 +78,7 @@ class ChannelSums {
   /// h_cd G: columns of `g` as they are before projection, in the products with channel c.
   [[nodiscard]] Eigen::MatrixXd before_projection(int c, int d, const Eigen::MatrixXd& g) const;
   /// U_c G.
-  [[nodiscard]] Eigen::MatrixXd taken_up(int c, const Eigen::MatrixXd& g) const {
-    return taken_[static_cast<std::size_t>(c)] * g;
-  }
+  [[nodiscard]] Eigen::MatrixXd taken_up(int c, const Eigen::MatrixXd& g) const;
   /// G_cd G.
   [[nodiscard]] Eigen::MatrixXd product(int c, int d, const Eigen::MatrixXd& g) const;
 

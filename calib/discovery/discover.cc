@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/criticism/tests/judgement.h"
 #include "calib/criticism/tests/multiplicity.h"
+#include "calib/discovery/argument_noise.h"
 #include "calib/discovery/law_checks.h"
 #include "calib/discovery/law_finding.h"
 #include "calib/discovery/law_sequence.h"
@@ -53,6 +55,7 @@ Result<NoiseInForce> noise_of(const PoseTable& table, const DiscoverOptions& opt
                           .inputs = inputs,
                           .values = values,
                           .problem = out.fit.problem,
+                          .residual = out.residual,
                           .noise = out.noise};
     const ChannelSums sums(out.fit, out.residual);
     const auto round = law_round(bench, sums, false);
@@ -63,7 +66,10 @@ Result<NoiseInForce> noise_of(const PoseTable& table, const DiscoverOptions& opt
         fit_with(table, options.fit, leading->law.formulas.front().specs, inputs.channels() / 3);
     if (!with) return tl::unexpected(with.error());
     if (!*with || leading->law.formulas.front().specs.empty()) break;
-    out = noise_beside_law(fit, noise_in_force(**with, candidates, options.fit.seed));
+    const auto variance_nT2 = variance_of_angles(leading->head, fit.table_sd_rad, inputs);
+    if (!variance_nT2) return tl::unexpected(variance_nT2.error());
+    const auto weighed = beside_variance(tests::at_stated_weights(**with), *variance_nT2);
+    out = noise_beside_law(fit, noise_in_force(weighed, candidates, options.fit.seed));
   }
   return out;
 }
@@ -151,6 +157,7 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
                         .inputs = *inputs,
                         .values = *values,
                         .problem = in_force->fit.problem,
+                        .residual = in_force->residual,
                         .noise = in_force->noise,
                         .library = scored_library(*in_force, candidates),
                         .looks = options.looks};
@@ -165,7 +172,7 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   out.residual_nT = fit::joint::pose_residuals(fit->problem, fit->state).residual_nT();
   out.questions = tests::questions_asked(
       best_of_noise(LawSearch(*values, bare), bare, in_force->noise, options.draws, options.fit.seed));
-  auto found = law_sequence(bench, bare, out.questions);
+  auto found = law_sequence(bench, bare, gradient_rows(bench.problem, in_force->fit.state), out.questions);
   if (!found) return tl::unexpected(found.error());
   out.hypotheses = found->hypotheses;
   out.log10_p_left = found->log10_p_left;

@@ -29,6 +29,7 @@ struct LawFindingReason {
     random_beside,   ///< SHAPE-ONLY: 2 ln of the odds of a random offset beside the laws, above zero
     drift,           ///< SHAPE-ONLY: may_be_drift()
     library,         ///< LIBRARY: P of an effect of the library, which leads
+    few_periods,     ///< SHAPE-ONLY: periods of an oscillation that the run lasts, fewer than needed
     law_left,        ///< SHAPE-ONLY: log10 p of the search in what is left, below its limit
     scatter_left,    ///< SHAPE-ONLY: standard deviations of chi-square on an axis, above their limit
     formulas_open,   ///< LAW-SET: P of the leading formula, not above its limit

@@ -23,6 +23,8 @@ inline const std::array<std::string, 3> kAxes{"ux", "uy", "uz"};
 [[nodiscard]] std::string lag(double tau_s, const std::string& of);
 [[nodiscard]] std::vector<double> lags_s();
 
+/// Of the inner number of an oscillation, and of no other.
+inline constexpr const char* kPeriodUnit = "h";
 /// Sine and cosine of time; `times` stands before each: "", "(u/50000)*".
 [[nodiscard]] Columns period(double hours, const std::string& times);
 /// Twice the length of the run divided by 1, 2, 3 and so on, shortest first.

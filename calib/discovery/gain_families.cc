@@ -79,7 +79,7 @@ void gains_of_time(GrammarWriter& out) {
   gain({.covariates = {"t_h"},
         .symbols = 6,
         .inner = periods_h(out.inputs()),
-        .inner_unit = "h",
+        .inner_unit = kPeriodUnit,
         .columns = [u](double hours) { return period(hours, u); },
         .whole_array = false,
         .refined = true},

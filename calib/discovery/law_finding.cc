@@ -7,6 +7,7 @@
 
 #include "calib/criticism/tests/multiplicity.h"
 #include "calib/criticism/tests/wandering_alternative.h"
+#include "calib/discovery/formula_parts.h"
 #include "calib/fit/joint/single_samples.h"
 #include "calib/stats/chi_square.h"
 
@@ -21,6 +22,8 @@ constexpr double kUnsure = 0.05;
 constexpr double kOverRandom = 6;
 /// Of what an axis may have left beyond its noise, in standard deviations.
 constexpr double kLeft = 3.7;
+/// Of an oscillation in the run: what comes once is any curve.
+constexpr double kPeriods = 2;
 
 /// log10 p of a law beside the walk as the tests of the library see it; empty where those found none.
 std::optional<double> log10_p_over_walk(const NoiseInForce& in_force, const FittedLaw& head,
@@ -39,6 +42,16 @@ std::optional<double> log10_p_over_walk(const NoiseInForce& in_force, const Fitt
   const double log10_p = stats::chi_square_log10_p(std::max(0.0, ratio.R), ratio.rank) +
                          std::log10(head.place.alike(problem.channels()));
   return tests::best_of(std::min(0.0, log10_p), questions);
+}
+
+/// Periods that the run lasts, where a law is an oscillation in time.
+std::optional<double> periods_of(const FoundLaw& law, const fit::joint::JointProblem& problem) {
+  const FoundFormula& first = law.formulas.front();
+  if (!first.inner || first.inner_unit != kPeriodUnit) return std::nullopt;
+  const auto [begin, end] = std::minmax_element(
+      problem.poses.begin(), problem.poses.end(),
+      [](const fit::joint::JointPose& a, const fit::joint::JointPose& b) { return a.t_h < b.t_h; });
+  return (end->t_h - begin->t_h) / *first.inner;
 }
 
 double over_random(const FoundLaw& law) { return std::min(law.over_walk, law.over_jumps); }
@@ -98,6 +111,9 @@ JudgedLaws verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>
   const double sure = 1 - kUnsure / looks;
   if (first.formulas.front().columns.empty())
     return {LawFinding::library, {Rule::library, first.formulas.front().P, sure}};
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (const auto periods = periods_of(laws[i].law, in_force.fit.problem); periods && *periods < kPeriods)
+      return {LawFinding::shape_only, {Rule::few_periods, *periods, kPeriods, i}};
   if (stands_out(report.log10_p_left, 1))
     return {LawFinding::shape_only, {Rule::law_left, report.log10_p_left, limit_log10_p(1)}};
   if (left) return {LawFinding::shape_only, {Rule::scatter_left, report.left_sigmas, kLeft}};

@@ -72,6 +72,7 @@ Eigen::VectorXd LawInputs::Data::name(const std::string& text, int channel) cons
   }
   if (stretch != 1 && count > 0 && !of_the_field(name))
     out = (sum / count + stretch * (out.array() - sum / count)).matrix();
+  if (text == turned) out.array() += by_deg;
   return out;
 }
 

@@ -35,6 +35,10 @@ class LawInputs {
   /// Every number as far again from its mean over the run as `factor` says, but for angles and readings: to
   /// see what formulas say of conditions that did not occur.
   void stretch(double factor) { data_->stretch = factor, tables_.clear(); }
+  /// An angle ("azimuth_deg") as if the table stood elsewhere by so much; zero: as it was recorded.
+  void turn(std::string angle, double by_deg) {
+    data_->turned = std::move(angle), data_->by_deg = by_deg, tables_.clear();
+  }
 
  private:
   struct Data {
@@ -42,6 +46,8 @@ class LawInputs {
     std::vector<std::size_t> rows;  ///< in the table, of the poses that were fitted
     Eigen::MatrixXd field_nT;       ///< what a formula calls u, ux, uy, uz, as fitted
     double stretch{1};
+    std::string turned{};  ///< an angle
+    double by_deg{0};
     [[nodiscard]] Eigen::VectorXd name(const std::string& name, int channel) const;
   };
   explicit LawInputs(Data data) : data_(std::make_unique<Data>(std::move(data))) {}

@@ -15,8 +15,9 @@ constexpr std::size_t kRefined = 30;
 /// A law of the library is a name and a coefficient.
 constexpr int kLibrarySymbols = 2;
 constexpr int kRandomSymbols = 2;
-/// The same law: S differs by less than this share, or by this much.
-constexpr double kSameShare = 2e-3, kSameFall = 0.3;
+/// The same law: S differs by less than this share, or by this much; a difference of more than the last is
+/// evidence, however large S is.
+constexpr double kSameShare = 2e-3, kSameFall = 0.3, kSameAtMost = 10;
 
 double log10_p_of(const Tried& t, const criticism::tests::NoiseReference& noise, int channels) {
   const auto axes = static_cast<int>(t.place.channels(channels).size());
@@ -50,7 +51,8 @@ void add_library(const Workbench& bench, std::vector<RankedLaw>& ranked) {
       if (sum == 0) continue;
       const auto same = std::find_if(ranked.begin(), ranked.end(), [&](const RankedLaw& formula) {
         return formula.where == law.where && formula.k == law.k && formula.effect.empty() &&
-               std::abs(formula.S - law.S) < kSameFall + kSameShare * law.S && law.S > 2 * law.k + 8;
+               std::abs(formula.S - law.S) < kSameFall + std::min(kSameShare * law.S, kSameAtMost) &&
+               law.S > 2 * law.k + 8;
       });
       if (same != ranked.end()) {
         same->effect = law.effect;
@@ -73,7 +75,8 @@ void add_random(const Workbench& bench, const ChannelSums& sums, LawRound& round
   for (const Place& place : asked) {
     for (const RandomOffset kind : {RandomOffset::walk, RandomOffset::jumps}) {
       // Jumps of all axes are noise that is larger than it is said to be: that is judged beforehand.
-      if (kind == RandomOffset::jumps && place.kind == Place::Kind::array) continue;
+      const bool on_all = place.kind == Place::Kind::array || place.kind == Place::Kind::gradient;
+      if (kind == RandomOffset::jumps && on_all) continue;
       const double score = evidence_of(kind, place.channels(channels), sums, bench.problem) -
                            2 * std::log(place.alike(channels)) - 2 * kSymbolPrice * kRandomSymbols;
       double& of_kind = kind == RandomOffset::walk ? round.walk : round.jumps;

@@ -24,8 +24,9 @@ struct Workbench {
   LawInputs& inputs;
   const FormulaValues& values;
   const fit::joint::JointProblem& problem;
+  const criticism::tests::Residual& residual;  ///< the first one
   criticism::tests::NoiseReference noise;
-  std::vector<criticism::tests::ScoredFamily> library{};  ///< scored on the first residual
+  std::vector<criticism::tests::ScoredFamily> library{};  ///< scored on it, where nothing else is said
   int looks{1};                                           ///< DiscoverOptions
 };
 

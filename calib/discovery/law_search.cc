@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "calib/linear/product.h"
+
 namespace mgtd::calib::discovery {
 namespace {
 
@@ -91,6 +93,7 @@ LawSearch::OnChannel LawSearch::on_channel(int c) const {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(G.rows());
   const double of_one = one.dot(sums_.before_projection(c, c, one).col(0));
   OnChannel out{.columns = Eigen::MatrixXd::Zero(G.rows(), G.cols()),
+                .taken = Eigen::MatrixXd::Zero(U.rows(), U.cols()),
                 .rank = std::vector<int>(values_.members().size(), 0)};
   for (std::size_t i = 0; i < values_.members().size(); ++i) {
     const FormulaValues::Member& m = values_.members()[i];
@@ -106,14 +109,17 @@ LawSearch::OnChannel LawSearch::on_channel(int c) const {
     if (m.count == 1) {
       if (scale[0] == 0) continue;
       out.columns.col(m.first) = g.col(0) * scale[0];
+      out.taken.col(m.first) = u.col(0) * scale[0];
       out.rank[i] = 1;
       continue;
     }
     const Eigen::MatrixXd basis =
         combinations(scale.asDiagonal() * left * scale.asDiagonal(),
                      scale.asDiagonal() * before * scale.asDiagonal(), sums_.absorbed_share());
+    const Eigen::MatrixXd of_unit = scale.asDiagonal() * basis;
     out.rank[i] = static_cast<int>(basis.cols());
-    out.columns.middleCols(m.first, basis.cols()) = g * (scale.asDiagonal() * basis);
+    out.columns.middleCols(m.first, basis.cols()) = g * of_unit;
+    out.taken.middleCols(m.first, basis.cols()) = u * of_unit;
   }
   return out;
 }
@@ -121,8 +127,6 @@ LawSearch::OnChannel LawSearch::on_channel(int c) const {
 LawSearch::Wide LawSearch::wide(const Place& place) const {
   const std::vector<int> on = place.channels(sums_.channels());
   const auto& members = values_.members();
-  std::vector<Eigen::MatrixXd> taken;
-  for (const int c : on) taken.push_back(sums_.taken_up(c, channels_[static_cast<std::size_t>(c)].columns));
   // Of each pair of channels, for some members at a time: of all they would fill the memory.
   constexpr std::size_t kTogether = 128;
   std::vector<std::vector<Eigen::MatrixXd>> before(on.size());
@@ -156,7 +160,8 @@ LawSearch::Wide LawSearch::wide(const Place& place) const {
         block = channel.columns.middleCols(m.first, m.count).transpose() *
                 before[a][b].middleCols(m.first - begin, m.count);
         whole.block(at, static_cast<Eigen::Index>(b) * m.count, m.count, m.count) = block;
-        block -= taken[a].middleCols(m.first, m.count).transpose() * taken[b].middleCols(m.first, m.count);
+        block -= channel.taken.middleCols(m.first, m.count).transpose() *
+                 channels_[static_cast<std::size_t>(on[b])].taken.middleCols(m.first, m.count);
       }
     }
     if (columns == 0) continue;
@@ -171,7 +176,9 @@ std::vector<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> LawSearch::co
     const Scores& scores) const {
   std::vector<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> out;
   for (std::size_t c = 0; c < channels_.size(); ++c)
-    out.push_back(channels_[c].columns.cast<Scalar>().transpose() * scores[c].cast<Scalar>());
+    out.push_back(linear::transposed_product(
+        Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>(channels_[c].columns.cast<Scalar>()),
+        Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>(scores[c].cast<Scalar>())));
   return out;
 }
 

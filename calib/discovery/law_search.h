@@ -70,8 +70,8 @@ class LawSearch {
   /// Formulas on one channel: columns of each orthonormal after projection, as many as count where none is
   /// absorbed, then zeros.
   struct OnChannel {
-    Eigen::MatrixXd columns;
-    std::vector<int> rank;  ///< by member
+    Eigen::MatrixXd columns, taken;  ///< and what the model's parameters take of them
+    std::vector<int> rank;           ///< by member
   };
   /// Orthonormal combinations of a formula's columns on the channels of a place.
   struct Combination {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "calib/criticism/tests/multiplicity.h"
+#include "calib/discovery/library_beside.h"
 
 namespace mgtd::calib::discovery {
 namespace {
@@ -15,18 +16,24 @@ namespace {
 std::string name_of(std::size_t law) { return fmt::format("law{}", law + 1); }
 
 /// Each law is looked for again beside the others, until nothing changes.
-Result<void> sweep(const Workbench& bench, const ChannelSums& bare, double questions,
-                   std::vector<ChosenLaw>& laws) {
+Result<void> sweep(const Workbench& bench, const ChannelSums& bare, const Eigen::MatrixXd& of_gradient,
+                   double questions, std::vector<ChosenLaw>& laws) {
   constexpr int kSweeps = 2;
   for (int round = 0; round < kSweeps && laws.size() > 1; ++round) {
     bool changed = false;
     for (std::size_t i = 0; i < laws.size(); ++i) {
       ChannelSums sums = bare;
-      for (std::size_t j = 0; j < laws.size(); ++j)
-        if (j != i) take_out(laws[j].head, sums);
-      const auto again = law_round(bench, sums, i == 0);
+      std::vector<const FittedLaw*> others;
+      for (std::size_t j = 0; j < laws.size(); ++j) {
+        if (j == i) continue;
+        take_out(laws[j].head, sums);
+        others.push_back(&laws[j].head);
+      }
+      Workbench beside = bench;
+      if (i == 0) beside.library = library_beside(bench, others, of_gradient);
+      const auto again = law_round(beside, sums, i == 0);
       if (!again) return tl::unexpected(again.error());
-      auto better = chosen_law(bench, sums, *again, questions, name_of(i));
+      auto better = chosen_law(beside, sums, *again, questions, name_of(i));
       if (!better) return tl::unexpected(better.error());
       changed = changed || better->law.formulas.front().formula != laws[i].law.formulas.front().formula;
       laws[i] = *std::move(better);
@@ -104,7 +111,8 @@ void hold_against_random(const Models& models, std::size_t i, FoundLaw& law) {
 
 }  // namespace
 
-Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare, double questions) {
+Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare,
+                                 const Eigen::MatrixXd& of_gradient, double questions) {
   LawSequence out{.laws = {}, .left = bare};
   Models models;
   double T = 0;
@@ -129,7 +137,8 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
   const std::size_t with_random = best_random(models);
   if (models[with_random].random() > best_alone(models))
     out.laws.resize(std::max<std::size_t>(1, with_random));
-  if (const auto ok = sweep(bench, bare, questions, out.laws); !ok) return tl::unexpected(ok.error());
+  if (const auto ok = sweep(bench, bare, of_gradient, questions, out.laws); !ok)
+    return tl::unexpected(ok.error());
   for (std::size_t i = 0; i < out.laws.size(); ++i) hold_against_random(models, i, out.laws[i].law);
   out.left = bare;
   if (out.laws.front().law.stands_out)

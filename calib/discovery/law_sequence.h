@@ -29,7 +29,8 @@ struct LawSequence {
   ChannelSums left;               ///< what they leave
 };
 
+/// `of_gradient`: gradient_rows().
 [[nodiscard]] Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare,
-                                               double questions);
+                                               const Eigen::MatrixXd& of_gradient, double questions);
 
 }  // namespace mgtd::calib::discovery

@@ -78,7 +78,7 @@ double evidence_of(RandomOffset kind, const std::vector<int>& channels, const Ch
   constexpr double kFirst = 1e-2, kLast = 1e5;  // of a, in units of one over the largest g
   constexpr double kNever = -std::numeric_limits<double>::infinity();
   const Eigen::MatrixXd A = factor_of(kind, problem);
-  if (A.size() == 0 || channels.empty() || channels.back() >= sums.channels()) return kNever;
+  if (A.size() == 0 || channels.empty() || channels.back() >= sums.total()) return kNever;
   const Tridiagonal all = tridiagonal(A, channels, sums);
   const double largest = all.largest_eigenvalue();
   if (!(largest > 0)) return kNever;

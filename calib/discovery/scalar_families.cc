@@ -20,6 +20,7 @@ void curves(const Scalar& s, GrammarWriter& out) {
   out.on(s, 1, {fmt::format("abs({})", u)});
   out.on(s, 2, {u, u + "^2"});
   if (s.deciles.empty()) return;
+  out.on(s, 3, s.deciles, "", [s](double c) { return Columns{s.about(c) + "^3"}; });
   out.on(s, 2, s.deciles, "",
          [t = s.text](double c) { return Columns{fmt::format("({}>{})", t, number_text(c))}; });
   out.on(s, 2, s.deciles, "", [s](double c) { return Columns{fmt::format("max(0, {})", s.about(c))}; });
@@ -32,8 +33,8 @@ void time(GrammarWriter& out) {
   if (t == nullptr) return;
   out.on(*t, 1, {"sqrt(max(t_h, 0))"});
   out.on(*t, 2, decays_s(), "s", [](double tau) { return Columns{decay(tau)}; });
-  out.on(*t, 3, periods_h(out.inputs()), "h", [](double hours) { return period(hours, ""); }).whole_array =
-      false;
+  out.on(*t, 3, periods_h(out.inputs()), kPeriodUnit, [](double hours) { return period(hours, ""); })
+      .whole_array = false;
 }
 
 void heat(const Scalar& T, GrammarWriter& out) {

@@ -14,7 +14,10 @@ namespace {
 using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
 /// The leading dimension that BLAS takes, at least one.
-blasint lead(const Columns& A) { return static_cast<blasint>(std::max<Eigen::Index>(1, A.outerStride())); }
+template <class Matrix>
+blasint lead(const Matrix& A) {
+  return static_cast<blasint>(std::max<Eigen::Index>(1, A.outerStride()));
+}
 
 blasint size(Eigen::Index n) { return static_cast<blasint>(n); }
 
@@ -35,6 +38,14 @@ Eigen::MatrixXd gram(const Columns& A) {
 Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(A.cols(), B.cols());
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
+              A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
+  return out;
+}
+
+Eigen::MatrixXf transposed_product(const Eigen::Ref<const Eigen::MatrixXf>& A,
+                                   const Eigen::Ref<const Eigen::MatrixXf>& B) {
+  Eigen::MatrixXf out = Eigen::MatrixXf::Zero(A.cols(), B.cols());
+  cblas_sgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
   return out;
 }

@@ -14,6 +14,8 @@ void add_gram(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::MatrixXd& G);
 /// A'B; both have the same number of rows.
 [[nodiscard]] Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& A,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& B);
+[[nodiscard]] Eigen::MatrixXf transposed_product(const Eigen::Ref<const Eigen::MatrixXf>& A,
+                                                 const Eigen::Ref<const Eigen::MatrixXf>& B);
 /// C becomes A B; it has that size already.
 void set_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
                  Eigen::MatrixXd& C);

@@ -16,8 +16,8 @@ using discovery::FoundLaw;
 using Rule = discovery::LawFindingReason::Rule;
 
 std::string random_offset(const FoundLaw& law, bool jumps) {
-  return fmt::format("an offset that {} at {}", jumps ? "jumps from pose to pose" : "walks",
-                     law.random_where);
+  return jumps ? fmt::format("an offset that jumps from pose to pose at {}", law.random_where)
+               : walk_text(law);
 }
 
 bool jumps_instead(const FoundLaw& law) { return law.over_jumps < law.over_walk; }
@@ -30,6 +30,12 @@ std::string odds_text(const DiscoveryReport& r) {
 }
 
 }  // namespace
+
+std::string walk_text(const FoundLaw& law) {
+  if (law.random_where == discovery::Place{discovery::Place::Kind::gradient, 0}.name())
+    return "a gradient of the site that walks";
+  return "an offset that walks at " + law.random_where;
+}
 
 std::string_view rule_name(Rule rule) {
   switch (rule) {
@@ -51,6 +57,8 @@ std::string_view rule_name(Rule rule) {
       return "drift";
     case Rule::library:
       return "library";
+    case Rule::few_periods:
+      return "few-periods";
     case Rule::law_left:
       return "law-left";
     case Rule::scatter_left:
@@ -95,6 +103,12 @@ std::string reason_text(const DiscoveryReport& r) {
              "while, whatever its cause, looks like such a law";
     case Rule::library:
       return fmt::format("an effect of the library leads, with P {:.3f}", measured);
+    case Rule::few_periods:
+      return fmt::format(
+          "the oscillation{} passes {:.2g} of its periods in this run; a law needs {:.0f}, because what "
+          "comes "
+          "once is any curve",
+          r.laws.size() > 1 ? fmt::format(" of law {}", r.reason.law + 1) : "", measured, limit);
     case Rule::law_left:
       return fmt::format(
           "another search of what the formulas leave finds more, with p {}; a law needs p above {:.3g} there",
@@ -132,6 +146,8 @@ std::string what_next(const DiscoveryReport& r, const std::string& run,
     case Rule::drift:
       return "stay at each attitude for some seconds, come back to the first ones at the end, and compare: "
              "what drifts does not come back with the attitude";
+    case Rule::few_periods:
+      return "measure for longer, or again: a law comes back, and what passed by once does not";
     case Rule::random_beside:
     case Rule::law_left:
     case Rule::scatter_left:

@@ -10,6 +10,9 @@
 /// be done about it.
 namespace mgtd::calib::report {
 
+/// The random offset that walks and stands against a law: "an offset that walks at s3.z".
+[[nodiscard]] std::string walk_text(const discovery::FoundLaw& law);
+
 /// "random-beside", as JSON names the rule; "none" of a LAW.
 [[nodiscard]] std::string_view rule_name(discovery::LawFindingReason::Rule rule);
 /// One sentence; empty where no rule kept the verdict from being LAW.

@@ -150,8 +150,12 @@ std::string headline(const DiscoveryReport& r) {
       return r.laws.size() == 1 ? fmt::format("LAW: {} at {}.", first->formula, first->where)
                                 : fmt::format("LAW: {} formulas, each told from every other.", r.laws.size());
     case LawFinding::law_set:
-      return fmt::format("LAW-SET: {} at {}, or one of {} others that these poses do not exclude.",
-                         first->formula, first->where, law->formulas.size() + law->more - 1);
+      if (r.reason.law == 0)
+        return fmt::format("LAW-SET: {} at {}, or one of {} others that these poses do not exclude.",
+                           first->formula, first->where, law->formulas.size() + law->more - 1);
+      return fmt::format(
+          "LAW-SET: {} at {}, and beside it one of {} formulas that these poses do not exclude.",
+          first->formula, first->where, r.laws[r.reason.law].formulas.size() + r.laws[r.reason.law].more);
     case LawFinding::library:
       return fmt::format("LIBRARY: {} at {} describes it.", first->formula, first->where);
     case LawFinding::shape_only:
@@ -163,7 +167,7 @@ std::string headline(const DiscoveryReport& r) {
                            r.left_on);
       return law->over_jumps < law->over_walk
                  ? "NOISE-LIKE: jumps from pose to pose, unrelated to anything recorded."
-                 : "NOISE-LIKE: an offset that walks describes it better than any formula.";
+                 : fmt::format("NOISE-LIKE: {} describes it better than any formula.", walk_text(*law));
   }
   return {};
 }

@@ -17,8 +17,12 @@ TEST(LawRound, EndsWhenTheFitIsToldToStop) {
   fit::joint::JointProblem problem = s->fit.problem;
   std::stop_source stop;
   problem.stop = stop.get_token();
-  const Workbench bench{
-      .grammar = s->formulas, .inputs = s->inputs, .values = values, .problem = problem, .noise = {}};
+  const Workbench bench{.grammar = s->formulas,
+                        .inputs = s->inputs,
+                        .values = values,
+                        .problem = problem,
+                        .residual = s->residual,
+                        .noise = {}};
   EXPECT_TRUE(law_round(bench, s->sums, false));
   stop.request_stop();
   const auto stopped = law_round(bench, s->sums, false);

@@ -49,6 +49,24 @@ TEST(RandomOffset, AWalkIsToldFromJumps) {
   EXPECT_GT(walk, jumps + 10);
 }
 
+TEST(RandomOffset, AGradientOfTheSiteMayWalkToo) {
+  std::map<int, double> gradient;
+  double now = 0;
+  for (int k = 0; k <= 200; ++k) gradient[k] = now += 0.1 * number_of(k);
+  const auto of = [](const calib::testing::Hidden& hidden) {
+    const auto s = testing::scene({.noise_nT = 0.05, .hidden = hidden}, 5);
+    return evidence_of(RandomOffset::walk, Place{Place::Kind::gradient, 0}.channels(12), s->sums,
+                       s->fit.problem);
+  };
+  EXPECT_LT(of({}), 3);
+  // d B_z / d z of the site, seen by level and by tilted poses.
+  const double walks = of([gradient](const Pose& p, int i, int a, const Eigen::Vector3d&) {
+    const double along_x_m = i == 0 ? 0.2 : i == 2 ? -0.2 : 0;
+    return a == 0 ? gradient.at(p.number) * along_x_m * std::cos(2 * *p.azimuth_rad) : 0.0;
+  });
+  EXPECT_GT(walks, 10);
+}
+
 /// What one axis shows is in the residual of the others through the field of the pose. Counted once it makes
 /// no evidence for a walk of all.
 TEST(RandomOffset, OneAxisIsNoWalkOfAll) {

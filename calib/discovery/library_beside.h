@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "calib/discovery/law_round.h"
+
+/// Scores of the library's effects in what some laws leave: their directions are out of the columns and out
+/// of the residual, as they are for the formulas that the effects are ranked with.
+namespace mgtd::calib::discovery {
+
+/// Of bench.library, without its signatures.
+[[nodiscard]] std::vector<criticism::tests::ScoredFamily> library_beside(
+    const Workbench& bench, const std::vector<const FittedLaw*>& laws, const Eigen::MatrixXd& of_gradient);
+
+}  // namespace mgtd::calib::discovery
