@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kRuns = 2000;        ///< drawn, times looks: ten of them are the limit
 constexpr int kBestQuestions = 3;  ///< the best questions of an alternative stand for all of its questions
+constexpr double kSure = 0.99;     ///< with which a pair is told apart beyond its form
 constexpr double kShown = 0.999;   ///< a pair that is told apart better than this is not listed
 constexpr double kNothing = 1e-3;  ///< of a chi-square
 /// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
@@ -39,7 +40,7 @@ Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredF
                   family.candidate_effect->reads == families[a.family].candidate_effect->reads;
   out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, length2_a) : lambda_ab);
   if (drawn && a.L - b.L < kGone) out.p_behind = ranking.behind(b);
-  out.possible = out.p_behind >= kLost / looks || out.form_only;
+  out.possible = out.p_behind >= kLost / looks || (out.form_only && out.p_right < kSure);
   return out;
 }
 

@@ -22,11 +22,11 @@
 ///
 /// And b stays possible, however large the effect, where both laws read the same (CandidateEffect::reads) and
 /// all but a twentieth of one signature (in squares) lies within the other's on the same axes: then only the
-/// exact form of two idealised laws would decide, not their physics, and what differs is not counted in
-/// p_right. An axis' own square against the squares of the transverse axes, in one field strength, is such a
-/// pair: of square axes the two would differ by a constant. Laws that read different things differ by what
-/// was measured, and that decides: a gradient that was there from the first pose, against one that came after
-/// it.
+/// exact form of two idealised laws would decide, not their physics, and a twentieth of the signature is not
+/// counted in p_right. What the winner has beyond that twentieth decides as soon as p_right is 0.99. An axis'
+/// own square against the squares of the transverse axes, in one field strength, is such a pair: of square
+/// axes the two would differ by a constant. Laws that read different things differ by what was measured, and
+/// that decides: a gradient that was there from the first pose, against one that came after it.
 namespace mgtd::calib::criticism::tests {
 
 /// Share of a signature, in squares, inside that of another effect from which the two count as one.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -85,6 +86,29 @@ TEST(Alternatives, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
   const Counts seen = ask(Laws(0.99), 200, kRuns);
   EXPECT_EQ(seen.alone, 0);
   EXPECT_EQ(seen.in_set, kRuns);
+}
+
+/// The winner holds all of the other law and a second dependence, which the other cannot make.
+TEST(Alternatives, WhatTheWinnerHasBeyondTheFormDecides) {
+  constexpr double kSize = 200;
+  const auto possible = [&](double second) {
+    Eigen::MatrixXd both = Eigen::MatrixXd::Zero(kRows, 2);
+    both(0, 0) = both(1, 1) = 1;
+    const Eigen::VectorXd residual = kSize * both.col(0) + second * both.col(1);
+    const auto of_two = candidate_of_columns("of two", 1);
+    of_two->hypotheses.front().combine = Eigen::MatrixXd::Identity(2, 2);
+    criticism::tests::ScoredFamily wide{.candidate_effect = of_two.get(), .own = of_two};
+    wide.signatures.emplace_back(both, residual);
+    wide.score_last({});
+    wide.calibrated = wide.priced;
+    const std::vector<criticism::tests::ScoredFamily> families{
+        wide, scored(candidate_of_columns("of one", 1), both.col(0), residual)};
+    const auto alternatives = criticism::tests::alternatives_of(families, 0, 1);
+    return std::any_of(alternatives.begin(), alternatives.end(),
+                       [](const criticism::tests::Alternative& a) { return a.possible; });
+  };
+  EXPECT_TRUE(possible(0.1 * kSize)) << "a hundredth of the signature, in squares";
+  EXPECT_FALSE(possible(0.35 * kSize)) << "an eighth";
 }
 
 TEST(Alternatives, LawsThatReadDifferentThingsAreDecidedByWhatWasMeasured) {
