@@ -243,16 +243,22 @@ bool BenchRig::mount(std::string_view line, double now_s) {
 bool BenchRig::surroundings(std::string_view line, double now_s) {
   std::istringstream in{std::string(line)};
   std::string word;
-  double a = 0, b = 0;
-  if (!(in >> word >> a)) return false;
-  const bool warm = word == "warm" && in >> b && b > 0;
-  if (!warm && (word != "coil" || !(a > 0))) return false;
-  advance_all(now_s);
-  if (warm) {
-    world_.warm(a, b, now_s);
-  } else {
-    world_.set_coil(a, now_s);
+  if (!(in >> word)) return false;
+  if (word == "coil") {
+    double share = 0;
+    if (!(in >> share) || !(share > 0)) return false;
+    advance_all(now_s);
+    world_.set_coil(share, now_s);
+    return true;
   }
+  World::Heating heating{.stays = word == "heat"};
+  if ((word != "warm" && word != "heat") || !(in >> heating.degC >> heating.tau_s) || !(heating.tau_s > 0))
+    return false;
+  double after_s = 0;
+  if (in >> heating.head) in >> after_s;
+  heating.begin_s = now_s + after_s;
+  advance_all(now_s);
+  world_.heat(heating, now_s);
   return true;
 }
 

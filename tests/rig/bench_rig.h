@@ -40,8 +40,9 @@ class BenchRig {
 
   /// The array on the table, by hand: "mount AZIMUTH PITCH ROLL", deg. False: that is something else.
   bool mount(std::string_view line, double now_s);
-  /// What a hand changes around it: "warm DEGC TAU_S" (all heads), "coil SHARE" (of the site's field). False:
-  /// that is something else.
+  /// What a hand changes around it: "warm DEGC TAU_S [HEAD [AFTER_S]]" (and lets cool again; head 0: all),
+  /// "heat DEGC TAU_S [HEAD [AFTER_S]]" (and keeps warm), "coil SHARE" (of the site's field). False: that is
+  /// something else.
   bool surroundings(std::string_view line, double now_s);
 
   /// Whose plug is in the port: of fluxgate2 it may be fluxgate4.

@@ -2,13 +2,14 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace mgtd::rig {
 
 /// What a hand does to the surroundings of a rig (BenchRig::surroundings), and how long it then waits for it
 /// to have worked, on the rig's clock.
 struct Deed {
-  std::string line;
+  std::vector<std::string> lines;
   double wait_s{0};
 };
 /// The deed that a run asks for in these words; empty: not on this rig.

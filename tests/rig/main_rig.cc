@@ -46,7 +46,9 @@ struct Arguments {
   std::vector<std::string> words;
   std::vector<double> angles_deg;
   int arm{0};
-  double warm_degC{0}, warm_tau_s{0}, coil_share{1};
+  double warm_degC{0}, warm_tau_s{0}, warm_after_s{0}, coil_share{1};
+  int warm_head{0};
+  bool keep_warm{false};
   OperatorOptions hands;
   double for_s{0};
   int code{0};
@@ -270,13 +272,22 @@ void add_hands(CLI::App& app, Arguments& args) {
       ->required()
       ->check(CLI::Range(0, 16));
   CLI::App* const warm =
-      add(app, "warm", "warm the heads, and let them cool again", args,
-          [](const Arguments& a) { return ask(a, fmt::format("warm {} {}", a.warm_degC, a.warm_tau_s)); });
+      add(app, "warm", "warm the heads, and let them cool again", args, [](const Arguments& a) {
+        return ask(a, fmt::format("{} {} {} {} {}", a.keep_warm ? "heat" : "warm", a.warm_degC, a.warm_tau_s,
+                                  a.warm_head, a.warm_after_s));
+      });
   warm->add_option("DIR", args.dir, "directory of the rig")->required();
   warm->add_option("DEGC", args.warm_degC, "at the peak")->required();
   warm->add_option("TAU", args.warm_tau_s, "simulated seconds to the peak")
       ->required()
       ->check(CLI::PositiveNumber);
+  warm->add_option("--head", args.warm_head, "number of its sensor; 0 is all of them")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 16));
+  warm->add_option("--after", args.warm_after_s, "simulated seconds from now until it begins")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  warm->add_flag("--keep", args.keep_warm, "they stay warm; TAU is the time constant then");
   CLI::App* const coil = add(app, "coil", "change the site's field with a coil", args,
                              [](const Arguments& a) { return ask(a, fmt::format("coil {}", a.coil_share)); });
   coil->add_option("DIR", args.dir, "directory of the rig")->required();

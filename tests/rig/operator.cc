@@ -83,8 +83,13 @@ void Operator::wait(double simulated_s) const {
 /// Where the hands cannot do it the run ends with what it has.
 void Operator::do_deed(const std::string& text) const {
   const auto asked = deed_of(text);
-  const auto done = asked ? ask_rig(options_.dir, asked->line) : std::nullopt;
-  fmt::print("{}\n{}\n", text, done ? asked->line : "cannot be done here");
+  bool done = asked.has_value();
+  fmt::print("{}\n", text);
+  for (const std::string& line : asked ? asked->lines : std::vector<std::string>{}) {
+    done = done && ask_rig(options_.dir, line);
+    fmt::print("{}\n", line);
+  }
+  if (!done) fmt::print("cannot be done here\n");
   std::fflush(stdout);
   if (done) wait(asked->wait_s);
   static_cast<void>(say(done ? "run.resume" : "run.finish", json::object()));

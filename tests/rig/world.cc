@@ -76,15 +76,16 @@ void World::set_coil(double share, double now_s) {
   moved();
 }
 
-void World::warm(double peak_degC, double tau_s, double now_s) {
+void World::heat(const Heating& heating, double now_s) {
   follow_all(now_s);
-  warm_spells_.push_back({now_s, peak_degC, tau_s});
+  heatings_.push_back(heating);
   moved();
 }
 
-double World::WarmSpell::degC(double t_s) const {
-  const double since = (t_s - at_s) / tau_s;
-  return since > 0 ? peak_degC * since * std::exp(1 - since) : 0;
+double World::Heating::degC_of(int of_head, double t_s) const {
+  const double since = (t_s - begin_s) / tau_s;
+  if (since <= 0 || (head != 0 && head != of_head)) return 0;
+  return stays ? degC * (1 - std::exp(-since)) : degC * since * std::exp(1 - since);
 }
 
 void World::move(TableAxis which, double target_deg, double now_s) {
@@ -268,9 +269,10 @@ Eigen::Vector3d World::read_sensor(int i, double t_s) {
 double World::temperature(int sensor, double t_s) const {
   const TemperatureScript& s = scenario_.temperature;
   double out = s.start_degC + s.ramp_degC_per_h * t_s / 3600 + of_sensor(s.head_degC, at(sensor));
-  if (s.pulse_head == 0 || s.pulse_head == at(sensor) + 1)
-    out += WarmSpell{s.pulse_at_s, s.pulse_degC, s.pulse_tau_s}.degC(t_s);
-  for (const WarmSpell& spell : warm_spells_) out += spell.degC(t_s);
+  const int head = sensor + 1;
+  out +=
+      Heating{s.pulse_at_s, s.pulse_degC, s.pulse_tau_s, static_cast<int>(s.pulse_head)}.degC_of(head, t_s);
+  for (const Heating& heating : heatings_) out += heating.degC_of(head, t_s);
   return out;
 }
 

@@ -56,8 +56,15 @@ class World {
   void set_cage(const Eigen::Vector3d& field_nT, double now_s);
   /// A coil leaves this share of the site's own field.
   void set_coil(double share, double now_s);
-  /// A hand warms the heads: they rise by p s/tau exp(1 - s/tau) with s from now on.
-  void warm(double peak_degC, double tau_s, double now_s);
+  /// What a hand or a heater does to the heads, with s the time since it began: they warm and cool again by
+  /// p s/tau exp(1 - s/tau), or stay warmer, p (1 - exp(-s/tau)).
+  struct Heating {
+    double begin_s{0}, degC{0}, tau_s{1};
+    int head{0};  ///< 1 ...; 0: all
+    bool stays{false};
+    [[nodiscard]] double degC_of(int of_head, double t_s) const;
+  };
+  void heat(const Heating& heating, double now_s);
   /// Puts the array on the table in another way, the table standing.
   void remount(const Eigen::Matrix3d& table_to_platform, double now_s);
 
@@ -127,11 +134,7 @@ class World {
   std::shared_ptr<const Motion> motion_;
   std::optional<Eigen::Vector3d> cage_nT_;
   double coil_share_{1};
-  struct WarmSpell {
-    double at_s, peak_degC, tau_s;
-    [[nodiscard]] double degC(double t_s) const;
-  };
-  std::vector<WarmSpell> warm_spells_;
+  std::vector<Heating> heatings_;
   mutable Moment moment_;
   int magnet_at_{0};
 };

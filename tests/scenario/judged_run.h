@@ -19,7 +19,8 @@ class JudgedRun {
 
   VirtualDaemon daemon;
   std::vector<daemon::run::RunJudgement> judgements;
-  std::vector<std::string> deeds;  ///< as the run asked for them
+  std::vector<PoseTable> looked_at;  ///< by each judgement
+  std::vector<std::string> deeds;    ///< as the run asked for them
 
   /// From the switch on to the end. False when the instruments do not come up, or the run does not end.
   [[nodiscard]] bool run() {
@@ -45,13 +46,16 @@ class JudgedRun {
     const auto further = daemon::run::further_poses(daemon::run::judge(poses, {}, left.minutes, left.looks),
                                                     daemon.plan(), daemon.table().limits());
     judgements.push_back(further.judgement);
+    looked_at.push_back(poses);
     return further;
   }
 
   /// False: not on this rig.
   bool done(const std::string& text) {
     const auto deed = rig::deed_of(text);
-    if (!deed || !daemon.rig.surroundings(deed->line, daemon.t_s)) return false;
+    if (!deed) return false;
+    for (const std::string& line : deed->lines)
+      if (!daemon.rig.surroundings(line, daemon.t_s)) return false;
     for (const double end_s = daemon.t_s + deed->wait_s; daemon.t_s < end_s;) daemon.step();
     return true;
   }

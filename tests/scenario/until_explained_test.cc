@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include "calib/design/actions.h"
+#include "calib/design/law_actions.h"
 #include "tests/scenario/judged_run.h"
 
 namespace mgtd {
@@ -36,6 +38,21 @@ TEST(UntilExplained, ACleanRunMeasuresNothingMore) {
   EXPECT_EQ(run.judgements[0].found, "PASS");
   EXPECT_TRUE(run.deeds.empty());
   EXPECT_EQ(run.daemon.poses.poses.size(), 157U);
+}
+
+/// Whatever a run may ask a hand for with heat or a coil, the simulated hand can do.
+TEST(UntilExplained, TheHandKnowsEveryDeedOfHeatAndOfACoil) {
+  std::vector<std::string> texts;
+  for (const calib::design::Action& action : calib::design::actions()) texts.emplace_back(action.text);
+  for (const calib::design::LawAction& action : calib::design::law_actions()) texts.emplace_back(action.text);
+  int known = 0;
+  for (const std::string& text : texts) {
+    const bool heat = text.find("warm") != std::string::npos && text.find("another day") == std::string::npos;
+    const bool coil = text.find("(coil)") != std::string::npos;
+    EXPECT_EQ(rig::deed_of(text).has_value(), heat || coil) << text;
+    known += heat || coil ? 1 : 0;
+  }
+  EXPECT_GE(known, 5);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 namespace mgtd::rig {
 namespace {
 
@@ -56,6 +58,22 @@ TEST(BenchRig, EverySensorOfAnArrayHasAPort) {
   EXPECT_FALSE(rig.apply(*parse_fault("unplug fluxgate7", 7), 1).has_value());
   ASSERT_TRUE(rig.apply(*parse_fault("runaway table", 6), 1));
   EXPECT_TRUE(rig.world().moving(2));
+}
+
+TEST(BenchRig, HandsWarmOneHeadOrAllForAWhileOrForGood) {
+  BenchRig rig(talkative(), 0);
+  const auto warmer_degC = [&](int head, double t_s) {
+    return rig.world().head_degC(head, t_s) - rig.world().head_degC(head, 0);
+  };
+  ASSERT_TRUE(rig.surroundings("warm 5 90 2 100", 10));
+  EXPECT_EQ(warmer_degC(1, 109), 0);
+  EXPECT_NEAR(warmer_degC(1, 200), 5, 1e-9);
+  EXPECT_EQ(warmer_degC(0, 200), 0);
+  ASSERT_TRUE(rig.surroundings("heat 6 180", 1000));
+  EXPECT_NEAR(warmer_degC(0, 1180), 6 * (1 - std::exp(-1)), 1e-9);
+  EXPECT_NEAR(warmer_degC(3, 5000), 6, 1e-6);
+  for (const char* nonsense : {"warm", "warm 5", "warm 5 0", "heat x 3", "coil 0", "cool 5 90"})
+    EXPECT_FALSE(rig.surroundings(nonsense, 2000)) << nonsense;
 }
 
 }  // namespace
