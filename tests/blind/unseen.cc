@@ -29,7 +29,7 @@ fit::joint::JointOptions with(const std::vector<std::string>& effects) {
 }
 
 /// Of the poses of set "check", the fit frozen.
-double unseen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& options,
+double frozen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& options,
                      const fit::joint::JointFit& fit) {
   fit::joint::JointProblem problem = must(fit::joint::joint_problem(table, options, fit::PoseUse::check));
   for (fit::joint::JointPose& pose : problem.poses) {
@@ -42,25 +42,25 @@ double unseen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& opt
   return fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen).residual_nT;
 }
 
-double frozen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {
+}  // namespace
+
+double unseen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {
   fit::joint::JointOptions options = with(effects);
   options.effects = must(fit::joint::profile_search(table, options));
-  return unseen_rms_nT(table, options, must(fit::joint::fit_joint(table, options)));
+  return frozen_rms_nT(table, options, must(fit::joint::fit_joint(table, options)));
 }
-
-}  // namespace
 
 Unseen unseen(const PoseTable& table, const std::vector<std::string>& true_effects) {
   const criticism::search::ImproveReport report = must(criticism::search::improve(table, {}));
-  Unseen out{.nothing_nT = frozen_rms_nT(table, {}),
-             .oracle_nT = frozen_rms_nT(table, true_effects),
+  Unseen out{.nothing_nT = unseen_rms_nT(table, {}),
+             .oracle_nT = unseen_rms_nT(table, true_effects),
              .chi2 = report.fit.chi2,
              .dof = report.fit.dof,
              .rounds = static_cast<int>(report.rounds.size()),
              .added = {}};
   for (const calibration::CalibratedEffect& effect : report.fit.calibration.effects)
     out.added.push_back(effect.effect);
-  out.improved_nT = frozen_rms_nT(table, out.added);
+  out.improved_nT = unseen_rms_nT(table, out.added);
   return out;
 }
 

@@ -22,6 +22,10 @@ struct Unseen {
 /// Throws where a fit is refused.
 [[nodiscard]] Unseen unseen(const PoseTable& table, const std::vector<std::string>& true_effects);
 
+/// Residual of the poses of set "check", the calibration with these effects frozen, nT. Throws where a fit is
+/// refused.
+[[nodiscard]] double unseen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects);
+
 /// A law on one axis, `d` of its own uncertainties large.
 [[nodiscard]] Unseen unseen_of_law(const HiddenLaw& law, double d, int channel, std::uint64_t seed);
 

@@ -10,29 +10,44 @@
 /// Laws that stand in no library, written without the code that looks for them.
 namespace mgtd::calib::testing {
 
-/// nT on one axis of one sensor, for a size of one.
+/// The axis that laws act on: z of sensor s3.
+inline constexpr std::size_t kLawSensor = 2;
+inline constexpr int kLawAxis = 2;
+
+/// What one axis of one sensor reads more, for a size of one. `v_nT` is the field in the sensor's axes.
 using AxisLaw = std::function<double(const Pose& pose, const Eigen::Vector3d& v_nT)>;
+
+/// A run that a law is written for: the heads warm up and cool down once in its length.
+struct Weather {
+  double length_s{0};
+  /// Of a head at a time, as it is; the run records it with a scatter of 0.01 degrees.
+  [[nodiscard]] double T_degC(std::size_t sensor, double t_s) const;
+  /// Its change, degC/h.
+  [[nodiscard]] double rate_degC_per_h(std::size_t sensor, double t_s) const;
+  /// What follows it with a time constant and began in equilibrium.
+  [[nodiscard]] double lagging_T_degC(std::size_t sensor, double t_s, double tau_s) const;
+};
 
 struct UnknownLaw {
   std::string name;
   std::string truth;      ///< regular expression that the right formula matches, on s3.z
   std::string covariate;  ///< "s3_T_degC", ...
-  /// A law with numbers drawn anew; of the axis z of sensor s3.
-  std::function<AxisLaw(std::mt19937_64& rng)> draw;
+  /// A law with numbers drawn anew.
+  std::function<AxisLaw(std::mt19937_64& rng, const Weather& weather)> draw;
 };
 
-/// Those that a grammar may hold.
+/// Fourteen laws that a grammar may hold, no two alike; and some more of the same kinds.
 [[nodiscard]] const std::vector<UnknownLaw>& unknown_laws();
+[[nodiscard]] const std::vector<UnknownLaw>& further_laws();
 /// Those that nothing recorded goes with, or that are more than a formula: no law may be named.
 [[nodiscard]] const std::vector<UnknownLaw>& lawless();
 
-/// Run of hidden_run.h with motor current and battery beside it, and a law on s3.z of a length of `d`
-/// standard deviations (before the calibration takes its part of it); the law may be null.
-struct LawRun {
-  HiddenRun noise{};
-  AxisLaw law{};
-  double d{0};
-};
-[[nodiscard]] PoseTable law_run(const LawRun& run, std::uint64_t seed);
+/// A run of hidden_run.h with a motor current and a battery beside it. Unseen poses have no noise.
+[[nodiscard]] PoseTable recorded_run(const HiddenRun& run, std::uint64_t seed);
+[[nodiscard]] Weather weather_of(const PoseTable& table);
+
+/// The law at every pose of a run.
+[[nodiscard]] Eigen::VectorXd values_of(const AxisLaw& law, const PoseTable& table);
+void add(const Eigen::VectorXd& values_nT, PoseTable& table);
 
 }  // namespace mgtd::calib::testing

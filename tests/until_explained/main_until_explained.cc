@@ -13,6 +13,7 @@
 #include <random>
 #include <thread>
 
+#include "calib/poses/pose_table.h"
 #include "tests/blind/page.h"
 #include "tests/rig/effect_list.h"
 #include "tests/rig/seal.h"
@@ -44,7 +45,14 @@ Said said(const Game& game, const std::string& found) {
   return named ? Said::in_set : Said::open;
 }
 
-Game play(std::uint64_t seed) {
+/// A CSV file of every look, as mgt takes it.
+void keep(const std::vector<PoseTable>& looked_at, std::uint64_t seed, const std::string& folder) {
+  for (std::size_t look = 0; look < looked_at.size(); ++look)
+    std::ofstream(fmt::format("{}/{}-{}.csv", folder, seed, look + 1))
+        << calib::poses::format_pose_table(looked_at[look]);
+}
+
+Game play(std::uint64_t seed, const std::string& folder) {
   std::mt19937_64 random(seed);
   rig::Scenario scenario = scenario_of(fmt::format("[rig]\nparameters = \"random\"\nseed = {}\n", seed));
   scenario = rig::with_hidden(std::move(scenario), 1, random);
@@ -55,16 +63,17 @@ Game play(std::uint64_t seed) {
   JudgedRun run(scenario, kMinutes);
   if (!run.run() && run.daemon.status) out.stuck = run.daemon.status->message;
   out.judgements = run.judgements, out.deeds = run.deeds.size();
+  if (!folder.empty()) keep(run.looked_at, seed, folder);
   return out;
 }
 
-std::vector<Game> play_all(std::uint64_t first, int count) {
+std::vector<Game> play_all(std::uint64_t first, int count, const std::string& folder) {
   std::vector<Game> out(static_cast<std::size_t>(count));
   std::atomic<int> next{0};
   const auto work = [&] {
     for (int i = next++; i < count; i = next++) {
       Game& game = out[static_cast<std::size_t>(i)];
-      game = play(first + static_cast<std::uint64_t>(i));
+      game = play(first + static_cast<std::uint64_t>(i), folder);
       for (const daemon::run::RunJudgement& j : game.judgements)
         fmt::print(stderr, "{} {} ({} poses): {}; {}\n", first + static_cast<std::uint64_t>(i), game.hidden,
                    j.poses, j.found, j.next);
@@ -130,10 +139,11 @@ int main(int argc, char** argv) {
   CLI::App app{"writes docs/until-explained-benchmark.md"};
   int runs = 60;
   std::uint64_t seed = 1;
-  std::string output = "docs/until-explained-benchmark.md";
+  std::string output = "docs/until-explained-benchmark.md", folder;
   app.add_option("-o,--output", output)->capture_default_str();
   app.add_option("--runs", runs, "rigs")->capture_default_str();
   app.add_option("--seed", seed, "of the first")->capture_default_str();
+  app.add_option("--keep", folder, "existing folder for the pose tables: SEED-LOOK.csv");
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::off);
   ::testing::InitGoogleTest();
@@ -146,7 +156,7 @@ int main(int argc, char** argv) {
       "to. "
       "Shares in percent, with intervals of 95 % (Wilson).\n\n",
       runs, seed, kMinutes);
-  const std::string result = page(play_all(seed, runs));
+  const std::string result = page(play_all(seed, runs, folder));
   std::ofstream(output) << text << result;
   return 0;
 }

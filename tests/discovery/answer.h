@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "calib/discovery/discovery_report.h"
+#include "tests/discovery/unknown_law.h"
+
+/// Asks discover about runs in which the truth is known, and keeps what it said.
+namespace mgtd::calib::testing {
+
+inline constexpr double kNoise_nT = 0.05;
+
+/// What was said of one run.
+struct Answer {
+  discovery::LawFinding verdict{discovery::LawFinding::pass};
+  double log10_p{0}, P{0};
+  bool found{false};      ///< something stands out from noise
+  bool place{false};      ///< on s3.z, as is true
+  bool covariate{false};  ///< of what it is a function
+  bool first{false};      ///< the true formula leads
+  bool alike{false};      ///< or one that these poses do not tell from it
+  bool in_set{false};     ///< the true formula is in the 99 % set
+  std::size_t set{0};     ///< formulas in that
+  /// Of the error that the law makes on poses that no fit has seen, the share that the leading formula takes
+  /// away; empty where nothing was found.
+  std::optional<double> gain{};
+  std::string formula{}, reason{};
+  std::vector<std::string> effects{};  ///< of the leading formula, as --with reads them
+};
+
+/// `law`: nullptr where there is no true formula. Throws where a fit is refused.
+[[nodiscard]] Answer ask(const PoseTable& table, const UnknownLaw* law, int draws);
+
+/// A law on s3.z of which the calibration leaves `d` standard deviations, in a run with unseen poses.
+[[nodiscard]] Answer ask_of_law(const UnknownLaw& law, double d, std::uint64_t seed, int draws);
+/// The same without a true formula, and without a look at unseen poses.
+[[nodiscard]] Answer ask_of_lawless(const UnknownLaw& law, double d, std::uint64_t seed, int draws);
+
+/// `count` answers in order, made on two threads.
+template <class Make>
+std::vector<Answer> campaign(int count, const Make& make) {
+  std::vector<Answer> out(static_cast<std::size_t>(count));
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int i = next++; i < count; i = next++) out[static_cast<std::size_t>(i)] = make(i);
+  };
+  std::thread other(work);
+  work();
+  other.join();
+  return out;
+}
+
+template <class Is>
+int count_of(const std::vector<Answer>& all, const Is& is) {
+  return static_cast<int>(std::count_if(all.begin(), all.end(), is));
+}
+
+struct Extent {
+  int clean{1000};  ///< runs with nothing hidden; a quarter of each other kind of noise
+  int runs{60};     ///< of each cell
+  int draws{2000};
+  std::uint64_t first_seed{0};
+  std::string law{".*"};  ///< regular expression of the laws that are hidden
+};
+
+/// Sections of docs/discovery-benchmark.md. What is worth a second look goes to standard error.
+[[nodiscard]] std::string clean_page(const Extent& extent);
+[[nodiscard]] std::string laws_page(const Extent& extent);
+[[nodiscard]] std::string lawless_page(const Extent& extent);
+
+}  // namespace mgtd::calib::testing
