@@ -12,6 +12,7 @@
 #include "calib/effects/effect_context.h"
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_list.h"
+#include "calib/report/discovery_reason.h"
 #include "calib/report/next_report.h"
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/run/law_hypotheses.h"
@@ -41,6 +42,9 @@ std::string found_text(const RunEvidence& e) {
     if (d.verdict == calib::discovery::LawFinding::law || d.verdict == calib::discovery::LawFinding::law_set)
       out += fmt::format(": {} at {}", d.laws.front().formulas.front().formula,
                          d.laws.front().formulas.front().where);
+    if (d.verdict == calib::discovery::LawFinding::shape_only ||
+        d.verdict == calib::discovery::LawFinding::noise_like)
+      out += fmt::format(" ({})", calib::report::reason_text(d));
   }
   return out;
 }
