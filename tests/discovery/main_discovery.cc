@@ -5,8 +5,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fstream>
+#include <string>
+#include <vector>
 
-#include "tests/discovery/answer.h"
+#include "tests/discovery/pages.h"
 
 int main(int argc, char** argv) {
   using namespace mgtd::calib::testing;

@@ -6,6 +6,7 @@
 #include "tests/blind/page.h"
 #include "tests/blind/wandering_offsets.h"
 #include "tests/discovery/answer.h"
+#include "tests/discovery/pages.h"
 
 namespace mgtd::calib::testing {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "tests/blind/page.h"
 #include "tests/discovery/answer.h"
+#include "tests/discovery/pages.h"
 
 namespace mgtd::calib::testing {
 namespace {
