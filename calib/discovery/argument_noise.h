@@ -12,7 +12,7 @@
 /// Not said of temperatures, time and recorded columns: a run does not tell how good those are.
 namespace mgtd::calib::discovery {
 
-/// nT^2, poses x channels of the readings; `sd_rad` of each angle. Refuses what no expression is.
+/// nT^2, poses x channels of the readings; `sd_rad` of each angle. Refuses what is no expression.
 [[nodiscard]] Result<Eigen::MatrixXd> variance_of_angles(const FittedLaw& law, double sd_rad,
                                                          LawInputs& inputs);
 

@@ -6,8 +6,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <exception>
 #include <memory>
 #include <stop_token>
+#include <string>
+#include <type_traits>
+
+#include "proto/error.h"
 
 /// A Worker is a thread beside the live one; the daemon has one for fits and one for the disk (disk_sync.h).
 /// It gets values, gives a value back on the live thread, and owns nothing live. Jobs run one after the
@@ -26,7 +31,8 @@ class Worker {
 
   /// `job(stop_token)` runs on the worker; `done(its result)` on the live thread, unless the worker is gone
   /// by then. What is returned stops this job, begun or not; the end of the worker stops them all. A job that
-  /// is stopped still gives a result.
+  /// is stopped still gives a result. What a job throws is its result where that may be an Error: a
+  /// computation that fails in a way nobody thought of must not end the acquisition.
   template <class Job, class Done>
   std::stop_source run(Job job, Done done) {
     std::stop_source this_job;
@@ -35,7 +41,7 @@ class Worker {
                               keep = boost::asio::make_work_guard(home_)]() mutable {
       const std::stop_callback with_the_others(all, [&] { this_job.request_stop(); });
       boost::asio::post(home, [alive = std::move(alive), done = std::move(done),
-                               result = job(this_job.get_token())]() mutable {
+                               result = result_of(job, this_job.get_token())]() mutable {
         if (!alive.expired()) done(std::move(result));
       });
     });
@@ -43,6 +49,26 @@ class Worker {
   }
 
  private:
+  template <class T>
+  struct MayFail : std::false_type {};
+  template <class T>
+  struct MayFail<Result<T>> : std::true_type {};
+
+  template <class Job>
+  static auto result_of(Job& job, std::stop_token stop) {
+    using Returned = decltype(job(stop));
+    if constexpr (MayFail<Returned>::value) {
+      try {
+        return job(std::move(stop));
+      } catch (const std::exception& error) {
+        return Returned(fail(ErrorCode::internal, std::string("the computation broke off: ") + error.what(),
+                             "keep the run file and report it; what was measured is in it"));
+      }
+    } else {
+      return job(std::move(stop));
+    }
+  }
+
   boost::asio::io_context& home_;
   std::stop_source stop_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);

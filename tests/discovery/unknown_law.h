@@ -17,7 +17,7 @@ inline constexpr int kLawAxis = 2;
 /// What one axis of one sensor reads more, for a size of one. `v_nT` is the field in the sensor's axes.
 using AxisLaw = std::function<double(const Pose& pose, const Eigen::Vector3d& v_nT)>;
 
-/// A run that a law is written for: the heads warm up and cool down once in its length.
+/// Temperatures of the heads in a run of that length: they warm up and cool down once.
 struct Weather {
   double length_s{0};
   /// Of a head at a time, as it is; the run records it with a scatter of 0.01 degrees.

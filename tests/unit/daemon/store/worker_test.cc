@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,6 +42,20 @@ TEST(Worker, InputAndResultAreMovedNeverShared) {
   io.run();
   ASSERT_NE(result, nullptr);
   EXPECT_EQ(*result, 42);
+}
+
+/// A computation that fails in a way nobody thought of must not end the acquisition.
+TEST(Worker, WhatAJobThrowsIsItsError) {
+  boost::asio::io_context io(1);
+  Worker worker(io);
+  Result<int> result = 1;
+  worker.run([](std::stop_token) -> Result<int> { throw std::runtime_error("the lost thread"); },
+             [&](Result<int> got) { result = std::move(got); });
+  io.run();
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::internal);
+  EXPECT_EQ(result.error().message, "the computation broke off: the lost thread");
+  EXPECT_FALSE(result.error().remedy.empty());
 }
 
 TEST(Worker, AJobIsToldToStopWhenTheWorkerGoes) {
