@@ -4,12 +4,18 @@
 #include <cblas.h>
 
 #include <algorithm>
+#include <mutex>
 
 namespace mgtd::calib::linear {
 namespace {
 
 /// A run is judged beside the acquisition, and its digits must not depend on the number of processors.
 [[maybe_unused]] const bool kOneThread = (openblas_set_num_threads(1), true);
+
+/// The library without threads of its own hands out its buffers without a lock: two threads that call it at
+/// once may be given the same one.
+std::mutex one_at_a_time;
+using Turn = std::lock_guard<std::mutex>;
 
 using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
@@ -24,6 +30,7 @@ blasint size(Eigen::Index n) { return static_cast<blasint>(n); }
 }  // namespace
 
 void add_gram(const Columns& A, Eigen::MatrixXd& G) {
+  const Turn turn(one_at_a_time);
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, size(A.cols()), size(A.rows()), 1, A.data(), lead(A), 1,
               G.data(), lead(G));
 }
@@ -37,6 +44,7 @@ Eigen::MatrixXd gram(const Columns& A) {
 
 Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(A.cols(), B.cols());
+  const Turn turn(one_at_a_time);
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
   return out;
@@ -45,22 +53,26 @@ Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
 Eigen::MatrixXf transposed_product(const Eigen::Ref<const Eigen::MatrixXf>& A,
                                    const Eigen::Ref<const Eigen::MatrixXf>& B) {
   Eigen::MatrixXf out = Eigen::MatrixXf::Zero(A.cols(), B.cols());
+  const Turn turn(one_at_a_time);
   cblas_sgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
   return out;
 }
 
 void set_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
+  const Turn turn(one_at_a_time);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, C.data(), lead(C));
 }
 
 void subtract_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
+  const Turn turn(one_at_a_time);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), -1,
               A.data(), lead(A), B.data(), lead(B), 1, C.data(), lead(C));
 }
 
 Eigen::MatrixXd triangle_product(const Columns& L, Eigen::MatrixXd Z) {
+  const Turn turn(one_at_a_time);
   cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, size(Z.rows()),
               size(Z.cols()), 1, L.data(), lead(L), Z.data(), lead(Z));
   return Z;

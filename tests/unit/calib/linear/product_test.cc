@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 namespace mgtd::calib::linear {
 namespace {
@@ -64,6 +66,24 @@ TEST(Product, OfNothingIsNothing) {
   Eigen::MatrixXd C = B;
   subtract_product(none, Eigen::MatrixXd(0, 4), C);
   EXPECT_EQ(C, B);
+}
+
+/// OpenBLAS without threads of its own gives two callers the same buffer now and then.
+TEST(Product, TwoThreadsMayAskAtOnce) {
+  constexpr int kProducts = 100'000;
+  std::atomic<int> wrong{0};
+  const auto ask = [&](Eigen::Index rows) {
+    const Eigen::MatrixXd A = Eigen::MatrixXd::NullaryExpr(rows, 45, [](Eigen::Index i, Eigen::Index j) {
+      return std::sin(0.37 * static_cast<double>(i + 41 * j));
+    });
+    const Eigen::MatrixXd expected = A.transpose() * A;
+    for (int k = 0; k < kProducts; ++k)
+      if (!((gram(A) - expected).cwiseAbs().maxCoeff() < 1e-9)) ++wrong;
+  };
+  std::thread other(ask, 41);
+  ask(42);
+  other.join();
+  EXPECT_EQ(wrong, 0);
 }
 
 }  // namespace
