@@ -106,8 +106,7 @@ std::string reason_text(const DiscoveryReport& r) {
     case Rule::few_periods:
       return fmt::format(
           "the oscillation{} passes {:.2g} of its periods in this run; a law needs {:.0f}, because what "
-          "comes "
-          "once is any curve",
+          "comes once is any curve",
           r.laws.size() > 1 ? fmt::format(" of law {}", r.reason.law + 1) : "", measured, limit);
     case Rule::law_left:
       return fmt::format(
