@@ -61,7 +61,7 @@ void fill(const fit::joint::JointProblem& problem, const fit::joint::JointState&
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const fit::joint::JointPose& pose = problem.poses[k];
     const Eigen::Index row = row_of(problem, k);
-    fit::joint::assemble(problem, model, state, k, false, b);
+    fit::joint::assemble(problem, model, state, k, fit::joint::Blocks::rows, b);
     out.residual.segment(row, channels) = b.residual;
     out.residual[row + channels] = b.scalar.residual;
     out.nuisance.middleRows(row, channels) = b.N;
@@ -96,7 +96,7 @@ RowSource fixed_source(const fit::joint::JointProblem& problem, const fit::joint
             Eigen::Index row = 0;
             for (const Eigen::Index k : poses) {
               const auto pose = static_cast<std::size_t>(k);
-              fit::joint::assemble(problem, *model, state, pose, false, b);
+              fit::joint::assemble(problem, *model, state, pose, fit::joint::Blocks::rows, b);
               fill_fixed(problem, problem.poses[pose], b, out.middleRows(row, block));
               row += block;
             }

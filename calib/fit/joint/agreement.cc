@@ -33,7 +33,7 @@ void influence_of_poses(const JointFit& fit, Agreement& out) {
   const PoseModel model(fit.problem, fit.state);
   PoseBlocks b;
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
-    assemble(fit.problem, model, fit.state, k, false, b);
+    assemble(fit.problem, model, fit.state, k, Blocks::own, b);
     if (b.cost.total() * scale * scale < kRounding * kByNoise) continue;
     alone.poses.front() = fit.problem.poses[k];
     at.nuisances.front() = fit.state.nuisances[k];

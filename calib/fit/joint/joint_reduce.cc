@@ -80,6 +80,18 @@ struct Felt {
   }
 };
 
+/// Y L' = U, column by column: L is too small for a blocked solve to pay.
+void divide_by_factor(const Eigen::Matrix<double, Eigen::Dynamic, kNuisances>& U,
+                      const Eigen::LLT<Eigen::Matrix4d>& llt,
+                      Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, kNuisances>> Y) {
+  const Eigen::Matrix4d& L = llt.matrixLLT();
+  for (int j = 0; j < kNuisances; ++j) {
+    Y.col(j) = U.col(j);
+    for (int i = 0; i < j; ++i) Y.col(j) -= L(j, i) * Y.col(i);
+    Y.col(j) *= 1 / L(j, j);
+  }
+}
+
 /// Adds J' J and J' r of the fixed block, lower triangle, reading rows then scalar row.
 void add_fixed(const FixedSlots& slots, const PoseBlocks& b, const JointPose& pose, Felt& felt,
                Reduced& out) {
@@ -114,9 +126,10 @@ void add_fixed(const FixedSlots& slots, const PoseBlocks& b, const JointPose& po
 }  // namespace
 
 void assemble(const JointProblem& problem, const PoseModel& model, const JointState& state, std::size_t k,
-              bool with_border, PoseBlocks& out) {
+              Blocks wanted, PoseBlocks& out) {
   const JointPose& pose = problem.poses[k];
-  model.linearise(pose, state.nuisances[k], out.linear);
+  model.linearise(pose, state.nuisances[k], out.linear,
+                  wanted == Blocks::own ? Derivatives::own : Derivatives::fixed);
   out.residual = pose.weight.cwiseProduct(pose.y_nT - out.linear.y_nT);
   scalar_row(problem, state, pose, out.linear, out.scalar);
   out.N = pose.weight.asDiagonal() * out.linear.d_nuisance;
@@ -155,7 +168,7 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
     }
     if (pose.weight.isZero(0) && !known) out.H.diagonal().head<3>().array() += 1;  // nothing tells its field
   }
-  if (!with_border) return;
+  if (wanted != Blocks::border) return;
   const Eigen::Index globals = out.linear.d_global.cols();
   out.U.resize(problem.slots().sensor_block() + globals, kNuisances);
   for (int i = 0; i < problem.sensors(); ++i) {
@@ -185,13 +198,13 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
     filled = 0;
   };
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, true, b);
+    assemble(problem, model, state, k, Blocks::border, b);
     add_fixed(problem.slots(), b, problem.poses[k], felt, out);
     add_cost(b.cost, out.cost);
     b.H.diagonal() *= 1 + damping;
     const Eigen::LLT<Eigen::Matrix4d> llt(b.H);
     auto Y = batch.middleCols<kNuisances>(filled * kNuisances);
-    Y = llt.matrixL().solve(b.U.transpose()).transpose();
+    divide_by_factor(b.U, llt, Y);
     const Nuisance half = llt.matrixL().solve(b.g);
     out.g.noalias() -= Y * half;
     out.predicted_decrease += half.squaredNorm();
@@ -211,7 +224,7 @@ JointCost cost_of(const JointProblem& problem, const JointState& state) {
   const PoseModel model(problem, state);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, false, b);
+    assemble(problem, model, state, k, Blocks::own, b);
     add_cost(b.cost, out.cost);
   }
   add_priors(problem, state, out);

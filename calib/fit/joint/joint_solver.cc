@@ -17,7 +17,7 @@ void move_nuisances(const JointProblem& problem, const JointState& from, const E
   const PoseModel model(problem, from);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, from, k, false, b);
+    assemble(problem, model, from, k, Blocks::rows, b);
     const auto globals = step.tail(b.linear.d_global.cols());
     Channels moved = b.linear.d_global.lazyProduct(globals);
     for (int i = 0; i < problem.sensors(); ++i) {
@@ -107,7 +107,7 @@ void refit_nuisances(const JointProblem& problem, JointState& state) {
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     for (int i = 0; i < kSteps; ++i) {
-      assemble(problem, model, state, k, false, b);
+      assemble(problem, model, state, k, Blocks::own, b);
       const Nuisance step = b.H.llt().solve(b.g);
       state.nuisances[k] += step;
       if (step.dot(b.g) < kConverged) break;

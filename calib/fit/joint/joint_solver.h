@@ -43,9 +43,12 @@ struct PoseBlocks {
   JointCost cost;
 };
 
-/// Fills everything but U; `with_border` fills U too.
+/// How much of PoseBlocks is wanted: what the pose's own unknowns need, the derivatives by the fixed block
+/// too (linear.d_sensor, linear.d_global), or U as well. What is not wanted is left without meaning.
+enum class Blocks { own, rows, border };
+
 void assemble(const JointProblem& problem, const PoseModel& model, const JointState& state, std::size_t pose,
-              bool with_border, PoseBlocks& out);
+              Blocks wanted, PoseBlocks& out);
 
 struct Reduced {
   Eigen::MatrixXd S;  ///< information of the fixed block, nuisances eliminated; symmetric

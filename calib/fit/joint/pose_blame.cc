@@ -115,12 +115,12 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
     if (out[static_cast<std::size_t>(c)]) pose.weight[c] = 0;
   if (out[static_cast<std::size_t>(channels)]) pose.f_weight = 0;
   for (int i = 0; i < kSteps; ++i) {
-    assemble(alone_, model_, at_, 0, false, blocks_);
+    assemble(alone_, model_, at_, 0, Blocks::own, blocks_);
     const Nuisance step = blocks_.H.llt().solve(blocks_.g);
     at_.nuisances.front() += step;
     if (step.dot(blocks_.g) < kSettled) break;
   }
-  assemble(alone_, model_, at_, 0, false, blocks_);
+  assemble(alone_, model_, at_, 0, Blocks::own, blocks_);
   const Eigen::LLT<Eigen::Matrix4d> H(blocks_.H);
   Trial trial{.t = Observations::Zero(channels + 2),
               .chi2 = blocks_.cost.readings + blocks_.cost.scalar,

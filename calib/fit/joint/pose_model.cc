@@ -228,36 +228,43 @@ Eigen::RowVector3d PoseModel::reference_terms(const JointPose& pose, const Attit
   return by_u * a.R * (Eigen::Matrix3d::Identity() - u_S * u_S.transpose()) / B_S.norm();
 }
 
-void PoseModel::read(const JointPose& pose, int sensor, Field& field, PoseLinear& out) const {
+void PoseModel::read(const JointPose& pose, int sensor, Field& field, Derivatives wanted,
+                     PoseLinear& out) const {
+  const bool fixed = wanted == Derivatives::fixed;
   const auto i = static_cast<std::size_t>(sensor);
   const int row = 3 * sensor;
   const SensorGain& g = gains_[i];
   const Eigen::Vector3d v_nT = g.gain * field.b_P_nT;
   auto d_sensor = out.d_sensor.middleRows<3>(row);
-  for (std::size_t j = 0; j < kGainParameters.size(); ++j)
+  for (std::size_t j = 0; fixed && j < kGainParameters.size(); ++j)
     d_sensor.col(kGainParameters[j]) = g.d_gain[j] * field.b_P_nT;
   out.y_nT.segment<3>(row) = v_nT + state_.sensors[i].offset_nT;
   out.d_nuisance.middleRows<3>(row) = g.gain * field.d_nuisance;
   auto d_global = out.d_global.middleRows<3>(row);
   const Eigen::Index fields = of_field_;
-  d_global.leftCols(fields).noalias() = g.gain * field.d_global.leftCols(fields);
-  d_global.rightCols(globals_ - fields).setZero();
+  if (fixed) {
+    d_global.leftCols(fields).noalias() = g.gain * field.d_global.leftCols(fields);
+    d_global.rightCols(globals_ - fields).setZero();
+  }
   if (!axis_.empty()) {
     const effects::TermSum& terms = field.terms;
     axis_.sum(pose.conditions(), sensor, {v_nT.data(), 3}, state_.coefficients, field.terms);
     out.y_nT.segment<3>(row) += terms.value;
     if (!terms.d_input.isZero(0)) {  // of coefficients at zero, as those of effects that are tried
       const Eigen::Matrix3d by_v = Eigen::Matrix3d::Identity() + terms.d_input;
-      d_sensor = (by_v * d_sensor).eval();
       out.d_nuisance.middleRows<3>(row) = (by_v * out.d_nuisance.middleRows<3>(row)).eval();
-      d_global.leftCols(fields) = (by_v * d_global.leftCols(fields)).eval();
+      if (fixed) {
+        d_sensor = (by_v * d_sensor).eval();
+        d_global.leftCols(fields) = (by_v * d_global.leftCols(fields)).eval();
+      }
     }
-    d_global.rightCols(globals_ - kGlobals) += terms.d_coefficient;
+    if (fixed) d_global.rightCols(globals_ - kGlobals) += terms.d_coefficient;
   }
-  d_sensor.middleCols<3>(sensor::ix).setIdentity();
+  if (fixed) d_sensor.middleCols<3>(sensor::ix).setIdentity();
 }
 
-void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const {
+void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out,
+                          Derivatives wanted) const {
   const int sensors = static_cast<int>(gains_.size());
   out.y_nT.resize(3 * sensors);
   out.d_sensor.resize(3 * sensors, sensor::kSensorParameters);
@@ -273,7 +280,7 @@ void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseL
       field_at(pose, a, sensor, field);
       add_platform(pose, a, sensor, field);
     }
-    read(pose, sensor, field, out);
+    read(pose, sensor, field, wanted, out);
   }
 }
 

@@ -21,12 +21,18 @@ struct PoseLinear {
   Eigen::RowVectorXd f_global;
 };
 
+/// By which unknowns a pose is differentiated: its own alone (d_nuisance, f_nuisance and the rows of the
+/// scalar reference), or those of the fixed block too.
+enum class Derivatives { own, fixed };
+
 /// Holds everything that depends on the fixed block only; one is made per iteration. Keeps references to both
 /// arguments.
 class PoseModel {
  public:
   PoseModel(const JointProblem& problem, const JointState& state);
-  void linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out) const;
+  /// With Derivatives::own d_sensor and d_global of `out` are left without meaning.
+  void linearise(const JointPose& pose, const Nuisance& nuisance, PoseLinear& out,
+                 Derivatives wanted = Derivatives::fixed) const;
   /// What the axes see, C A R' b without an offset: the input of effects at level axis. No derivatives.
   [[nodiscard]] Channels axis_inputs_nT(const JointPose& pose, const Nuisance& nuisance) const;
 
@@ -47,7 +53,7 @@ class PoseModel {
   void scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const;
   [[nodiscard]] Eigen::RowVector3d reference_terms(const JointPose& pose, const Attitude& a,
                                                    const Eigen::Vector3d& B_S, PoseLinear& out) const;
-  void read(const JointPose& pose, int sensor, Field& field, PoseLinear& out) const;
+  void read(const JointPose& pose, int sensor, Field& field, Derivatives wanted, PoseLinear& out) const;
 
   const JointState& state_;
   effects::LevelTerms table_, site_, platform_, axis_, reference_;

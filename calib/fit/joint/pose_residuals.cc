@@ -79,7 +79,7 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   sums.squares = sums.freedom = calibration::AxisNoise::Zero(problem.sensors(), 3);
   out.noise_ratio.resize(problem.sensors(), 3);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, false, b);
+    assemble(problem, model, state, k, Blocks::own, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);
     const auto at = static_cast<Eigen::Index>(k);
     observe_readings(problem.poses[k], b, H, at, sums, out);

@@ -48,7 +48,7 @@ Differences from_sensors(const JointFit& fit) {
   for (std::size_t k = 0; k < alone.poses.size(); ++k) {
     if (left_out.contains(k)) continue;
     const JointPose& pose = alone.poses[k];
-    assemble(alone, model, fit.state, k, false, b);
+    assemble(alone, model, fit.state, k, Blocks::own, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);
     if (H.info() != Eigen::Success) continue;
     const Eigen::Matrix4d variance = H.solve(Eigen::Matrix4d::Identity());

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "calib/fit/consensus.h"
+#include "calib/fit/joint/single_samples.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
@@ -105,17 +106,12 @@ AllReadings all_readings(const JointProblem& problem, double f_nT) {
   return out;
 }
 
-/// The fit that starts from the poses that agree with each other; empty where they cannot be told or where
-/// nothing comes of it.
-std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings& all, double f_nT,
-                                       const FitNoise& noise, double most_left_out) {
-  // A field that is known as a vector lies in the same plane as the readings, and on no ellipsoid.
-  const auto agreeing =
-      problem.platform_reference() ? agreeing_poses(all.y_nT) : agreeing_poses(all.y_nT, all.f_nT);
-  if (!agreeing) return std::nullopt;
+/// The fit of all poses that starts from the fit of some; empty where nothing comes of it.
+std::optional<RobustFit> from_some(JointProblem& problem, const std::vector<Eigen::Index>& poses, double f_nT,
+                                   const FitNoise& noise, double most_left_out) {
   JointProblem some = problem;
   some.poses.clear();
-  for (const Eigen::Index k : *agreeing) some.poses.push_back(problem.poses[static_cast<std::size_t>(k)]);
+  for (const Eigen::Index k : poses) some.poses.push_back(problem.poses[static_cast<std::size_t>(k)]);
   auto start = joint_start(some, f_nT);
   if (!start) return std::nullopt;
   bool unsettled = false;
@@ -133,6 +129,33 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
   out->rounds += first->rounds;
   out->iterations += first->iterations;
   return *std::move(out);
+}
+
+/// The fit that starts from the poses that agree with each other; empty where they cannot be told or where
+/// nothing comes of it.
+std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings& all, double f_nT,
+                                       const FitNoise& noise, double most_left_out) {
+  // A field that is known as a vector lies in the same plane as the readings, and on no ellipsoid.
+  const auto agreeing =
+      problem.platform_reference() ? agreeing_poses(all.y_nT) : agreeing_poses(all.y_nT, all.f_nT);
+  if (!agreeing) return std::nullopt;
+  return from_some(problem, *agreeing, f_nT, noise, most_left_out);
+}
+
+/// The fit of a long recording that starts from the fit of a share of its samples, evenly spread in time, so
+/// that few iterations are made with all of them; empty where the recording is short or nothing comes of it.
+std::optional<RobustFit> from_share(JointProblem& problem, double f_nT, const FitNoise& noise,
+                                    double most_left_out) {
+  constexpr std::size_t kShare = 2000;
+  constexpr std::size_t kLong = 4 * kShare;
+  const std::size_t n = problem.poses.size();
+  if (n < kLong || !is_recording(problem)) return std::nullopt;
+  std::vector<Eigen::Index> share;
+  for (std::size_t i = 0; i < kShare; ++i) share.push_back(static_cast<Eigen::Index>(i * n / kShare));
+  JointProblem other = problem;
+  auto out = from_some(other, share, f_nT, noise, most_left_out);
+  if (out) problem = std::move(other);
+  return out;
 }
 
 /// What two fits of the same readings are compared by: minus the logarithm of their likelihood with the
@@ -199,7 +222,14 @@ Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, d
   const AllReadings all = all_readings(problem, f_nT);
   JointProblem other = problem;
   Result<RobustFit> plain = tl::unexpected(start ? Error{} : start.error());
-  if (start) plain = weighed(problem, *std::move(start), noise, Outliers(most_left_out), unsettled);
+  if (start) {
+    if (auto shared = from_share(problem, f_nT, noise, most_left_out)) {
+      shared->start = *std::move(start);
+      plain = *std::move(shared);
+    } else {
+      plain = weighed(problem, *std::move(start), noise, Outliers(most_left_out), unsettled);
+    }
+  }
   const bool suspicious = !plain || plain->outliers.any() || plain->outliers.too_many() > 0;
   if (most_left_out <= 0 || (!suspicious && !looks_spoilt(all.y_nT))) return plain;
   auto agreed = from_agreeing(other, all, f_nT, noise, most_left_out);

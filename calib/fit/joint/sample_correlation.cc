@@ -22,7 +22,7 @@ SampleCorrelation sample_correlation(const JointProblem& problem, const JointSta
   Channels e, e_before;
   double products = 0, traces = 0, squares = 0;
   for (const std::size_t k : order) {
-    assemble(problem, model, state, k, false, b);
+    assemble(problem, model, state, k, Blocks::own, b);
     const Eigen::LLT<Eigen::Matrix4d> H(b.H);
     now = -b.N * H.solve(b.N.transpose());
     now.diagonal().array() += (problem.poses[k].weight.array() > 0).cast<double>();

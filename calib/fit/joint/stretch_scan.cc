@@ -57,7 +57,7 @@ std::vector<Sums> sums_of(const JointProblem& problem, const JointState& state,
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const JointPose& pose = problem.poses[k];
-    assemble(problem, model, state, k, true, b);
+    assemble(problem, model, state, k, Blocks::border, b);
     const Eigen::MatrixXd Z = columns_of(b, pose), N = b.N;
     if (out.empty())
       out.push_back({Eigen::VectorXd::Zero(Z.cols()), Eigen::MatrixXd::Zero(Z.cols(), Z.cols()),

@@ -185,7 +185,7 @@ void for_each_followed(const JointProblem& problem, const JointState& state, con
   const PoseModel model(problem, state);
   PoseBlocks b;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, true, b);
+    assemble(problem, model, state, k, Blocks::border, b);
     use(problem.poses[k], followed(problem, problem.poses[k], b));
   }
 }

@@ -11,6 +11,7 @@
 #include "calib/calibration/apply.h"
 #include "calib/criticism/search/explain.h"
 #include "calib/effects/library/library.h"
+#include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/sample_correlation.h"
 #include "calib/report/fit_report_text.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
@@ -280,6 +281,32 @@ TEST(Recording, LongRestsMakeNothingSurer) {
   }
   EXPECT_LT(sum, 9 + band(9, kRuns));
   EXPECT_GT(sum, 2);
+}
+
+/// Its fit starts from a share of the samples, among which are gross ones.
+TEST(Recording, ALongOneIsFittedWithAllItsSamples) {
+  constexpr std::size_t kSamples = 12'000, kGrossEvery = 97;
+  const auto scenario = testing::scenario_of(
+      testing::one_sensor(), 5, "[recording]\nmotion = \"hand\"\nrate_hz = 80\nduration_s = 150\nar = 0\n");
+  PoseTable table = rig::pose_table_of(rig::simulated_recording(scenario));
+  ASSERT_GE(table.poses.size(), kSamples);
+  std::size_t gross = 0;
+  for (std::size_t k = 0; k < table.poses.size(); k += kGrossEvery, ++gross)
+    table.poses[k].y_nT[0][static_cast<int>(gross % 3)] += 500;
+  fit::joint::JointOptions options;
+  options.geometry = testing::geometry_of(testing::one_sensor());
+  const auto fit = fit::joint::fit_joint(table, options);
+  ASSERT_TRUE(fit) << fit.error().text();
+  EXPECT_EQ(fit->problem.poses.size(), table.poses.size());
+  // Across the field 500 nT change its size by two or three only.
+  EXPECT_GT(fit->outliers.size(), gross * 9 / 10);
+  for (const auto& node : fit->outliers) EXPECT_EQ(node.place % kGrossEvery, 0U);
+  const auto again = fit::joint::fit_joint(table, options, fit->state);
+  ASSERT_TRUE(again) << again.error().text();
+  const Eigen::VectorXd sd = fit->covariance.diagonal().head<sensor::kSensorParameters>().cwiseSqrt();
+  const Eigen::VectorXd moved = again->state.sensors[0].parameters() - fit->state.sensors[0].parameters();
+  EXPECT_LT((moved.array() / sd.array()).head<9>().abs().maxCoeff(), 0.05);
+  EXPECT_LT(nine_squared_errors(fitted(table, testing::one_sensor()).calibration, scenario.truth[0]), 28);
 }
 
 TEST(Recording, CleanOnesPass) {
