@@ -138,8 +138,10 @@ Eigen::MatrixXd ChannelSums::before_projection(int c, int d, const Eigen::Matrix
   const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
   const Eigen::MatrixXd& h = before_[low][high - low];
   if (!correlated_) return h.col(0).asDiagonal() * g;
-  if (c <= d) return h * g;
-  return h.transpose() * g;
+  if (c > d) return linear::transposed_product(h, g);
+  Eigen::MatrixXd out(h.rows(), g.cols());
+  linear::set_product(h, g, out);
+  return out;
 }
 
 Eigen::MatrixXd ChannelSums::taken_up(int c, const Eigen::MatrixXd& g) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -71,27 +72,35 @@ Eigen::MatrixXd leverages(Eigen::MatrixXd J) {
   return linear::Cholesky::of_unscaled(G).value().whiten_rows(std::move(J));
 }
 
-bool same_attitude(const Pose& a, const Pose& b) {
-  const auto p = a.angles(), q = b.angles();
+/// A pose of known attitude.
+struct Visit {
+  Eigen::Index pose;
+  std::optional<int> mount;
+  TableAngles angles;
+};
+
+bool same_attitude(const Visit& a, const Visit& b) {
   const auto near = [](double x, double y) {
     const double apart = std::abs(x - y);  // of nearly all pairs of poses this says it without a division
     if (apart > kSameAngle_rad && apart < 2 * std::numbers::pi - 2 * kSameAngle_rad) return false;
     return std::abs(std::remainder(x - y, 2 * std::numbers::pi)) < kSameAngle_rad;
   };
-  return p && q && a.mount == b.mount && near(p->azimuth_rad, q->azimuth_rad) &&
-         near(p->pitch_rad, q->pitch_rad) && near(p->roll_rad, q->roll_rad);
+  return near(a.angles.azimuth_rad, b.angles.azimuth_rad) && near(a.angles.pitch_rad, b.angles.pitch_rad) &&
+         near(a.angles.roll_rad, b.angles.roll_rad) && a.mount == b.mount;
 }
 
 /// Each pose with the next visit to its attitude.
 std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const fit::joint::JointProblem& problem) {
+  std::vector<Visit> visits;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    const Pose& pose = *problem.poses[k].pose;
+    if (const auto angles = pose.angles())
+      visits.push_back({static_cast<Eigen::Index>(k), pose.mount, *angles});
+  }
   std::vector<std::pair<Eigen::Index, Eigen::Index>> out;
-  const auto n = problem.poses.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      if (!same_attitude(*problem.poses[i].pose, *problem.poses[j].pose)) continue;
-      out.emplace_back(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      break;
-    }
+  for (auto a = visits.begin(); a != visits.end(); ++a) {
+    const auto b = std::find_if(a + 1, visits.end(), [&](const Visit& v) { return same_attitude(*a, v); });
+    if (b != visits.end()) out.emplace_back(a->pose, b->pose);
   }
   return out;
 }
