@@ -133,9 +133,10 @@ std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& su
     for (const LawSearch::Largest& largest : search.largest(sums.draws(count, random))) {
       const double price = std::log10(largest.alike);
       for (std::size_t i = 0; i < least.size(); ++i)
-        least[i] = std::min(least[i], noise.log10_p(largest.S[static_cast<Eigen::Index>(i)], largest.k,
-                                                    std::min(largest.axes, sums.channels())) +
-                                          price);
+        least[i] =
+            std::min(least[i], noise.log10_p(static_cast<double>(largest.S[static_cast<Eigen::Index>(i)]),
+                                             largest.k, std::min(largest.axes, sums.channels())) +
+                                   price);
     }
     out.insert(out.end(), least.begin(), least.end());
   }

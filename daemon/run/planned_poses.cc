@@ -33,10 +33,12 @@ Pose pose_of(const plan::PlannedPose& planned, double end_s, int sense, const pl
 }  // namespace
 
 drivers::TableLimits table_limits(const config::Config& config) {
-  constexpr double kPi = std::numbers::pi;
+  constexpr double kHalfTurn = std::numbers::pi;
   const auto* const table = dynamic_cast<const drivers::Turntable*>(config.table.device.get());
   if (table != nullptr) return table->limits();
-  return {.azimuth = {-kPi, kPi}, .pitch = {-kPi / 2, kPi / 2}, .roll = {-kPi, kPi}};
+  return {.azimuth = {-kHalfTurn, kHalfTurn},
+          .pitch = {-kHalfTurn / 2, kHalfTurn / 2},
+          .roll = {-kHalfTurn, kHalfTurn}};
 }
 
 plan::PlanOptions plan_options(const config::Config& config) {

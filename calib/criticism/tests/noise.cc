@@ -222,9 +222,11 @@ std::optional<PureError> pure_error(const fit::joint::JointFit& fit, double chi2
   const Fitted f = fitted(problem, state, false);
   PureError out{.pairs = static_cast<int>(pairs.size())};
   double squares = 0, expected = 0;
-  for (const auto& [u, v] : pairs) {
+  for (const auto& pair : pairs) {
+    const auto u = pair.first, v = pair.second;
     const auto a = static_cast<std::size_t>(u), b = static_cast<std::size_t>(v);
-    const auto [by_u, by_v] = in_common_units(problem.poses[a].weight, problem.poses[b].weight);
+    const auto units = in_common_units(problem.poses[a].weight, problem.poses[b].weight);
+    const auto &by_u = units.first, &by_v = units.second;
     sensor::over_channels(by_u.size(), [&](auto n) {
       squares +=
           (by_u.head(n).cwiseProduct(f.e.col(u).head(n)) - by_v.head(n).cwiseProduct(f.e.col(v).head(n)))

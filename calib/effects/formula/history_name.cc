@@ -10,17 +10,17 @@
 namespace mgtd::calib::effects::formula {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoHistory = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> previous(std::span<const double> of) {
-  std::vector<double> out(of.size(), kNone);
+  std::vector<double> out(of.size(), kNoHistory);
   for (std::size_t k = 1; k < of.size(); ++k) out[k] = of[k - 1];
   return out;
 }
 
 /// Exact for an input that goes straight from pose to pose.
 std::vector<double> low_pass(std::span<const double> t_h, std::span<const double> of, double tau_h) {
-  std::vector<double> out(of.size(), kNone);
+  std::vector<double> out(of.size(), kNoHistory);
   for (std::size_t k = 0; k < of.size(); ++k) {
     if (k == 0 || std::isnan(out[k - 1]) || std::isnan(of[k - 1])) {
       out[k] = of[k];
@@ -39,7 +39,7 @@ std::vector<double> low_pass(std::span<const double> t_h, std::span<const double
 
 std::vector<double> slope_around(std::span<const double> t_h, std::span<const double> of) {
   constexpr std::size_t kBeside = 4;
-  std::vector<double> out(of.size(), kNone);
+  std::vector<double> out(of.size(), kNoHistory);
   for (std::size_t k = 0; k < of.size(); ++k) {
     const std::size_t first = k < kBeside ? 0 : k - kBeside, last = std::min(of.size(), k + kBeside + 1);
     const auto n = static_cast<double>(last - first);

@@ -7,6 +7,11 @@
 #include "calib/effects/laws/run_memory.h"
 
 namespace mgtd::calib::effects::formula {
+namespace {
+
+using Source = FormulaName::Source;
+
+}  // namespace
 
 Result<RunValues> RunValues::of(const EffectContext& context) {
   auto memory = laws::run_memory(context);
@@ -20,7 +25,6 @@ Result<RunValues> RunValues::of(const EffectContext& context) {
 }
 
 std::vector<double> RunValues::of(const FormulaName& name, int sensor, int axis) const {
-  using Source = FormulaName::Source;
   if (name.source == Source::history) {
     const auto looks_back = history_name(name.name);
     return history(*looks_back, t_h_, of(looks_back->of, sensor, axis));

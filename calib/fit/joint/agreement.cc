@@ -62,7 +62,7 @@ Scatter scatter_of(const JointFit& fit) {
   for (int c = 0; c < fit.problem.channels(); ++c) {
     std::vector<double> misfits;
     for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
-      const double t = residuals.t(c, static_cast<Eigen::Index>(k));
+      const auto t = static_cast<double>(residuals.t(c, static_cast<Eigen::Index>(k)));
       if (t > 0) misfits.push_back(t / fit.problem.poses[k].weight[c]);
     }
     if (misfits.empty()) continue;

@@ -69,7 +69,7 @@ BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows
     std::vector<double> values;
     for (Eigen::Index k = 0; k < residuals.t.cols(); ++k) {
       if (is_out(k, row)) values.push_back(kBeyond);
-      if (residuals.t(row, k) > 0) values.push_back(residuals.t(row, k));
+      if (residuals.t(row, k) > 0) values.push_back(static_cast<double>(residuals.t(row, k)));
     }
     const double spread = stats::kMadToSd * stats::median(values);
     if ((spread > 1 || (spread > 0 && spread < kOverstated)) && std::isfinite(spread))

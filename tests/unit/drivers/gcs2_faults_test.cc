@@ -255,7 +255,8 @@ TEST_F(Gcs2DriverTest, AMissingAxisFailsWithWhatIsThere) {
 }
 
 TEST_F(Gcs2DriverTest, AnotherControllerThanTheStatedOneIsRefused) {
-  for (const auto& [stated, state] : {std::pair{"1", LinkState::live}, std::pair{"2", LinkState::failed}}) {
+  for (const LinkState state : {LinkState::live, LinkState::failed}) {
+    const std::string stated = state == LinkState::live ? "1" : "2";
     Gcs2Settings wanted = settings();
     wanted.serial = stated;
     Gcs2Driver device(wanted);

@@ -66,7 +66,7 @@ class NoAllocation : public ::testing::Test {
 
 TEST_F(NoAllocation, WhatIsAllocatedIsCounted) {
   const std::size_t before = allocations;
-  const auto something = std::make_unique<double>(1);
+  static const auto something = std::make_unique<double>(1);  // a compiler may leave out a local one
   const Eigen::VectorXd more = Eigen::VectorXd::Constant(100, *something);
   EXPECT_EQ(more[0], 1);
   EXPECT_EQ(allocations, before + 2);

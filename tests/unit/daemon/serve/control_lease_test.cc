@@ -9,8 +9,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr ControlPeer kAnna{.connection = 1, .pid = 4242, .uid = 1000};
-constexpr ControlPeer kBert{.connection = 2, .pid = 5353, .uid = 1001};
+const ControlPeer kAnna{.connection = 1, .pid = 4242, .uid = 1000};
+const ControlPeer kBert{.connection = 2, .pid = 5353, .uid = 1001};
 
 Stamp at(double s) {
   return {Instant{} + from_seconds(100 + s), WallTime{1'795'255'200'000'000'000 + from_seconds(s).count()}};

@@ -9,6 +9,8 @@
 namespace mgtd::daemon::serve {
 namespace {
 
+using Json = nlohmann::json;
+
 TEST_F(StreamServerTest, ABadLineIsAnsweredAndTheConnectionStays) {
   start();
   LinePeer peer = connect();

@@ -16,7 +16,6 @@
 /// A stream server and clients of it on one loop.
 namespace mgtd::daemon::serve {
 
-using Json = nlohmann::json;
 using mgtd::testing::LinePeer;
 using ::testing::HasSubstr;
 
@@ -77,7 +76,7 @@ class StreamServerTest : public ::testing::Test {
   static std::vector<std::uint64_t> seqs(const LinePeer& peer) {
     std::vector<std::uint64_t> out;
     for (const std::string& line : peer.lines) {
-      const Json object = Json::parse(line);
+      const nlohmann::json object = nlohmann::json::parse(line);
       if (object["class"] == "TENSOR") out.push_back(object["seq"].get<std::uint64_t>());
     }
     return out;
@@ -92,7 +91,7 @@ class StreamServerTest : public ::testing::Test {
 /// Every epoch from `next` on, once, as a sample or in a gap; gives the one after the last.
 inline std::uint64_t expect_whole(const LinePeer& peer, std::uint64_t next) {
   for (const std::string& line : peer.lines) {
-    const Json object = Json::parse(line);
+    const nlohmann::json object = nlohmann::json::parse(line);
     const bool is_gap = object["class"] == "GAP";
     if (!is_gap && object["class"] != "TENSOR") continue;
     EXPECT_EQ(object[is_gap ? "from_seq" : "seq"], next) << line;
