@@ -33,8 +33,10 @@ std::vector<Eigen::Vector3d> fields() {
   std::mt19937_64 random(4242);
   std::normal_distribution<double> normal;
   std::vector<Eigen::Vector3d> out;
-  for (int k = 0; k < kCount; ++k)
-    out.push_back(kField_nT * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized());
+  for (int k = 0; k < kCount; ++k) {
+    const double z = normal(random), y = normal(random), x = normal(random);
+    out.push_back(kField_nT * Eigen::Vector3d(x, y, z).normalized());
+  }
   return out;
 }
 

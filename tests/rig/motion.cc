@@ -122,7 +122,8 @@ std::vector<Leg> legs(std::mt19937_64& random, double length_s) {
       out.push_back({.length_s = 3 * kSwing_s, .roll_deg = 10});
       out.push_back({.length_s = 3 * kSwing_s, .pitch_deg = 5});
       out.push_back({.length_s = 3 * kSwing_s, .yaw_deg = 5});
-      out.push_back(turn(sense * (80 + 20 * unit(random)), 25 + 10 * unit(random)));
+      const double bank_deg = 25 + 10 * unit(random);
+      out.push_back(turn(sense * (80 + 20 * unit(random)), bank_deg));
     }
     out.push_back(turn(-sense * 360, 15));
     for (std::size_t k = before; k < out.size(); ++k) t_s += out[k].length_s;

@@ -2,6 +2,8 @@
 #include "tests/rig/truth.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -21,9 +23,10 @@ RigTruth random_rig(std::uint64_t seed, std::size_t sensors) {
   std::uniform_real_distribution<double> unit(-1, 1);
   RigTruth rig(sensors);
   for (SensorTruth& s : rig) {
-    s = sensor(3 * unit(random), 3 * unit(random), 3 * unit(random), 1 + 0.05 * unit(random),
-               1 + 0.05 * unit(random), 1 + 0.05 * unit(random), 400 * unit(random), 400 * unit(random),
-               400 * unit(random), 3 * unit(random), 3 * unit(random), 3 * unit(random));
+    std::array<double, 12> d{};  // drawn from the last to the first: what a seed makes stays as it was
+    std::generate(d.rbegin(), d.rend(), [&] { return unit(random); });
+    s = sensor(3 * d[0], 3 * d[1], 3 * d[2], 1 + 0.05 * d[3], 1 + 0.05 * d[4], 1 + 0.05 * d[5], 400 * d[6],
+               400 * d[7], 400 * d[8], 3 * d[9], 3 * d[10], 3 * d[11]);
   }
   return rig;
 }
