@@ -252,6 +252,27 @@ Result<void> RunFile::append_model_step(const ModelStep& step) {
   });
 }
 
+namespace {
+
+/// The way of the table on absolute time, as a run keeps it; empty where no pose ties t_s to that.
+std::vector<TableReading> path_to_keep(const PoseTable& table) {
+  std::vector<TableReading> out;
+  const auto tied = std::find_if(table.poses.begin(), table.poses.end(),
+                                 [](const Pose& p) { return p.t_utc.has_value() && p.t_s.has_value(); });
+  if (tied == table.poses.end()) return out;
+  for (const PathPoint& point : table.path) {
+    const WallTime wall{tied->t_utc->ns + from_seconds(point.t_s - *tied->t_s).count()};
+    out.push_back({.arrival = {.mono = Instant{from_seconds(point.t_s)}, .wall = wall},
+                   .angles = point.angles,
+                   .referenced = true,
+                   .moving = true,
+                   .on_target = false});
+  }
+  return out;
+}
+
+}  // namespace
+
 Result<void> import_poses(const PoseTable& table, const std::filesystem::path& path, RunHeader header) {
   if (std::filesystem::exists(path)) return tl::unexpected(already_there(path));
   if (header.source.empty()) header.source = table.source;
@@ -260,6 +281,7 @@ Result<void> import_poses(const PoseTable& table, const std::filesystem::path& p
     auto file = RunFile::create(draft, header);
     if (!file) return tl::unexpected(file.error());
     if (auto ok = file->append_poses(table.poses); !ok) return ok;
+    if (auto ok = file->append_path(path_to_keep(table)); !ok) return ok;
     return file->set_state(RunState::done, fmt::format("imported from {}", header.source));
   }();
   if (made) made = publish(draft, path);

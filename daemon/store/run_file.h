@@ -93,7 +93,8 @@ class RunFile {
   RunHeader header_;
 };
 
-/// A pose table as a run file: state done, source named in the header. Nothing is left behind on failure.
+/// A pose table as a run file, with the way of the table: state done, source named in the header. Nothing is
+/// left behind on failure.
 [[nodiscard]] Result<void> import_poses(const PoseTable& table, const std::filesystem::path& path,
                                         RunHeader header);
 

@@ -13,7 +13,7 @@
 #include <random>
 #include <thread>
 
-#include "calib/poses/pose_table.h"
+#include "daemon/store/run_file.h"
 #include "tests/blind/page.h"
 #include "tests/rig/effect_list.h"
 #include "tests/rig/seal.h"
@@ -45,11 +45,13 @@ Said said(const Game& game, const std::string& found) {
   return named ? Said::in_set : Said::open;
 }
 
-/// A CSV file of every look, as mgt takes it.
+/// A run file of every look, as mgt takes it.
 void keep(const std::vector<PoseTable>& looked_at, std::uint64_t seed, const std::string& folder) {
-  for (std::size_t look = 0; look < looked_at.size(); ++look)
-    std::ofstream(fmt::format("{}/{}-{}.csv", folder, seed, look + 1))
-        << calib::poses::format_pose_table(looked_at[look]);
+  for (std::size_t look = 0; look < looked_at.size(); ++look) {
+    const auto kept = daemon::store::import_poses(looked_at[look],
+                                                  fmt::format("{}/{}-{}.mgtrun", folder, seed, look + 1), {});
+    if (!kept) fmt::print(stderr, "{}\n", kept.error().text());
+  }
 }
 
 Game play(std::uint64_t seed, const std::string& folder) {
@@ -143,7 +145,7 @@ int main(int argc, char** argv) {
   app.add_option("-o,--output", output)->capture_default_str();
   app.add_option("--runs", runs, "rigs")->capture_default_str();
   app.add_option("--seed", seed, "of the first")->capture_default_str();
-  app.add_option("--keep", folder, "existing folder for the pose tables: SEED-LOOK.csv");
+  app.add_option("--keep", folder, "existing folder for the runs: SEED-LOOK.mgtrun");
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::off);
   ::testing::InitGoogleTest();

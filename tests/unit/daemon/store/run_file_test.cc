@@ -279,6 +279,17 @@ TEST(RunFile, ImportIsAllOrNothing) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
 }
 
+TEST(RunFile, AnImportKeepsTheWayOfTheTable) {
+  TempDir dir;
+  const PoseTable table{
+      {full_pose(1), full_pose(2)}, "poses.csv", {{0.5, {0.1, 0, 0}}, {0.75, {0.2, 0.3, 0}}}};
+  ASSERT_TRUE(import_poses(table, dir / "a.mgtrun", {}));
+  const PoseTable read = read_run(dir / "a.mgtrun").value().table;
+  ASSERT_EQ(read.path.size(), 2U);
+  EXPECT_NEAR(read.path[1].t_s, 0.75, 1e-9);
+  EXPECT_EQ(read.path[1].angles, table.path[1].angles);
+}
+
 TEST(PoseSource, TellsCsvFromRunFileByContent) {
   TempDir dir;
   std::ofstream(dir / "bad.csv") << "pose,set\n1,standard\n";
