@@ -1,41 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/run_memory.h"
 
-#include <Eigen/QR>
+#include <algorithm>
 #include <optional>
+#include <span>
 
+#include "calib/effects/laws/readings_by_angles.h"
+#include "calib/poses/table_path.h"
 #include "calib/sensor/channels.h"
-#include "calib/sensor/sensor_equations.h"
 #include "calib/sensor/sensor_start.h"
 
 namespace mgtd::calib::effects::laws {
 namespace {
 
-constexpr int kElements = 10;  // of the rotation, and a constant
+constexpr int kParts = 4;  // of the time between two readings of the table, where a field turns
 
-Eigen::RowVectorXd elements(const TableAngles& a) {
-  const Eigen::Matrix3d R = sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
-  Eigen::RowVectorXd row(kElements);
-  row << R.reshaped().transpose(), 1;
-  return row;
+/// The way with points between the readings of the table before and after each at which a sensor's reading
+/// turns: there the field may have gone further than at any of them.
+std::vector<PathPoint> with_turns(std::span<const PathPoint> way, const ReadingsByAngles& by_angles) {
+  std::vector<bool> turns(way.size() + 1);  // between k - 1 and k
+  Eigen::RowVectorXd y, before;
+  Eigen::ArrayXd step, step_before;
+  for (std::size_t k = 0; k < way.size(); ++k) {
+    y = by_angles.at(way[k].angles);
+    if (k > 0) step = (y - before).transpose();
+    if (k > 1 && (step * step_before < 0).any()) turns[k - 1] = turns[k] = true;
+    before = y, step_before = step;
+  }
+  const poses::TablePath path(way);
+  std::vector<PathPoint> out;
+  for (std::size_t k = 0; k < way.size(); ++k) {
+    for (int i = 1; turns[k] && i < kParts; ++i) {
+      const double t_s = way[k - 1].t_s + (way[k].t_s - way[k - 1].t_s) * i / kParts;
+      if (const auto angles = path.at(t_s)) out.push_back({t_s, *angles});
+    }
+    out.push_back(way[k]);
+  }
+  return out;
 }
 
-/// Readings by the angles of the table; empty where too few poses have angles.
-std::optional<Eigen::MatrixXd> readings_by_angles(const PoseTable& table) {
-  std::vector<const Pose*> known;
-  for (const Pose& pose : table.poses) {
-    if (pose.angles()) known.push_back(&pose);
+/// Angles that pass from how far the table was off them at the dwell before to how far it is after the way.
+void deviate(std::vector<PathPoint>& way, const Eigen::Vector3d& before_rad,
+             const Eigen::Vector3d& after_rad) {
+  if (way.empty()) return;
+  const double begin_s = way.front().t_s, took_s = way.back().t_s - begin_s;
+  for (PathPoint& point : way) {
+    const double share = took_s > 0 ? (point.t_s - begin_s) / took_s : 1;
+    point.angles = deviating(point.angles, before_rad + share * (after_rad - before_rad));
   }
-  if (known.size() <= kElements) return std::nullopt;
-  const auto n = static_cast<Eigen::Index>(known.size());
-  Eigen::MatrixXd A(n, kElements), y(n, 3 * static_cast<Eigen::Index>(table.poses.front().y_nT.size()));
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Pose& pose = *known[static_cast<std::size_t>(k)];
-    A.row(k) = elements(*pose.angles());
-    for (std::size_t i = 0; i < pose.y_nT.size(); ++i)
-      y.row(k).segment<3>(3 * static_cast<Eigen::Index>(i)) = pose.y_nT[i];
-  }
-  return A.completeOrthogonalDecomposition().solve(y);
 }
 
 SensorReadings offsets_of(const PoseTable& table) {
@@ -54,6 +66,13 @@ SensorReadings offsets_of(const PoseTable& table) {
   return out;
 }
 
+SensorReadings by_sensor(const Eigen::RowVectorXd& y) {
+  SensorReadings out(static_cast<std::size_t>(y.size() / 3));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = y.segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
+  return out;
+}
+
 SensorReadings less(const SensorReadings& y_nT, const SensorReadings& offset_nT) {
   SensorReadings out(y_nT.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = y_nT[i] - offset_nT[i];
@@ -67,20 +86,26 @@ Result<std::vector<RememberedPose>> run_memory(const EffectContext& context) {
     return fail(ErrorCode::refused, "an effect with a memory needs the poses before each pose");
   const PoseTable& table = *context.table;
   const SensorReadings offset_nT = context.offset_nT ? *context.offset_nT : offsets_of(table);
-  std::optional<Eigen::MatrixXd> by_angles;
-  if (!table.path.empty()) by_angles = readings_by_angles(table);
+  std::optional<ReadingsByAngles> by_angles;
+  if (!table.path.empty()) by_angles = ReadingsByAngles::of(table);
   std::vector<RememberedPose> out;
   auto point = table.path.begin();
-  for (const Pose& pose : table.poses) {
+  Eigen::Vector3d before_rad = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < table.poses.size(); ++k) {
+    const Pose& pose = table.poses[k];
     RememberedPose remembered{
         .pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}, .way_s = {}};
-    for (; by_angles && pose.t_s && point != table.path.end() && point->t_s < *pose.t_s; ++point) {
-      const Eigen::RowVectorXd y = elements(point->angles) * *by_angles;
-      SensorReadings readings(offset_nT.size());
-      for (std::size_t i = 0; i < readings.size(); ++i)
-        readings[i] = y.segment<3>(3 * static_cast<Eigen::Index>(i)).transpose();
-      remembered.on_the_way.push_back(less(readings, offset_nT));
-      remembered.way_s.push_back(point->t_s);
+    if (by_angles && pose.t_s) {
+      const auto begin = point;
+      point = std::find_if(begin, table.path.end(), [&](const PathPoint& p) { return !(p.t_s < *pose.t_s); });
+      std::vector<PathPoint> way = with_turns({begin, point}, *by_angles);
+      const Eigen::Vector3d after_rad = by_angles->deviation_rad(k).value_or(before_rad);
+      deviate(way, before_rad, after_rad);
+      for (const PathPoint& p : way) {
+        remembered.on_the_way.push_back(less(by_sensor(by_angles->at(p.angles)), offset_nT));
+        remembered.way_s.push_back(p.t_s);
+      }
+      before_rad = after_rad;
     }
     out.push_back(std::move(remembered));
   }

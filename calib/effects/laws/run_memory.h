@@ -11,8 +11,10 @@
 /// Reconstructs what the sensors saw before each pose of a run, for effects with a memory.
 ///
 ///     at a dwell        v = reading - offset
-///     on the way        v = L(R) with L the linear map from the nine elements of the table's rotation to the
-///                       readings, fitted to the dwells; only where the run kept the path of the table
+///     on the way        v = y(angles) - offset by readings_by_angles.h; only where the run kept the path of
+///                       the table. Where a reading turns, the path is followed between its own points
+///                       (table_path.h), and the angles pass from how far the table stood off them at the
+///                       dwell before to how far it stands off them at the pose
 ///
 /// Offsets are those of the context, else of each sensor by itself (sensor_start.h): good to some nT, which
 /// is 1e-4 of the field that a memory is about.

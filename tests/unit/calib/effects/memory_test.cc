@@ -5,6 +5,7 @@
 #include "calib/effects/library/library.h"
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/profile_search.h"
+#include "tests/blind/planted.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
 namespace mgtd::calib::effects {
@@ -40,6 +41,25 @@ TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
   EXPECT_EQ(path.at(from.number)[0], dwells.at(from.number)[0]);
 }
 
+fit::joint::JointOptions options_with(const char* spec) {
+  fit::joint::JointOptions options;
+  options.effects = {*library::make_effect(spec)};
+  return options;
+}
+
+/// The table stands a tenth of a degree off its angles, and 5 nT in a play of 0.1 F0 follow the field to 0.1
+/// nT for each of them. How far it is off between two poses is known from what it is off at both.
+TEST(Hysteresis, IsFollowedAlongTheWayOfATableThatIsNotQuiteAtItsAngles) {
+  constexpr std::uint64_t kSeed = 8;
+  testing::Stage stage = testing::full_stage(kSeed);
+  stage.design = rig::run_of_157({}, kSeed);
+  const PoseTable run = testing::planted_run(stage, {{"axis.hysteresis", "s1.y", {5, 0.1}, {}}}, kSeed);
+  ASSERT_FALSE(run.path.empty());
+  const auto fit = fit::joint::fit_joint(run, options_with("axis.hysteresis@s1.y,w=0.1"));
+  ASSERT_TRUE(fit) << fit.error().text();
+  EXPECT_LT(fit->chi2 / fit->dof, 1.2);
+}
+
 testing::Injection hysteresis_of(double h_nT, double w) {
   const auto p = std::make_shared<double>(0);
   return {.axis = [=](const Pose&, int sensor, int axis, const Eigen::Vector3d& v,
@@ -50,12 +70,6 @@ testing::Injection hysteresis_of(double h_nT, double w) {
     *p = std::max(x - w, std::min(x + w, *p));
     return h_nT * (*p - x) / w;
   }};
-}
-
-fit::joint::JointOptions options_with(const char* spec) {
-  fit::joint::JointOptions options;
-  options.effects = {*library::make_effect(spec)};
-  return options;
 }
 
 TEST(Hysteresis, IsLeftOutWhereTheReadingsBeforeAreUnknown) {
