@@ -107,13 +107,20 @@ bool possible_in(const std::vector<tests::Alternative>& alternatives, const std:
   });
 }
 
-/// Marks the alternatives that a second look does not find possible any more.
+/// Takes the alternatives that a second look does not find possible any more for what it says of them; those
+/// that it tells apart are alternatives no more.
 void exclude(const std::vector<tests::Alternative>& again, Round& round) {
-  for (tests::Alternative& alternative : round.added.alternatives) {
-    if (!alternative.possible || possible_in(again, alternative.effect)) continue;
-    alternative.possible = false;
+  auto& alternatives = round.added.alternatives;
+  std::erase_if(alternatives, [&](tests::Alternative& alternative) {
+    if (!alternative.possible || possible_in(again, alternative.effect)) return false;
     std::erase(round.possible, alternative.effect);
-  }
+    const auto seen = std::find_if(again.begin(), again.end(), [&](const tests::Alternative& other) {
+      return other.effect == alternative.effect;
+    });
+    if (seen == again.end()) return true;
+    alternative = *seen;
+    return false;
+  });
 }
 
 /// Whether the model holds all that the step would add.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "calib/criticism/tests/alternative_ranking.h"
+#include "calib/criticism/tests/detectable.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -15,8 +16,18 @@ constexpr int kBestQuestions = 3;  ///< the best questions of an alternative sta
 constexpr double kSure = 0.99;     ///< with which a pair is told apart beyond its form
 constexpr double kShown = 0.999;   ///< a pair that is told apart better than this is not listed
 constexpr double kNothing = 1e-3;  ///< of a chi-square
+/// Coefficients more than those of the winner: by chance they would hardly be what the winner makes them.
+constexpr int kFreer = 3;
 /// Behind the winner; to fall back so far a true one needs noise of four standard deviations.
 constexpr double kGone = 16;
+
+/// How many coefficients of a question would stand out if they were as large as the largest that was found.
+int would_be_seen(const ScoredFamily& family, const Score& score) {
+  const OneStep step =
+      one_step(family.signatures[score.variant], family.candidate_effect->hypotheses[score.hypothesis]);
+  const double largest = step.value.cwiseAbs().maxCoeff();
+  return static_cast<int>((step.covariance.diagonal().array().sqrt() * kSeen < largest).count());
+}
 
 double share_inside(double length2, double outside) { return 1 - outside / std::max(length2, kNothing); }
 
@@ -36,10 +47,13 @@ Alternative compare(const AlternativeRanking& ranking, const std::vector<ScoredF
   // Of two fields of the site what a dipole has beyond its gradient is as exact as the gradient.
   const bool exact = family.candidate_effect->level == effects::Level::site &&
                      families[a.family].candidate_effect->level == effects::Level::site;
-  out.form_only = !exact && out.alike > kAlike &&
-                  family.candidate_effect->reads == families[a.family].candidate_effect->reads;
+  const bool freer = would_be_seen(family, *b.score) >= a.score->k + kFreer;
+  const bool alike = !exact && out.alike > kAlike &&
+                     family.candidate_effect->reads == families[a.family].candidate_effect->reads;
+  out.form_only = alike && !freer;
   out.p_right = probability_right(out.form_only ? beyond_form(lambda_ab, length2_a) : lambda_ab);
   if (drawn && a.L - b.L < kGone) out.p_behind = ranking.behind(b);
+  if (alike && freer) out.p_right = 1 - out.p_behind;
   out.possible = out.p_behind >= kLost / looks || (out.form_only && out.p_right < kSure);
   return out;
 }

@@ -26,7 +26,10 @@
 /// counted in p_right. What the winner has beyond that twentieth decides as soon as p_right is 0.99. An axis'
 /// own square against the squares of the transverse axes, in one field strength, is such a pair: of square
 /// axes the two would differ by a constant. Laws that read different things differ by what was measured, and
-/// that decides: a gradient that was there from the first pose, against one that came after it.
+/// that decides: a gradient that was there from the first pose, against one that came after it. Nor is it a
+/// matter of form where b has three coefficients or more beyond those of a that would stand out if they were
+/// as large as its largest: a sensor that turns as a whole with its temperature (3) is told from axes that
+/// lean by themselves (24), which would hardly lean as one by chance.
 namespace mgtd::calib::criticism::tests {
 
 /// Share of a signature, in squares, inside that of another effect from which the two count as one.

@@ -88,24 +88,42 @@ TEST(Alternatives, LawsThatDifferInTheirFormOnlyStayTogetherAtAnySize) {
   EXPECT_EQ(seen.in_set, kRuns);
 }
 
+bool any_possible(const std::vector<criticism::tests::Alternative>& alternatives) {
+  return std::any_of(alternatives.begin(), alternatives.end(),
+                     [](const criticism::tests::Alternative& a) { return a.possible; });
+}
+
+/// A law of `k` coefficients, one for each of the first rows.
+criticism::tests::ScoredFamily of_rows(const std::string& name, int k, const Eigen::VectorXd& residual) {
+  const auto candidate = candidate_of_columns(name, 1);
+  candidate->hypotheses.front().combine = Eigen::MatrixXd::Identity(k, k);
+  criticism::tests::ScoredFamily out{.candidate_effect = candidate.get(), .own = candidate};
+  out.signatures.emplace_back(Eigen::MatrixXd::Identity(kRows, k), residual);
+  out.score_last({});
+  out.calibrated = out.priced;
+  return out;
+}
+
+/// That many free coefficients come to do just what one does: by chance they hardly would.
+TEST(Alternatives, ManyCoefficientsMoreAreNoMatterOfForm) {
+  const Eigen::VectorXd residual = 200 * Eigen::VectorXd::Unit(kRows, 0);
+  for (const int more : {1, 2, 3, 6}) {
+    const auto alternatives = criticism::tests::alternatives_of(
+        {of_rows("of one", 1, residual), of_rows("of many", 1 + more, residual)}, 0, 1);
+    EXPECT_EQ(any_possible(alternatives), more < 3) << more;
+  }
+}
+
 /// The winner holds all of the other law and a second dependence, which the other cannot make.
 TEST(Alternatives, WhatTheWinnerHasBeyondTheFormDecides) {
   constexpr double kSize = 200;
   const auto possible = [&](double second) {
-    Eigen::MatrixXd both = Eigen::MatrixXd::Zero(kRows, 2);
-    both(0, 0) = both(1, 1) = 1;
-    const Eigen::VectorXd residual = kSize * both.col(0) + second * both.col(1);
-    const auto of_two = candidate_of_columns("of two", 1);
-    of_two->hypotheses.front().combine = Eigen::MatrixXd::Identity(2, 2);
-    criticism::tests::ScoredFamily wide{.candidate_effect = of_two.get(), .own = of_two};
-    wide.signatures.emplace_back(both, residual);
-    wide.score_last({});
-    wide.calibrated = wide.priced;
+    const Eigen::VectorXd first = Eigen::VectorXd::Unit(kRows, 0);
+    const Eigen::VectorXd residual = kSize * first + second * Eigen::VectorXd::Unit(kRows, 1);
     const std::vector<criticism::tests::ScoredFamily> families{
-        wide, scored(candidate_of_columns("of one", 1), both.col(0), residual)};
+        of_rows("of two", 2, residual), scored(candidate_of_columns("of one", 1), first, residual)};
     const auto alternatives = criticism::tests::alternatives_of(families, 0, 1);
-    return std::any_of(alternatives.begin(), alternatives.end(),
-                       [](const criticism::tests::Alternative& a) { return a.possible; });
+    return any_possible(alternatives);
   };
   EXPECT_TRUE(possible(0.1 * kSize)) << "a hundredth of the signature, in squares";
   EXPECT_FALSE(possible(0.35 * kSize)) << "an eighth";
