@@ -131,10 +131,15 @@ double sigmas_of(const Stage& stage, const Planted& effect, std::uint64_t seed) 
   fit::joint::JointOptions options;
   options.geometry = geometry_of(stage);
   if (!stage.scenario.scalar && !stage.scenario.reference) options.field_nT = stage.scenario.f_nT;
+  return sigmas_between(without, with, options) / kLittle;
+}
+
+double sigmas_between(const PoseTable& without, const PoseTable& with,
+                      const fit::joint::JointOptions& options) {
   const auto fit = fit::joint::fit_joint(without, options);
   if (!fit) throw std::runtime_error(fit.error().text());
   const criticism::tests::Residual residual(fit->problem, fit->state, 0);
-  return residual.project(signature(*fit, with, without)).projected.norm() / kLittle;
+  return residual.project(signature(*fit, with, without)).projected.norm();
 }
 
 Sized sized(const Stage& stage, const Planted& effect, double sigmas, std::uint64_t seed) {

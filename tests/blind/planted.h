@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/fit/joint/joint_fit.h"
 #include "calib/sensor/geometry.h"
 #include "proto/pose.h"
 #include "tests/rig/effect_kind.h"
@@ -54,6 +55,10 @@ void plant(Stage& stage, const Planted& effect);
 /// Length of what the effect does to the readings, in standard deviations, less everything that the
 /// calibration and the unknowns of the poses can take of it: its size in Cramer-Rao sigmas.
 [[nodiscard]] double sigmas_of(const Stage& stage, const Planted& effect, std::uint64_t seed);
+
+/// The same of two runs that differ by one effect alone, as large as it is there.
+[[nodiscard]] double sigmas_between(const PoseTable& without, const PoseTable& with,
+                                    const fit::joint::JointOptions& options);
 
 /// `effect` scaled to a size of `sigmas`; `factor`: by how much.
 struct Sized {

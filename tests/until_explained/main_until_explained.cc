@@ -15,18 +15,22 @@
 
 #include "daemon/store/run_file.h"
 #include "tests/blind/page.h"
+#include "tests/blind/planted.h"
 #include "tests/rig/effect_list.h"
 #include "tests/rig/seal.h"
+#include "tests/rig/simulated_table.h"
 #include "tests/scenario/judged_run.h"
 
 namespace mgtd::test {
 namespace {
 
-constexpr double kMinutes = 40;  ///< beside the plan
+constexpr double kMinutes = 40;      ///< beside the plan
+constexpr double kLeastSigmas = 10;  ///< of what is hidden
 
 enum class Said { right, in_set, open, wrong };
 
 struct Game {
+  std::uint64_t seed{0};
   std::string hidden;
   bool in_library{true};
   std::vector<daemon::run::RunJudgement> judgements;
@@ -54,11 +58,39 @@ void keep(const std::vector<PoseTable>& looked_at, std::uint64_t seed, const std
   }
 }
 
-Game play(std::uint64_t seed, const std::string& folder) {
+rig::Scenario hiding_one(std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  rig::Scenario scenario = scenario_of(fmt::format("[rig]\nparameters = \"random\"\nseed = {}\n", seed));
-  scenario = rig::with_hidden(std::move(scenario), 1, random);
-  Game out;
+  return rig::with_hidden(scenario_of(fmt::format("[rig]\nparameters = \"random\"\nseed = {}\n", seed)), 1,
+                          random);
+}
+
+/// How much of the effect a run of 157 poses can show, in standard deviations.
+double sigmas_hidden(const rig::Scenario& scenario, std::uint64_t seed) {
+  rig::Scenario bare = scenario;
+  bare.effects.pop_back();
+  const rig::Design design = rig::run_of_157({.senses = true}, seed);
+  return calib::testing::sigmas_between(rig::simulated_table(bare, design, seed),
+                                        rig::simulated_table(scenario, design, seed), {});
+}
+
+/// The first so many, from `first` on, whose effect can be seen.
+std::vector<std::uint64_t> seeds_that_show(std::uint64_t first, int count) {
+  std::vector<std::uint64_t> out;
+  for (std::uint64_t seed = first; static_cast<int>(out.size()) < count; ++seed) {
+    const rig::Scenario scenario = hiding_one(seed);
+    const double sigmas = sigmas_hidden(scenario, seed);
+    if (sigmas >= kLeastSigmas)
+      out.push_back(seed);
+    else
+      fmt::print(stderr, "{} {}: {:.1f} sigma, not played\n", seed,
+                 scenario.effects.back()->truth().at("effect").get<std::string>(), sigmas);
+  }
+  return out;
+}
+
+Game play(std::uint64_t seed, const std::string& folder) {
+  const rig::Scenario scenario = hiding_one(seed);
+  Game out{.seed = seed, .hidden = {}, .judgements = {}, .stuck = {}};
   out.hidden = scenario.effects.back()->truth().at("effect");
   if (out.hidden == "site.gradient-step") out.hidden = "site.step";  // its name in the library
   out.in_library = !out.hidden.starts_with("hidden.");
@@ -69,16 +101,15 @@ Game play(std::uint64_t seed, const std::string& folder) {
   return out;
 }
 
-std::vector<Game> play_all(std::uint64_t first, int count, const std::string& folder) {
-  std::vector<Game> out(static_cast<std::size_t>(count));
-  std::atomic<int> next{0};
+std::vector<Game> play_all(const std::vector<std::uint64_t>& seeds, const std::string& folder) {
+  std::vector<Game> out(seeds.size());
+  std::atomic<std::size_t> next{0};
   const auto work = [&] {
-    for (int i = next++; i < count; i = next++) {
-      Game& game = out[static_cast<std::size_t>(i)];
-      game = play(first + static_cast<std::uint64_t>(i), folder);
+    for (std::size_t i = next++; i < seeds.size(); i = next++) {
+      Game& game = out[i];
+      game = play(seeds[i], folder);
       for (const daemon::run::RunJudgement& j : game.judgements)
-        fmt::print(stderr, "{} {} ({} poses): {}; {}\n", first + static_cast<std::uint64_t>(i), game.hidden,
-                   j.poses, j.found, j.next);
+        fmt::print(stderr, "{} {} ({} poses): {}; {}\n", seeds[i], game.hidden, j.poses, j.found, j.next);
     }
   };
   std::thread other(work);
@@ -119,7 +150,7 @@ std::string page(const std::vector<Game>& games) {
     if (!game.stuck.empty())
       looks += fmt::format("{}did not end: {}", looks.empty() ? "" : " -> ", game.stuck);
     if (sum > 0) minutes.push_back(sum);
-    rows += fmt::format("| {} | {} | {:.0f} | {} |\n", game.hidden, looks, sum, game.deeds);
+    rows += fmt::format("| {} | {} | {} | {:.0f} | {} |\n", game.seed, game.hidden, looks, sum, game.deeds);
   }
   std::sort(minutes.begin(), minutes.end());
   std::string out =
@@ -129,7 +160,9 @@ std::string page(const std::vector<Game>& games) {
       counts(games, false) +
       fmt::format("\n{} of {} runs measured more; of those the median took {:.0f} minutes beside the plan.\n",
                   minutes.size(), games.size(), minutes.empty() ? 0 : minutes[minutes.size() / 2]);
-  return out + "\n## Every run\n\n| hidden | looks | minutes more | deeds of a hand |\n|---|---|---|---|\n" +
+  return out +
+         "\n## Every run\n\n| seed | hidden | looks | minutes more | deeds of a hand "
+         "|\n|---|---|---|---|---|\n" +
          rows;
 }
 
@@ -149,16 +182,20 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::off);
   ::testing::InitGoogleTest();
+  const std::vector<std::uint64_t> seeds = seeds_that_show(seed, runs);
+  const std::uint64_t drawn = seeds.empty() ? 0 : seeds.back() - seed + 1;
   const std::string text = fmt::format(
       "# Runs that go on until they are explained\n\nWritten by this command:\n\n"
       "    build/bin/until_explained --runs {} --seed {}\n\n"
-      "Each rig hides one effect, drawn from all that the simulated rig knows, 0.7 to 3 times a size that is "
-      "worth finding. The daemon measures its plan of 157 poses, judges it, and goes on for at most {:.0f} "
-      "minutes of the rig's time; a simulated hand warms the heads or switches a coil on where it is asked "
-      "to. "
-      "Shares in percent, with intervals of 95 % (Wilson).\n\n",
-      runs, seed, kMinutes);
-  const std::string result = page(play_all(seed, runs, folder));
+      "Each rig hides one effect, drawn from all that the simulated rig knows, 0.7 to 3 times a size "
+      "that is worth finding. Only those are played whose effect a run of 157 poses can show by "
+      "{:.0f} standard deviations or more: the length of what it does to the readings, less all that "
+      "the calibration and the unknowns of the poses can take of it. {} of the {} rigs drawn show "
+      "less. The daemon measures its plan of 157 poses, judges it, and goes on for at most {:.0f} "
+      "minutes of the rig's time; a simulated hand warms the heads or switches a coil on where it is "
+      "asked to. Shares in percent, with intervals of 95 % (Wilson).\n\n",
+      runs, seed, kLeastSigmas, drawn - seeds.size(), drawn, kMinutes);
+  const std::string result = page(play_all(seeds, folder));
   std::ofstream(output) << text << result;
   return 0;
 }
