@@ -119,6 +119,12 @@ class Effect {
                     std::span<double> out) const = 0;
   virtual void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,
                     std::span<Jet> out) const = 0;
+  /// What the term does not know of the way of the table before a pose, where it remembers that: a standard
+  /// deviation for each radian of the table's accuracy, of one axis; c as term() has it.
+  [[nodiscard]] virtual double sd_nT_per_rad(const Conditions&, int /*sensor*/, int /*axis*/,
+                                             std::span<const double> /*c*/) const {
+    return 0;
+  }
 };
 
 /// Derive as `class Mine : public EffectOf<Mine>` and write

@@ -2,6 +2,7 @@
 #include "calib/effects/level_terms.h"
 
 #include <array>
+#include <cmath>
 
 namespace mgtd::calib::effects {
 namespace {
@@ -85,6 +86,20 @@ TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const do
     for (std::size_t o = 0; o < outputs; ++o) total[static_cast<Eigen::Index>(o)] += out[o];
   }
   return total;
+}
+
+double LevelTerms::sd_nT_per_rad(const Conditions& at, int sensor, int axis,
+                                 const Eigen::VectorXd& coefficients) const {
+  double variance = 0;
+  for (const Entry& entry : entries_) {
+    if (!entry.effect->missing(at.pose).empty()) continue;
+    const std::span<const int> active = entry.effect->active(at, sensor);
+    std::array<double, kMaxActive> c;
+    for (std::size_t j = 0; j < active.size(); ++j) c[j] = coefficients[entry.first + active[j]];
+    const double sd = entry.effect->sd_nT_per_rad(at, sensor, axis, {c.data(), active.size()});
+    variance += sd * sd;
+  }
+  return std::sqrt(variance);
 }
 
 }  // namespace mgtd::calib::effects

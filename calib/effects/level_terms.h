@@ -32,6 +32,9 @@ class LevelTerms {
   /// The value alone, `outputs_of(level)` numbers.
   [[nodiscard]] TermValue value(const Conditions& at, int sensor, std::span<const double> in,
                                 const Eigen::VectorXd& coefficients) const;
+  /// Effect::sd_nT_per_rad of all together.
+  [[nodiscard]] double sd_nT_per_rad(const Conditions& at, int sensor, int axis,
+                                     const Eigen::VectorXd& coefficients) const;
 
  private:
   struct Entry {

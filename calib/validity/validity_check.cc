@@ -8,6 +8,7 @@
 
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/memory_variance.h"
 #include "calib/fit/joint/outliers.h"
 #include "calib/fit/site_difference.h"
 #include "calib/linear/propagation.h"
@@ -200,6 +201,8 @@ Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses
   out.placed = *std::move(placed);
   fit::joint::JointState& state = out.placed.state;
   state.coefficients = frozen.coefficients;
+  fit::joint::set_memory_variance(out.problem, state, joint.table_sd_rad);
+  fit::joint::add_memory_variance(out.problem, 1);
   fit::joint::refit_nuisances(out.problem, state);
   do {
     refit_site(out.problem, frozen.nuisance, state);

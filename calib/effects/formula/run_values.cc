@@ -20,7 +20,7 @@ Result<RunValues> RunValues::of(const EffectContext& context) {
   std::vector<double> t_h;
   for (const Pose& pose : context.table->poses) t_h.push_back(time.hours(pose));
   std::vector<PerSensor<Eigen::Vector3d>> v_nT;
-  for (laws::RememberedPose& pose : *memory) v_nT.push_back(std::move(pose.v_nT));
+  for (laws::RememberedPose& pose : memory->poses) v_nT.push_back(std::move(pose.v_nT));
   return RunValues(*context.table, std::move(t_h), std::move(v_nT));
 }
 

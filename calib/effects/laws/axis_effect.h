@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cmath>
 #include <string>
 
 #include "calib/effects/effect_spec.h"
@@ -19,7 +20,8 @@
 ///     template <class S>
 ///     S shape(const Conditions&, int sensor, int axis, std::span<const S> v, int j) const;
 /// and, where it needs the run, Result<Law> on_run(const EffectContext&) const; where it has a memory,
-/// std::pair<Law, std::shared_ptr<LiveMemory>> live() const.
+/// std::pair<Law, std::shared_ptr<LiveMemory>> live() const, and where that memory is of a table that was not
+/// read, double shape_sd_per_rad(const Conditions&, int sensor, int axis) const for a single shape.
 namespace mgtd::calib::effects::laws {
 
 template <class Law>
@@ -65,6 +67,18 @@ class AxisEffect final : public EffectOf<AxisEffect<Law>> {
       return {std::make_shared<const AxisEffect>(std::move(law), where_), std::move(memory)};
     } else {
       return {};
+    }
+  }
+
+  [[nodiscard]] double sd_nT_per_rad(const Conditions& at, int sensor, int axis,
+                                     std::span<const double> c) const override {
+    if constexpr (requires { law_.shape_sd_per_rad(at, sensor, axis); }) {
+      static_assert(Law::kPerAxis == 1);
+      const int first = scale_.first(sensor, axis);
+      if (first < 0) return 0;
+      return std::abs(c[static_cast<std::size_t>(first)]) * law_.shape_sd_per_rad(at, sensor, axis);
+    } else {
+      return 0;
     }
   }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/axis_hysteresis.h"
 
+#include <cmath>
+#include <map>
+#include <utility>
+
 namespace mgtd::calib::effects::laws {
 namespace {
 
@@ -8,38 +12,58 @@ constexpr double kKnown = 0.04;  // of w between lowest and highest: 2 % of the 
 
 /// The extreme that a field passes between three points of the way: that of the parabola through them. A play
 /// turns there, and points a quarter of a second apart miss it by some 0.1 % of the field.
-double turning_point(const RememberedPose& pose, std::size_t k, std::size_t i, int a) {
-  const double y = pose.on_the_way[k][i][a];
-  if (k == 0 || k + 1 >= pose.on_the_way.size()) return y;
-  const double before_s = pose.way_s[k] - pose.way_s[k - 1], after_s = pose.way_s[k + 1] - pose.way_s[k];
-  const double fall = y - pose.on_the_way[k - 1][i][a], rise = pose.on_the_way[k + 1][i][a] - y;
+double turning_point(const std::vector<RememberedWayPoint>& way, std::size_t k, std::size_t i, int a) {
+  const double y = way[k].v_nT[i][a];
+  if (k == 0 || k + 1 >= way.size()) return y;
+  const double before_s = way[k].t_s - way[k - 1].t_s, after_s = way[k + 1].t_s - way[k].t_s;
+  const double fall = y - way[k - 1].v_nT[i][a], rise = way[k + 1].v_nT[i][a] - y;
   if (!(fall * rise < 0) || !(before_s > 0) || !(after_s > 0)) return y;
   const double curve = (rise / after_s - fall / before_s) / (before_s + after_s);
   const double slope = fall / before_s + curve * before_s;
   return y - slope * slope / (4 * curve);
 }
 
+/// The play of one axis along a run.
+struct PlayOnRun {
+  double p{0};
+  const RememberedWayPoint* set_by{nullptr};  ///< the point of the way that p was set by; null: a dwell
+
+  void move(double v_nT, double w, const RememberedWayPoint* by) {
+    const double before = std::exchange(p, play(p, v_nT / kReferenceField_nT, w));
+    if (p != before) set_by = by;
+  }
+};
+
 }  // namespace
 
-std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>& run, double w) {
-  std::unordered_map<int, PlayState> out;
-  PlayState p(run.empty() ? kSensorCount : run.front().v_nT.size(), Eigen::Vector3d::Zero());
-  const auto move = [&](const SensorReadings& v_nT) {
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      for (int a = 0; a < 3; ++a) p[i][a] = play(p[i][a], v_nT[i][a] / kReferenceField_nT, w);
+PlayOfRun play_before(const RunMemory& run, double w) {
+  PlayOfRun out;
+  const std::size_t sensors = run.poses.empty() ? 0 : run.poses.front().v_nT.size();
+  PerSensor<std::array<PlayOnRun, 3>> axes(sensors);
+  const auto each = [&](const auto& visit) {
+    for (std::size_t i = 0; i < sensors; ++i) {
+      for (int a = 0; a < 3; ++a) visit(i, a, axes[i][static_cast<std::size_t>(a)]);
     }
   };
-  for (const RememberedPose& pose : run) {
-    for (std::size_t k = 0; k < pose.on_the_way.size(); ++k) {
-      SensorReadings v_nT(p.size());
-      for (std::size_t i = 0; i < p.size(); ++i) {
-        for (int a = 0; a < 3; ++a) v_nT[i][a] = turning_point(pose, k, i, a);
-      }
-      move(v_nT);
-    }
-    out[pose.pose] = p;
-    move(pose.v_nT);
+  std::map<std::pair<const RememberedWayPoint*, int>, std::vector<Play*>> alike;  // set by one point
+  for (const RememberedPose& pose : run.poses) {
+    const std::vector<RememberedWayPoint>& way = pose.on_the_way;
+    for (std::size_t k = 0; k < way.size(); ++k)
+      each(
+          [&](std::size_t i, int a, PlayOnRun& axis) { axis.move(turning_point(way, k, i, a), w, &way[k]); });
+    PerSensor<std::array<Play, 3>>& before = out[pose.pose];
+    before.resize(sensors);
+    each([&](std::size_t i, int a, PlayOnRun& axis) {
+      Play& play = before[i][static_cast<std::size_t>(a)];
+      play.p = axis.p;
+      axis.move(pose.v_nT[i][a], w, nullptr);
+      if (axis.set_by == nullptr) return;
+      play.sd_per_rad = run.sd_nT_per_rad(*axis.set_by)[i][a] / kReferenceField_nT;
+      alike[{axis.set_by, static_cast<int>(3 * i) + a}].push_back(&play);
+    });
   }
+  for (auto& [by, plays] : alike)
+    for (Play* play : plays) play->sd_per_rad *= std::sqrt(static_cast<double>(plays.size()));
   return out;
 }
 
@@ -77,8 +101,7 @@ Result<Hysteresis> Hysteresis::on_run(const EffectContext& context) const {
   const auto run = run_memory(context);
   if (!run) return tl::unexpected(run.error());
   Hysteresis out = *this;
-  out.before = std::make_shared<const std::unordered_map<int, PlayState>>(
-      play_before(*run, w.value_or(kDefaultWidth)));
+  out.before = std::make_shared<const PlayOfRun>(play_before(*run, w.value_or(kDefaultWidth)));
   return out;
 }
 

@@ -13,19 +13,26 @@
 ///     p <- max(x - w, min(x + w, p)),   y += h (p - x)/w        x = v/F0, h in nT, w of F0
 ///
 /// Follows the path of the table where the run kept it, else from dwell to dwell: a turn that overshoots both
-/// ends is then missed. Where the readings before a pose are not known (an effect that is not bound to the
-/// run) the term is left out. On a stream every sample moves p; where it began is known once each axis has
-/// swung by 2w, whatever it was.
+/// ends is then missed. Where a turn on the way set the play, p is known as well as the table's angles are
+/// there (way_deviation.h), and the term has an uncertainty of its own. Where the readings before a pose are
+/// not known (an effect that is not bound to the run) the term is left out. On a stream every sample moves p;
+/// where it began is known once each axis has swung by 2w, whatever it was.
 namespace mgtd::calib::effects::laws {
-
-/// The play at one pose before the pose's own field has moved it, by sensor and axis.
-using PlayState = PerSensor<Eigen::Vector3d>;
 
 /// p after x.
 [[nodiscard]] inline double play(double p, double x, double w) { return std::max(x - w, std::min(x + w, p)); }
-/// By pose number.
-[[nodiscard]] std::unordered_map<int, PlayState> play_before(const std::vector<RememberedPose>& run,
-                                                             double w);
+
+/// The play at one pose before the pose's own field has moved it.
+struct Play {
+  double p{0};  ///< of F0
+  /// Of p, for each radian of the table's accuracy; 0 where the pose moves the play. Poses between which the
+  /// play did not move share its error, and the weight of all together is that of one: times the root of
+  /// their number.
+  double sd_per_rad{0};
+};
+/// By pose number, sensor and axis.
+using PlayOfRun = std::unordered_map<int, PerSensor<std::array<Play, 3>>>;
+[[nodiscard]] PlayOfRun play_before(const RunMemory& run, double w);
 
 /// The play on a stream: the lowest and the highest it can be. Both end at one value after a swing of 2w.
 class LivePlay final : public LiveMemory {
@@ -43,7 +50,7 @@ class LivePlay final : public LiveMemory {
 
  private:
   double w_;
-  PlayState low_, high_;
+  SensorReadings low_, high_;  // of F0
 };
 
 struct Hysteresis {
@@ -51,7 +58,7 @@ struct Hysteresis {
   static constexpr int kPerAxis = 1;
   static constexpr double kDefaultWidth = 0.1;
   std::optional<double> w;
-  std::shared_ptr<const std::unordered_map<int, PlayState>> before{};
+  std::shared_ptr<const PlayOfRun> before{};
   std::shared_ptr<const LivePlay> now{};  ///< on a stream
 
   static AxisCoefficients coefficients() { return one_per_axis("nT", 1); }
@@ -67,10 +74,17 @@ struct Hysteresis {
   template <class S>
   S shape(const Conditions& at, int sensor, int axis, std::span<const S> v, int) const {
     const double width = w.value_or(kDefaultWidth);
-    const double p =
-        now ? now->p(sensor, axis) : before->at(at.pose.number)[static_cast<std::size_t>(sensor)][axis];
+    const double p = now ? now->p(sensor, axis) : before_pose(at.pose, sensor, axis).p;
     const S behind = (S(p) - in_F0(v, axis)) * S(1 / width);
     return behind > S(1.0) ? S(1.0) : behind < S(-1.0) ? S(-1.0) : behind;
+  }
+  [[nodiscard]] double shape_sd_per_rad(const Conditions& at, int sensor, int axis) const {
+    return now ? 0 : before_pose(at.pose, sensor, axis).sd_per_rad / w.value_or(kDefaultWidth);
+  }
+
+ private:
+  [[nodiscard]] const Play& before_pose(const Pose& pose, int sensor, int axis) const {
+    return before->at(pose.number)[static_cast<std::size_t>(sensor)][static_cast<std::size_t>(axis)];
   }
 };
 

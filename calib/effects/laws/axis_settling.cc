@@ -74,9 +74,11 @@ class Stops {
     if (!slow_ || remembered.on_the_way.empty() || !pose.t_s || !pose.since_stop_s)
       return SlowAtStop{*before_nT_};
     const double stop_s = *pose.t_s - *pose.since_stop_s;
-    slow_->rest(std::min(stop_s, remembered.way_s.front()));
-    for (std::size_t k = 0; k < remembered.on_the_way.size() && remembered.way_s[k] <= stop_s; ++k)
-      slow_->follow(remembered.way_s[k], remembered.on_the_way[k]);
+    slow_->rest(std::min(stop_s, remembered.on_the_way.front().t_s));
+    for (const RememberedWayPoint& point : remembered.on_the_way) {
+      if (point.t_s > stop_s) break;
+      slow_->follow(point.t_s, point.v_nT);
+    }
     slow_->follow(stop_s, remembered.v_nT);
     return SlowAtStop{slow_->z_nT(), over_dwell(pose.dwell_s.value_or(0), tau_s_)};
   }
@@ -93,8 +95,8 @@ Result<Settling> Settling::on_run(const EffectContext& context) const {
   if (!run) return tl::unexpected(run.error());
   std::unordered_map<int, std::optional<SlowAtStop>> at_stop;
   Stops stops(tau_s.value_or(kDefaultTau_s));
-  for (std::size_t k = 0; k < run->size(); ++k)
-    at_stop[(*run)[k].pose] = stops.at(context.table->poses[k], (*run)[k]);
+  for (std::size_t k = 0; k < run->poses.size(); ++k)
+    at_stop[run->poses[k].pose] = stops.at(context.table->poses[k], run->poses[k]);
   Settling out = *this;
   out.before = std::make_shared<const decltype(at_stop)>(std::move(at_stop));
   return out;

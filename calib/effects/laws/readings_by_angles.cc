@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/laws/readings_by_angles.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 #include "calib/sensor/sensor_equations.h"
@@ -15,26 +15,37 @@ constexpr double kStep_rad = 1e-4;  // for the derivative by an angle
 /// A turn that moves the readings by less than this for a tenth of a degree is not seen in them.
 constexpr double kSeen_nT_per_rad = 1 / 1.7e-3;
 
-Eigen::RowVectorXd elements(const TableAngles& a) {
-  const Eigen::Matrix3d R = sensor::table_rotation(a.azimuth_rad, a.pitch_rad, a.roll_rad, 0.0, 0.0);
-  Eigen::RowVectorXd row(kElements);
+using Elements = Eigen::Matrix<double, 1, kElements>;
+
+Elements elements(const TableAngles& a) {
+  const Eigen::Matrix3d R =
+      sensor::turn_z(a.azimuth_rad) * sensor::turn_y(a.pitch_rad) * sensor::turn_x(a.roll_rad);
+  Elements row;
   row << R.reshaped().transpose(), 1;
   return row;
 }
 
-/// The small turn about the table's axes that brings the map closer to the readings `y`.
-Eigen::Vector3d turn_towards(const Eigen::RowVectorXd& y, const TableAngles& angles,
-                             const Eigen::MatrixXd& map) {
-  Eigen::MatrixX3d J(map.cols(), 3);
+/// Of `map` by each angle, rows.
+Eigen::Matrix3Xd derivative_of(const Eigen::MatrixXd& map, const TableAngles& angles) {
+  Eigen::Matrix3Xd out(3, map.cols());
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d step = kStep_rad * Eigen::Vector3d::Unit(i);
-    J.col(i) =
-        ((elements(deviating(angles, step)) - elements(deviating(angles, -step))) * map / (2 * kStep_rad))
-            .transpose();
+    out.row(i) =
+        (elements(deviating(angles, step)) - elements(deviating(angles, -step))) * map / (2 * kStep_rad);
   }
-  Eigen::Matrix3d A = J.transpose() * J;
-  A.diagonal().array() += kSeen_nT_per_rad * kSeen_nT_per_rad;
-  return A.llt().solve(J.transpose() * (y - elements(angles) * map).transpose());
+  return out;
+}
+
+/// Moves `deviation` towards what brings the map closest to the readings `y`, and is small.
+void turn_towards(const Eigen::RowVectorXd& y, const TableAngles& recorded, const Eigen::MatrixXd& map,
+                  AngleDeviation& deviation) {
+  constexpr double kSquare = kSeen_nT_per_rad * kSeen_nT_per_rad;
+  const TableAngles angles = deviating(recorded, deviation.mean_rad);
+  const Eigen::Matrix3Xd J = derivative_of(map, angles);
+  const Eigen::Matrix3d A = J * J.transpose() + kSquare * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d pull = J * (y - elements(angles) * map).transpose() - kSquare * deviation.mean_rad;
+  deviation.covariance = kSquare * A.inverse();
+  deviation.mean_rad += deviation.covariance * pull / kSquare;
 }
 
 }  // namespace
@@ -48,12 +59,12 @@ TableAngles deviating(TableAngles angles, const Eigen::Vector3d& deviation_rad) 
 
 std::optional<ReadingsByAngles> ReadingsByAngles::of(const PoseTable& table) {
   ReadingsByAngles out;
-  out.deviation_rad_.resize(table.poses.size());
+  out.deviation_.resize(table.poses.size());
   std::vector<std::size_t> known;
   for (std::size_t k = 0; k < table.poses.size(); ++k) {
     if (!table.poses[k].angles()) continue;
     known.push_back(k);
-    out.deviation_rad_[k] = Eigen::Vector3d::Zero();
+    out.deviation_[k].emplace();
   }
   if (known.size() <= kElements) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(known.size());
@@ -64,20 +75,23 @@ std::optional<ReadingsByAngles> ReadingsByAngles::of(const PoseTable& table) {
       y.row(row).segment<3>(3 * static_cast<Eigen::Index>(i)) = pose.y_nT[i];
   }
   for (int round = 0; round < kRounds; ++round) {
-    const auto at = [&](std::size_t k) {
-      return deviating(*table.poses[k].angles(), *out.deviation_rad_[k]);
-    };
-    for (Eigen::Index row = 0; row < n; ++row)
-      A.row(row) = elements(at(known[static_cast<std::size_t>(row)]));
+    for (Eigen::Index row = 0; row < n; ++row) {
+      const std::size_t k = known[static_cast<std::size_t>(row)];
+      A.row(row) = elements(deviating(*table.poses[k].angles(), out.deviation_[k]->mean_rad));
+    }
     out.map_ = A.completeOrthogonalDecomposition().solve(y);
     for (Eigen::Index row = 0; row < n; ++row) {
       const std::size_t k = known[static_cast<std::size_t>(row)];
-      *out.deviation_rad_[k] += turn_towards(y.row(row), at(k), out.map_);
+      turn_towards(y.row(row), *table.poses[k].angles(), out.map_, *out.deviation_[k]);
     }
   }
   return out;
 }
 
 Eigen::RowVectorXd ReadingsByAngles::at(const TableAngles& angles) const { return elements(angles) * map_; }
+
+Eigen::Matrix3Xd ReadingsByAngles::derivative(const TableAngles& angles) const {
+  return derivative_of(map_, angles);
+}
 
 }  // namespace mgtd::calib::effects::laws

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "calib/effects/laws/readings_by_angles.h"
+#include "calib/effects/laws/way_deviation.h"
 #include "calib/poses/table_path.h"
 #include "calib/sensor/channels.h"
 #include "calib/sensor/sensor_start.h"
@@ -39,17 +40,6 @@ std::vector<PathPoint> with_turns(std::span<const PathPoint> way, const Readings
   return out;
 }
 
-/// Angles that pass from how far the table was off them at the dwell before to how far it is after the way.
-void deviate(std::vector<PathPoint>& way, const Eigen::Vector3d& before_rad,
-             const Eigen::Vector3d& after_rad) {
-  if (way.empty()) return;
-  const double begin_s = way.front().t_s, took_s = way.back().t_s - begin_s;
-  for (PathPoint& point : way) {
-    const double share = took_s > 0 ? (point.t_s - begin_s) / took_s : 1;
-    point.angles = deviating(point.angles, before_rad + share * (after_rad - before_rad));
-  }
-}
-
 SensorReadings offsets_of(const PoseTable& table) {
   SensorReadings out(table.poses.front().y_nT.size());
   const auto n = static_cast<Eigen::Index>(table.poses.size());
@@ -79,35 +69,47 @@ SensorReadings less(const SensorReadings& y_nT, const SensorReadings& offset_nT)
   return out;
 }
 
+RememberedWayPoint way_point(const PathPoint& at, const AngleDeviation& deviation,
+                             const ReadingsByAngles& by_angles, const SensorReadings& offset_nT) {
+  const TableAngles angles = deviating(at.angles, deviation.mean_rad);
+  return {.t_s = at.t_s,
+          .v_nT = less(by_sensor(by_angles.at(angles)), offset_nT),
+          .angles = angles,
+          .angle_covariance = deviation.covariance};
+}
+
 }  // namespace
 
-Result<std::vector<RememberedPose>> run_memory(const EffectContext& context) {
+SensorReadings RunMemory::sd_nT_per_rad(const RememberedWayPoint& point) const {
+  const Eigen::Matrix3Xd J = by_angles->derivative(point.angles);
+  const Eigen::RowVectorXd variance = J.cwiseProduct(point.angle_covariance * J).colwise().sum();
+  return by_sensor(variance.cwiseSqrt());
+}
+
+Result<RunMemory> run_memory(const EffectContext& context) {
   if (context.table == nullptr || context.table->poses.empty())
     return fail(ErrorCode::refused, "an effect with a memory needs the poses before each pose");
   const PoseTable& table = *context.table;
   const SensorReadings offset_nT = context.offset_nT ? *context.offset_nT : offsets_of(table);
-  std::optional<ReadingsByAngles> by_angles;
-  if (!table.path.empty()) by_angles = ReadingsByAngles::of(table);
-  std::vector<RememberedPose> out;
+  RunMemory out;
+  if (!table.path.empty()) out.by_angles = ReadingsByAngles::of(table);
   auto point = table.path.begin();
-  Eigen::Vector3d before_rad = Eigen::Vector3d::Zero();
+  AngleDeviation before;
   for (std::size_t k = 0; k < table.poses.size(); ++k) {
     const Pose& pose = table.poses[k];
-    RememberedPose remembered{
-        .pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}, .way_s = {}};
-    if (by_angles && pose.t_s) {
+    RememberedPose remembered{.pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}};
+    if (out.by_angles && pose.t_s) {
+      const ReadingsByAngles& by_angles = *out.by_angles;
       const auto begin = point;
       point = std::find_if(begin, table.path.end(), [&](const PathPoint& p) { return !(p.t_s < *pose.t_s); });
-      std::vector<PathPoint> way = with_turns({begin, point}, *by_angles);
-      const Eigen::Vector3d after_rad = by_angles->deviation_rad(k).value_or(before_rad);
-      deviate(way, before_rad, after_rad);
-      for (const PathPoint& p : way) {
-        remembered.on_the_way.push_back(less(by_sensor(by_angles->at(p.angles)), offset_nT));
-        remembered.way_s.push_back(p.t_s);
-      }
-      before_rad = after_rad;
+      const std::vector<PathPoint> way = with_turns({begin, point}, by_angles);
+      const AngleDeviation after = by_angles.deviation(k).value_or(AngleDeviation());
+      const std::vector<AngleDeviation> deviations = way_deviations(way, before, after);
+      for (std::size_t i = 0; i < way.size(); ++i)
+        remembered.on_the_way.push_back(way_point(way[i], deviations[i], by_angles, offset_nT));
+      before = after;
     }
-    out.push_back(std::move(remembered));
+    out.poses.push_back(std::move(remembered));
   }
   return out;
 }

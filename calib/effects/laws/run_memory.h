@@ -2,10 +2,12 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "calib/effects/effect_context.h"
+#include "calib/effects/laws/readings_by_angles.h"
 #include "proto/error.h"
 
 /// Reconstructs what the sensors saw before each pose of a run, for effects with a memory.
@@ -13,8 +15,7 @@
 ///     at a dwell        v = reading - offset
 ///     on the way        v = y(angles) - offset by readings_by_angles.h; only where the run kept the path of
 ///                       the table. Where a reading turns, the path is followed between its own points
-///                       (table_path.h), and the angles pass from how far the table stood off them at the
-///                       dwell before to how far it stands off them at the pose
+///                       (table_path.h); how far the table stood off the angles says way_deviation.h
 ///
 /// Offsets are those of the context, else of each sensor by itself (sensor_start.h): good to some nT, which
 /// is 1e-4 of the field that a memory is about.
@@ -25,14 +26,29 @@ inline constexpr std::string_view kNoMemory = "the readings before";
 
 using SensorReadings = PerSensor<Eigen::Vector3d>;
 
-struct RememberedPose {
-  int pose{0};                             ///< number
-  SensorReadings v_nT;                     ///< at the dwell
-  std::vector<SensorReadings> on_the_way;  ///< since the dwell before, in order
-  std::vector<double> way_s;               ///< their times
+struct RememberedWayPoint {
+  double t_s{0};
+  SensorReadings v_nT;
+  TableAngles angles;                ///< where the table is taken to have been
+  Eigen::Matrix3d angle_covariance;  ///< of that, over the square of the table's accuracy
 };
 
-/// In the order of the run. Refuses a context without poses.
-[[nodiscard]] Result<std::vector<RememberedPose>> run_memory(const EffectContext& context);
+struct RememberedPose {
+  int pose{0};                                 ///< number
+  SensorReadings v_nT;                         ///< at the dwell
+  std::vector<RememberedWayPoint> on_the_way;  ///< since the dwell before, in order
+};
+
+struct RunMemory {
+  std::vector<RememberedPose> poses;          ///< in the order of the run
+  std::optional<ReadingsByAngles> by_angles;  ///< where the run kept the path
+
+  /// By how much v at a point of the way may be off because nothing tells how far the table stood off its
+  /// angles: one standard deviation for each radian of the table's accuracy.
+  [[nodiscard]] SensorReadings sd_nT_per_rad(const RememberedWayPoint& point) const;
+};
+
+/// Refuses a context without poses.
+[[nodiscard]] Result<RunMemory> run_memory(const EffectContext& context);
 
 }  // namespace mgtd::calib::effects::laws

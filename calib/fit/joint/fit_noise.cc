@@ -34,6 +34,7 @@ void FitNoise::apply(JointProblem& problem) const {
   } else {
     weight_by_pose(problem, pose_nT);
   }
+  add_memory_variance(problem, noise_inflation * noise_inflation);
   for (JointPose& pose : problem.poses) {
     // Loosened attitudes stay loose.
     if (pose.has_angles && pose.attitude_weight > 1 / kTableCeiling_rad) pose.weigh_attitude(table_sd_rad);

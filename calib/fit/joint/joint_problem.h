@@ -58,7 +58,9 @@ struct JointPose {
   const Pose* previous{nullptr};
   double t_h{0};
   Channels y_nT;
-  Channels weight;              ///< 1/sd of each reading; 0 leaves it out (outlier node)
+  Channels weight;  ///< 1/sd of each reading; 0 leaves it out (outlier node)
+  /// Part of that variance: of effects that remember the way of the table (memory_variance.h). Empty: none.
+  Channels memory_nT2{};
   double f_nT{0}, f_weight{0};  ///< scalar reference of this pose; with `common_field` its spread about F
   /// The field as a known vector: in frame P, or, of a reference beside the table, in its own axes.
   Eigen::Vector3d reference_nT{Eigen::Vector3d::Zero()};

@@ -12,6 +12,7 @@
 #include "calib/fit/joint/joint_cost.h"
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_findings.h"
+#include "calib/fit/joint/memory_variance.h"
 #include "calib/fit/joint/profile_search.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
 #include "calib/fit/two_step/two_step.h"
@@ -85,6 +86,8 @@ std::optional<ErrorSummary> errors_of_check_poses(const PoseTable& table, const 
   }
   JointState state = joint_state(*problem, fit.state);
   state.coefficients = fit.state.coefficients;
+  set_memory_variance(*problem, state, fit.table_sd_rad);
+  add_memory_variance(*problem, 1);
   refit_nuisances(*problem, state);
   return joint_errors(*problem, state, FixedBlock::frozen).summary;
 }

@@ -69,8 +69,9 @@ Gauge fix_gauge(JointProblem& problem, const JointOptions& options);
 /// alike. Keeps zero weights.
 void weight_by_samples(JointProblem& problem, const calibration::AxisNoise& sample);
 void weight_by_pose(JointProblem& problem, const calibration::AxisNoise& pose_mean);
-/// Adds a variance to that of every reading, by channel.
+/// Adds a variance to that of every reading, by channel; and what effects that remember add to it.
 void add_variance(JointProblem& problem, const Channels& nT2);
+void add_memory_variance(JointProblem& problem, double factor);
 
 /// Field to start from: mean scalar reference, or the given field, or the mean size of the readings'
 /// variation.

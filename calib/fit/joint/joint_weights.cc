@@ -12,6 +12,12 @@ constexpr double kNoiseFloor_nT = 1e-4;
 void set_weight(double& weight, double sd_nT) {
   if (weight > 0) weight = 1 / std::max(sd_nT, kNoiseFloor_nT);
 }
+
+void add(const Channels& nT2, JointPose& pose) {
+  for (Eigen::Index c = 0; c < nT2.size(); ++c)
+    if (nT2[c] > 0) set_weight(pose.weight[c], std::sqrt(nT2[c] + 1 / std::pow(pose.weight[c], 2)));
+}
+
 }  // namespace
 
 std::optional<calibration::AxisNoise> sample_noise(const PoseTable& table) {
@@ -38,11 +44,12 @@ void weight_by_pose(JointProblem& problem, const calibration::AxisNoise& pose_me
 }
 
 void add_variance(JointProblem& problem, const Channels& nT2) {
-  for (JointPose& pose : problem.poses) {
-    for (int c = 0; c < problem.channels(); ++c) {
-      if (nT2[c] > 0) set_weight(pose.weight[c], std::sqrt(nT2[c] + 1 / std::pow(pose.weight[c], 2)));
-    }
-  }
+  for (JointPose& pose : problem.poses) add(nT2, pose);
+}
+
+void add_memory_variance(JointProblem& problem, double factor) {
+  for (JointPose& pose : problem.poses)
+    if (pose.memory_nT2.size() > 0) add(pose.memory_nT2 * factor, pose);
 }
 
 }  // namespace mgtd::calib::fit::joint

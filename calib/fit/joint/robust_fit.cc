@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "calib/fit/consensus.h"
+#include "calib/fit/joint/memory_variance.h"
 #include "calib/fit/joint/single_samples.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
@@ -71,7 +72,8 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
       return out;
     }
     const bool judged = out.outliers.judge(problem, found, out.residuals);
-    const bool moved = noise.update(out.residuals, problem);
+    bool moved = noise.update(out.residuals, problem);
+    moved = set_memory_variance(problem, found, noise.table_sd_rad) || moved;
     if (moved && !judged) {
       settle(noise, problem, found);
       enough = kConverged;
@@ -118,9 +120,10 @@ std::optional<RobustFit> from_some(JointProblem& problem, const std::vector<Eige
   const auto first = weighed(some, *std::move(start), noise, Outliers(most_left_out), unsettled);
   if (!first) return std::nullopt;
   const JointState& known = first->solution.state;
-  first->noise.apply(problem);
   JointState state = joint_state(problem, known);
   state.coefficients = known.coefficients;
+  set_memory_variance(problem, state, first->noise.table_sd_rad);
+  first->noise.apply(problem);
   refit_nuisances(problem, state);
   Outliers outliers(most_left_out);
   outliers.judge(problem, state, pose_residuals(problem, state));
@@ -245,6 +248,7 @@ Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, d
 Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start, const FitNoise& noise,
                                   double most_left_out, bool& unsettled) {
   Outliers outliers(most_left_out);
+  set_memory_variance(problem, warm_start, noise.table_sd_rad);
   noise.apply(problem);
   refit_nuisances(problem, warm_start);
   outliers.judge(problem, warm_start, pose_residuals(problem, warm_start));

@@ -27,7 +27,7 @@ TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
   table.path = {{*from.t_s + 20, over}};
   const auto with_path = laws::run_memory({.table = &table, .offset_nT = {}});
   ASSERT_TRUE(with_path);
-  const laws::RememberedPose& remembered = (*with_path)[51];
+  const laws::RememberedPose& remembered = with_path->poses[51];
   ASSERT_EQ(remembered.on_the_way.size(), 1U);
   const testing::Scene scene;
   const Eigen::Vector3d B_S = scene.f_nT * scene.direction;
@@ -35,10 +35,10 @@ TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
       testing::table6_rig()[0].predict(testing::attitude(over) * B_S) - testing::table6_rig()[0].offset_nT;
   // Noise-free dwells of a rig linear in the field: the map by angles is exact, the offset good to a
   // nanotesla.
-  EXPECT_LT((remembered.on_the_way[0][0] - v).norm(), 5);
+  EXPECT_LT((remembered.on_the_way[0].v_nT[0] - v).norm(), 5);
   const auto path = laws::play_before(*with_path, 0.05);
-  EXPECT_NE(path.at(to.number)[0], dwells.at(to.number)[0]);
-  EXPECT_EQ(path.at(from.number)[0], dwells.at(from.number)[0]);
+  EXPECT_NE(path.at(to.number)[0][0].p, dwells.at(to.number)[0][0].p);
+  EXPECT_EQ(path.at(from.number)[0][0].p, dwells.at(from.number)[0][0].p);
 }
 
 fit::joint::JointOptions options_with(const char* spec) {
@@ -48,16 +48,25 @@ fit::joint::JointOptions options_with(const char* spec) {
 }
 
 /// The table stands a tenth of a degree off its angles, and 5 nT in a play of 0.1 F0 follow the field to 0.1
-/// nT for each of them. How far it is off between two poses is known from what it is off at both.
+/// nT for each of them. Where the table goes beyond a pose before it comes to it, no reading tells how far it
+/// is off: those poses have more noise than the others, and the fit is as good as it says.
 TEST(Hysteresis, IsFollowedAlongTheWayOfATableThatIsNotQuiteAtItsAngles) {
-  constexpr std::uint64_t kSeed = 8;
-  testing::Stage stage = testing::full_stage(kSeed);
-  stage.design = rig::run_of_157({}, kSeed);
-  const PoseTable run = testing::planted_run(stage, {{"axis.hysteresis", "s1.y", {5, 0.1}, {}}}, kSeed);
-  ASSERT_FALSE(run.path.empty());
-  const auto fit = fit::joint::fit_joint(run, options_with("axis.hysteresis@s1.y,w=0.1"));
-  ASSERT_TRUE(fit) << fit.error().text();
-  EXPECT_LT(fit->chi2 / fit->dof, 1.2);
+  constexpr int kRuns = 20;
+  double chi2 = 0, dof = 0, nees = 0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    testing::Stage stage = testing::full_stage(seed);
+    stage.design = rig::run_of_157({}, seed);
+    for (rig::PlannedPose& pose : stage.design.poses) pose.sense = 1;
+    const PoseTable run = testing::planted_run(stage, {{"axis.hysteresis", "s1.y", {5, 0.1}, {}}}, seed);
+    ASSERT_FALSE(run.path.empty());
+    const auto fit = fit::joint::fit_joint(run, options_with("axis.hysteresis@s1.y,w=0.1"));
+    ASSERT_TRUE(fit) << fit.error().text();
+    chi2 += fit->chi2, dof += fit->dof;
+    const int h = fit->problem.slots().effects();
+    nees += std::pow(fit->state.coefficients[0] - 5, 2) / fit->covariance(h, h) / kRuns;
+  }
+  EXPECT_NEAR(chi2 / dof, 1, 0.05);
+  EXPECT_NEAR(nees, 1, 3 * std::sqrt(2.0 / kRuns));
 }
 
 testing::Injection hysteresis_of(double h_nT, double w) {
