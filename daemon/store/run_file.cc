@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
 
 #include "calib/poses/pose_columns.h"
+#include "calib/poses/run_time.h"
 #include "daemon/store/database.h"
 #include "daemon/store/durable_file.h"
 #include "daemon/store/pose_row.h"
@@ -257,12 +257,11 @@ namespace {
 /// The way of the table on absolute time, as a run keeps it; empty where no pose ties t_s to that.
 std::vector<TableReading> path_to_keep(const PoseTable& table) {
   std::vector<TableReading> out;
-  const auto tied = std::find_if(table.poses.begin(), table.poses.end(),
-                                 [](const Pose& p) { return p.t_utc.has_value() && p.t_s.has_value(); });
-  if (tied == table.poses.end()) return out;
+  const auto start = calib::poses::RunTime::of(table).start;
+  if (!start) return out;
   for (const PathPoint& point : table.path) {
-    const WallTime wall{tied->t_utc->ns + from_seconds(point.t_s - *tied->t_s).count()};
-    out.push_back({.arrival = {.mono = Instant{from_seconds(point.t_s)}, .wall = wall},
+    const Duration since = from_seconds(point.t_s);
+    out.push_back({.arrival = {.mono = Instant{since}, .wall = {start->ns + since.count()}},
                    .angles = point.angles,
                    .referenced = true,
                    .moving = true,

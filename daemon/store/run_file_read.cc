@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 #include "calib/poses/pose_columns.h"
+#include "calib/poses/run_time.h"
 #include "daemon/store/database.h"
 #include "daemon/store/pose_row.h"
 #include "daemon/store/run_file.h"
@@ -45,13 +45,10 @@ Pose pose_of(const Statement& row, std::size_t sensors) {
 /// The path on the clock of the poses; empty where no pose ties that to absolute time.
 std::vector<PathPoint> path_in_run(const PoseTable& table, const std::vector<TableReading>& readings) {
   std::vector<PathPoint> out;
-  const auto tied = std::find_if(table.poses.begin(), table.poses.end(),
-                                 [](const Pose& p) { return p.t_utc.has_value() && p.t_s.has_value(); });
-  if (tied == table.poses.end()) return out;
-  for (const TableReading& reading : readings) {
-    const double since_s = to_seconds(Duration{reading.arrival.wall.ns - tied->t_utc->ns});
-    out.push_back({*tied->t_s + since_s, reading.angles});
-  }
+  const auto start = calib::poses::RunTime::of(table).start;
+  if (!start) return out;
+  for (const TableReading& reading : readings)
+    out.push_back({to_seconds(Duration{reading.arrival.wall.ns - start->ns}), reading.angles});
   return out;
 }
 
