@@ -32,6 +32,8 @@ Eigen::MatrixXd column_space(Eigen::MatrixXd X, const Eigen::VectorXd& lengths, 
   X *= scale.asDiagonal();
   Eigen::ColPivHouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(X);  // in place
   qr.setThreshold(tolerance);
+  if (qr.rank() == 0)
+    return Eigen::MatrixXd(X.rows(), 0);  // Eigen would take parts of a matrix that holds nothing
   return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), qr.rank());
 }
 

@@ -45,6 +45,7 @@ TEST(Bases, ColumnsThatAreRoundingAgainstTheirLengthAreLeftOut) {
   EXPECT_EQ(column_space(X, own, 1e-9).cols(), 2);
   EXPECT_EQ(column_space(X, before, 1e-9).cols(), 1);
   EXPECT_EQ(column_space(X, none, 1e-9).cols(), 1);
+  EXPECT_EQ(column_space(Eigen::MatrixXd::Zero(3, 2), before, 1e-9).cols(), 0);
 }
 
 TEST(TriangularisingRotation, LeavesNothingBelowTheTriangle) {
