@@ -16,10 +16,6 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kStatusExample = R"({"cmd":"status","id":1})";
 
-std::string line(const nlohmann::ordered_json& object) {
-  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
 bool can_be_id(const Json& id) { return id.is_null() || id.is_number() || id.is_string(); }
 
 Result<ControlCommand> find_command(const Json& object) {
@@ -79,7 +75,7 @@ std::string encode(const ControlRequest& request) {
   object["cmd"] = name(request.command);
   if (!request.args.empty()) object["args"] = request.args;
   if (!request.id.is_null()) object["id"] = request.id;
-  return line(object);
+  return to_line(object);
 }
 
 std::string encode_reply(const Json& id, const Result<nlohmann::ordered_json>& result) {
@@ -92,7 +88,7 @@ std::string encode_reply(const Json& id, const Result<nlohmann::ordered_json>& r
     const Error& error = result.error();
     object["error"] = {{"code", name(error.code)}, {"message", error.message}, {"remedy", error.remedy}};
   }
-  return line(object);
+  return to_line(object);
 }
 
 Result<ControlReply> parse_reply(std::string_view text) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "proto/json_line.h"
+
 namespace mgtd {
 namespace {
 
@@ -97,9 +99,7 @@ std::optional<JournalNote> note_of(const OrderedJson& j) {
 }  // namespace
 
 std::string encode(const JournalNote& note) {
-  return std::visit(
-      [](const auto& n) { return to_json(n).dump(-1, ' ', false, OrderedJson::error_handler_t::replace); },
-      note);
+  return std::visit([](const auto& n) { return to_line(to_json(n)); }, note);
 }
 
 Result<JournalNote> parse_note(std::string_view text) {

@@ -52,13 +52,13 @@ Result<TableAngles> parse_scale_entry(const nlohmann::json& args) {
 }
 
 nlohmann::ordered_json to_json(const OperatorPrompt& p) {
-  using Json = nlohmann::ordered_json;
+  using Value = nlohmann::ordered_json;
   return {{"what", kWhat.at(static_cast<std::size_t>(p.what))},
           {"pose", p.pose},
-          {"mount", p.mount ? Json(*p.mount) : Json(nullptr)},
+          {"mount", p.mount ? Value(*p.mount) : Value(nullptr)},
           {"target", scale_entry_json(p.target)},
           {"text", p.text},
-          {"again", p.again.empty() ? Json(nullptr) : Json(p.again)}};
+          {"again", p.again.empty() ? Value(nullptr) : Value(p.again)}};
 }
 
 Result<OperatorPrompt> prompt_from_json(const nlohmann::json& j) {

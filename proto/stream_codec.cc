@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proto/json_line.h"
 #include "proto/status_codec.h"
 
 namespace mgtd {
@@ -10,33 +11,28 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// Text that is not UTF-8 (an instrument's answer, a peer's line) must not end the stream: it is replaced.
-std::string line(const OrderedJson& object) {
-  return object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
-}
-
 std::string line_of_class(std::string_view stream_class, const OrderedJson& body) {
   OrderedJson object{{"class", stream_class}};
   object.update(body);
-  return line(object);
+  return to_line(object);
 }
 
 }  // namespace
 
 std::string encode(const Greeting& greeting) {
-  return line({{"class", "HELLO"},
-               {"protocol", {{"major", kStreamProtocolMajor}, {"minor", kStreamProtocolMinor}}},
-               {"rig", greeting.rig},
-               {"software", greeting.software},
-               {"array", to_json(greeting.array)}});
+  return to_line({{"class", "HELLO"},
+                  {"protocol", {{"major", kStreamProtocolMajor}, {"minor", kStreamProtocolMinor}}},
+                  {"rig", greeting.rig},
+                  {"software", greeting.software},
+                  {"array", to_json(greeting.array)}});
 }
 
 std::string encode(const Gap& gap) {
-  return line({{"class", "GAP"}, {"from_seq", gap.from_seq}, {"to_seq", gap.to_seq}, {"why", gap.why}});
+  return to_line({{"class", "GAP"}, {"from_seq", gap.from_seq}, {"to_seq", gap.to_seq}, {"why", gap.why}});
 }
 
 std::string encode(const Error& error) {
-  return line({{"class", "ERROR"}, {"message", error.message}, {"remedy", error.remedy}});
+  return to_line({{"class", "ERROR"}, {"message", error.message}, {"remedy", error.remedy}});
 }
 
 std::string encode(const StatusReport& report) { return line_of_class("STATUS", to_json(report)); }

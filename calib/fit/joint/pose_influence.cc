@@ -6,24 +6,13 @@
 
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/fit/joint/without_poses.h"
 #include "calib/linear/cholesky.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr double kNotDetermined = std::numeric_limits<double>::quiet_NaN();
-
-/// The problem of one pose, without what is known beside the poses.
-JointProblem without_poses(const JointProblem& problem) {
-  JointProblem out;
-  out.geometry = problem.geometry;
-  out.effects = problem.effects;
-  out.means = problem.means;
-  out.common_field = problem.common_field;
-  out.has_angles = problem.has_angles;
-  out.has_reference = problem.has_reference;
-  return out;
-}
 
 /// reduce() holds slots that no observation reaches by a unit information, which is no pose's.
 void release_idle_slots(const JointProblem& problem, Eigen::MatrixXd& S) {
@@ -42,7 +31,7 @@ Result<std::vector<PoseInfluence>> pose_influences(const JointFit& fit) {
   const auto inverse = covariance_of(all.S);
   if (!inverse) return tl::unexpected(inverse.error());
   const TensorResponse response(fit.state.sensors, fit.problem.geometry, mean_field(fit));
-  JointProblem one = without_poses(fit.problem);
+  JointProblem one = without_poses_and_priors(fit.problem);
   JointState state = fit.state;
   std::vector<PoseInfluence> out(fit.problem.poses.size());
   for (std::size_t k = 0; k < out.size(); ++k) {

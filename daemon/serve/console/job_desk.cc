@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "daemon/serve/console/job_request.h"
+#include "proto/json_line.h"
 
 namespace mgtd::daemon::serve::console {
 namespace {
@@ -20,9 +21,7 @@ constexpr auto kLookForForgotten = std::chrono::seconds(2);
 constexpr unsigned kAccepted = 202, kBadRequest = 400, kNotFound = 404, kMethodNotAllowed = 405,
                    kTooMany = 429;
 
-std::string dumped(const ordered_json& object) {
-  return object.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
-}
+std::string dumped(const ordered_json& object) { return to_line(object) + '\n'; }
 
 JobAnswer refused(unsigned status, const Error& error) {
   return {
