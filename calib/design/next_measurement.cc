@@ -17,13 +17,13 @@ constexpr double kWorthMeasuring = 0.01;  ///< gain of the probability that is w
 constexpr double kBetter = 0.005;         ///< than more of the same, for what takes more than that
 
 /// Further poses of an action, beside the run they follow.
-struct Longer {
+struct Further {
   PoseTable table;
   Eigen::Index rows_here{0};  ///< of the poses at the place of the run
 };
 
-Longer longer(const PoseTable& table, const Action& action, const fit::joint::JointFit& fit) {
-  Longer out{.table = extended(table, action, fit.state.sensors)};
+Further further(const PoseTable& table, const Action& action, const fit::joint::JointFit& fit) {
+  Further out{.table = extended(table, action, fit.state.sensors)};
   out.rows_here =
       fit.problem.pose_rows() * static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
   return out;
@@ -39,7 +39,7 @@ Eigen::MatrixXd at_two_places(const Eigen::MatrixXd& rows, Eigen::Index here) {
 
 /// Projected columns of an effect; empty when these poses cannot feed it.
 Eigen::MatrixXd columns_of(const ModelOnPoses& design, const criticism::tests::Residual& residual,
-                           const std::string& spec, const Longer& run, std::vector<std::string>* names) {
+                           const std::string& spec, const Further& run, std::vector<std::string>* names) {
   const PoseTable& table = run.table;
   const auto parsed = effects::EffectSpec::parse(spec);
   if (!parsed) return {};
@@ -63,7 +63,7 @@ Eigen::VectorXd sizes_of(const criticism::tests::Candidate& winner, const std::v
   return out;
 }
 
-Longer as_it_is(const PoseTable& table, const fit::joint::JointProblem& problem) {
+Further as_it_is(const PoseTable& table, const fit::joint::JointProblem& problem) {
   return {table, problem.pose_rows() * static_cast<Eigen::Index>(table.poses.size())};
 }
 
@@ -88,7 +88,7 @@ bool differ_in_form(const std::string& a, const std::string& b) {
 }
 
 /// Smallest probability, over the alternatives, that the winner's name comes out right if it is true.
-double p_right(const Longer& run, const ModelOnPoses& design, const criticism::tests::Residual& residual,
+double p_right(const Further& run, const ModelOnPoses& design, const criticism::tests::Residual& residual,
                const criticism::tests::Candidate& winner,
                const std::vector<criticism::tests::Alternative>& alternatives) {
   std::vector<std::string> names;
@@ -108,7 +108,7 @@ double p_right(const Longer& run, const ModelOnPoses& design, const criticism::t
   return criticism::tests::probability_right(lambda);
 }
 
-double p_right_after(const Longer& run, const fit::joint::JointFit& fit,
+double p_right_after(const Further& run, const fit::joint::JointFit& fit,
                      const fit::joint::JointOptions& options, const criticism::tests::Candidate& winner,
                      const std::vector<criticism::tests::Alternative>& alternatives) {
   const auto design = model_on_poses(run.table, fit, options);
@@ -132,8 +132,8 @@ std::vector<criticism::tests::Alternative> hardest(const criticism::tests::Candi
 }
 
 /// For alternatives that were not compared with the winner yet.
-void find_form_only(const Longer& run, const ModelOnPoses& design, const criticism::tests::Residual& residual,
-                    const criticism::tests::Candidate& winner,
+void find_form_only(const Further& run, const ModelOnPoses& design,
+                    const criticism::tests::Residual& residual, const criticism::tests::Candidate& winner,
                     std::vector<criticism::tests::Alternative>& alternatives) {
   std::vector<std::string> names;
   const Eigen::MatrixXd Z = columns_of(design, residual, winner.spec, run, &names);
@@ -155,7 +155,7 @@ NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& f
   auto alternatives = hardest(winner);
   if (alternatives.empty()) return out;
   {
-    const Longer here = as_it_is(table, fit.problem);
+    const Further here = as_it_is(table, fit.problem);
     const auto design = model_on_poses(here.table, fit, options);
     if (!design) return out;
     const criticism::tests::Residual residual(design->problem, design->state, 0);
@@ -164,7 +164,7 @@ NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& f
   }
   double worth = out.p_right_before + kWorthMeasuring;
   for (const Action& action : actions()) {
-    const double after = p_right_after(longer(table, action, fit), fit, options, winner, alternatives);
+    const double after = p_right_after(further(table, action, fit), fit, options, winner, alternatives);
     if (after < worth) continue;
     if (&action == actions().data()) worth = after + kBetter;
     out.steps.push_back(

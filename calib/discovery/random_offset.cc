@@ -76,12 +76,12 @@ double evidence_of(RandomOffset kind, const std::vector<int>& channels, const Ch
                    const fit::joint::JointProblem& problem) {
   constexpr int kValues = 30;
   constexpr double kFirst = 1e-2, kLast = 1e5;  // of a, in units of one over the largest g
-  constexpr double kNever = -std::numeric_limits<double>::infinity();
+  constexpr double kNoOdds = -std::numeric_limits<double>::infinity();
   const Eigen::MatrixXd A = factor_of(kind, problem);
-  if (A.size() == 0 || channels.empty() || channels.back() >= sums.total()) return kNever;
+  if (A.size() == 0 || channels.empty() || channels.back() >= sums.total()) return kNoOdds;
   const Tridiagonal all = tridiagonal(A, channels, sums);
   const double largest = all.largest_eigenvalue();
-  if (!(largest > 0)) return kNever;
+  if (!(largest > 0)) return kNoOdds;
   std::vector<double> q;
   for (int i = 0; i < kValues; ++i)
     q.push_back(all.two_ln_odds(kFirst * std::pow(kLast / kFirst, i / (kValues - 1.0)) / largest));

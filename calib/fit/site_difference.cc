@@ -11,7 +11,7 @@
 namespace mgtd::calib::fit {
 namespace {
 
-constexpr double kGross = 5;  ///< standard deviations from the median
+constexpr double kGross_sd = 5;  ///< from the median
 
 struct Difference {
   double nT, stated_nT2;
@@ -26,8 +26,8 @@ std::vector<Difference> differences(const PoseTable& table) {
   return out;
 }
 
-/// Leaves out those further from the median than `kGross` of its robust standard deviation and of the stated
-/// one.
+/// Leaves out those further from the median than `kGross_sd` of its robust standard deviation and of the
+/// stated one.
 void leave_out_gross(std::vector<Difference>& all) {
   std::vector<double> values, off;
   for (const Difference& d : all) values.push_back(d.nT);
@@ -35,7 +35,7 @@ void leave_out_gross(std::vector<Difference>& all) {
   for (const double x : values) off.push_back(std::abs(x - middle));
   const double spread = stats::kMadToSd * stats::median(off);
   std::erase_if(all, [&](const Difference& d) {
-    return std::abs(d.nT - middle) > kGross * std::max(spread, std::sqrt(d.stated_nT2));
+    return std::abs(d.nT - middle) > kGross_sd * std::max(spread, std::sqrt(d.stated_nT2));
   });
 }
 

@@ -25,7 +25,7 @@ using discovery::FoundLaw;
 using discovery::LawFinding;
 using nlohmann::json;
 
-constexpr std::size_t kShown = 8, kSharesShown = 4, kCoefficientsShown = 4;
+constexpr std::size_t kFormulasListed = 8, kSharesShown = 4, kCoefficientsShown = 4;
 /// Of extrapolation_spread, above which formulas disagree outside the run.
 constexpr double kDisagree = 0.3;
 
@@ -215,7 +215,7 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
   out += wrapped("acts on " + shares_text(law.where));
   fmt::format_to(to, "\n{:>2}  {:<42} {:<9} {:>5} {:>8} {:>2} {:>2}\n", "", "formula", "where", "P", "fall",
                  "k", "C");
-  for (std::size_t i = 0; i < std::min(kShown, law.formulas.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kFormulasListed, law.formulas.size()); ++i) {
     const FoundFormula& f = law.formulas[i];
     fmt::format_to(to, "{:>2}  {:<42} {:<9} {:>5.2f} {:>8.1f} {:>2} {:>2}\n", i + 1, f.formula, f.where, f.P,
                    f.S, f.k, f.symbols);
@@ -223,8 +223,8 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
       fmt::format_to(to, "     in the library: {}\n", f.library);
     if (i == 0) tell_coefficients(f, out);
   }
-  if (const std::size_t all = law.formulas.size() + law.more; all > kShown)
-    fmt::format_to(to, "    and {} more in the 99 % set\n", all - kShown);
+  if (const std::size_t all = law.formulas.size() + law.more; all > kFormulasListed)
+    fmt::format_to(to, "    and {} more in the 99 % set\n", all - kFormulasListed);
   if (number == 1)
     fmt::format_to(to, "    {}: offset walks {:.2f}, jumps from pose to pose {:.2f}\n",
                    law.random_beside ? "beside it" : "no formula", law.walk_P, law.jumps_P);
@@ -237,7 +237,7 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
     for (std::size_t i = 1; i < law.formulas.size(); ++i)
       if (law.formulas[i].same_as == law.formulas.front().same_as)
         needed = std::max(needed, law.formulas[i].needed_nT);
-    alike.resize(std::min(kShown, alike.size()));
+    alike.resize(std::min(kFormulasListed, alike.size()));
     std::string told = fmt::format("cannot be told from 1 on these poses: {}", fmt::join(alike, ", "));
     if (std::isfinite(needed) && needed > 0) {
       told += fmt::format("; all of them could at {:.3g} nT rms (it has {:.2g})", needed,

@@ -30,7 +30,7 @@ std::string typeset(std::string text) {
   return text;
 }
 
-constexpr std::size_t kCandidatesShown = 12;
+constexpr std::size_t kCandidatesDrawn = 12;
 
 std::vector<std::string> parameter_names() {
   return {sensor::kParameterNames.begin(), sensor::kParameterNames.end()};
@@ -55,7 +55,7 @@ double worst_sd(const fit::joint::JointFit& fit) {
 figures::Figure candidates_of(const criticism::search::ExplainReport& report) {
   figures::CandidatesValues v{
       .candidates = {}, .tried = report.candidates.size(), .seen_d = criticism::tests::kSeen};
-  for (std::size_t i = 0; i < std::min(kCandidatesShown, report.candidates.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kCandidatesDrawn, report.candidates.size()); ++i) {
     const criticism::tests::Candidate& c = report.candidates[i];
     figures::Candidate s{.effect = c.effect,
                          .where = c.where,

@@ -45,7 +45,7 @@ void leave_out(calib::fit::FitOptions& options, const std::vector<Hypothesis>& h
 }
 
 /// The model without what `gone` is, and the descriptions of it.
-Result<Question> question(const std::vector<std::string>& specs, const store::PoseSource& source,
+Result<Question> asked_of(const std::vector<std::string>& specs, const store::PoseSource& source,
                           const calib::fit::FitOptions& options) {
   std::vector<EffectSpec> parsed;
   std::optional<calib::effects::Where> place;
@@ -82,7 +82,7 @@ bool names_of_the_library(const std::vector<std::string>& named, const store::Po
 
 Result<Question> question_of(const std::vector<std::string>& named, const store::PoseSource& source,
                              const calib::fit::FitOptions& options) {
-  return question(named, source, options);
+  return asked_of(named, source, options);
 }
 
 Result<Question> question_in_doubt(const std::vector<calib::criticism::search::Choice>& doubts,
@@ -94,7 +94,7 @@ Result<Question> question_in_doubt(const std::vector<calib::criticism::search::C
     const bool any = std::any_of(specs.begin(), specs.end(), [&](const std::string& spec) {
       return is_formula(store::whole_spec(spec, source.definitions));
     });
-    if (any) return question(specs, source, options);
+    if (any) return asked_of(specs, source, options);
   }
   return Question{.options = options, .hypotheses = {}};
 }

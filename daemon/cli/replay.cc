@@ -26,7 +26,7 @@ struct ReplayArguments {
 };
 
 /// Where the lines go.
-struct Output {
+struct ReplayOutput {
   std::FILE* file{nullptr};  ///< null: nowhere
   std::uint64_t failed{0};
 
@@ -133,7 +133,7 @@ int run_replay(const Session& session, const ReplayArguments& args) {
     instead = std::make_shared<const calib::calibration::Calibration>(*std::move(calibration));
   }
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
-  Output output{session.json ? nullptr : stdout};
+  ReplayOutput output{session.json ? nullptr : stdout};
   if (!args.output.empty()) {
     file.reset(std::fopen(args.output.c_str(), "we"));
     if (file == nullptr)

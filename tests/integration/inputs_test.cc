@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 /// A motor's current, on the digitiser of sensor 3, disturbs the z axis of sensor 2; the supply disturbs
 /// nothing.
-constexpr const char* kScenario = R"(
+constexpr const char* kRigScenario = R"(
 [rig]
 name = "motor"
 parameters = "table6"
@@ -78,7 +78,7 @@ std::map<std::string, std::vector<std::string>> columns(const std::string& csv) 
 }
 
 TEST(Inputs, AMotorsCurrentIsSeenRecordedAndNamed) {
-  Bench bench("30", kScenario);
+  Bench bench("30", kRigScenario);
   bench.start_daemon();
 
   // Before a run.

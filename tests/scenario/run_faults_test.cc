@@ -21,7 +21,7 @@ rig::Scenario table6() {
   return scenario_of("[rig]\nname = \"table6\"\nparameters = \"table6\"\nseed = 6\n");
 }
 
-daemon::plan::RunPlan plan_for(VirtualDaemon& daemon) {
+daemon::plan::RunPlan plan_of(VirtualDaemon& daemon) {
   return *daemon::plan::make_plan(
       {.step_deg = 20, .random = 12, .revisits = 2, .dwell_short_s = 2, .dwell_long_s = 3},
       daemon.table().limits());
@@ -30,7 +30,7 @@ daemon::plan::RunPlan plan_for(VirtualDaemon& daemon) {
 /// Started and some poses far.
 void start(VirtualDaemon& daemon, std::size_t poses) {
   ASSERT_TRUE(daemon.run(60, [&] { return daemon.all_live(); }));
-  daemon.start(plan_for(daemon));
+  daemon.start(plan_of(daemon));
   ASSERT_TRUE(daemon.run(600, [&] { return daemon.poses.poses.size() >= poses; }));
   ASSERT_FALSE(daemon.finished) << daemon.finished->message;
 }
@@ -200,7 +200,7 @@ TEST(RunFaults, KilledAnywhereTheRunGoesOnAtTheNextPose) {
     daemon.restart();  // finds its instruments streaming and the table on its way
     daemon.run(30);
     ASSERT_TRUE(daemon.all_live());
-    daemon.start(plan_for(daemon), std::nullopt, earlier);
+    daemon.start(plan_of(daemon), std::nullopt, earlier);
     ASSERT_TRUE(daemon.run(3600)) << daemon.status->message;
     EXPECT_EQ(name(daemon.finished->state), "done") << daemon.finished->message;
     ASSERT_EQ(daemon.poses.poses.size(), static_cast<std::size_t>(kPoses));

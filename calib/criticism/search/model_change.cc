@@ -61,7 +61,7 @@ double chi2_of(const ModelStage& stage, const fit::joint::JointFit& fit) {
       .chi2();
 }
 
-std::optional<double> residual_of(const std::optional<fit::joint::JointErrors>& errors) {
+std::optional<double> held_out_residual(const std::optional<fit::joint::JointErrors>& errors) {
   return errors ? std::optional(errors->residual_nT) : std::nullopt;
 }
 
@@ -73,8 +73,8 @@ void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
   out.noise_nT = (out.adding ? after : before).fit.noise_nT();
   out.tensor_before_nT_per_m = calibration::root_mean_square(before.errors.summary.tensor_rmse_nT_per_m);
   out.tensor_after_nT_per_m = calibration::root_mean_square(after.errors.summary.tensor_rmse_nT_per_m);
-  out.held_out_before_nT = residual_of(before.held_out);
-  out.held_out_after_nT = residual_of(after.held_out);
+  out.held_out_before_nT = held_out_residual(before.held_out);
+  out.held_out_after_nT = held_out_residual(after.held_out);
   // A model that is far off in another way has its chi-square fall by thousands for nothing.
   out.birge_ratio = (out.adding ? after : before).fit.birge_ratio;
   const double fall = out.realised / (out.birge_ratio * out.birge_ratio);

@@ -19,7 +19,7 @@ constexpr double kInSight = 0.1;
 /// Values of one searched number. All that were tried take part: in another run another one of them would
 /// fit best, and with those near the winner alone a search would seem to win less easily than it does.
 constexpr std::size_t kValues = 30;
-constexpr std::size_t kMost = 200;
+constexpr std::size_t kMostKept = 200;
 constexpr double kNever = -1e9;
 
 RankedAlternative ranked_alternative_of(const ScoredFamily& family, std::size_t f, const Score& score,
@@ -46,7 +46,7 @@ std::vector<RankedAlternative> nearest(const std::vector<ScoredFamily>& families
   std::vector<RankedAlternative> out;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> values;
   for (const RankedAlternative& c : found) {
-    if (out.size() == kMost || c.L < found.front().L - sight) break;
+    if (out.size() == kMostKept || c.L < found.front().L - sight) break;
     if (values[{c.family, c.score->hypothesis}]++ < kValues) out.push_back(c);
   }
   return out;

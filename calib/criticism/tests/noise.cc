@@ -73,13 +73,13 @@ Eigen::MatrixXd leverages(Eigen::MatrixXd J) {
 }
 
 /// A pose of known attitude.
-struct Visit {
+struct VisitedPose {
   Eigen::Index pose;
   std::optional<int> mount;
   TableAngles angles;
 };
 
-bool same_attitude(const Visit& a, const Visit& b) {
+bool same_attitude(const VisitedPose& a, const VisitedPose& b) {
   const auto near = [](double x, double y) {
     const double apart = std::abs(x - y);  // of nearly all pairs of poses this says it without a division
     if (apart > kSameAngle_rad && apart < 2 * std::numbers::pi - 2 * kSameAngle_rad) return false;
@@ -91,7 +91,7 @@ bool same_attitude(const Visit& a, const Visit& b) {
 
 /// Each pose with the next visit to its attitude.
 std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const fit::joint::JointProblem& problem) {
-  std::vector<Visit> visits;
+  std::vector<VisitedPose> visits;
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     const Pose& pose = *problem.poses[k].pose;
     if (const auto angles = pose.angles())
@@ -99,7 +99,8 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> revisits(const fit::joint::Jo
   }
   std::vector<std::pair<Eigen::Index, Eigen::Index>> out;
   for (auto a = visits.begin(); a != visits.end(); ++a) {
-    const auto b = std::find_if(a + 1, visits.end(), [&](const Visit& v) { return same_attitude(*a, v); });
+    const auto b =
+        std::find_if(a + 1, visits.end(), [&](const VisitedPose& v) { return same_attitude(*a, v); });
     if (b != visits.end()) out.emplace_back(a->pose, b->pose);
   }
   return out;

@@ -107,7 +107,7 @@ PoseBlame::PoseBlame(const JointProblem& problem, const JointState& state, const
 /// The pose with its own best field and attitude when these rows do not count.
 PoseBlame::Trial PoseBlame::without(const Rows& out) {
   constexpr int kSteps = 12;
-  constexpr double kSettled = 1e-6;
+  constexpr double kSolved = 1e-6;
   JointPose& pose = alone_.poses.front();
   pose = whole_;
   const int channels = problem_.channels();
@@ -118,7 +118,7 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
     assemble(alone_, model_, at_, 0, Blocks::own, blocks_);
     const Nuisance step = blocks_.H.llt().solve(blocks_.g);
     at_.nuisances.front() += step;
-    if (step.dot(blocks_.g) < kSettled) break;
+    if (step.dot(blocks_.g) < kSolved) break;
   }
   assemble(alone_, model_, at_, 0, Blocks::own, blocks_);
   const Eigen::LLT<Eigen::Matrix4d> H(blocks_.H);

@@ -118,13 +118,13 @@ ReferencePlacement place_beside(const JointProblem& problem, const std::vector<E
 
 Result<void> check_reference_stands(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u,
                                     const ReferencePlacement& placement) {
-  constexpr double kFarOff_rad = 0.1, kMuchLess = 0.1;
-  if (placement.misfit_rad < kFarOff_rad) return {};
+  constexpr double kStands_rad = 0.1, kMuchBetter = 0.1;
+  if (placement.misfit_rad < kStands_rad) return {};
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < u.size(); ++k)
     sum += problem.poses[k].reference_nT.normalized() * u[k].normalized().transpose();
   const double turning = unlike_rad(sum, static_cast<double>(u.size()));
-  if (turning > kMuchLess * placement.misfit_rad) return {};
+  if (turning > kMuchBetter * placement.misfit_rad) return {};
   return fail(
       ErrorCode::refused,
       fmt::format("the vector of the reference turns with the table: it follows the sensors to {:.2g} deg, "

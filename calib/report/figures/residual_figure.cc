@@ -93,14 +93,14 @@ DataTable by_bin(const ResidualValues& v) {
 
 Figure residual_figure(const ResidualValues& v) {
   const bool pair = !v.after.series.empty();
-  constexpr double kHeight = 240, kBetween = 14, kHead = 18;
+  constexpr double kPlotHeight = 240, kBetween = 14, kHead = 18;
   const double width = pair ? 820 : 410;
-  Drawing drawing(v.name, width, kHeight + kHead);
+  Drawing drawing(v.name, width, kPlotHeight + kHead);
   const Axis x{.label = v.x_label,
                .range = range_of(all_of(v, true), ScaleKind::linear, 0.03),
                .angle_deg = v.angle_deg};
   const Axis y{.label = v.y_label, .range = symmetric_range_of(all_of(v, false))};
-  const double top = kHead + Plot::kTop - 6, height = kHeight + kHead - top - Plot::kBottom;
+  const double top = kHead + Plot::kTop - 6, height = kPlotHeight + kHead - top - Plot::kBottom;
   const double each =
       pair ? (width - Plot::kLeft - Plot::kRight - kBetween - 10) / 2 : width - Plot::kLeft - Plot::kRight;
   const Box left{Plot::kLeft, top, each, height};

@@ -19,8 +19,9 @@ Scenario ideal(bool palmacq) {
   return scenario;
 }
 
-struct Bench {
-  explicit Bench(bool palmacq = false) : world(ideal(palmacq)), instrument(world, 0, 1'580'481'457.617) {}
+struct ObsdaqBench {
+  explicit ObsdaqBench(bool palmacq = false)
+      : world(ideal(palmacq)), instrument(world, 0, 1'580'481'457.617) {}
   std::string say(const std::string& bytes) {
     instrument.receive(bytes, now_s);
     return instrument.take_output();
@@ -32,7 +33,7 @@ struct Bench {
 
 /// The captured dialogues of the digitiser.
 TEST(ObsdaqInstrument, AnswersAsTheCapturedDialogues) {
-  Bench bench;
+  ObsdaqBench bench;
   EXPECT_EQ(bench.say("$01M\r"), "!01<obsDAQ V5.5.7>\r");
   EXPECT_EQ(bench.say("$010WS02010233\r"), "!0102010233\r");
   EXPECT_EQ(bench.say("#01PP10000500\r"), "!0110000500\r");
@@ -40,14 +41,14 @@ TEST(ObsdaqInstrument, AnswersAsTheCapturedDialogues) {
 }
 
 TEST(ObsdaqInstrument, RefusesNonsenseAndIgnoresAnotherAddress) {
-  Bench bench;
+  ObsdaqBench bench;
   EXPECT_EQ(bench.say("$01XYZ\r"), "?01\r");
   EXPECT_EQ(bench.say("#01PPQQQQ0600\r"), "?01\r");
   EXPECT_EQ(bench.say("$02M\r"), "");
 }
 
 TEST(ObsdaqInstrument, StreamsAtItsRateUntilTheQuickStop) {
-  Bench bench;
+  ObsdaqBench bench;
   bench.say("#01PP0C000600\r");  // 20 ms
   bench.say("#01CS\r");
   bench.now_s = 1.0;
@@ -63,7 +64,7 @@ TEST(ObsdaqInstrument, StreamsAtItsRateUntilTheQuickStop) {
 }
 
 TEST(ObsdaqInstrument, PalmAcqPutsTheTimeInFront) {
-  Bench bench(true);
+  ObsdaqBench bench(true);
   EXPECT_EQ(bench.say("$01M\r"), "");  // not before the way through is open
   EXPECT_EQ(bench.say("SM:TRP\r"), "AM:TRP,001B\r");
   EXPECT_EQ(bench.say("$01M\r"), "!01<obsDAQ V5.5.7>\r");

@@ -13,13 +13,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kRate_hz = 50;
+constexpr double kRigRate_hz = 50;
 
 Stamp at(double t_s) { return {Instant{from_seconds(500 + t_s)}, WallTime{from_seconds(t_s).count()}}; }
 
 /// Five seconds of a healthy rig, with a hand on everything.
 struct Rig {
-  double rate_hz{kRate_hz};
+  double rate_hz{kRigRate_hz};
   double noise_nT{1};
   PerSensor<double> scale{1, 1, 1, 1};
   int frozen_axis{-1};
