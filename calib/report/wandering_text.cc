@@ -7,7 +7,7 @@
 namespace mgtd::calib::report {
 namespace {
 
-std::string with_sd(double value, double sd) {
+std::string rate_with_sd(double value, double sd) {
   return value < 10 ? fmt::format("{:.2g} +- {:.1g}", value, sd) : fmt::format("{:.0f} +- {:.0f}", value, sd);
 }
 
@@ -22,8 +22,8 @@ std::string wandering_text(const fit::joint::WanderingEstimate& w) {
   return fmt::format(
       "{} of {}, up to {} {} (s{}.{})", walks ? "slow wandering" : "1/f noise",
       w.where.front() == "all" ? "all offsets" : fmt::format("the offsets of {}", fmt::join(w.where, ", ")),
-      with_sd(unit * w.size[most], unit * w.sd[most]), walks ? "nT per root hour" : "pT/sqrt(Hz) at 1 Hz",
-      most / 3 + 1, "xyz"[most % 3]);
+      rate_with_sd(unit * w.size[most], unit * w.sd[most]),
+      walks ? "nT per root hour" : "pT/sqrt(Hz) at 1 Hz", most / 3 + 1, "xyz"[most % 3]);
 }
 
 }  // namespace mgtd::calib::report
