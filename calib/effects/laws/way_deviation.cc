@@ -34,8 +34,8 @@ void add_turns(std::span<const PathPoint> way, std::size_t axis, std::vector<std
   double rad = 0;
   for (std::size_t k = 1; k < way.size(); ++k) {
     rad += step_rad(way, k, axis);
-    if (rad < low.rad + kStands_rad) low = {rad, k};
-    if (rad > high.rad - kStands_rad) high = {rad, k};
+    if (rad < low.rad + kStands_rad) low = {std::min(rad, low.rad), k};
+    if (rad > high.rad - kStands_rad) high = {std::max(rad, high.rad), k};
     const Extreme first = low.k < high.k ? low : high, last = low.k < high.k ? high : low;
     const bool went = std::abs(last.rad - first.rad) > kTurnsBack_rad;
     if (!went || std::abs(rad - last.rad) < kTurnsBack_rad) continue;

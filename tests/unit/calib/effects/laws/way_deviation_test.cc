@@ -69,6 +69,17 @@ TEST(WayDeviation, OfAnAxisThatStandsItIsHalfway) {
   EXPECT_NEAR(told[1].covariance(1, 1), 0.25, 1e-12);
 }
 
+/// Its steps are no larger than what an axis that stands seems to move by.
+TEST(WayDeviation, ASlowAxisTurnsBackAsWell) {
+  constexpr int kSteps = 300;
+  constexpr double kStep_deg = 0.009;
+  std::vector<PathPoint> way;
+  for (int k = 0; k <= 2 * kSteps; ++k)
+    way.push_back(at(k, kStep_deg * (kSteps - std::abs(k - kSteps)), 0, 0));
+  const auto told = way_deviations(way, kBefore, kAfter);
+  EXPECT_NEAR(told[kSteps + 1].covariance(0, 0), 1, 1e-12);
+}
+
 /// A servo that settles swings about its end by less than a turn.
 TEST(WayDeviation, AServoThatSettlesDoesNotTurnBack) {
   const std::vector<PathPoint> way{at(0, 0, 0, 0), at(1, 10, 10, 10), at(2, 20.5, 20, 20), at(3, 20, 20, 20)};
