@@ -37,17 +37,17 @@ TEST(RunCourse, HasItsDocumentedForm) {
                           .seen_by = "array",
                           .lasted_s = {},
                           .then = "waits"}};
-  const auto json = to_json(course);
-  EXPECT_EQ(json["coverage"].dump(),
+  const auto written = to_json(course);
+  EXPECT_EQ(written["coverage"].dump(),
             R"({"pose":[1,2],"state":["measured","next"],"direction":[[0.3333,0.6667,-0.6667],null],)"
             R"("hole":{"direction":[0.0,0.0,1.0],"radius_deg":90.0},"good":"no hole."})");
   EXPECT_EQ(
-      json["accuracy"].dump(),
+      written["accuracy"].dump(),
       R"({"poses":[18],"worst_nT_per_m":[6.0],"xx":[1.0],"yy":[2.0],"zz":[3.0],"xy":[4.0],"xz":[null],)"
       R"("yz":[6.0],"residual_nT":[0.5],"offset_sd_nT":[null],"scale_sd_ppm":[250000.0],"angle_sd_deg":[null],)"
       R"("parameters":{"name":[],"unit":[],"sd":[null]},)"
       R"("wanted_nT_per_m":2.5,"why":null,"expected":{"poses":[24],"worst_nT_per_m":[5.0]},"good":null})");
-  EXPECT_EQ(json["disturbances"].dump(),
+  EXPECT_EQ(written["disturbances"].dump(),
             R"([{"t":"2026-11-21T10:00:00.000000Z","pose":2,"change_nT":12.5,"limit_nT":0.5,)"
             R"("seen_by":"array","lasted_s":null,"then":"waits"}])");
 }
