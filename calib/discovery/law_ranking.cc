@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 
 #include "calib/discovery/fitted_law.h"
@@ -27,6 +28,14 @@ struct LogSum {
   /// 2 ln of the mean over n.
   [[nodiscard]] double two_ln_mean(double n) const { return largest + 2 * std::log(sum / n); }
 };
+
+/// Steps of the golden section from the grid's interval to where S falls by no more than a hundredth: S is a
+/// parabola about its largest value, which falls by about S over that interval.
+int steps_for(double S) {
+  constexpr double kFall = 0.01;
+  return std::max(14,
+                  static_cast<int>(std::ceil(std::log(std::sqrt(S / kFall)) / std::log(std::numbers::phi))));
+}
 
 }  // namespace
 
@@ -71,7 +80,6 @@ std::vector<RankedLaw> rank_formulas(const std::vector<Tried>& tried, const Form
 
 Result<void> refine_inner(std::vector<RankedLaw>& laws, std::size_t count, const Grammar& grammar,
                           LawInputs& inputs, const ChannelSums& sums) {
-  constexpr int kSteps = 14;
   constexpr double kGolden = 0.3819660112501051;
   for (std::size_t i = 0; i < std::min(count, laws.size()); ++i) {
     RankedLaw& law = laws[i];
@@ -93,7 +101,8 @@ Result<void> refine_inner(std::vector<RankedLaw>& laws, std::size_t count, const
     };
     double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
     auto of_a = S_at(a), of_b = S_at(b);
-    for (int step = 0; step < kSteps && of_a && of_b; ++step) {
+    const int steps = steps_for(law.S);
+    for (int step = 0; step < steps && of_a && of_b; ++step) {
       if (*of_a > *of_b) {
         high = b, b = a, of_b = of_a;
         a = low + kGolden * (high - low);
