@@ -40,7 +40,22 @@ std::vector<Share> shares(const std::vector<RankedLaw>& ranked, double of_head,
   return out;
 }
 
-double size_nT(const FittedLaw& law) {
+double gradient_size_nT(LawOnChannels law, const ChannelSums& sums) {
+  for (Eigen::VectorXd& component : law)
+    if (component.size() > 0) component.array() -= component.mean();
+  double squares = 0, weights = 0;
+  for (int c = sums.channels(); c < sums.total(); ++c)
+    for (int d = sums.channels(); d < sums.total(); ++d)
+      squares += law[static_cast<std::size_t>(c)].dot(
+          sums.before_projection(c, d, law[static_cast<std::size_t>(d)]).col(0));
+  for (int c = 0; c < sums.channels(); ++c)
+    weights += sums.before_projection(c, c, Eigen::VectorXd::Ones(sums.poses())).sum();
+  return std::sqrt(squares / weights);
+}
+
+/// Rms of what a law adds to the readings; of a gradient each counts by its weight.
+double size_nT(const FittedLaw& law, const ChannelSums& sums) {
+  if (law.place.kind == Place::Kind::gradient) return gradient_size_nT(law.law, sums);
   double squares = 0;
   Eigen::Index n = 0;
   for (const Eigen::VectorXd& on_channel : law.law) {
@@ -52,7 +67,7 @@ double size_nT(const FittedLaw& law) {
 }
 
 FoundFormula described(const RankedLaw& ranked, const FittedLaw& fitted, const Family& family,
-                       const std::string& name, int channels) {
+                       const std::string& name, const ChannelSums& sums) {
   FoundFormula out{.formula = shown(fitted.columns, fitted.place),
                    .columns = fitted.columns,
                    .where = fitted.place.name(),
@@ -61,13 +76,15 @@ FoundFormula described(const RankedLaw& ranked, const FittedLaw& fitted, const F
   for (const std::string& covariate : family.covariates)
     out.covariates.push_back(shown_covariate(covariate, fitted.place));
   out.P = ranked.P, out.S = fitted.S, out.k = fitted.k, out.symbols = family.symbols;
-  out.size_nT = size_nT(fitted);
+  out.size_nT = size_nT(fitted, sums);
   if (family.refined) out.inner = ranked.inner, out.inner_unit = family.inner_unit;
-  const auto places = coefficient_places(fitted.columns, fitted.place, channels);
+  const auto places = coefficient_places(fitted.columns, fitted.place, sums.channels());
+  const std::string unit = fitted.place.kind == Place::Kind::gradient ? "nT/m" : "nT";
   for (Eigen::Index i = 0; i < fitted.value.size(); ++i) {
     const double variance = fitted.covariance(i, i);
     if (variance > 0)
-      out.coefficients.push_back({places[static_cast<std::size_t>(i)], fitted.value[i], std::sqrt(variance)});
+      out.coefficients.push_back(
+          {places[static_cast<std::size_t>(i)], fitted.value[i], std::sqrt(variance), unit});
   }
   return out;
 }
@@ -130,7 +147,7 @@ Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, co
     const Family& family = bench.grammar.families[law.family];
     auto one = fitted_law(family.columns(law.inner), law.place, bench.inputs, sums);
     if (!one) return tl::unexpected(one.error());
-    out.law.formulas.push_back(described(law, *one, family, name, sums.channels()));
+    out.law.formulas.push_back(described(law, *one, family, name, sums));
     fitted.emplace_back(*std::move(one));
   }
   sort_into_classes(fitted, sums, out.law.formulas);

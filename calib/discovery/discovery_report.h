@@ -43,6 +43,7 @@ struct LawFindingReason {
 struct LawCoefficient {
   std::string where{};  ///< "s3.z"; a component of the gradient: "Gxx"
   double value{0}, sd{0};
+  std::string unit{};  ///< per unit of the formula: "nT", of a gradient "nT/m"
 };
 
 /// A formula of the 99 % set.
@@ -51,10 +52,9 @@ struct FoundFormula {
   Columns columns{};      ///< as `mgt define` takes them
   std::string where{};
   std::vector<std::string> covariates{};
-  std::string library{};  ///< the effect of the library that it is, or one that does as well
-  std::vector<std::string>
-      specs{};                    ///< effects, as --with reads them; none for a gradient or a library effect
-  double P{0}, S{0}, size_nT{0};  ///< size: rms of the law over poses and axes where it acts
+  std::string library{};             ///< the effect of the library that it is, or one that does as well
+  std::vector<std::string> specs{};  ///< effects, as --with reads them; none for a library effect
+  double P{0}, S{0}, size_nT{0};     ///< size: rms of the law over poses and axes where it acts
   int k{0}, symbols{0}, same_as{1};  ///< class: formulas of one number cannot be told apart on these poses
   double needed_nT{0};  ///< size at which it would be told from the first with 99 %; 0: the first;
                         ///< infinite: never, on these poses
@@ -110,6 +110,11 @@ struct DiscoveryReport {
     std::optional<double> unseen_before_nT{}, unseen_after_nT{};
   };
   std::optional<After> after{};  ///< of a fit with the first formula of each law
+
+  /// LAW or LAW-SET: formulas leave nothing.
+  [[nodiscard]] bool accounts_for_everything() const {
+    return verdict == LawFinding::law || verdict == LawFinding::law_set;
+  }
 };
 
 }  // namespace mgtd::calib::discovery

@@ -7,6 +7,7 @@
 
 #include "calib/discovery/channel_sums.h"
 #include "calib/discovery/grammar.h"
+#include "calib/effects/laws/site_gradient.h"
 #include "calib/effects/where.h"
 
 namespace mgtd::calib::discovery {
@@ -98,17 +99,17 @@ std::vector<std::string> specs_of(const Columns& columns, const Place& place, co
       return out;
     }
     case Place::Kind::gradient:
-      return {};
+      return {fmt::format("{},level=gradient,unit=nT/m,expr={}", name, expression)};
   }
   return {};
 }
 
 std::vector<std::string> coefficient_places(const Columns& columns, const Place& place, int channels) {
-  static constexpr std::array<const char*, kGradient> kComponents{"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"};
   std::vector<std::string> out;
   for (const int c : place.channels(channels)) {
-    const std::string at =
-        c < channels ? effects::axis_name(c / 3, c % 3) : kComponents[static_cast<std::size_t>(c - channels)];
+    const std::string at = c < channels
+                               ? effects::axis_name(c / 3, c % 3)
+                               : effects::laws::kGradientComponents[static_cast<std::size_t>(c - channels)];
     for (std::size_t j = 0; j < columns.size(); ++j)
       out.push_back(columns.size() == 1 ? at : fmt::format("{}.{}", at, "abc"[j]));
   }

@@ -16,7 +16,7 @@ namespace mgtd::calib::discovery {
 /// A covariate as the pose table calls it, where the law acts on one sensor: "s3_T_degC", "s3.z".
 [[nodiscard]] std::string shown_covariate(const std::string& name, const Place& place);
 
-/// Effects of the axes that are the law, as --with reads them; none for a gradient.
+/// Effects that are the law, as --with reads them.
 [[nodiscard]] std::vector<std::string> specs_of(const Columns& columns, const Place& place,
                                                 const std::string& name);
 

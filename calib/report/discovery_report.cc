@@ -31,16 +31,17 @@ constexpr double kDisagree = 0.3;
 
 json optional_number(const std::optional<double>& x) { return x ? number_or_null(*x) : json(); }
 
-/// An effect as `mgt define` takes it.
+/// An effect as `mgt define` takes it; one of the site has no scale.
 struct Definition {
-  std::string spec, name, scale, formula;
+  std::string spec, name, level, scale, unit, formula;
 };
 std::vector<Definition> definitions(const FoundFormula& f) {
   std::vector<Definition> out;
   for (const std::string& text : f.specs) {
     const auto spec = effects::EffectSpec::parse(text);
-    const std::string* const formula = spec ? spec->find("expr") : nullptr;
-    if (formula != nullptr && spec->where) out.push_back({text, spec->name, spec->where->text(), *formula});
+    if (!spec || spec->find("expr") == nullptr) continue;
+    out.push_back({text, spec->name, *spec->find("level"), spec->where ? spec->where->text() : "",
+                   *spec->find("unit"), *spec->find("expr")});
   }
   return out;
 }
@@ -48,14 +49,19 @@ std::vector<Definition> definitions(const FoundFormula& f) {
 json define_json(const FoundFormula& f) {
   json out = json::array();
   for (const Definition& d : definitions(f))
-    out.push_back({{"spec", d.spec}, {"name", d.name}, {"scale", d.scale}, {"formula", d.formula}});
+    out.push_back({{"spec", d.spec},
+                   {"name", d.name},
+                   {"level", d.level},
+                   {"scale", d.scale},
+                   {"unit", d.unit},
+                   {"formula", d.formula}});
   return out;
 }
 
 json formula_json(const FoundFormula& f, const FoundLaw& law, bool first) {
   json coefficients = json::array();
   for (const discovery::LawCoefficient& c : f.coefficients)
-    coefficients.push_back({{"where", c.where}, {"value", c.value}, {"sd", c.sd}, {"unit", "nT"}});
+    coefficients.push_back({{"where", c.where}, {"value", c.value}, {"sd", c.sd}, {"unit", c.unit}});
   return {{"formula", f.formula},
           {"where", f.where},
           {"covariates", f.covariates},
@@ -127,12 +133,13 @@ std::vector<std::string> commands(const DiscoveryReport& r, const std::string& r
                                   const std::vector<std::string>& before,
                                   const std::vector<std::string>& kept) {
   std::vector<std::string> out;
-  if (r.verdict != LawFinding::law && r.verdict != LawFinding::law_set) return out;
+  if (!r.accounts_for_everything()) return out;
   for (const std::string& name : kept) out.push_back(fmt::format("mgt add {} {}", name, shell_word(run)));
   for (const FoundLaw& law : kept.empty() ? r.laws : std::vector<FoundLaw>{}) {
     for (const Definition& d : definitions(law.formulas.front())) {
-      out.push_back(fmt::format("mgt define {} {} {} --scale {}", shell_word(run), d.name,
-                                shell_word(d.formula), d.scale));
+      out.push_back(fmt::format("mgt define {} {} {} {}", shell_word(run), d.name, shell_word(d.formula),
+                                d.scale.empty() ? fmt::format("--level {} --unit {}", d.level, d.unit)
+                                                : fmt::format("--scale {}", d.scale)));
       out.push_back(fmt::format("mgt add {} {}", d.name, shell_word(run)));
     }
   }
@@ -184,7 +191,8 @@ void tell_coefficients(const FoundFormula& f, std::string& out) {
   const std::size_t n = std::min(kCoefficientsShown, f.coefficients.size());
   for (std::size_t i = 0; i < n; ++i) {
     const discovery::LawCoefficient& c = f.coefficients[i];
-    fmt::format_to(to, "     {} {:.4g} +- {:.2g} nT per unit of the formula\n", c.where, c.value, c.sd);
+    fmt::format_to(to, "     {} {:.4g} +- {:.2g} {} per unit of the formula\n", c.where, c.value, c.sd,
+                   c.unit);
   }
   if (f.coefficients.size() > n) fmt::format_to(to, "     and {} more\n", f.coefficients.size() - n);
 }

@@ -141,26 +141,34 @@ std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, 
            "or change between poses (supplies, motors, temperatures); nothing that was recorded orders this "
            "residual.";
   const criticism::tests::MapScore& m = maps.front();
-  static const std::map<std::string, std::string> kTry{
-      {"time", "sin(2*_pi*t_h/0.5)"},
-      {"azimuth", "cosd(3*azimuth_deg)"},
-      {"temperature", "max(0, T_degC-24)"},
-      {"own reading", "(u/50000)^4"},
-      {"own reading x time", "u*sin(2*_pi*t_h/0.5)"},
-      {"own reading x temperature", "u*max(0, T_degC-24)"},
-      {"direction", "ux*uy/50000^2"},
-      {"previous pose", "exp(-since_stop_s/20)"},
+  struct Example {
+    std::string formula, options;
+  };
+  const std::string there = "--scale " + m.where;
+  const std::map<std::string, Example> examples{
+      {"time", {"sin(2*_pi*t_h/0.5)", there}},
+      {"azimuth", {"cosd(3*azimuth_deg)", there}},
+      {"temperature", {"max(0, T_degC-24)", there}},
+      {"own reading", {"(u/50000)^4", there}},
+      {"own reading x time", {"u*sin(2*_pi*t_h/0.5)", there}},
+      {"own reading x temperature", {"u*max(0, T_degC-24)", there}},
+      {"direction", {"ux*uy/50000^2", there}},
+      {"previous pose", {"exp(-since_stop_s/20)", there}},
+      {"site field", {"sin(2*_pi*t_h/0.5)", "--level site"}},
+      {"site gradient", {"sin(2*_pi*t_h/0.5)", "--level gradient"}},
+      {"site map", {"px*pz", "--level site"}},
   };
   // The table never stops in a recording, so no column tells how long ago.
   if (recording && m.map == "previous pose")
     return "What to do next: turn more slowly, or log faster: the residual follows the sample before, as it "
            "does where a filter or a delay stands between the sensor and the file.";
-  const auto formula = kTry.find(m.map);
+  const auto known = examples.find(m.map);
+  const Example example = known == examples.end() ? Example{m.map, there} : known->second;
   return fmt::format(
       "What to do next: mgt discover RUN looks for the formula of a law that is in no library; mgt report "
-      "draws this residual; a law of your own: mgt define RUN my.law '{}' --scale {}, then mgt explain "
+      "draws this residual; a law of your own: mgt define RUN my.law '{}' {}, then mgt explain "
       "again.",
-      formula == kTry.end() ? m.map : formula->second, m.where);
+      example.formula, example.options);
 }
 
 std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {

@@ -30,11 +30,13 @@ constexpr const char* kDefineHelp =
 
   mgt define run.mgtrun lamp 'lamp_A' --level platform --scale each-sensor --unit nT/A
   mgt define run.mgtrun creep 'k*u*exp(-since_stop_s/tau)' --level axis --scan tau=2:120
+  mgt define run.mgtrun lift 'k1*sin(2*_pi*t_h/0.15) + k2*cos(2*_pi*t_h/0.15)' --level gradient
   mgt add lamp run.mgtrun ; mgt explain run.mgtrun --with creep
 
 k, k1, k2, k3 are coefficients, which must come in linearly; without one the whole is multiplied by one. Other
 names: every column of the run; t_h (hours); T_degC (the sensor's own); at level axis u, ux, uy, uz (field term
 of the axis and its sensor, nT); platform b, bx, by, bz (nT), gx, gy, gz (unit gravity); site px, py, pz (m).
+At level site the formula is multiplied by a field x, y, z, at level gradient by Gxx, Gyy, Gxy, Gxz, Gyz.
 Operators + - * / ^ ?: and comparisons; sind cosd tand of degrees, as the columns azimuth_deg, pitch_deg and
 roll_deg are; sin cos tan of radians; exp ln sqrt abs sign min max tanh ...
 
@@ -46,7 +48,7 @@ was thought of it stays exploratory; on a second run, --from FIRST.mgtrun confir
 Exit code 0: kept, or worth keeping. 1: not kept (absorbed whole), or not confirmed.)";
 
 struct DefineArguments {
-  std::string run, name, expression, level{"axis"}, scale, unit{"nT"}, scan, from;
+  std::string run, name, expression, level{"axis"}, scale, unit, scan, from;
   std::optional<double> prior;
   bool drop{false}, tried{false};
   std::shared_ptr<FitFlags> flags;
@@ -83,7 +85,8 @@ Result<std::pair<std::string, std::string>> scan_of(const std::string& text) {
 Result<calib::effects::EffectSpec> spec_of(const DefineArguments& args) {
   if (const auto ok = usable_name(args.name); !ok) return tl::unexpected(ok.error());
   calib::effects::EffectSpec spec{.name = args.name, .where = {}, .parameters = {}};
-  if (!args.scale.empty() && args.level != "site") {
+  const bool of_site = args.level == "site" || args.level == "gradient";
+  if (!args.scale.empty() && !of_site) {
     const auto where = calib::effects::Where::parse(args.scale);
     if (!where) return tl::unexpected(where.error());
     spec.where = *where;
@@ -91,7 +94,7 @@ Result<calib::effects::EffectSpec> spec_of(const DefineArguments& args) {
   spec.set("level", args.level);
   if (args.unit.find(',') != std::string::npos)
     return fail(ErrorCode::usage, "a unit has no comma", "for instance --unit nT/A");
-  spec.set("unit", args.unit);
+  spec.set("unit", !args.unit.empty() ? args.unit : args.level == "gradient" ? "nT/m" : "nT");
   if (args.prior) spec.set("prior", *args.prior);
   if (!args.scan.empty()) {
     auto scan = scan_of(args.scan);
@@ -267,11 +270,11 @@ void add_define(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun")->required();
   command->add_option("NAME", args->name, "what to call it")->required();
   command->add_option("EXPR", args->expression, "the formula");
-  command->add_option("--level", args->level, "axis, platform or site")
-      ->check(CLI::IsMember({"axis", "platform", "site"}))
+  command->add_option("--level", args->level, "axis, platform, site or gradient")
+      ->check(CLI::IsMember({"axis", "platform", "site", "gradient"}))
       ->capture_default_str();
   command->add_option("--scale", args->scale, "all, each-sensor, each-axis (default), s3, s3.z");
-  command->add_option("--unit", args->unit, "unit of its coefficients")->capture_default_str();
+  command->add_option("--unit", args->unit, "unit of its coefficients (default: nT, of a gradient nT/m)");
   command->add_option("--prior", args->prior, "standard deviation of the coefficients about zero");
   command->add_option("--scan", args->scan,
                       "NAME=FROM:TO, a number in it that is searched for in this range");

@@ -56,11 +56,9 @@ Result<std::vector<std::string>> keep_discovery(store::RunFile& file, store::Pos
                                                 const calib::fit::FitOptions& options,
                                                 const calib::discovery::DiscoveryReport& found,
                                                 nlohmann::json found_json) {
-  using calib::discovery::LawFinding;
   const std::string hash = calib::poses::data_hash(source.table);
   std::vector<std::string> names;
-  const bool believed = found.verdict == LawFinding::law || found.verdict == LawFinding::law_set;
-  for (const FoundLaw& law : believed ? found.laws : std::vector<FoundLaw>{}) {
+  for (const FoundLaw& law : found.accounts_for_everything() ? found.laws : std::vector<FoundLaw>{}) {
     for (const std::string& text : law.formulas.front().specs) {
       auto spec = EffectSpec::parse(text);
       if (!spec) return tl::unexpected(spec.error());

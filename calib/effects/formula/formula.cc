@@ -25,13 +25,18 @@ bool reserved(const std::string& key) {
   return key == "level" || key == "unit" || key == "prior" || key == "expr";
 }
 
+bool of_gradient(const EffectSpec& spec) {
+  const std::string* text = spec.find("level");
+  return text != nullptr && *text == "gradient";
+}
+
 Result<Level> level_of(const EffectSpec& spec) {
   const std::string* text = spec.find("level");
   if (text == nullptr || *text == "axis") return Level::axis;
   if (*text == "platform") return Level::platform;
-  if (*text == "site") return Level::site;
+  if (*text == "site" || of_gradient(spec)) return Level::site;
   return fail(ErrorCode::usage, fmt::format("{}: '{}' is no level for a formula", spec.name, *text),
-              "axis, platform or site");
+              "axis, platform, site or gradient");
 }
 
 Result<Where> place_of(const EffectSpec& spec, Level level) {
@@ -42,7 +47,7 @@ Result<Where> place_of(const EffectSpec& spec, Level level) {
     return fail(ErrorCode::usage,
                 fmt::format("{} at level {} cannot be laid over '{}'", spec.name, to_string(level),
                             site ? spec.where->text() : "site"),
-                site ? "leave the part after '@' out: it has one coefficient for x, y and z each"
+                site ? "leave the part after '@' out: it has coefficients of its own, for the whole array"
                      : "all, each-sensor, each-axis, a sensor (s3) or an axis (s3.z)");
   }
   Where out = *spec.where;
@@ -86,6 +91,25 @@ Result<void> used(const EffectSpec& spec, const Expression& expression, const Ow
     return fail(ErrorCode::usage,
                 fmt::format("{} names {} things, at most {}", spec.name, names.size(), kFormulaNames),
                 "make it of several formulas");
+  return {};
+}
+
+/// What a gradient is multiplied by: the same at every place, with coefficients that a term can hold.
+Result<void> fits_gradient(const EffectSpec& spec, const Expression& expression,
+                           const std::vector<FormulaName>& names) {
+  for (const FormulaName& name : names) {
+    if (name.source == Source::input)
+      return tl::unexpected(expression_error(
+          expression.text(), column_of(expression.text(), name.name),
+          fmt::format("{}: a gradient is the same at every place", spec.name),
+          fmt::format("leave {} out, or take level site, where a formula may depend on the place",
+                      name.name)));
+    if (name.source == Source::coefficient && name.index >= kGradientCoefficients)
+      return tl::unexpected(expression_error(
+          expression.text(), column_of(expression.text(), name.name),
+          fmt::format("{}: a gradient takes at most {} coefficients", spec.name, kGradientCoefficients),
+          "make it of several formulas"));
+  }
   return {};
 }
 
@@ -202,12 +226,18 @@ Result<EffectPtr> make_formula(const EffectSpec& spec) {
   std::vector<FormulaName> names;
   for (const std::string& name : expression->names())
     names.push_back(formula_name(name, *level, number->name, number->value));
+  if (of_gradient(spec))
+    if (const auto ok = fits_gradient(spec, *expression, names); !ok) return tl::unexpected(ok.error());
   if (const auto ok = linear(spec, *expression, names, *level); !ok) return tl::unexpected(ok.error());
   const std::string* unit = spec.find("unit");
   EffectSpec own = spec;
   own.where = *where;
-  return std::make_shared<const FormulaEffect>(std::move(own), *level, std::move(*expression),
-                                               std::move(names), unit != nullptr ? *unit : "nT", *prior);
+  return std::make_shared<const FormulaEffect>(std::move(own), *level, of_gradient(spec),
+                                               std::move(*expression), std::move(names),
+                                               unit != nullptr     ? *unit
+                                               : of_gradient(spec) ? "nT/m"
+                                                                   : "nT",
+                                               *prior);
 }
 
 Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
@@ -232,6 +262,7 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
         fmt::format("columns: {}; coefficients k or k1 to k3; t_h, pose, {}", fmt::join(there, ", "),
                     formula.level() == Level::axis       ? "T_degC, u, ux, uy, uz"
                     : formula.level() == Level::platform ? "T_degC, b, bx, by, bz, gx, gy, gz"
+                    : of_gradient(spec)                  ? "history of a column (prev_X, lag600_X)"
                                                          : "px, py, pz")));
   }
   return {};

@@ -15,7 +15,9 @@
 ///     creep@each-axis,level=axis,tau=2..120,expr=k*(u - 20000)*exp(-since_stop_s/tau)
 ///
 /// The expression is the term of one axis (axis: added to its reading; platform: to that component of the
-/// field at the sensor) or, at the site, what a vector of coefficients x, y, z is multiplied by. It may name
+/// field at the sensor), or what coefficients of the site's field are multiplied by: those of a vector x, y,
+/// z (level site) or of a gradient Gxx, Gyy, Gxy, Gxz, Gyz, symmetric and without trace (level gradient). It
+/// may name
 ///     k, k1 .. k3          coefficients; none: the whole is multiplied by one
 ///     a declared number    scanned from .. to where the spec gives a range, fixed where it gives a value
 ///     t_h                  hours since the start; T_degC the sensor's own temperature
@@ -23,7 +25,7 @@
 ///     pose                 its number; prev_X, lag600_X, rate_X: what was before (history_name.h)
 ///     u, ux, uy, uz        axis: the axis' own field term and those of its sensor, nT
 ///     b, bx, by, bz        platform: the same of the field at the sensor, nT; gx, gy, gz unit gravity
-///     px, py, pz           site: place, m, from the centre of the array
+///     px, py, pz           site: place, m, from the centre of the array; a gradient is one at every place
 /// and any other column of the pose table. Coefficients must come in linearly: that is tried and refused
 /// otherwise. Derivatives by the field are central differences; see derivative_check.h.
 namespace mgtd::calib::effects::formula {

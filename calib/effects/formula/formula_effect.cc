@@ -10,6 +10,7 @@
 #include "calib/effects/formula/run_values.h"
 #include "calib/effects/laws/axis_effect.h"
 #include "calib/effects/laws/run_memory.h"
+#include "calib/effects/laws/site_gradient.h"
 
 namespace mgtd::calib::effects::formula {
 namespace {
@@ -40,27 +41,20 @@ laws::AxisCoefficients per_axis(std::size_t count, const std::string& unit, doub
 
 }  // namespace
 
-FormulaEffect::FormulaEffect(EffectSpec spec, Level level, Expression expression,
+FormulaEffect::FormulaEffect(EffectSpec spec, Level level, bool gradient, Expression expression,
                              std::vector<FormulaName> names, const std::string& unit, double prior_sd)
     : spec_(std::move(spec)),
       level_(level),
+      gradient_(gradient),
       expression_(std::move(expression)),
       names_(std::move(names)),
       per_axis_(std::max<std::size_t>(1, count_coefficients(names_))),
       implicit_(count_coefficients(names_) == 0),
       scale_(per_axis(per_axis_, unit, prior_sd > 0 ? prior_sd : 1), *spec_.where) {
-  coefficients_ = scale_.coefficients();
   if (level_ == Level::site) {
-    coefficients_.clear();
-    for (const char axis : {'x', 'y', 'z'}) {
-      for (std::size_t j = 0; j < per_axis_; ++j) {
-        site_.push_back(static_cast<int>(coefficients_.size()));
-        coefficients_.push_back(
-            {.name = per_axis_ == 1 ? std::string(1, axis) : fmt::format("{}.k{}", axis, j + 1),
-             .unit = unit,
-             .typical = prior_sd > 0 ? prior_sd : 1});
-      }
-    }
+    add_of_site(unit, prior_sd > 0 ? prior_sd : 1);
+  } else {
+    coefficients_ = scale_.coefficients();
   }
   for (Coefficient& c : coefficients_) c.prior_sd = prior_sd;
   for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -68,6 +62,22 @@ FormulaEffect::FormulaEffect(EffectSpec spec, Level level, Expression expression
     if (n.source == Source::input) inputs_.push_back(n.index);
     if (n.source == Source::history) looking_back_.push_back({i, history_name(n.name)->kind});
     uses_own_ = uses_own_ || n.source == Source::own;
+  }
+}
+
+void FormulaEffect::add_of_site(const std::string& unit, double typical) {
+  const std::vector<std::string_view> components =
+      gradient_
+          ? std::vector<std::string_view>{laws::kGradientComponents.begin(), laws::kGradientComponents.end()}
+          : std::vector<std::string_view>{"x", "y", "z"};
+  for (const std::string_view component : components) {
+    for (std::size_t j = 0; j < per_axis_; ++j) {
+      site_.push_back(static_cast<int>(coefficients_.size()));
+      coefficients_.push_back(
+          {.name = per_axis_ == 1 ? std::string(component) : fmt::format("{}.k{}", component, j + 1),
+           .unit = unit,
+           .typical = typical});
+    }
   }
 }
 
@@ -97,6 +107,8 @@ Result<std::shared_ptr<const Effect>> FormulaEffect::bound(const EffectContext& 
 }
 
 std::string_view FormulaEffect::missing(const Pose& pose) const {
+  if (level_ == Level::site)
+    if (const std::string_view angle = missing_angle(pose); !angle.empty()) return angle;
   for (std::size_t j = 0; j < looking_back_.size(); ++j) {
     if (!before_) return laws::kNoMemory;
     const auto found = before_->find(pose.number);
@@ -178,8 +190,27 @@ double FormulaEffect::slope(Values& values, const Inputs& in, int axis, std::siz
   return out;
 }
 
+/// sum_j shape_j G_j x: the expression with one coefficient at a time is what its gradient is multiplied by.
+template <class S>
+void FormulaEffect::gradient_term(const Conditions& at, int sensor, std::span<const S> x,
+                                  std::span<const S> c, std::span<S> out) const {
+  std::fill(out.begin(), out.end(), S(0.0));
+  Values values{};
+  set_conditions(at, sensor, values);
+  if (!set_before(at, sensor, 0, values)) return;
+  std::array<S, laws::kGradientComponents.size()> g{};
+  for (std::size_t j = 0; j < per_axis_; ++j) {
+    Own unit{};
+    unit[j] = 1;
+    const S shape(value(values, unit));
+    for (std::size_t m = 0; m < g.size(); ++m) g[m] += shape * c[m * per_axis_ + j];
+  }
+  laws::gradient_times(std::span<const S>(g), x, out);
+}
+
 void FormulaEffect::term(const Conditions& at, int sensor, std::span<const double> in,
                          std::span<const double> c, std::span<double> out) const {
+  if (gradient_) return gradient_term(at, sensor, in, c, out);
   Values values{};
   Inputs inputs{};
   std::copy_n(in.begin(), std::min(in.size(), inputs.size()), inputs.begin());
@@ -197,6 +228,7 @@ void FormulaEffect::term(const Conditions& at, int sensor, std::span<const doubl
 
 void FormulaEffect::term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,
                          std::span<Jet> out) const {
+  if (gradient_) return gradient_term(at, sensor, in, c, out);
   Values values{};
   Inputs inputs{};
   for (std::size_t i = 0; i < std::min(in.size(), inputs.size()); ++i) inputs[i] = in[i].v;

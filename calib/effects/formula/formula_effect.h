@@ -18,11 +18,14 @@
 namespace mgtd::calib::effects::formula {
 
 inline constexpr std::size_t kFormulaNames = 24;
+/// Of a formula that a gradient is multiplied by: with five components each a term holds no more.
+inline constexpr std::size_t kGradientCoefficients = kMaxActive / 5;
 
 class FormulaEffect final : public Effect {
  public:
-  FormulaEffect(EffectSpec spec, Level level, Expression expression, std::vector<FormulaName> names,
-                const std::string& unit, double prior_sd);
+  /// `gradient`: at the site, of a gradient instead of a vector.
+  FormulaEffect(EffectSpec spec, Level level, bool gradient, Expression expression,
+                std::vector<FormulaName> names, const std::string& unit, double prior_sd);
 
   [[nodiscard]] std::string_view name() const override { return spec_.name; }
   [[nodiscard]] std::string spec() const override { return spec_.text(); }
@@ -46,10 +49,14 @@ class FormulaEffect final : public Effect {
  private:
   using Values = std::array<double, kFormulaNames>;
   using Inputs = std::array<double, 6>;
-  using Own = std::array<double, 3>;  ///< coefficients of one axis
+  using Own = std::array<double, 3>;  ///< coefficients of one axis, or of one component of the gradient
   /// By number of a pose: a value for each name that looks back, sensor and axis, in this order.
   using Before = std::unordered_map<int, std::vector<double>>;
 
+  void add_of_site(const std::string& unit, double typical);
+  template <class S>
+  void gradient_term(const Conditions& at, int sensor, std::span<const S> x, std::span<const S> c,
+                     std::span<S> out) const;
   [[nodiscard]] std::size_t place_before(std::size_t looking_back, int sensor, int axis) const;
   [[nodiscard]] int first(int sensor, int axis) const;
   void set_conditions(const Conditions& at, int sensor, Values& values) const;
@@ -62,6 +69,7 @@ class FormulaEffect final : public Effect {
 
   EffectSpec spec_;
   Level level_;
+  bool gradient_;
   Expression expression_;
   std::vector<FormulaName> names_;
   std::size_t per_axis_{1};

@@ -34,6 +34,13 @@ std::optional<std::size_t> coefficient_index(std::string_view name) {
   return std::nullopt;
 }
 
+/// At the site of columns alone: what a sensor read before is none of the site's.
+bool looks_back(const std::string& name, Level level) {
+  const auto history = history_name(name);
+  return history && (level != Level::site ||
+                     formula_name(history->of, Level::axis, std::nullopt, 0).source == Source::column);
+}
+
 const poses::PoseColumn* format_column(const std::string& name) {
   const auto& all = poses::pose_columns(static_cast<std::size_t>(kMostSensors));
   const auto found =
@@ -78,7 +85,7 @@ FormulaName formula_name(const std::string& name, Level level, const std::option
   } else if (const auto at = std::find(known.inputs.begin(), known.inputs.end(), name);
              at != known.inputs.end()) {
     out.source = Source::input, out.index = static_cast<std::size_t>(at - known.inputs.begin());
-  } else if (level != Level::site && history_name(name)) {
+  } else if (looks_back(name, level)) {
     out.source = Source::history;
   } else if (name == "pose") {
     out.get = [](const Pose& pose) {

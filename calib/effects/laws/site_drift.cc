@@ -31,7 +31,7 @@ Result<std::shared_ptr<const Effect>> FieldDrift::bound(const EffectContext& con
 }
 
 GradientDrift::GradientDrift(std::optional<double> ts_h) : ts_h_(ts_h) {
-  for (const char* name : {"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"}) add(name, ts_h ? "nT/m" : "nT/m/h", 10);
+  for (const char* name : kGradientComponents) add(name, ts_h ? "nT/m" : "nT/m/h", 10);
 }
 
 std::string GradientDrift::spec() const {

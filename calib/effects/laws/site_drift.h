@@ -5,6 +5,7 @@
 
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/laws/site_effect.h"
+#include "calib/effects/laws/site_gradient.h"
 #include "calib/poses/run_time.h"
 
 /// The field of the site changes with time.
@@ -58,9 +59,8 @@ class GradientDrift final : public SiteEffect<GradientDrift> {
   void equation(const Conditions& at, int, std::span<const S> x, std::span<const S> g,
                 std::span<S> out) const {
     const S part(!ts_h_ ? at.t_h : at.t_h >= *ts_h_ ? 1.0 : 0.0);
-    out[0] = part * (g[0] * x[0] + g[2] * x[1] + g[3] * x[2]);
-    out[1] = part * (g[2] * x[0] + g[1] * x[1] + g[4] * x[2]);
-    out[2] = part * (g[3] * x[0] + g[4] * x[1] - (g[0] + g[1]) * x[2]);
+    gradient_times(g, x, out);
+    for (S& component : out) component *= part;
   }
 
  private:

@@ -10,7 +10,7 @@ constexpr std::array<int, 5> kAll{0, 1, 2, 3, 4};
 }  // namespace
 
 SiteGradient::SiteGradient() {
-  for (const char* name : {"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"}) {
+  for (const char* name : kGradientComponents) {
     coefficients_.push_back({.name = name, .unit = "nT/m", .typical = kTypical_nT_per_m});
   }
 }

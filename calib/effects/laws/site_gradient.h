@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+
 #include "calib/effects/effect.h"
 
 /// `site.gradient`: the field of the site is not uniform over the cross.
@@ -9,6 +11,16 @@
 ///
 /// Constant in time. Needs the attitude, hence the table angles, of every pose it acts on.
 namespace mgtd::calib::effects::laws {
+
+inline constexpr std::array<const char*, 5> kGradientComponents{"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"};
+
+/// out = G x, with g the components as kGradientComponents names them.
+template <class S>
+void gradient_times(std::span<const S> g, std::span<const S> x, std::span<S> out) {
+  out[0] = g[0] * x[0] + g[2] * x[1] + g[3] * x[2];
+  out[1] = g[2] * x[0] + g[1] * x[1] + g[4] * x[2];
+  out[2] = g[3] * x[0] + g[4] * x[1] - (g[0] + g[1]) * x[2];
+}
 
 class SiteGradient final : public EffectOf<SiteGradient> {
  public:
@@ -21,9 +33,7 @@ class SiteGradient final : public EffectOf<SiteGradient> {
 
   template <class S>
   void equation(const Conditions&, int, std::span<const S> x, std::span<const S> g, std::span<S> out) const {
-    out[0] = g[0] * x[0] + g[2] * x[1] + g[3] * x[2];
-    out[1] = g[2] * x[0] + g[1] * x[1] + g[4] * x[2];
-    out[2] = g[3] * x[0] + g[4] * x[1] - (g[0] + g[1]) * x[2];
+    gradient_times(g, x, out);
   }
 
  private:

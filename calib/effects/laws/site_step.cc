@@ -17,7 +17,7 @@ std::string_view missing_angle_or_time(const Pose& pose) {
 SiteStep::SiteStep(std::optional<double> ts_h) : ts_h_(ts_h) {
   constexpr double kPrior_nT = 1000;
   for (const char* name : {"Bx", "By", "Bz"}) add(name, "nT", 20, kPrior_nT);
-  for (const char* name : {"Gxx", "Gyy", "Gxy", "Gxz", "Gyz"}) add(name, "nT/m", 20);
+  for (const char* name : kGradientComponents) add(name, "nT/m", 20);
 }
 
 std::string SiteStep::spec() const {

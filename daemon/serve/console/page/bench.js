@@ -291,8 +291,8 @@ export class Bench {
   }
   /** Each effect of the leading formula is defined, then added: the page's step is the terminal's. */
   async #keepLaw(found) {
-    for (const { name, scale, formula } of found.laws.flatMap((law) => law.formulas[0].define)) {
-      if (!(await this.#ask("define", { name, formula, level: "axis", scale, unit: "nT" }))) return;
+    for (const { name, level, scale, unit, formula } of found.laws.flatMap((law) => law.formulas[0].define)) {
+      if (!(await this.#ask("define", { name, formula, level, unit, ...(scale ? { scale } : {}) }))) return;
       await this.#change("add", name, {});
     }
   }

@@ -115,14 +115,14 @@ export class FormulaForm {
     const choice = (name, label, options) => make("label", {}, label, make("select", { name, onchange: () => this.#soon() }, options.map((o) => make("option", { value: o }, o || "default"))));
     this.form = make("form", { id: "formula-form", onsubmit: (event) => { event.preventDefault(); this.#keep(); } },
       field("formula", "The term of one axis", { class: "long", placeholder: "k*lamp_A", list: "formula-names", required: true }), field("name", "called", { value: "mine", required: true }),
-      choice("level", "level", ["axis", "platform", "site"]), choice("scale", "one coefficient for", ["", "all", "each-sensor", "each-axis"]), field("unit", "unit", { value: "nT" }),
+      choice("level", "level", ["axis", "platform", "site", "gradient"]), choice("scale", "one coefficient for", ["", "all", "each-sensor", "each-axis"]), field("unit", "unit", { placeholder: "nT" }),
       make("datalist", { id: "formula-names" }, columns.map((c) => make("option", { value: c }))), make("button", { id: "formula-keep" }, "Keep it"));
     return [make("p", { class: "caption" }, "Names of this run: ", make("code", {}, columns.join("  ")), "; u ux uy uz (axis), b bx by bz gx gy gz (platform), px py pz (site); k, k1, k2 are coefficients. mgt define --help tells more."),
             this.form, this.#said];
   }
   #args() {
     const read = (name) => this.form.elements[name].value.trim();
-    return { name: read("name"), formula: read("formula"), level: read("level"), unit: read("unit") || "nT", ...(read("scale") ? { scale: read("scale") } : {}) };
+    return { name: read("name"), formula: read("formula"), level: read("level"), ...(read("unit") ? { unit: read("unit") } : {}), ...(read("scale") ? { scale: read("scale") } : {}) };
   }
   #soon() {
     clearTimeout(this.#timer);

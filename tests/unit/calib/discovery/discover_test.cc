@@ -10,6 +10,9 @@
 #include <numbers>
 
 #include "calib/report/discovery_report.h"
+#include "tests/rig/effect_list.h"
+#include "tests/rig/scenario.h"
+#include "tests/rig/simulated_table.h"
 #include "tests/unit/calib/discovery/discovery_scene.h"
 
 namespace mgtd::calib::discovery {
@@ -17,6 +20,7 @@ namespace {
 
 using calib::testing::Hidden;
 using ::testing::HasSubstr;
+using testing::must;
 
 DiscoveryReport found_in(const Hidden& hidden, std::uint64_t seed, bool checks = false, int looks = 1) {
   const PoseTable table = testing::run_with({.noise_nT = 0.05, .hidden = hidden}, seed);
@@ -124,6 +128,32 @@ TEST(Discover, NamesTwoLawsOnOneAxis) {
   for (const FoundLaw& law : r.laws) ++covariates[law.covariates.front().name];
   EXPECT_EQ(covariates["motor_A"], 1);
   EXPECT_EQ(covariates["azimuth_deg"], 1);
+}
+
+/// A gradient of the site that swings, in the frame of the site: what each sensor reads of it turns with the
+/// table.
+TEST(Discover, NamesAnOscillationOfTheGradient) {
+  rig::Scenario scenario =
+      rig::parse_scenario("[rig]\nparameters = \"random\"\nseed = 59\n", "s.toml").value();
+  scenario.effects.push_back(
+      rig::effect_of("name = 'hidden.gradient-oscillation'\nnT_per_m = 25\nperiod_s = 540").value());
+  const PoseTable run = rig::simulated_table(scenario, rig::run_of_157({.senses = true}, 59), 59);
+  const DiscoveryReport r = must(discover(run, {.fit = {}, .draws = 300, .checks = true}));
+  ASSERT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+  const FoundFormula& first = r.laws.front().formulas.front();
+  EXPECT_EQ(first.where, "site gradient");
+  EXPECT_NEAR(*first.inner, 540 / 3600.0, 1e-4);
+  ASSERT_EQ(first.specs.size(), 1U);
+  ASSERT_EQ(first.coefficients.size(), 10U);
+  EXPECT_EQ(first.coefficients.front().where, "Gxx.a");
+  EXPECT_EQ(first.coefficients.front().unit, "nT/m");
+  EXPECT_NEAR(std::hypot(first.coefficients[0].value, first.coefficients[1].value), 25, 0.1);
+  // What a sensor reads of it: 25 nT/m over the arm, a half of that in the mean over time and attitudes.
+  EXPECT_GT(first.size_nT, 1);
+  EXPECT_LT(first.size_nT, 5);
+  ASSERT_TRUE(r.after) << "the formula is an effect";
+  EXPECT_LT(r.after->residual_nT, 1.1 * r.noise_nT);
+  EXPECT_THAT(report::to_text(r, "run.csv"), HasSubstr("--level gradient --unit nT/m"));
 }
 
 /// The curve has no formula in it: the knee must lie within its band, up to a constant.

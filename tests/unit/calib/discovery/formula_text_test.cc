@@ -37,7 +37,8 @@ TEST(FormulaText, ALawOfASensorIsOneEffectAnAxis) {
   EXPECT_EQ(specs_of({"T_degC"}, kSensor, "law1").size(), 3U);
   EXPECT_THAT(specs_of({"a_A", "b_V"}, kArray, "law1"),
               ElementsAre("law1@each-axis,level=axis,unit=nT,expr=k1*a_A + k2*b_V"));
-  EXPECT_TRUE(specs_of({"t_h"}, {Place::Kind::gradient, 0}, "law1").empty());
+  EXPECT_THAT(specs_of({"t_h"}, {Place::Kind::gradient, 0}, "law1"),
+              ElementsAre("law1,level=gradient,unit=nT/m,expr=t_h"));
 }
 
 }  // namespace

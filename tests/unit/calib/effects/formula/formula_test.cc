@@ -59,6 +59,49 @@ TEST(Formula, ASpecReadsBackAndTheExpressionKeepsItsCommas) {
   EXPECT_EQ(formula("a,expr=T_degC")->coefficients().size(), 12U);
   EXPECT_EQ(formula("a@all,expr=k1*T_degC + k2*t_h")->coefficients().size(), 2U);
   EXPECT_EQ(formula("a,level=site,expr=t_h")->coefficients().size(), 3U);
+  EXPECT_EQ(formula("a,level=gradient,expr=t_h")->spec(), "a,level=gradient,expr=t_h");
+}
+
+TEST(Formula, OfAGradientHasItsFiveComponents) {
+  const EffectPtr one = formula("a,level=gradient,expr=t_h");
+  ASSERT_EQ(one->coefficients().size(), 5U);
+  EXPECT_EQ(one->coefficients()[3].name, "Gxz");
+  EXPECT_EQ(one->coefficients()[3].unit, "nT/m");
+  const EffectPtr two = formula("a,level=gradient,expr=k1*t_h + k2*t_h^2");
+  ASSERT_EQ(two->coefficients().size(), 10U);
+  EXPECT_EQ(two->coefficients()[7].name, "Gxz.k2");
+  Pose level;
+  level.azimuth_rad = level.pitch_rad = level.roll_rad = 0;
+  EXPECT_EQ(two->missing(level), "");
+  EXPECT_EQ(two->missing({}), "azimuth_deg");
+}
+
+/// t_h times a gradient is what the library calls a drift of the gradient; with 1 + t_h it is that and the
+/// gradient itself.
+TEST(Formula, OfAGradientIsTheTermOfTheLibrary) {
+  Pose pose;
+  pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = 0;
+  const Conditions at{.pose = pose, .t_h = 0.7};
+  std::vector<Jet> x{Jet(0.11), Jet(-0.2), Jet(0.05)}, c;
+  for (std::size_t i = 0; i < 3; ++i) x[i].d[static_cast<Eigen::Index>(i)] = 1;
+  for (const double g : {3.0, -5.0, 7.0, 2.0, -4.0}) {
+    c.emplace_back(g);
+    c.back().d[static_cast<Eigen::Index>(2 + c.size())] = 1;
+  }
+  const auto term = [&](const EffectPtr& effect) {
+    std::vector<Jet> out(3);
+    effect->term(at, 1, std::span<const Jet>(x), std::span<const Jet>(c), std::span<Jet>(out));
+    return out;
+  };
+  const auto drift = term(formula("site.gradient-drift")), gradient = term(formula("site.gradient"));
+  const auto same = term(formula("a,level=gradient,expr=t_h"));
+  const auto both = term(formula("a,level=gradient,expr=1 + t_h"));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(same[i].v, drift[i].v, 1e-12);
+    EXPECT_LT((same[i].d - drift[i].d).abs().maxCoeff(), 1e-12);
+    EXPECT_NEAR(both[i].v, gradient[i].v + drift[i].v, 1e-12);
+    EXPECT_LT((both[i].d - gradient[i].d - drift[i].d).abs().maxCoeff(), 1e-12);
+  }
 }
 
 /// The same law by the library and by a formula, one through temperature, one through the field itself.
@@ -108,6 +151,10 @@ TEST(Formula, MistakesAreShownAtTheirColumn) {
   EXPECT_EQ(refusal("a,expr=nosuch(2)").code, ErrorCode::usage);
   EXPECT_THAT(refusal("a,tau=2..120,expr=T_degC").message, HasSubstr("tau is not in the expression"));
   EXPECT_THAT(refusal("a@s3,level=site,expr=t_h").message, HasSubstr("cannot be laid over 's3'"));
+  EXPECT_THAT(refusal("a,level=gradient,expr=t_h*px").message,
+              HasSubstr("a gradient is the same at every place"));
+  EXPECT_THAT(refusal("a,level=gradient,expr=k1*t_h + k3*t_h^2").message,
+              HasSubstr("at most 2 coefficients"));
 }
 
 TEST(Formula, AColumnThatNoPoseHasIsNamedWithThoseThereAre) {
@@ -147,8 +194,9 @@ TEST(Formula, ARowWithoutItsColumnIsNotFed) {
 
 TEST(FormulaDerivatives, SmoothOnesPassAndJumpsAreRefused) {
   const PoseTable table = warm_and_bent(5);
-  for (const char* smooth : {"a,expr=u^3/1e9", "a,expr=ux*uy/1e5*sin(t_h)", "a,level=platform,expr=b*gz",
-                             "a,expr=tanh(u/2000)", "a,level=site,expr=px^2 + py"}) {
+  for (const char* smooth :
+       {"a,expr=u^3/1e9", "a,expr=ux*uy/1e5*sin(t_h)", "a,level=platform,expr=b*gz", "a,expr=tanh(u/2000)",
+        "a,level=site,expr=px^2 + py", "a,level=gradient,expr=k1*sin(t_h) + k2*cos(t_h)"}) {
     const auto ok = check_derivatives(*formula(smooth), table);
     EXPECT_TRUE(ok) << smooth << ": " << ok.error().text();
   }
