@@ -80,21 +80,19 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   if (!explained) return report(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
-  calib::fit::FitOptions whole = *options;
-  whole.effects = explained->model;
-  const RemainingLaw law =
-      args.no_law ? std::nullopt : remaining_law(source->table, whole, explained->finding);
+  const auto law = args.no_law ? std::nullopt
+                               : remaining_law(source->table, *options, explained->model, explained->finding);
   nlohmann::json out = calib::report::to_json(*explained);
   if (auto drawn = add_figures(args, source->table, wanted, *explained, out); !drawn)
     return report(session, drawn.error());
   if (session.json) {
-    if (!args.no_law) out["law"] = law_json(law, whole, *source, args.run);
+    if (!args.no_law) out["law"] = law_json(law, *source, args.run);
     out["chosen_in_doubt"] = doubts_json(*doubts);
     print_json(out);
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
     if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
-    text += law_text(law, whole, *source, args.run);
+    text += law_text(law, *source, args.run);
     print_text(session, text);
   }
   return explained->finding == calib::criticism::search::Finding::pass ? 0 : 1;

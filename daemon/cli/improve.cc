@@ -72,17 +72,18 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   }
   const auto whole = with_final_model(*options, improved->fit.calibration);
   const auto steps = whole ? waterfall_of(source->table, *whole) : std::nullopt;
-  const RemainingLaw law =
-      whole && !args.no_law ? remaining_law(source->table, *whole, improved->finding) : std::nullopt;
+  const auto law = whole && !args.no_law
+                       ? remaining_law(source->table, *options, whole->effects, improved->finding)
+                       : std::nullopt;
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);
     out["waterfall"] = steps ? calib::report::to_json(*steps) : nlohmann::json();
-    if (!args.no_law) out["law"] = law ? law_json(law, *whole, *source, args.run) : nlohmann::json();
+    if (!args.no_law) out["law"] = law_json(law, *source, args.run);
     print_json(out);
   } else {
     fmt::print("{}", calib::report::to_text(*improved));
     if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
-    if (law) fmt::print("{}", law_text(law, *whole, *source, args.run));
+    fmt::print("{}", law_text(law, *source, args.run));
   }
   return improved->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }

@@ -115,13 +115,8 @@ Result<Question> question_by_discovery(const std::string& place, const store::Po
   const auto law = std::find_if(found->laws.begin(), found->laws.end(), asked);
   if (law == found->laws.end()) return out;
   out.hypotheses = run::hypotheses_of(*law, sensors_of(source));
-  for (const calib::discovery::FoundLaw& other : found->laws) {
-    if (&other == &*law) continue;
-    if (other.d < law->d) continue;  // what is weaker stands in the residual as noise does
-    for (const std::string& spec : other.formulas.front().specs)
-      if (auto effect = calib::effects::library::make_effect(spec, sensors_of(source)))
-        out.options.effects.push_back(*std::move(effect));
-  }
+  run::add_laws_beside(*found, static_cast<std::size_t>(law - found->laws.begin()), sensors_of(source),
+                       out.options);
   return out;
 }
 

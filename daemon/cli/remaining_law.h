@@ -3,9 +3,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/criticism/search/explain_report.h"
 #include "calib/discovery/discovery_report.h"
+#include "calib/effects/effect.h"
 #include "calib/fit/fit_options.h"
 #include "daemon/store/pose_source.h"
 #include "proto/error.h"
@@ -13,19 +15,28 @@
 /// The last stage of `mgt explain` and `mgt improve`: the formula of what the effects of the library leave.
 namespace mgtd::daemon::cli {
 
-/// Empty where nothing was asked: `left` is neither PARTIAL nor UNKNOWN.
-using RemainingLaw = std::optional<Result<calib::discovery::DiscoveryReport>>;
+struct RemainingLaw {
+  Result<calib::discovery::DiscoveryReport> found;
+  std::vector<calib::effects::EffectPtr> model;  ///< that was searched beside
+  /// Effects that describe a part, which the formula accounts for without them; none where it stands beside
+  /// them.
+  std::vector<std::string> instead_of{};
+};
 
-/// Searches beside the model in `options`, without the checks of discover() that fit again.
-[[nodiscard]] RemainingLaw remaining_law(const PoseTable& table, const calib::fit::FitOptions& options,
-                                         calib::criticism::search::Finding left);
+/// Effects that describe a part may stand in for a law of no library: it is looked for in the model of
+/// `options` first, and, where that leaves anything, in `described`, the model with what was named. Without
+/// the checks of discover() that fit again. Empty where nothing is to be asked: `left` is neither PARTIAL nor
+/// UNKNOWN.
+[[nodiscard]] std::optional<RemainingLaw> remaining_law(
+    const PoseTable& table, const calib::fit::FitOptions& options,
+    const std::vector<calib::effects::EffectPtr>& described, calib::criticism::search::Finding left);
 
-/// That of `mgt discover --quick`, null where nothing was asked; where the search was refused, an object with
-/// `refused` and `remedy`. `options`: with the model that was searched; `source`: with the one that is kept.
-[[nodiscard]] nlohmann::json law_json(const RemainingLaw& law, const calib::fit::FitOptions& options,
-                                      const store::PoseSource& source, const std::string& run);
+/// That of `mgt discover --quick` with `instead_of`, null where nothing was asked; where the search was
+/// refused, an object with `refused` and `remedy`. `source`: with the model that is kept.
+[[nodiscard]] nlohmann::json law_json(const std::optional<RemainingLaw>& law, const store::PoseSource& source,
+                                      const std::string& run);
 /// A section below the text of the verdict; empty where nothing was asked.
-[[nodiscard]] std::string law_text(const RemainingLaw& law, const calib::fit::FitOptions& options,
-                                   const store::PoseSource& source, const std::string& run);
+[[nodiscard]] std::string law_text(const std::optional<RemainingLaw>& law, const store::PoseSource& source,
+                                   const std::string& run);
 
 }  // namespace mgtd::daemon::cli

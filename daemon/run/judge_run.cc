@@ -30,21 +30,33 @@ using calib::discovery::DiscoveryReport;
 /// Of the probability of the right name, below which a measurement is not worth its time.
 constexpr double kGain = 0.02;
 
+using calib::discovery::LawFinding;
+
+/// "LAW: z^4 at s3.z"
+std::string discovered_text(const DiscoveryReport& d) {
+  std::string out(to_string(d.verdict));
+  if (d.accounts_for_everything()) {
+    std::vector<std::string> laws;
+    for (const calib::discovery::FoundLaw& law : d.laws)
+      laws.push_back(fmt::format("{} at {}", law.formulas.front().formula, law.formulas.front().where));
+    out += fmt::format(": {}", fmt::join(laws, " and "));
+  }
+  if (d.verdict == LawFinding::shape_only || d.verdict == LawFinding::noise_like)
+    out += fmt::format(" ({})", calib::report::reason_text(d));
+  return out;
+}
+
 std::string found_text(const RunEvidence& e) {
   const ExplainReport& r = e.explained;
+  if (e.formulas_alone)
+    return fmt::format("{}; {} {} a part of it", discovered_text(*e.discovered), fmt::join(r.named, ", "),
+                       r.named.size() == 1 ? "describes" : "describe");
   std::string out(to_string(r.finding));
   if (!r.named.empty())
     out += fmt::format(": {}", fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "));
   if (e.discovered) {
-    const DiscoveryReport& d = *e.discovered;
     for (const std::string& effect : e.beside) out += fmt::format("; for the rest LIBRARY: {}", effect);
-    out += fmt::format("; for the rest {}", to_string(d.verdict));
-    if (d.verdict == calib::discovery::LawFinding::law || d.verdict == calib::discovery::LawFinding::law_set)
-      out += fmt::format(": {} at {}", d.laws.front().formulas.front().formula,
-                         d.laws.front().formulas.front().where);
-    if (d.verdict == calib::discovery::LawFinding::shape_only ||
-        d.verdict == calib::discovery::LawFinding::noise_like)
-      out += fmt::format(" ({})", calib::report::reason_text(d));
+    out += fmt::format("; for the rest {}", discovered_text(*e.discovered));
   }
   return out;
 }
@@ -115,10 +127,18 @@ void discover_in(calib::fit::FitOptions& options, RunEvidence& evidence) {
   }
 }
 
+/// Formulas without the effects that explain() names, where they account for everything.
+bool discover_alone(const calib::fit::FitOptions& options, RunEvidence& evidence) {
+  auto found =
+      calib::discovery::discover(evidence.table, {.fit = options, .looks = kMostJudgements, .checks = false});
+  if (!found || !found->accounts_for_everything()) return false;
+  evidence.discovered = *std::move(found);
+  return evidence.formulas_alone = true;
+}
+
 }  // namespace
 
 bool RunEvidence::leaves_formulas_open() const {
-  using calib::discovery::LawFinding;
   if (!discovered) return false;
   const calib::discovery::LawFindingReason& reason = discovered->reason;
   return discovered->verdict == LawFinding::law_set ||
@@ -131,7 +151,6 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
   out.judgement.found = found_text(e);
   const Finding finding = e.explained.finding;
   const bool open = e.next && !e.next->effect.empty();
-  using calib::discovery::LawFinding;
   if (finding == Finding::pass || finding == Finding::explained) {
     out.judgement.next = finding == Finding::pass ? "nothing is left to explain"
                                                   : "the verdict is clear: mgt improve adds what it names";
@@ -139,7 +158,8 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
   } else if (!open && e.discovered && e.discovered->verdict == LawFinding::law) {
     out.judgement.next =
-        e.beside.empty()
+        e.formulas_alone ? "a formula accounts for everything: mgt discover says how to keep it"
+        : e.beside.empty()
             ? "a formula accounts for the rest: mgt discover says how to keep it"
             : fmt::format("a formula accounts for the rest: mgt discover --with {} says how to keep it",
                           fmt::join(e.beside, " --with "));
@@ -170,10 +190,15 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     evidence.next = *std::move(next);
   }
   if (explained->finding == Finding::partial || explained->finding == Finding::unknown) {
-    options.effects = explained->model;
-    discover_in(options, evidence);
+    const bool stands_in = explained->model.size() > options.effects.size();
+    if (!stands_in || !discover_alone(options, evidence)) {
+      options.effects = explained->model;
+      discover_in(options, evidence);
+    }
     if (evidence.leaves_formulas_open()) {
-      const auto hypotheses = hypotheses_of(evidence.discovered->laws.front(), sensors_of(table));
+      const std::size_t asked = evidence.discovered->reason.law;
+      const auto hypotheses = hypotheses_of(evidence.discovered->laws[asked], sensors_of(table));
+      add_laws_beside(*evidence.discovered, asked, sensors_of(table), options);
       if (!hypotheses.empty())
         if (auto next = calib::criticism::search::next_among(table, options, hypotheses))
           evidence.next = *std::move(next);
@@ -181,7 +206,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     const bool names_open =
         std::any_of(explained->rounds.begin(), explained->rounds.end(),
                     [](const calib::criticism::search::Round& r) { return !r.possible.empty(); });
-    if ((!evidence.next || evidence.next->effect.empty()) && names_open)
+    if (!evidence.formulas_alone && (!evidence.next || evidence.next->effect.empty()) && names_open)
       if (auto next = calib::criticism::search::next_after(*explained, table, search, std::nullopt))
         evidence.next = *std::move(next);
   }

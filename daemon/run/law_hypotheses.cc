@@ -23,4 +23,14 @@ std::vector<calib::design::Hypothesis> hypotheses_of(const calib::discovery::Fou
   return out;
 }
 
+void add_laws_beside(const calib::discovery::DiscoveryReport& found, std::size_t asked, int sensors,
+                     calib::fit::FitOptions& options) {
+  for (std::size_t i = 0; i < found.laws.size(); ++i) {
+    if (i == asked || found.laws[i].d < found.laws[asked].d) continue;
+    for (const std::string& spec : found.laws[i].formulas.front().specs)
+      if (auto effect = calib::effects::library::make_effect(spec, sensors))
+        options.effects.push_back(*std::move(effect));
+  }
+}
+
 }  // namespace mgtd::daemon::run

@@ -106,20 +106,29 @@ TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
     EXPECT_EQ(whole.at("law").at("verdict"), "LAW") << command;
     EXPECT_EQ(whole.at("law").at("laws").at(0).at("formulas").at(0).at("formula"), "z^4");
     const json& commands = whole.at("law").at("commands");
-    ASSERT_EQ(commands.size(), 3U) << command;
-    EXPECT_EQ(commands.at(0), "mgt add axis.quadratic@s3.z " + table) << "the model that was searched";
-    EXPECT_THAT(commands.at(2).get<std::string>(), HasSubstr("mgt add law1 "));
+    ASSERT_EQ(commands.size(), 2U) << "no effect that stood in for it: " << command;
+    EXPECT_THAT(commands.at(1).get<std::string>(), HasSubstr("mgt add law1 "));
+    EXPECT_EQ(whole.at("law").at("instead_of"), json::array({"axis.quadratic@s3.z"}));
     const json bare = json::parse(run({"mgt", command, table, "--no-law", "--json"}).out, nullptr, false);
     EXPECT_EQ(bare.at("verdict"), whole.at("verdict"));
     EXPECT_FALSE(bare.contains("law")) << command;
     const Finished text = run({"mgt", command, table});
     EXPECT_EQ(text.exit_code, 1);
-    EXPECT_THAT(text.out, HasSubstr("A formula for what remains beside axis.quadratic@s3.z"));
+    EXPECT_THAT(text.out, HasSubstr("A formula for everything, instead of axis.quadratic@s3.z"));
     EXPECT_THAT(text.out, HasSubstr("LAW: z^4 at s3.z."));
-    EXPECT_THAT(text.out, HasSubstr("  mgt add axis.quadratic@s3.z "));
     EXPECT_THAT(text.out, Not(HasSubstr("shows most of it"))) << "what is left was told one sentence before";
     EXPECT_THAT(run({"mgt", command, table, "--no-law"}).out, Not(HasSubstr("A formula for")));
   }
+}
+
+/// A law stands beside the effects that it was searched beside: those are added first.
+TEST_F(NextLaw, TheCommandsMakeTheModelThatWasSearched) {
+  const std::string table = file("strong.csv");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13, 0.3), "-o", table}).exit_code, 0);
+  const json found = ask({"discover", table, "--quick", "--with", "axis.cubic@s1.x"});
+  ASSERT_EQ(found.at("verdict"), "LAW");
+  ASSERT_EQ(found.at("commands").size(), 3U);
+  EXPECT_EQ(found.at("commands").at(0), "mgt add axis.cubic@s1.x " + table);
 }
 
 TEST_F(NextLaw, NoFormulaIsLookedForWhereNothingRemains) {

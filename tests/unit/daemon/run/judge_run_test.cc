@@ -141,6 +141,26 @@ TEST(JudgeRun, ALawEndsIt) {
   EXPECT_THAT(out.judgement.next, HasSubstr("a formula accounts for the rest"));
 }
 
+/// Effects that describe a part of a law stand in for it.
+TEST(JudgeRun, AFormulaThatAccountsForEverythingTakesThePlaceOfNames) {
+  const PoseTable table = ten_poses();
+  ExplainReport explained;
+  explained.finding = Finding::partial;
+  explained.named = {"site.step"};
+  calib::discovery::DiscoveryReport found;
+  found.verdict = calib::discovery::LawFinding::law;
+  found.laws.emplace_back();
+  found.laws.front().formulas.resize(1);
+  found.laws.front().formulas.front().formula = "t_h^2";
+  found.laws.front().formulas.front().where = "site gradient";
+  const NextPoses out = next_poses(
+      {.table = table, .explained = explained, .next = {}, .discovered = found, .formulas_alone = true}, 30,
+      4);
+  EXPECT_EQ(out.judgement.found, "LAW: t_h^2 at site gradient; site.step describes a part of it");
+  EXPECT_THAT(out.judgement.next, HasSubstr("a formula accounts for everything"));
+  EXPECT_TRUE(out.poses.empty());
+}
+
 /// A part that is named is no end while other names of it are open, whatever a formula says of the rest.
 TEST(JudgeRun, APartThatIsOpenIsToldApart) {
   const PoseTable table = ten_poses();
